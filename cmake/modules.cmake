@@ -1,0 +1,52 @@
+# posewise_module(<name> <modules it may use>...)
+# An object library of src/<name>/*.cpp. Modules compile against the whole include tree; that they
+# include only what they may is tested (tests/layering_test.py), and each module's tests link only
+# the module and those it may use.
+function(posewise_module name)
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp")
+  if(NOT sources)
+    return()
+  endif()
+  add_library(posewise_${name} OBJECT ${sources})
+  target_include_directories(posewise_${name} PUBLIC
+    "${PROJECT_SOURCE_DIR}/include" "${PROJECT_BINARY_DIR}/include")
+  target_link_libraries(posewise_${name}
+    PUBLIC Eigen3::Eigen OpenMP::OpenMP_CXX
+    PRIVATE posewise_warnings yaml-cpp nlohmann_json::nlohmann_json fmt::fmt MatIO::MatIO)
+  # Threads are ours (over candidates, starts, cases); Eigen's own would make sums depend on them.
+  target_compile_definitions(posewise_${name} PUBLIC EIGEN_DONT_PARALLELIZE)
+  if(BUILD_SHARED_LIBS)
+    set_target_properties(posewise_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  endif()
+  if(name STREQUAL "core")
+    target_precompile_headers(posewise_core PRIVATE
+      <Eigen/Dense> <algorithm> <cmath> <map> <memory> <string> <vector>)
+  else()
+    target_precompile_headers(posewise_${name} REUSE_FROM posewise_core)
+  endif()
+  set_property(GLOBAL APPEND PROPERTY posewise_modules ${name})
+  set_property(GLOBAL PROPERTY posewise_uses_${name} ${ARGN})
+endfunction()
+
+# The one library people link: posewise::posewise, all modules together.
+function(posewise_library)
+  get_property(modules GLOBAL PROPERTY posewise_modules)
+  add_library(posewise)
+  add_library(posewise::posewise ALIAS posewise)
+  foreach(module ${modules})
+    target_sources(posewise PRIVATE $<TARGET_OBJECTS:posewise_${module}>)
+  endforeach()
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/*.hpp")
+  target_sources(posewise PUBLIC
+    FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include" FILES ${headers}
+    FILE_SET generated TYPE HEADERS BASE_DIRS "${PROJECT_BINARY_DIR}/include"
+    FILES "${PROJECT_BINARY_DIR}/include/posewise/core/version.hpp")
+  target_link_libraries(posewise
+    PUBLIC Eigen3::Eigen OpenMP::OpenMP_CXX
+    PRIVATE yaml-cpp nlohmann_json::nlohmann_json fmt::fmt MatIO::MatIO)
+  target_compile_definitions(posewise PUBLIC EIGEN_DONT_PARALLELIZE)
+  target_compile_features(posewise PUBLIC cxx_std_20)
+  set_target_properties(posewise PROPERTIES LINKER_LANGUAGE CXX
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
+    VERIFY_INTERFACE_HEADER_SETS ON)
+endfunction()

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/measurements.hpp"
+
+namespace posewise {
+
+/// How an identification ended.
+enum class Ending {
+    NotRun,
+    Converged,
+    IterationLimit,  ///< still improving: usable, not the optimum
+    Stalled,         ///< no step improves although the gradient is not zero
+};
+std::string_view ending_name(Ending ending);
+
+/// Residual metrics over points, m. The ten numbers of the seed report.
+struct Metrics {
+    Index point_count = 0;
+    double distance_rms = 0;
+    double distance_max = 0;
+    double distance_mean = 0;
+    double distance_p95 = 0;
+    std::array<double, 3> coordinate_rms{};
+    std::array<double, 3> coordinate_max{};
+};
+
+/// Identified parameters and how sure they are.
+struct Estimate {
+    Ending ending = Ending::NotRun;
+    Index iterations = 0;
+    Parameters parameters;
+    std::vector<std::string> names;  ///< L, order of Parameters
+    /// Covariance of all L parameters jointly (base and targets estimated too), m and rad.
+    MatrixXd covariance;
+    /// Residual variance of whitened means: chi^2 / degrees of freedom; 1 if sigma and model error
+    /// were stated right. The covariance is scaled by it.
+    double variance_factor = 0;
+    Index degrees_of_freedom = 0;
+    Metrics fit;        ///< all samples
+    Metrics fit_means;  ///< means of each configuration
+};
+
+/// Standard deviations: sqrt of the covariance's diagonal (m, rad).
+VectorXd standard_deviations(const Estimate& estimate);
+
+struct Correlation {
+    Index first = 0;
+    Index second = 0;
+    double coefficient = 0;
+};
+/// The `count` strongest correlations between two parameters, strongest first.
+std::vector<Correlation> strongest_correlations(const Estimate& estimate, Index count);
+
+/// observed - predicted, of every sample: samples x sensor rows, m.
+RowMatrixXd residuals(const Campaign& campaign, const Parameters& parameters,
+                      const Measurements& measurements);
+/// observed mean - predicted, one row each configuration.
+RowMatrixXd mean_residuals(const Campaign& campaign, const Parameters& parameters,
+                           const Measurements& measurements);
+
+/// Metrics of residual rows whose columns are x, y, z of one point after another.
+Metrics make_metrics(const RowMatrixXd& residuals);
+
+}  // namespace posewise

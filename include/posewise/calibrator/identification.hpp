@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+
+#include "posewise/calibrator/estimate.hpp"
+
+namespace posewise {
+
+struct LevenbergMarquardtOptions {
+    Index iteration_limit = 100;
+    double relative_tolerance =
+        1e-12;  ///< predicted relative fall of the sum of squares to stop at
+};
+
+/// Joint identification of base, robot and targets by Levenberg-Marquardt on whitened means, with
+/// the analytic Jacobian and QR factorisations (never normal equations), from `start`.
+/// Throws InputError if there are fewer equations than parameters, or if a direction of parameter
+/// space is not identifiable from these poses: the message names the parameters in it.
+Estimate identify(const Campaign& campaign, const Measurements& measurements,
+                  const Parameters& start, const LevenbergMarquardtOptions& options = {});
+
+struct TwoStepOptions {
+    Index iteration_limit = 200;
+    double alpha = 1;                  ///< part of each robot step taken, in (0, 1]
+    double relative_tolerance = 1e-9;  ///< predicted relative fall of the sum of squares to stop at
+};
+
+/// The two-step identification of [Wu et al. 2015]: base and targets by linear least squares with
+/// the robot fixed, then the robot's parameters with base and targets fixed, in turn. Heads to the
+/// same optimum as identify(), slowly; the covariance is the joint one all the same.
+/// Throws InputError as identify() does.
+Estimate identify_two_step(const Campaign& campaign, const Measurements& measurements,
+                           const Parameters& start, const TwoStepOptions& options = {});
+
+/// Held-out residuals: the measurements are split into `folds` groups of configurations (in turn:
+/// configuration i is in group i mod folds), each predicted by an identification of the others
+/// that starts at `start`. folds = configuration count is leave-one-configuration-out.
+struct CrossValidation {
+    Index folds = 0;
+    Metrics samples;  ///< over all samples of all groups
+    Metrics means;
+    std::vector<std::string> failures;  ///< folds that could not be identified, and why
+};
+CrossValidation cross_validate(const Campaign& campaign, const Measurements& measurements,
+                               const Parameters& start, Index folds,
+                               const LevenbergMarquardtOptions& options = {});
+
+}  // namespace posewise

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "posewise/core/blocks.hpp"
+
+namespace posewise {
+
+/// A number for an information matrix; larger is better. s1 >= ... >= sL are the singular values
+/// of the stacked blocks of m poses, M = J^T J their information matrix.
+enum class Criterion {
+    O1,  ///< (s1 ... sL)^(1/L) / sqrt(m) [Borm & Menq 1991]: overall; same ranking as D at fixed m
+    O2,  ///< sL / s1 [Driels & Pathre 1990]: inverse condition number
+    O3,  ///< sL [Nahvi & Hollerbach 1996]: the worst direction
+    O4,  ///< sL^2 / s1 [Nahvi & Hollerbach 1996]: noise amplification
+    O5,  ///< 1 / (1/s1 + ... + 1/sL) [Sun & Hollerbach 2008]
+    A,   ///< 1 / trace(M^-1): mean parameter variance
+    D,   ///< log det M: volume of the confidence ellipsoid; free of scales
+    E,   ///< smallest eigenvalue of M: variance of the worst direction
+    G,   ///< 1 / largest trace(B0 M^-1 B0^T) over test poses: worst prediction
+    V,   ///< 1 / mean trace(B0 M^-1 B0^T) over test poses (also called I): mean prediction
+};
+
+/// Lower-case name as on the command line ("o1", ..., "v").
+std::string_view criterion_name(Criterion criterion);
+
+/// Reverse of criterion_name(), upper case accepted, "i" means V. Throws InputError listing all.
+Criterion parse_criterion(std::string_view name);
+
+/// Singular values of stacked blocks, largest first, computed from the blocks themselves (QR, then
+/// SVD of R), so small ones keep their digits. Padded with zeros to parameter_count().
+VectorXd singular_values(const RowMatrixXd& stacked);
+
+/// The criterion from singular values, largest first, of m poses. Singular (sL <= 1e-12 s1) gives
+/// minus infinity. G and V need test poses: InputError.
+double evaluate(Criterion criterion, const VectorXd& singular_values, Index pose_count);
+
+/// The criterion from an information matrix of m poses. `test_poses` is needed by G and V only.
+/// Never NaN: a singular (or not positive definite) M gives minus infinity.
+double evaluate(Criterion criterion, const MatrixXd& M, Index pose_count,
+                const Blocks* test_poses = nullptr);
+
+}  // namespace posewise

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "posewise/measurement/campaign.hpp"
+
+namespace posewise {
+
+/// `coefficient * name`, in SI units: m or rad of the named parameter per m or rad of the dropped.
+struct ParameterTerm {
+    Index parameter = 0;
+    double coefficient = 0;
+};
+
+/// A parameter that measurements cannot tell apart from the kept ones: a unit error of it looks
+/// exactly like `absorbed_by` (empty: it moves nothing at all).
+struct DroppedParameter {
+    Index parameter = 0;
+    std::vector<ParameterTerm> absorbed_by;
+};
+
+/// Which columns of a Jacobian are independent.
+struct Identifiability {
+    std::vector<Index> kept;                ///< in the columns' order
+    std::vector<DroppedParameter> dropped;  ///< in the order they were met
+    /// Least residual of a kept column and largest of a dropped one (columns have norm 1): the gap
+    /// the decision rests on.
+    double least_kept_residual = 1;
+    double largest_dropped_residual = 0;
+};
+
+/// Walks the columns of J in `priority` order (a permutation of them) and keeps one if its
+/// residual on the kept ones exceeds `tolerance` of its norm (twice orthogonalised Gram-Schmidt).
+/// A column below 1e-12 of the largest moves nothing.
+Identifiability find_independent_columns(const MatrixXd& J, const std::vector<Index>& priority,
+                                         double tolerance = 1e-8);
+
+/// What a campaign can identify at best: its Jacobian at nominal parameters over random
+/// configurations within the limits (as many as twice the parameters). Priority: base, sensor,
+/// joint offsets, other rotations, translations, each from base to flange. The test is at nominal
+/// values because off nominal a lost rank is only nearly lost. Targets and base that the campaign
+/// does not state are put at generic places.
+Identifiability find_identifiable(const Campaign& campaign);
+
+/// The same robot with only the kept error parameters.
+Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names);
+
+/// The irreducible form: with complete errors, then only those that are identifiable.
+Chain irreducible_model(const Campaign& campaign);
+
+/// Smallest number of generic configurations that identifies all that is identifiable.
+Index least_pose_count(const Campaign& campaign);
+
+/// A direction in parameter space, in units of each parameter's expected error (scaled), that the
+/// poses at hand hardly see.
+struct WeakDirection {
+    double singular_value = 0;  ///< of the whitened, scaled stacked Jacobian
+    /// Its largest components, by decreasing magnitude; the direction has norm 1 and its largest
+    /// component is positive.
+    std::vector<ParameterTerm> terms;
+};
+
+/// The `count` weakest directions of stacked blocks (rows x parameters), weakest first.
+std::vector<WeakDirection> weakest_directions(const MatrixXd& stacked, Index count,
+                                              Index terms_each = 4);
+
+}  // namespace posewise

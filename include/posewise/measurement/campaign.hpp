@@ -1,0 +1,70 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "posewise/measurement/sensor.hpp"
+#include "posewise/model/chain.hpp"
+
+namespace posewise {
+
+/// Values of everything a calibration identifies. As a vector (names: parameter_names()) the order
+/// is base 6, robot, sensor; see advance() for what the six of the base mean.
+struct Parameters {
+    Isometry3d world_from_base = Isometry3d::Identity();
+    VectorXd robot;   ///< the chain's error parameters, m or rad; zero is nominal
+    VectorXd sensor;  ///< the sensor's unknowns (targets in the flange frame), m
+};
+
+/// The expected size of each parameter's error: the scale of its column, and its prior standard
+/// deviation where priors are on. Metres and radians.
+struct ParameterSpread {
+    double length = 1e-3;
+    double angle = 1e-3;
+    std::map<std::string, double> by_name;  ///< exceptions, by parameter name
+};
+
+/// Everything about a measurement campaign that is known before measuring: the robot, the sensor,
+/// how large the errors are expected to be. The subject of every question posewise answers.
+struct Campaign {
+    std::string name;
+    Chain robot;
+    std::shared_ptr<const Sensor> sensor;
+    ParameterSpread spread;
+    /// Standard deviation (m) of what the model cannot express; acts like noise that repeats do
+    /// not reduce.
+    double model_error = 1e-4;
+    /// Expected base and targets, for planning and simulation; robot errors are zero.
+    Parameters nominal;
+    /// Whether base and targets in `nominal` were stated, not made up.
+    bool has_nominal_base = false;
+    bool has_nominal_targets = false;
+};
+
+/// Number of identified parameters: 6 + robot + sensor unknowns.
+Index parameter_count(const Campaign& campaign);
+
+/// base.x .. base.z, base.rx .. base.rz, the chain's, the sensor's.
+std::vector<std::string> parameter_names(const Campaign& campaign);
+
+/// Whether each parameter is an angle (rad), else a length (m).
+std::vector<bool> parameter_is_angle(const Campaign& campaign);
+
+/// Expected error of each parameter (m or rad): the column scale. Throws InputError if `spread`
+/// names a parameter the campaign does not have.
+VectorXd parameter_scale(const Campaign& campaign);
+
+/// Parameters moved by a small step (parameter_count(), m and rad): the base turns by exp([phi]x)
+/// about its own origin in world axes and is translated along world axes; the rest is added.
+Parameters advance(const Parameters& parameters, const VectorXd& step);
+
+/// world_from_flange at a configuration.
+Isometry3d world_from_flange(const Campaign& campaign, const Parameters& parameters,
+                             const VectorXd& configuration);
+
+/// The same campaign with another robot model (and so other error parameters, at zero).
+Campaign with_robot(const Campaign& campaign, Chain robot);
+
+}  // namespace posewise

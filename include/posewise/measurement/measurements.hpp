@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewise/core/types.hpp"
+
+namespace posewise {
+
+/// A measured campaign: configurations, each observed once or several times.
+struct Measurements {
+    RowMatrixXd configurations;          ///< m x joints, rad or m
+    std::vector<std::string> ids;        ///< m names of the configurations, as in the file
+    RowMatrixXd observations;            ///< samples x sensor rows, m; grouped by configuration
+    std::vector<Index> first_sample{0};  ///< m + 1; samples of configuration i start at [i]
+
+    Index configuration_count() const { return static_cast<Index>(ids.size()); }
+    Index sample_count(Index configuration) const {
+        const auto i = static_cast<std::size_t>(configuration);
+        return first_sample[i + 1] - first_sample[i];
+    }
+};
+
+/// Mean observation of each configuration: m x sensor rows.
+RowMatrixXd mean_observations(const Measurements& measurements);
+
+/// The measurements of some configurations, in the order asked for.
+Measurements take(const Measurements& measurements, const std::vector<Index>& configurations);
+
+/// The other ones: all but those listed.
+std::vector<Index> all_but(Index count, const std::vector<Index>& left_out);
+
+/// Standard deviation of one observed coordinate about its configuration's mean, pooled over all
+/// samples (m); nothing if no configuration was repeated.
+std::optional<double> repeatability(const Measurements& measurements);
+
+}  // namespace posewise

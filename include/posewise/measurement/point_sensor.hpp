@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "posewise/measurement/sensor.hpp"
+
+namespace posewise {
+
+/// An instrument that returns the position of n targets fixed to the flange, in its own frame
+/// (laser tracker with SMRs, stereo camera). Each target's position in the flange frame is either
+/// known or three unknowns.
+class PointSensor final : public Sensor {
+  public:
+    /// `known_targets[i]` is target i's position in the flange frame (m), or nothing if it is
+    /// unknown; sigma (m) the standard deviation of one coordinate of one observation.
+    /// Throws InputError if there is no target or sigma is not positive and finite.
+    PointSensor(std::vector<std::optional<Vector3d>> known_targets, double sigma);
+
+    Index target_count() const { return static_cast<Index>(known_targets_.size()); }
+    double sigma() const { return sigma_; }
+    bool is_known(Index target) const;
+    /// Position of a target in the flange frame, from the known ones or from the unknowns.
+    Vector3d target(Index target, const VectorXd& unknowns) const;
+    /// Index of a target's x among the unknowns; -1 if it is known.
+    Index unknown_offset(Index target) const;
+
+    Index row_count() const override { return 3 * target_count(); }
+    std::vector<std::string> observation_names() const override;
+    std::vector<std::string> unknown_names() const override;
+    VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const override;
+    void differentiate(const FlangeMotion& motion, const VectorXd& unknowns,
+                       Eigen::Ref<RowMatrixXd> J_measured_parameters) const override;
+    void whiten(const Isometry3d& world_from_flange, const VectorXd& unknowns, double repeats,
+                double model_error, Eigen::Ref<RowMatrixXd> rows) const override;
+    VectorXd color_noise(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                         const VectorXd& standard_normal) const override;
+
+  private:
+    std::vector<std::optional<Vector3d>> known_targets_;
+    std::vector<Index> unknown_offset_;  // -1: known
+    double sigma_;
+};
+
+}  // namespace posewise

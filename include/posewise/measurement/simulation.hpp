@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/measurements.hpp"
+
+namespace posewise {
+
+struct SimulateOptions {
+    Index pose_count = 0;          ///< must be stated
+    Index repeats = 1;             ///< observations of each configuration
+    std::uint64_t truth_seed = 1;  ///< draws the true parameters
+    std::uint64_t seed = 1;        ///< draws configurations and noise
+};
+
+/// A simulated campaign and the parameters that made it.
+struct Simulation {
+    Parameters truth;
+    Measurements measurements;
+};
+
+/// True parameters at nominal plus normal errors of the campaign's spread.
+Parameters draw_truth(const Campaign& campaign, std::uint64_t seed);
+
+/// Observations of given configurations (m x joints) by a robot with the true parameters: sensor
+/// noise on every sample, model error on every configuration (the same for all its samples).
+/// Configuration i and its noise come from stream (seed, i), whatever the number of configurations.
+Measurements simulate_measurements(const Campaign& campaign, const Parameters& truth,
+                                   const RowMatrixXd& configurations, Index repeats,
+                                   std::uint64_t seed);
+
+/// draw_truth() measured at random configurations within the joint limits. Throws InputError for
+/// counts below 1 or if the campaign does not state its base and targets.
+Simulation simulate(const Campaign& campaign, const SimulateOptions& options);
+
+}  // namespace posewise

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "posewise/core/types.hpp"
+
+namespace posewise {
+
+enum class Motion {
+    Translation,  ///< along the axis, metres
+    Rotation,     ///< about the axis, radians
+};
+
+enum class Axis { X = 0, Y = 1, Z = 2 };
+
+/// `coefficient * q[joint]`, part of what drives an element. -1 is a reversed joint; a second term
+/// in the same element is a coupling such as `q3 + q2`.
+struct JointTerm {
+    Index joint = 0;
+    double coefficient = 1;
+};
+
+/// One elementary transform E(value + sum of joint terms + error parameter).
+struct Element {
+    Motion motion = Motion::Translation;
+    Axis axis = Axis::X;
+    double value = 0;               ///< nominal, m or rad
+    std::vector<JointTerm> joints;  ///< empty: a fixed element
+    std::string parameter;          ///< name of its error parameter; empty: none
+};
+
+/// A joint with its limits in rad (revolute) or m (prismatic).
+struct Joint {
+    std::string name;
+    double lower = 0;
+    double upper = 0;
+};
+
+/// Where the flange is, and how it moves with each parameter.
+struct FlangeMotion {
+    Isometry3d world_from_flange;
+    /// 6 x (6 + R). Column k is the twist (angular w; velocity v of the point at the world origin)
+    /// by parameter k, so a point x fixed to the flange moves by v + w cross x. Columns 0-2 are
+    /// translations of the base along the world axes, 3-5 its rotations about world axes through
+    /// the base origin, the rest the chain's error parameters.
+    TwistMatrix twists;
+};
+
+/// A serial robot as a product of elementary transforms from base to flange:
+/// base_from_flange(q) = prod_k E_k(v_k + c_k . q + pi_k).
+class Chain {
+  public:
+    Chain() = default;
+
+    /// Throws InputError if a joint drives no element or both a rotation and a translation, if its
+    /// limits are not finite or out of order, or if two parameters (or joints) share a name.
+    Chain(std::vector<Joint> joints, std::vector<Element> elements);
+
+    const std::vector<Joint>& joints() const { return joints_; }
+    const std::vector<Element>& elements() const { return elements_; }
+    Index joint_count() const { return static_cast<Index>(joints_.size()); }
+    Index parameter_count() const { return static_cast<Index>(parameter_elements_.size()); }
+
+    /// Whether joint j turns (else it slides).
+    Motion joint_motion(Index joint) const;
+    /// The element that carries error parameter k, in the order of the elements.
+    const Element& parameter_element(Index parameter) const;
+    std::vector<std::string> parameter_names() const;
+
+    /// Throws InputError (naming the joint, value and rule) if q has the wrong size or a value
+    /// that is not finite. Limits are not looked at.
+    void check_configuration(const VectorXd& q) const;
+
+    /// base_from_flange at joint values q (joint_count(), rad or m) and error parameters
+    /// (parameter_count(), rad or m; zero is nominal).
+    Isometry3d base_from_flange(const VectorXd& q, const VectorXd& parameters) const;
+
+    /// Flange pose in the world and its twist by every parameter, in one pass over the elements:
+    /// a rotation contributes (axis; origin cross axis), a translation (0; axis), both read off
+    /// the running product. `motion` is resized at need only, so a reused one costs no allocation.
+    void differentiate(const Isometry3d& world_from_base, const VectorXd& q,
+                       const VectorXd& parameters, FlangeMotion& motion) const;
+
+  private:
+    std::vector<Joint> joints_;
+    std::vector<Element> elements_;
+    std::vector<Index> parameter_elements_;  // parameter -> its element
+};
+
+/// The same robot without error parameters: calibrating it fits base and targets only.
+Chain without_parameters(const Chain& chain);
+
+}  // namespace posewise

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+
+#include "posewise/model/chain.hpp"
+
+namespace posewise {
+
+/// Uniformly random configurations within the joint limits: count x joints. Configuration i comes
+/// from stream (seed, i), so a longer list begins with the shorter one.
+RowMatrixXd random_configurations(const Chain& chain, Index count, std::uint64_t seed);
+
+}  // namespace posewise

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/criteria/criterion.hpp"
+
+namespace posewise {
+
+/// How well one subset calibrates the robot.
+struct StudyCase {
+    std::vector<Index> poses;
+    bool identified = false;  ///< false: these poses cannot identify the model
+    Metrics held_out;         ///< samples of the configurations left out; no points if none is left
+};
+
+/// All subsets of one size.
+struct StudyRow {
+    Index pose_count = 0;
+    std::vector<StudyCase> optimal;  ///< one for each asked criterion
+    std::vector<StudyCase> random;
+};
+
+struct StudyOptions {
+    std::vector<Criterion> criteria{Criterion::D};
+    std::vector<Index> pose_counts;  ///< empty: from the least identifying count to all
+    Index random_subsets = 100;
+    Index starts = 20;  ///< of the exchange
+    std::uint64_t seed = 1;
+};
+
+/// Accuracy against number of poses: choose k of the measured configurations by each criterion and
+/// at random, calibrate with them from registration on, and judge on the configurations left out.
+/// `progress(done, total)` is called from one thread at a time. The same result for any number of
+/// threads.
+std::vector<StudyRow> study_pose_counts(const Campaign& campaign, const Measurements& measurements,
+                                        const StudyOptions& options,
+                                        const std::function<void(Index, Index)>& progress = {});
+
+/// The p-quantile (0..1, linear between order statistics) of the held-out distance RMS of
+/// identified cases; nothing if there is none.
+std::optional<double> held_out_quantile(const std::vector<StudyCase>& cases, double p);
+
+}  // namespace posewise

@@ -1,0 +1,72 @@
+#include "posewise/measurement/simulation.hpp"
+
+#include "posewise/core/errors.hpp"
+#include "posewise/core/random.hpp"
+#include "posewise/model/sampling.hpp"
+
+namespace posewise {
+namespace {
+
+VectorXd draw_normal(RandomStream& stream, Index count) {
+    VectorXd z(count);
+    for (Index k = 0; k < count; ++k) z[k] = stream.normal();
+    return z;
+}
+
+}  // namespace
+
+Parameters draw_truth(const Campaign& campaign, std::uint64_t seed) {
+    RandomStream stream(seed);
+    const VectorXd errors =
+        parameter_scale(campaign).cwiseProduct(draw_normal(stream, parameter_count(campaign)));
+    return advance(campaign.nominal, errors);
+}
+
+Measurements simulate_measurements(const Campaign& campaign, const Parameters& truth,
+                                   const RowMatrixXd& configurations, Index repeats,
+                                   std::uint64_t seed) {
+    const Sensor& sensor = *campaign.sensor;
+    const Index rows = sensor.row_count();
+    Measurements measurements;
+    measurements.configurations = configurations;
+    measurements.observations.resize(configurations.rows() * repeats, rows);
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        RandomStream stream(seed, static_cast<std::uint64_t>(i));
+        const VectorXd q = configurations.row(i).transpose();
+        const Isometry3d flange = world_from_flange(campaign, truth, q);
+        const VectorXd expected =
+            sensor.predict(flange, truth.sensor) + campaign.model_error * draw_normal(stream, rows);
+        for (Index k = 0; k < repeats; ++k) {
+            const VectorXd noise =
+                sensor.color_noise(flange, truth.sensor, draw_normal(stream, rows));
+            measurements.observations.row(i * repeats + k) = (expected + noise).transpose();
+        }
+        measurements.ids.push_back(std::to_string(i));
+        measurements.first_sample.push_back((i + 1) * repeats);
+    }
+    return measurements;
+}
+
+Simulation simulate(const Campaign& campaign, const SimulateOptions& options) {
+    if (options.pose_count < 1 || options.repeats < 1) {
+        throw InputError("poses and repeats must be at least 1, are " +
+                         std::to_string(options.pose_count) + " and " +
+                         std::to_string(options.repeats));
+    }
+    if (!campaign.has_nominal_base || !campaign.has_nominal_targets) {
+        throw InputError(
+            "to simulate, the campaign must state where base and targets are (keys 'base' and "
+            "'sensor.targets.position_mm')");
+    }
+    // Configurations and noise come from different streams of one seed.
+    const std::uint64_t configuration_seed = ~options.seed;
+    Simulation simulation;
+    simulation.truth = draw_truth(campaign, options.truth_seed);
+    simulation.measurements = simulate_measurements(
+        campaign, simulation.truth,
+        random_configurations(campaign.robot, options.pose_count, configuration_seed),
+        options.repeats, options.seed);
+    return simulation;
+}
+
+}  // namespace posewise

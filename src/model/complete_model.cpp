@@ -1,0 +1,51 @@
+#include "posewise/model/complete_model.hpp"
+
+namespace posewise {
+namespace {
+
+std::string axis_letter(Index axis) { return {static_cast<char>('x' + axis)}; }
+
+/// "2" for joint q2, else "_name": short for the usual names, never ambiguous.
+std::string suffix(const std::string& joint) {
+    const bool numbered = joint.size() > 1 && joint[0] == 'q' &&
+                          joint.find_first_not_of("0123456789", 1) == std::string::npos;
+    return numbered ? joint.substr(1) : '_' + joint;
+}
+
+}  // namespace
+
+Chain complete_model(const Chain& chain) {
+    std::vector<Element> elements;
+    std::vector<bool> seen(chain.joints().size(), false);
+    for (Element element : chain.elements()) {
+        element.parameter.clear();
+        // Of several elements on one joint (a coupling) the errors belong to the one it is first
+        // named by; a later one gets errors only if it is the first of another joint.
+        Index owner = -1;
+        for (const JointTerm& term : element.joints) {
+            if (owner < 0 && !seen[static_cast<std::size_t>(term.joint)]) owner = term.joint;
+        }
+        if (owner < 0) {
+            elements.push_back(element);
+            continue;
+        }
+        seen[static_cast<std::size_t>(owner)] = true;
+        const std::string name = chain.joints()[static_cast<std::size_t>(owner)].name;
+        element.parameter = "d" + (name[0] == 'q' ? name : "_" + name);
+        elements.push_back(element);
+        for (const Motion motion : {Motion::Translation, Motion::Rotation}) {
+            for (Index axis = 0; axis < 3; ++axis) {
+                if (axis == static_cast<Index>(element.axis)) continue;
+                const std::string letter = motion == Motion::Translation ? "T" : "R";
+                elements.push_back({motion,
+                                    static_cast<Axis>(axis),
+                                    0.0,
+                                    {},
+                                    letter + axis_letter(axis) + suffix(name)});
+            }
+        }
+    }
+    return Chain(chain.joints(), std::move(elements));
+}
+
+}  // namespace posewise

@@ -1,0 +1,19 @@
+#include "posewise/model/sampling.hpp"
+
+#include "posewise/core/random.hpp"
+
+namespace posewise {
+
+RowMatrixXd random_configurations(const Chain& chain, Index count, std::uint64_t seed) {
+    RowMatrixXd configurations(count, chain.joint_count());
+    for (Index i = 0; i < count; ++i) {
+        RandomStream stream(seed, static_cast<std::uint64_t>(i));
+        for (Index j = 0; j < chain.joint_count(); ++j) {
+            const Joint& joint = chain.joints()[static_cast<std::size_t>(j)];
+            configurations(i, j) = stream.uniform(joint.lower, joint.upper);
+        }
+    }
+    return configurations;
+}
+
+}  // namespace posewise
