@@ -36,17 +36,15 @@ function(posewise_library)
   foreach(module ${modules})
     target_sources(posewise PRIVATE $<TARGET_OBJECTS:posewise_${module}>)
   endforeach()
-  file(GLOB_RECURSE headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/*.hpp")
-  target_sources(posewise PUBLIC
-    FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include" FILES ${headers}
-    FILE_SET generated TYPE HEADERS BASE_DIRS "${PROJECT_BINARY_DIR}/include"
-    FILES "${PROJECT_BINARY_DIR}/include/posewise/core/version.hpp")
+  target_include_directories(posewise PUBLIC
+    "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>"
+    "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>"
+    "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
   target_link_libraries(posewise
     PUBLIC Eigen3::Eigen OpenMP::OpenMP_CXX
-    PRIVATE yaml-cpp nlohmann_json::nlohmann_json fmt::fmt MatIO::MatIO)
+    PRIVATE yaml-cpp fmt::fmt MatIO::MatIO)
   target_compile_definitions(posewise PUBLIC EIGEN_DONT_PARALLELIZE)
   target_compile_features(posewise PUBLIC cxx_std_20)
   set_target_properties(posewise PROPERTIES LINKER_LANGUAGE CXX
-    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
-    VERIFY_INTERFACE_HEADER_SETS ON)
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 endfunction()
