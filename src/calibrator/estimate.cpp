@@ -1,0 +1,86 @@
+#include "posewise/calibrator/estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace posewise {
+
+std::string_view ending_name(Ending ending) {
+    switch (ending) {
+        case Ending::NotRun:
+            return "not run";
+        case Ending::Converged:
+            return "converged";
+        case Ending::IterationLimit:
+            return "iteration limit";
+        case Ending::Stalled:
+            return "stalled";
+    }
+    return "not run";
+}
+
+VectorXd standard_deviations(const Estimate& estimate) {
+    return estimate.covariance.diagonal().cwiseSqrt();
+}
+
+std::vector<Correlation> strongest_correlations(const Estimate& estimate, Index count) {
+    const VectorXd sigma = standard_deviations(estimate);
+    std::vector<Correlation> all;
+    for (Index i = 0; i < sigma.size(); ++i) {
+        for (Index j = i + 1; j < sigma.size(); ++j) {
+            const double product = sigma[i] * sigma[j];
+            if (product > 0) all.push_back({i, j, estimate.covariance(i, j) / product});
+        }
+    }
+    std::stable_sort(all.begin(), all.end(), [](const Correlation& a, const Correlation& b) {
+        return std::abs(a.coefficient) > std::abs(b.coefficient);
+    });
+    all.resize(std::min(all.size(), static_cast<std::size_t>(std::max<Index>(count, 0))));
+    return all;
+}
+
+RowMatrixXd residuals(const Campaign& campaign, const Parameters& parameters,
+                      const Measurements& measurements) {
+    RowMatrixXd r = measurements.observations;
+    for (Index i = 0; i < measurements.configuration_count(); ++i) {
+        const Isometry3d flange =
+            world_from_flange(campaign, parameters, measurements.configurations.row(i).transpose());
+        r.middleRows(measurements.first_sample[static_cast<std::size_t>(i)],
+                     measurements.sample_count(i))
+            .rowwise() -= campaign.sensor->predict(flange, parameters.sensor).transpose();
+    }
+    return r;
+}
+
+RowMatrixXd mean_residuals(const Campaign& campaign, const Parameters& parameters,
+                           const Measurements& measurements) {
+    Measurements means = measurements;
+    means.observations = mean_observations(measurements);
+    for (std::size_t i = 0; i < means.first_sample.size(); ++i) {
+        means.first_sample[i] = static_cast<Index>(i);
+    }
+    return residuals(campaign, parameters, means);
+}
+
+Metrics make_metrics(const RowMatrixXd& residuals) {
+    Metrics metrics;
+    metrics.point_count = residuals.size() / 3;
+    if (metrics.point_count == 0) return metrics;
+    // Row-major rows of x, y, z triples: one point after another in memory.
+    const Eigen::Map<const Eigen::Matrix3Xd> points(residuals.data(), 3, metrics.point_count);
+    VectorXd distances = points.colwise().norm().transpose();
+    std::sort(distances.begin(), distances.end());
+    const auto count = static_cast<double>(metrics.point_count);
+    metrics.distance_rms = distances.norm() / std::sqrt(count);
+    metrics.distance_max = distances[metrics.point_count - 1];
+    metrics.distance_mean = distances.mean();
+    metrics.distance_p95 = distances[static_cast<Index>(std::ceil(0.95 * count)) - 1];
+    for (Index axis = 0; axis < 3; ++axis) {
+        const auto i = static_cast<std::size_t>(axis);
+        metrics.coordinate_rms[i] = points.row(axis).norm() / std::sqrt(count);
+        metrics.coordinate_max[i] = points.row(axis).cwiseAbs().maxCoeff();
+    }
+    return metrics;
+}
+
+}  // namespace posewise

@@ -1,0 +1,127 @@
+#include "posewise/calibrator/identification.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+
+#include "least_squares.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+/// Falls of chi^2 below this many times the number of equations are rounding: residuals of
+/// 1e-10 standard deviations.
+constexpr double negligible_per_equation = 1e-20;
+
+/// The step of minimal |R d - c|^2 + damping |D d|^2, D the column norms [Marquardt 1963].
+VectorXd damped_step(const Triangle& triangle, double damping) {
+    const Index size = triangle.R.cols();
+    MatrixXd stacked(2 * size, size);
+    stacked.topRows(size) = triangle.R;
+    stacked.bottomRows(size) =
+        (std::sqrt(damping) * triangle.R.colwise().norm()).transpose().asDiagonal();
+    VectorXd right = VectorXd::Zero(2 * size);
+    right.head(size) = triangle.c;
+    return stacked.householderQr().solve(right);
+}
+
+struct LevenbergMarquardt {
+    const IdentificationProblem& problem;
+    const LevenbergMarquardtOptions& options;
+    Estimate& estimate;
+    double cost = 0;
+    double damping = 1e-6;
+
+    /// One accepted step, or an ending.
+    void iterate() {
+        const Triangle triangle = triangularise(linearise(problem, estimate.parameters));
+        const double negligible =
+            negligible_per_equation * static_cast<double>(problem.means.size()) +
+            options.relative_tolerance * cost;
+        if (triangle.c.squaredNorm() <= negligible) {  // what a full step could gain
+            estimate.ending = Ending::Converged;
+            return;
+        }
+        for (; damping < 1e12; damping *= 10) {
+            const VectorXd step = damped_step(triangle, damping);
+            const Parameters moved = advance(estimate.parameters, problem.scale.cwiseProduct(step));
+            const double moved_cost = sum_of_squares(problem, moved);
+            if (moved_cost < cost) {
+                estimate.parameters = moved;
+                cost = moved_cost;
+                damping = std::max(damping / 100, 1e-15);
+                return;
+            }
+        }
+        estimate.ending = Ending::Stalled;
+    }
+};
+
+std::vector<Index> fold_members(Index count, Index folds, Index fold) {
+    std::vector<Index> members;
+    for (Index i = fold; i < count; i += folds) members.push_back(i);
+    return members;
+}
+
+}  // namespace
+
+Estimate identify(const Campaign& campaign, const Measurements& measurements,
+                  const Parameters& start, const LevenbergMarquardtOptions& options) {
+    const IdentificationProblem problem = make_problem(campaign, measurements);
+    check_identifiable(problem, start);
+    Estimate estimate;
+    estimate.parameters = start;
+    LevenbergMarquardt search{problem, options, estimate, sum_of_squares(problem, start)};
+    while (estimate.ending == Ending::NotRun) {
+        if (estimate.iterations >= options.iteration_limit) {
+            estimate.ending = Ending::IterationLimit;
+            break;
+        }
+        search.iterate();
+        if (estimate.ending == Ending::NotRun) ++estimate.iterations;
+    }
+    finish(problem, estimate);
+    return estimate;
+}
+
+CrossValidation cross_validate(const Campaign& campaign, const Measurements& measurements,
+                               const Parameters& start, Index folds,
+                               const LevenbergMarquardtOptions& options) {
+    const Index count = measurements.configuration_count();
+    if (folds < 2 || folds > count) {
+        throw InputError("folds is " + std::to_string(folds) + ", must be 2 to the number of " +
+                         "configurations, " + std::to_string(count));
+    }
+    const auto fold_count = static_cast<std::size_t>(folds);
+    std::vector<RowMatrixXd> samples(fold_count);
+    std::vector<RowMatrixXd> means(fold_count);
+    std::vector<std::string> failures(fold_count);
+#pragma omp parallel for schedule(dynamic)
+    for (Index fold = 0; fold < folds; ++fold) {
+        const auto f = static_cast<std::size_t>(fold);
+        const auto held_out = fold_members(count, folds, fold);
+        try {
+            const Estimate estimate =
+                identify(campaign, take(measurements, all_but(count, held_out)), start, options);
+            const Measurements judged = take(measurements, held_out);
+            samples[f] = residuals(campaign, estimate.parameters, judged);
+            means[f] = mean_residuals(campaign, estimate.parameters, judged);
+        } catch (const InputError& error) {
+            failures[f] = "fold " + std::to_string(fold + 1) + ": " + error.what();
+        }
+    }
+    const auto join = [&](const std::vector<RowMatrixXd>& parts) {
+        RowMatrixXd all(0, measurements.observations.cols());
+        for (const RowMatrixXd& part : parts) {
+            all.conservativeResize(all.rows() + part.rows(), all.cols());
+            all.bottomRows(part.rows()) = part;
+        }
+        return make_metrics(all);
+    };
+    CrossValidation result{folds, join(samples), join(means), {}};
+    std::copy_if(failures.begin(), failures.end(), std::back_inserter(result.failures),
+                 [](const std::string& failure) { return !failure.empty(); });
+    return result;
+}
+
+}  // namespace posewise

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "posewise/calibrator/estimate.hpp"
+
+namespace posewise {
+
+/// The identification as a linearised least-squares problem, whitened and scaled: minimise
+/// |J d - r|^2 over the scaled step d, rows = equations.
+struct LinearisedSystem {
+    MatrixXd J;  ///< equations x L
+    VectorXd r;  ///< observed means minus predicted
+};
+
+/// The measured means and what every linearisation of them shares.
+struct IdentificationProblem {
+    const Campaign& campaign;
+    const Measurements& measurements;
+    RowMatrixXd means;
+    VectorXd scale;
+};
+
+/// Throws InputError if the measurements do not fit the campaign (joint or column count) or give
+/// fewer equations than there are parameters.
+IdentificationProblem make_problem(const Campaign& campaign, const Measurements& measurements);
+
+LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters);
+
+/// chi^2: sum of squares of whitened mean residuals.
+double sum_of_squares(const IdentificationProblem& problem, const Parameters& parameters);
+
+/// J reduced to its triangle by Householder QR: |J d - r|^2 = |R d - c|^2 + rest.
+struct Triangle {
+    MatrixXd R;  ///< L x L, upper
+    VectorXd c;  ///< L
+};
+Triangle triangularise(const LinearisedSystem& system);
+
+/// Throws InputError naming the parameters in it if a direction of parameter space is not seen by
+/// these configurations: a singular value of the column-normalised Jacobian below 1e-9 of the
+/// largest, with the robot at nominal, where a lost rank is exactly lost.
+void check_identifiable(const IdentificationProblem& problem, const Parameters& parameters);
+
+/// Fills covariance, variance factor and metrics of an estimate from its parameters.
+void finish(const IdentificationProblem& problem, Estimate& estimate);
+
+}  // namespace posewise

@@ -1,0 +1,81 @@
+#include <Eigen/QR>
+
+#include "least_squares.hpp"
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+/// Splits the unknowns as the two steps do: base and targets, and the robot's parameters between.
+struct Split {
+    Index robot;
+    Index sensor;
+
+    MatrixXd base_and_targets(const MatrixXd& J) const {
+        MatrixXd columns(J.rows(), 6 + sensor);
+        columns << J.leftCols(6), J.rightCols(sensor);
+        return columns;
+    }
+    VectorXd base_and_target_step(const VectorXd& d) const {
+        VectorXd step = VectorXd::Zero(6 + robot + sensor);
+        step.head<6>() = d.head<6>();
+        step.tail(sensor) = d.tail(sensor);
+        return step;
+    }
+    VectorXd robot_step(const VectorXd& d) const {
+        VectorXd step = VectorXd::Zero(6 + robot + sensor);
+        step.segment(6, robot) = d;
+        return step;
+    }
+};
+
+/// Both steps once [Wu et al. 2015, sec. 3.3]. Step 1 is linear in the base's motion about its
+/// present pose and in the targets, so one solution is exact up to the base's rotation, which the
+/// next cycle linearises anew.
+Parameters cycle(const IdentificationProblem& problem, const Split& split, Parameters parameters,
+                 double alpha) {
+    LinearisedSystem system = linearise(problem, parameters);
+    const VectorXd first = split.base_and_targets(system.J).householderQr().solve(system.r);
+    parameters = advance(parameters, problem.scale.cwiseProduct(split.base_and_target_step(first)));
+    if (split.robot == 0) return parameters;
+    system = linearise(problem, parameters);
+    const VectorXd second = system.J.middleCols(6, split.robot).householderQr().solve(system.r);
+    return advance(parameters, problem.scale.cwiseProduct(split.robot_step(alpha * second)));
+}
+
+}  // namespace
+
+Estimate identify_two_step(const Campaign& campaign, const Measurements& measurements,
+                           const Parameters& start, const TwoStepOptions& options) {
+    if (!(options.alpha > 0 && options.alpha <= 1)) {
+        throw InputError("alpha is " + std::to_string(options.alpha) + ", must be in (0, 1]");
+    }
+    const IdentificationProblem problem = make_problem(campaign, measurements);
+    check_identifiable(problem, start);
+    const Split split{start.robot.size(), start.sensor.size()};
+    Estimate estimate;
+    estimate.parameters = start;
+    double cost = sum_of_squares(problem, start);
+    estimate.ending = Ending::IterationLimit;
+    while (estimate.iterations < options.iteration_limit) {
+        const Parameters moved = cycle(problem, split, estimate.parameters, options.alpha);
+        const double moved_cost = sum_of_squares(problem, moved);
+        if (!(moved_cost < cost)) {
+            estimate.ending = Ending::Converged;
+            break;
+        }
+        const bool small = cost - moved_cost <= options.relative_tolerance * cost;
+        estimate.parameters = moved;
+        cost = moved_cost;
+        ++estimate.iterations;
+        if (small) {
+            estimate.ending = Ending::Converged;
+            break;
+        }
+    }
+    finish(problem, estimate);
+    return estimate;
+}
+
+}  // namespace posewise

@@ -1,0 +1,175 @@
+#include "posewise/jacobian/identifiability.hpp"
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/model/complete_model.hpp"
+#include "posewise/model/sampling.hpp"
+
+namespace posewise {
+namespace {
+
+constexpr std::uint64_t configuration_seed = 20151;  // any: it only has to be the same every time
+
+/// The part of `column` outside the span of the orthonormal columns of Q; twice, so that rounding
+/// of the first pass is gone.
+VectorXd residual_outside(const Eigen::Ref<const MatrixXd>& Q, VectorXd column) {
+    for (int pass = 0; pass < 2; ++pass) column -= Q * (Q.transpose() * column);
+    return column;
+}
+
+/// Base and sensor first, then joint offsets, other rotations, translations: what comes early is
+/// kept, so a link error is dropped in favour of an offset, a base or a target it equals.
+std::vector<Index> make_priority(const Campaign& campaign) {
+    const Index robot = campaign.robot.parameter_count();
+    const auto rank = [&](Index k) {
+        if (k < 6 || k >= 6 + robot) return 0;
+        const Element& element = campaign.robot.parameter_element(k - 6);
+        if (!element.joints.empty()) return 1;
+        return element.motion == Motion::Rotation ? 2 : 3;
+    };
+    std::vector<Index> priority(static_cast<std::size_t>(parameter_count(campaign)));
+    std::iota(priority.begin(), priority.end(), Index{0});
+    std::stable_sort(priority.begin(), priority.end(),
+                     [&](Index a, Index b) { return rank(a) < rank(b); });
+    return priority;
+}
+
+MatrixXd stack_at_nominal(const Campaign& campaign, Index pose_count) {
+    const RowMatrixXd configurations =
+        random_configurations(campaign.robot, pose_count, configuration_seed);
+    return make_plain_blocks(campaign, campaign.nominal, configurations).matrix;
+}
+
+/// How the dropped columns follow from the kept ones: kept x dropped, in the columns' own units.
+MatrixXd express_dropped(const MatrixXd& J, const Identifiability& result) {
+    MatrixXd kept(J.rows(), static_cast<Index>(result.kept.size()));
+    for (Index i = 0; i < kept.cols(); ++i) {
+        kept.col(i) = J.col(result.kept[static_cast<std::size_t>(i)]);
+    }
+    MatrixXd dropped(J.rows(), static_cast<Index>(result.dropped.size()));
+    for (Index i = 0; i < dropped.cols(); ++i) {
+        dropped.col(i) = J.col(result.dropped[static_cast<std::size_t>(i)].parameter);
+    }
+    const VectorXd norms = kept.colwise().norm().transpose();
+    kept.array().rowwise() /= norms.transpose().array();
+    const MatrixXd combination = kept.householderQr().solve(dropped);
+    return norms.cwiseInverse().asDiagonal() * combination;
+}
+
+}  // namespace
+
+Identifiability find_independent_columns(const MatrixXd& J, const std::vector<Index>& priority,
+                                         double tolerance) {
+    const double largest = J.colwise().norm().maxCoeff();
+    Identifiability result;
+    MatrixXd Q(J.rows(), std::min(J.rows(), J.cols()));
+    Index rank = 0;
+    for (const Index k : priority) {
+        const double norm = J.col(k).norm();
+        double residual_norm = 0;
+        if (norm > 1e-12 * largest) {
+            const VectorXd residual = residual_outside(Q.leftCols(rank), J.col(k) / norm);
+            residual_norm = residual.norm();
+            if (residual_norm > tolerance && rank < Q.cols()) {
+                Q.col(rank++) = residual / residual_norm;
+                result.kept.push_back(k);
+                result.least_kept_residual = std::min(result.least_kept_residual, residual_norm);
+                continue;
+            }
+        }
+        result.dropped.push_back({k, {}});
+        result.largest_dropped_residual = std::max(result.largest_dropped_residual, residual_norm);
+    }
+    std::sort(result.kept.begin(), result.kept.end());
+    if (result.dropped.empty() || result.kept.empty()) return result;
+
+    const MatrixXd combination = express_dropped(J, result);
+    for (std::size_t d = 0; d < result.dropped.size(); ++d) {
+        const double norm = J.col(result.dropped[d].parameter).norm();
+        for (std::size_t k = 0; k < result.kept.size(); ++k) {
+            const double coefficient = combination(static_cast<Index>(k), static_cast<Index>(d));
+            // What is less than 1e-7 of the dropped column is rounding.
+            if (std::abs(coefficient) * J.col(result.kept[k]).norm() > 1e-7 * norm) {
+                result.dropped[d].absorbed_by.push_back({result.kept[k], coefficient});
+            }
+        }
+    }
+    return result;
+}
+
+Identifiability find_identifiable(const Campaign& campaign) {
+    return find_independent_columns(stack_at_nominal(campaign, 2 * parameter_count(campaign)),
+                                    make_priority(campaign));
+}
+
+Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names) {
+    std::vector<Element> elements;
+    for (Element element : chain.elements()) {
+        const bool dropped =
+            !element.parameter.empty() &&
+            std::find(names.begin(), names.end(), element.parameter) == names.end();
+        if (dropped) element.parameter.clear();
+        // An element that was there only for its error is gone with it.
+        const bool empty =
+            element.value == 0 && element.joints.empty() && element.parameter.empty();
+        if (!empty) elements.push_back(std::move(element));
+    }
+    return Chain(chain.joints(), std::move(elements));
+}
+
+Chain irreducible_model(const Campaign& campaign) {
+    const Campaign complete = with_robot(campaign, complete_model(campaign.robot));
+    const auto names = parameter_names(complete);
+    std::vector<std::string> kept;
+    for (const Index k : find_identifiable(complete).kept) {
+        kept.push_back(names[static_cast<std::size_t>(k)]);
+    }
+    return keep_parameters(complete.robot, kept);
+}
+
+Index least_pose_count(const Campaign& campaign) {
+    const Identifiability all = find_identifiable(campaign);
+    const auto rank = static_cast<Index>(all.kept.size());
+    const Index rows = campaign.sensor->row_count();
+    const MatrixXd J = stack_at_nominal(campaign, 2 * parameter_count(campaign));
+    for (Index count = (rank + rows - 1) / rows;; ++count) {
+        const auto some = find_independent_columns(J.topRows(count * rows), all.kept);
+        if (static_cast<Index>(some.kept.size()) == rank) return count;
+        if (count * rows >= J.rows()) return count;
+    }
+}
+
+std::vector<WeakDirection> weakest_directions(const MatrixXd& stacked, Index count,
+                                              Index terms_each) {
+    const Index size = stacked.cols();
+    const MatrixXd R =
+        stacked.rows() > size
+            ? MatrixXd(
+                  stacked.householderQr().matrixQR().topRows(size).triangularView<Eigen::Upper>())
+            : stacked;
+    const Eigen::JacobiSVD<MatrixXd, Eigen::FullPivHouseholderQRPreconditioner> svd(
+        R, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    std::vector<WeakDirection> directions;
+    for (Index i = size - 1; i >= 0 && static_cast<Index>(directions.size()) < count; --i) {
+        WeakDirection direction;
+        if (i < svd.singularValues().size()) direction.singular_value = svd.singularValues()[i];
+        for (Index k = 0; k < size; ++k) direction.terms.push_back({k, svd.matrixV()(k, i)});
+        std::stable_sort(direction.terms.begin(), direction.terms.end(),
+                         [](const ParameterTerm& a, const ParameterTerm& b) {
+                             return std::abs(a.coefficient) > std::abs(b.coefficient);
+                         });
+        direction.terms.resize(static_cast<std::size_t>(std::min(terms_each, size)));
+        if (direction.terms.front().coefficient < 0) {
+            for (ParameterTerm& term : direction.terms) term.coefficient = -term.coefficient;
+        }
+        directions.push_back(std::move(direction));
+    }
+    return directions;
+}
+
+}  // namespace posewise
