@@ -30,18 +30,20 @@ struct Split {
     }
 };
 
-/// Both steps once [Wu et al. 2015, sec. 3.3]. Step 1 is linear in the base's motion about its
-/// present pose and in the targets, so one solution is exact up to the base's rotation, which the
-/// next cycle linearises anew.
+/// Both steps once [Wu et al. 2015, sec. 3.3]. The registration that `parameters` come from was a
+/// step 1 (base and targets), so a cycle is step 2 (robot), then step 1. Step 1 is linear in the
+/// targets and in the base's motion about its present pose, and is linearised anew in every cycle.
 Parameters cycle(const IdentificationProblem& problem, const Split& split, Parameters parameters,
                  double alpha) {
-    LinearisedSystem system = linearise(problem, parameters);
-    const VectorXd first = split.base_and_targets(system.J).householderQr().solve(system.r);
-    parameters = advance(parameters, problem.scale.cwiseProduct(split.base_and_target_step(first)));
-    if (split.robot == 0) return parameters;
-    system = linearise(problem, parameters);
-    const VectorXd second = system.J.middleCols(6, split.robot).householderQr().solve(system.r);
-    return advance(parameters, problem.scale.cwiseProduct(split.robot_step(alpha * second)));
+    if (split.robot > 0) {
+        const LinearisedSystem system = linearise(problem, parameters);
+        const VectorXd step = system.J.middleCols(6, split.robot).householderQr().solve(system.r);
+        parameters =
+            advance(parameters, problem.scale.cwiseProduct(split.robot_step(alpha * step)));
+    }
+    const LinearisedSystem system = linearise(problem, parameters);
+    const VectorXd step = split.base_and_targets(system.J).householderQr().solve(system.r);
+    return advance(parameters, problem.scale.cwiseProduct(split.base_and_target_step(step)));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ VectorXd residual_outside(const Eigen::Ref<const MatrixXd>& Q, VectorXd column) 
     return column;
 }
 
-/// Base and sensor first, then joint offsets, other rotations, translations: what comes early is
+/// Base and sensor first, then joint offsets, translations, other rotations: what comes early is
 /// kept, so a link error is dropped in favour of an offset, a base or a target it equals.
 std::vector<Index> make_priority(const Campaign& campaign) {
     const Index robot = campaign.robot.parameter_count();
@@ -30,7 +30,7 @@ std::vector<Index> make_priority(const Campaign& campaign) {
         if (k < 6 || k >= 6 + robot) return 0;
         const Element& element = campaign.robot.parameter_element(k - 6);
         if (!element.joints.empty()) return 1;
-        return element.motion == Motion::Rotation ? 2 : 3;
+        return element.motion == Motion::Translation ? 2 : 3;
     };
     std::vector<Index> priority(static_cast<std::size_t>(parameter_count(campaign)));
     std::iota(priority.begin(), priority.end(), Index{0});

@@ -38,7 +38,7 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
 
 /// What a campaign can identify at best: its Jacobian at nominal parameters over random
 /// configurations within the limits (as many as twice the parameters). Priority: base, sensor,
-/// joint offsets, other rotations, translations, each from base to flange. The test is at nominal
+/// joint offsets, translations, other rotations, each from base to flange. The test is at nominal
 /// values because off nominal a lost rank is only nearly lost. Targets and base that the campaign
 /// does not state are put at generic places.
 Identifiability find_identifiable(const Campaign& campaign);
