@@ -50,6 +50,30 @@ void check_unique(const std::set<std::string>& seen, const std::string& name, co
     if (seen.count(name) != 0) throw InputError(std::string(what) + " '" + name + "' occurs twice");
 }
 
+void check_joint(const Joint& joint) {
+    if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper) || joint.lower >= joint.upper) {
+        throw InputError("joint '" + joint.name + "' has limits " + std::to_string(joint.lower) +
+                         " to " + std::to_string(joint.upper) +
+                         " (rad or m): must be finite, the lower one first");
+    }
+}
+
+void check_element(const Element& element, std::size_t number, Index joint_count) {
+    const auto fail = [number](const std::string& what) {
+        throw InputError("element " + std::to_string(number + 1) + " of the chain " + what);
+    };
+    if (!std::isfinite(element.value)) fail("has a value that is not a finite number");
+    for (const JointTerm& term : element.joints) {
+        if (term.joint < 0 || term.joint >= joint_count) {
+            fail("is driven by joint index " + std::to_string(term.joint) + ", the robot has " +
+                 std::to_string(joint_count) + " joints");
+        }
+        if (!std::isfinite(term.coefficient) || term.coefficient == 0) {
+            fail("has a joint coefficient that is zero or not a finite number");
+        }
+    }
+}
+
 }  // namespace
 
 Chain::Chain(std::vector<Joint> joints, std::vector<Element> elements)
@@ -58,18 +82,14 @@ Chain::Chain(std::vector<Joint> joints, std::vector<Element> elements)
     for (const Joint& joint : joints_) {
         check_unique(names, joint.name, "joint");
         names.insert(joint.name);
-        if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper) ||
-            joint.lower >= joint.upper) {
-            throw InputError("joint '" + joint.name + "' has limits " +
-                             std::to_string(joint.lower) + " to " + std::to_string(joint.upper) +
-                             " (rad or m): must be finite, the lower one first");
-        }
+        check_joint(joint);
     }
     std::vector<std::optional<Motion>> driven(joints_.size());
     for (std::size_t k = 0; k < elements_.size(); ++k) {
         const Element& element = elements_[k];
+        check_element(element, k, joint_count());
         for (const JointTerm& term : element.joints) {
-            auto& motion = driven.at(static_cast<std::size_t>(term.joint));
+            auto& motion = driven[static_cast<std::size_t>(term.joint)];
             if (motion && *motion != element.motion) {
                 throw InputError("joint '" + joints_[static_cast<std::size_t>(term.joint)].name +
                                  "' drives a rotation and a translation; it can drive only one "

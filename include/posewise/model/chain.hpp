@@ -54,7 +54,8 @@ class Chain {
     Chain() = default;
 
     /// Throws InputError if a joint drives no element or both a rotation and a translation, if its
-    /// limits are not finite or out of order, or if two parameters (or joints) share a name.
+    /// limits are not finite or out of order, if two parameters (or joints) share a name, or if an
+    /// element names a joint that does not exist or has a number that is not finite.
     Chain(std::vector<Joint> joints, std::vector<Element> elements);
 
     const std::vector<Joint>& joints() const { return joints_; }

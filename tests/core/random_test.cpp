@@ -1,0 +1,110 @@
+#include "posewise/core/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "support/sweep.hpp"
+
+namespace posewise {
+namespace {
+
+TEST(RandomStream, GivesTheGoldenNumbers) {  // tests/golden/random_stream.py
+    RandomStream first(1, 0);
+    EXPECT_EQ(first.uniform(), 0.4414916744462515);
+    EXPECT_EQ(first.uniform(), 0.328402287217625);
+    EXPECT_EQ(first.uniform(), 0.7444413221699605);
+    EXPECT_EQ(RandomStream(1, 1).uniform(), 0.7166913209529362);
+    EXPECT_EQ(RandomStream(2, 0).uniform(), 0.14270186193336576);
+}
+
+TEST(RandomStream, OfAnItemDoesNotDependOnTheOthers) {
+    RandomStream alone(7, 3);
+    const double expected = alone.uniform();
+    std::vector<RandomStream> streams;
+    for (std::uint64_t item = 0; item < 5; ++item) streams.emplace_back(7, item);
+    for (std::size_t item : {4U, 0U, 2U}) streams[item].uniform();
+    EXPECT_EQ(streams[3].uniform(), expected);
+}
+
+TEST(RandomStream, DiffersForNearbySeedsAndItems) {
+    std::set<double> seen;
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+        for (std::uint64_t item = 0; item < 30; ++item) {
+            seen.insert(RandomStream(seed, item).uniform());
+        }
+    }
+    EXPECT_EQ(seen.size(), 900U);
+}
+
+TEST(RandomStream, FirstNumbersOfManyItemsAreUniform) {
+    // Chi-square over 20 cells has mean 19 and standard deviation 6.2; 50 is the 99.99 % point.
+    const Index count = 20000;
+    std::vector<double> cells(20, 0.0);
+    for (Index item = 0; item < count; ++item) {
+        const double x = RandomStream(11, static_cast<std::uint64_t>(item)).uniform(-1, 3);
+        ASSERT_GE(x, -1);
+        ASSERT_LT(x, 3);
+        ++cells[static_cast<std::size_t>((x + 1) * 5)];
+    }
+    double chi_square = 0;
+    for (const double cell : cells) chi_square += std::pow(cell - 1000, 2) / 1000;
+    EXPECT_LT(chi_square, 50);
+    EXPECT_GT(chi_square, 3);
+}
+
+TEST(RandomStream, NormalNumbersHaveTheMomentsOfTheNormalDistribution) {
+    RandomStream stream(5);
+    const Index count = 100000;
+    double sum = 0, squares = 0, fourths = 0;
+    for (Index k = 0; k < count; ++k) {
+        const double z = stream.normal();
+        ASSERT_TRUE(std::isfinite(z));
+        sum += z;
+        squares += z * z;
+        fourths += z * z * z * z;
+    }
+    const double n = static_cast<double>(count);
+    EXPECT_NEAR(sum / n, 0, 4 / std::sqrt(n));
+    EXPECT_NEAR(squares / n, 1, 4 * std::sqrt(2 / n));
+    EXPECT_NEAR(fourths / n, 3, 4 * std::sqrt(96 / n));
+}
+
+TEST(RandomStream, IndexReachesEveryValueEquallyOften) {
+    RandomStream stream(3);
+    std::map<Index, int> counts;
+    for (int k = 0; k < 7000; ++k) ++counts[stream.index(7)];
+    ASSERT_EQ(counts.size(), 7U);
+    for (const auto& [value, count] : counts) {
+        EXPECT_GE(value, 0);
+        EXPECT_LT(value, 7);
+        EXPECT_NEAR(count, 1000, 130);  // 4.4 standard deviations
+    }
+}
+
+TEST(RandomStream, SubsetHoldsDifferentSortedIndices) {
+    RandomStream stream(9);
+    for (Index sweep = 0; sweep < testing::sweep_count(); ++sweep) {
+        const Index count = 1 + stream.index(20);
+        const Index k = stream.index(count + 1);
+        const std::vector<Index> subset = stream.subset(count, k);
+        ASSERT_EQ(static_cast<Index>(subset.size()), k);
+        for (std::size_t i = 0; i < subset.size(); ++i) {
+            ASSERT_GE(subset[i], i == 0 ? 0 : subset[i - 1] + 1);
+            ASSERT_LT(subset[i], count);
+        }
+    }
+}
+
+TEST(RandomStream, EverySubsetIsEquallyLikely) {
+    RandomStream stream(13);
+    std::map<std::vector<Index>, int> counts;
+    for (int k = 0; k < 6000; ++k) ++counts[stream.subset(4, 2)];
+    ASSERT_EQ(counts.size(), 6U);
+    for (const auto& [subset, count] : counts) EXPECT_NEAR(count, 1000, 130);
+}
+
+}  // namespace
+}  // namespace posewise

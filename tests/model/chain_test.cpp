@@ -1,0 +1,188 @@
+#include "posewise/model/chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "posewise/core/errors.hpp"
+#include "support/derivative_check.hpp"
+#include "support/robots.hpp"
+#include "support/sweep.hpp"
+
+namespace posewise {
+namespace {
+
+using namespace testing;
+using Eigen::Vector2d;
+
+constexpr double pi = std::numbers::pi;
+
+/// Twist from `reference` to `pose`, exact to first order in their difference.
+VectorXd twist_between(const Isometry3d& reference, const Isometry3d& pose) {
+    const Matrix3d R = pose.linear() * reference.linear().transpose();
+    VectorXd twist(6);
+    twist << R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1),
+        2 * (pose.translation() - R * reference.translation());
+    return twist / 2;
+}
+
+/// Chain::differentiate() against differences by base translation, base rotation and errors.
+void expect_right_twists(const Chain& chain, const Isometry3d& world_from_base, const VectorXd& q,
+                         const VectorXd& parameters) {
+    FlangeMotion motion;
+    chain.differentiate(world_from_base, q, parameters, motion);
+    const Isometry3d expected = world_from_base * chain.base_from_flange(q, parameters);
+    ASSERT_TRUE(motion.world_from_flange.isApprox(expected, 1e-14));
+    const auto twist = [&](const VectorXd& x) {
+        Isometry3d base = world_from_base;
+        base.translation() += x.head<3>();
+        const Vector3d phi = x.segment<3>(3);
+        if (phi.norm() > 0)
+            base.linear() = Eigen::AngleAxisd(phi.norm(), phi.normalized()) * base.linear();
+        return twist_between(expected, base * chain.base_from_flange(q, x.tail(parameters.size())));
+    };
+    VectorXd x = VectorXd::Zero(6 + parameters.size());
+    x.tail(parameters.size()) = parameters;
+    expect_is_jacobian(motion.twists, twist, x);
+}
+
+TEST(Chain, PlacesAPlanarArmByItsClosedForm) {
+    const Chain arm = planar_arm({1.0, 0.8});
+    const Vector2d q(0.3, 1.1);
+    const Isometry3d pose = arm.base_from_flange(q, VectorXd::Zero(4));
+    EXPECT_NEAR(pose.translation().x(), std::cos(0.3) + 0.8 * std::cos(1.4), 1e-15);
+    EXPECT_NEAR(pose.translation().y(), std::sin(0.3) + 0.8 * std::sin(1.4), 1e-15);
+    EXPECT_EQ(pose.translation().z(), 0);
+    EXPECT_TRUE(pose.linear().isApprox(Eigen::AngleAxisd(1.4, Vector3d::UnitZ()).toRotationMatrix(),
+                                       1e-15));
+}
+
+TEST(Chain, PlacesTheFanucAtZero) {
+    const Chain robot = fanuc();
+    const Isometry3d pose = robot.base_from_flange(VectorXd::Zero(6), VectorXd::Zero(18));
+    EXPECT_TRUE(pose.translation().isApprox(Vector3d(1.592, 0, 1.3), 1e-15));
+    EXPECT_TRUE(pose.linear().isIdentity(1e-15));
+}
+
+TEST(Chain, TurnsAReversedJointTheOtherWay) {
+    // Forearm up: positive q3 of the FANUC lifts it, since Ry(-q3) turns x towards z.
+    VectorXd q = VectorXd::Zero(6);
+    q[2] = pi / 2;
+    const Isometry3d pose = fanuc().base_from_flange(q, VectorXd::Zero(18));
+    EXPECT_TRUE(pose.translation().isApprox(Vector3d(0.312 - 0.225, 0, 1.075 + 1.280), 1e-14));
+}
+
+TEST(Chain, CouplesJointsThatShareAnElement) {
+    // Parallelogram: the second link's absolute angle is q2 alone, so the joint turns q2 - q1.
+    const Element elbow{Motion::Rotation, Axis::Z, 0.0, {{1, 1.0}, {0, -1.0}}, ""};
+    const Chain arm({{"q1", -1, 1}, {"q2", -1, 1}},
+                    {driven(Motion::Rotation, Axis::Z, 0), translation(Axis::X, 1.0), elbow,
+                     translation(Axis::X, 0.5)});
+    const Isometry3d pose = arm.base_from_flange(Vector2d(0.4, 0.9), VectorXd());
+    EXPECT_NEAR(pose.translation().x(), std::cos(0.4) + 0.5 * std::cos(0.9), 1e-15);
+    EXPECT_NEAR(pose.translation().y(), std::sin(0.4) + 0.5 * std::sin(0.9), 1e-15);
+}
+
+TEST(Chain, SlidesAPrismaticJoint) {
+    VectorXd q(6);
+    q << 1.2, 0.7, -0.4, 0, 0, 0;
+    const Isometry3d pose = gantry_with_wrist().base_from_flange(q, VectorXd());
+    EXPECT_TRUE(pose.translation().isApprox(Vector3d(1.3, 0.7, -0.6), 1e-15));
+    EXPECT_EQ(gantry_with_wrist().joint_motion(1), Motion::Translation);
+    EXPECT_EQ(gantry_with_wrist().joint_motion(4), Motion::Rotation);
+}
+
+TEST(Chain, AddsTheErrorParameterToItsElement) {
+    const Chain arm = planar_arm({1.0, 0.8});
+    Eigen::Vector4d errors(0.01, 0.002, -0.02, 0.003);
+    const Isometry3d pose = arm.base_from_flange(Vector2d(0.3, 1.1), errors);
+    const Isometry3d expected =
+        planar_arm({1.002, 0.803}).base_from_flange(Vector2d(0.31, 1.08), VectorXd::Zero(4));
+    EXPECT_TRUE(pose.isApprox(expected, 1e-15));
+}
+
+TEST(Chain, DifferentiatesEveryKindOfElement) {
+    RandomStream stream(21);
+    for (const Motion motion : {Motion::Translation, Motion::Rotation}) {
+        for (const Axis axis : {Axis::X, Axis::Y, Axis::Z}) {
+            Element element{motion, axis, 0.3, {{0, -1.0}}, "error"};
+            const Chain chain({{"q1", -1, 1}}, {rotation(Axis::X, 0.4), translation(Axis::Y, 0.7),
+                                                rotation(Axis::Z, -1.1), element,
+                                                rotation(Axis::Y, 0.9), translation(Axis::X, 0.5)});
+            for (const double error : {0.0, 1e-9, 0.6}) {
+                expect_right_twists(chain, random_pose(stream), random_vector(stream, 1, 1),
+                                    VectorXd::Constant(1, error));
+            }
+        }
+    }
+}
+
+TEST(Chain, DifferentiatesTheFanucAnywhere) {
+    RandomStream stream(22);
+    const Chain robot = fanuc();
+    for (Index sweep = 0; sweep < sweep_count() / 10; ++sweep) {
+        for (const double magnitude : {0.0, 1e-9, 1e-3, 0.3}) {
+            expect_right_twists(robot, random_pose(stream), random_vector(stream, 6, pi),
+                                random_vector(stream, 18, magnitude));
+        }
+    }
+}
+
+TEST(Chain, MovesWithItsBase) {
+    RandomStream stream(23);
+    const Chain robot = fanuc();
+    const Isometry3d base = random_pose(stream);
+    const VectorXd q = random_vector(stream, 6, pi), errors = random_vector(stream, 18, 1e-2);
+    FlangeMotion at_origin, moved;
+    robot.differentiate(Isometry3d::Identity(), q, errors, at_origin);
+    robot.differentiate(base, q, errors, moved);
+    EXPECT_TRUE(moved.world_from_flange.isApprox(base * at_origin.world_from_flange, 1e-14));
+    for (Index k = 6; k < 24; ++k) {
+        const Vector3d w = base.linear() * at_origin.twists.col(k).head<3>();
+        const Vector3d v = base.linear() * at_origin.twists.col(k).tail<3>();
+        EXPECT_TRUE(w.isApprox(moved.twists.col(k).head<3>(), 1e-13));
+        EXPECT_LT((v - w.cross(base.translation()) - moved.twists.col(k).tail<3>()).norm(), 1e-13);
+    }
+}
+
+TEST(Chain, NamesItsParametersInTheOrderOfTheElements) {
+    const Chain arm = planar_arm({1, 1});
+    EXPECT_EQ(arm.parameter_names(), (std::vector<std::string>{"dq1", "dl1", "dq2", "dl2"}));
+    EXPECT_EQ(arm.parameter_element(2).parameter, "dq2");
+    EXPECT_EQ(without_parameters(arm).parameter_count(), 0);
+    EXPECT_EQ(without_parameters(arm).elements().size(), 4U);
+}
+
+TEST(Chain, RefusesRobotsThatMakeNoSense) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const Element turn = driven(Motion::Rotation, Axis::Z, 0);
+    const Joint q1{"q1", -1, 1};
+    EXPECT_THROW(Chain({q1}, {}), InputError) << "joint without element";
+    EXPECT_THROW(Chain({q1}, {turn, driven(Motion::Translation, Axis::Z, 0)}), InputError)
+        << "joint that turns and slides";
+    EXPECT_THROW(Chain({{"q1", 1, -1}}, {turn}), InputError) << "limits out of order";
+    EXPECT_THROW(Chain({{"q1", nan, 1}}, {turn}), InputError) << "limit not a number";
+    EXPECT_THROW(Chain({q1, q1}, {turn, driven(Motion::Rotation, Axis::Z, 1)}), InputError)
+        << "two joints of one name";
+    EXPECT_THROW(Chain({q1}, {turn, rotation(Axis::X, 0, "a"), rotation(Axis::Y, 0, "a")}),
+                 InputError)
+        << "two parameters of one name";
+    EXPECT_THROW(Chain({q1}, {turn, driven(Motion::Rotation, Axis::X, 1)}), InputError)
+        << "joint that does not exist";
+    EXPECT_THROW(Chain({q1}, {turn, translation(Axis::X, nan)}), InputError) << "NaN length";
+    EXPECT_THROW(Chain({q1}, {driven(Motion::Rotation, Axis::X, 0, "", nan)}), InputError)
+        << "NaN coefficient";
+    EXPECT_THROW(Chain({q1}, {driven(Motion::Rotation, Axis::X, 0, "", 0)}), InputError)
+        << "coefficient zero";
+}
+
+TEST(Chain, RefusesConfigurationsItCannotTake) {
+    const Chain arm = planar_arm({1, 1});
+    EXPECT_NO_THROW(arm.check_configuration(Vector2d(0, 9)));
+    EXPECT_THROW(arm.check_configuration(VectorXd::Zero(3)), InputError);
+    const double infinity = std::numeric_limits<double>::infinity();
+    EXPECT_THROW(arm.check_configuration(Vector2d(0, infinity)), InputError);
+}
+
+}  // namespace
+}  // namespace posewise

@@ -1,0 +1,49 @@
+#include "posewise/model/complete_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/robots.hpp"
+#include "support/sweep.hpp"
+
+namespace posewise {
+namespace {
+
+using namespace testing;
+
+TEST(CompleteModel, GivesEveryJointItsFiveErrors) {
+    const Chain complete = complete_model(planar_arm({1, 1}));
+    EXPECT_EQ(complete.parameter_names(),
+              (std::vector<std::string>{"dq1", "Tx1", "Ty1", "Rx1", "Ry1",  //
+                                        "dq2", "Tx2", "Ty2", "Rx2", "Ry2"}));
+    EXPECT_EQ(complete_model(fanuc()).parameter_count(), 30);
+}
+
+TEST(CompleteModel, NamesErrorsAfterJointsOfAnyName) {
+    const auto names = complete_model(gantry_with_wrist()).parameter_names();
+    EXPECT_EQ(names[0], "d_x");
+    EXPECT_EQ(names[1], "Ty_x");
+    EXPECT_EQ(names.size(), 30U);
+}
+
+TEST(CompleteModel, IsTheSameRobotAtNominal) {
+    RandomStream stream(31);
+    const VectorXd q = random_vector(stream, 6, 2);
+    const Isometry3d expected = fanuc().base_from_flange(q, VectorXd::Zero(18));
+    const Isometry3d pose = complete_model(fanuc()).base_from_flange(q, VectorXd::Zero(30));
+    EXPECT_TRUE(pose.isApprox(expected, 1e-15));
+}
+
+TEST(CompleteModel, GivesACoupledJointOneSetOfErrors) {
+    const Element elbow{Motion::Rotation, Axis::Z, 0.0, {{1, 1.0}, {0, -1.0}}, ""};
+    const Chain arm({{"q1", -1, 1}, {"q2", -1, 1}},
+                    {driven(Motion::Rotation, Axis::Z, 0), translation(Axis::X, 1.0), elbow});
+    EXPECT_EQ(complete_model(arm).parameter_count(), 10);
+}
+
+TEST(CompleteModel, OfItselfIsItself) {
+    const Chain once = complete_model(fanuc());
+    EXPECT_EQ(complete_model(once).parameter_names(), once.parameter_names());
+}
+
+}  // namespace
+}  // namespace posewise

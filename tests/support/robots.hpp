@@ -1,0 +1,94 @@
+#pragma once
+
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "posewise/model/chain.hpp"
+
+/// Robots in code, so that tests of the lower modules need no files.
+namespace posewise::testing {
+
+inline constexpr double degree = std::numbers::pi / 180;
+
+/// A rotation or translation by `coefficient * q[joint]`.
+inline Element driven(Motion motion, Axis axis, Index joint, std::string parameter = "",
+                      double coefficient = 1) {
+    return {motion, axis, 0.0, {{joint, coefficient}}, std::move(parameter)};
+}
+
+inline Element rotation(Axis axis, double angle, std::string parameter = "") {
+    return {Motion::Rotation, axis, angle, {}, std::move(parameter)};
+}
+
+inline Element translation(Axis axis, double length, std::string parameter = "") {
+    return {Motion::Translation, axis, length, {}, std::move(parameter)};
+}
+
+/// FANUC R-2000iC/165F with its 18 irreducible error parameters; limits of the catalogue in
+/// round numbers.
+inline Chain fanuc() {
+    const auto R = Motion::Rotation;
+    return Chain({{"q1", -185 * degree, 185 * degree},
+                  {"q2", -60 * degree, 76 * degree},
+                  {"q3", -80 * degree, 100 * degree},
+                  {"q4", -360 * degree, 360 * degree},
+                  {"q5", -125 * degree, 125 * degree},
+                  {"q6", -360 * degree, 360 * degree}},
+                 {driven(R, Axis::Z, 0),
+                  translation(Axis::X, 0.312, "Tx1"),
+                  translation(Axis::Y, 0, "Ty1"),
+                  rotation(Axis::X, 0, "Rx1"),  //
+                  driven(R, Axis::Y, 1, "dq2"),
+                  translation(Axis::Z, 1.075, "Tz2"),
+                  rotation(Axis::X, 0, "Rx2"),
+                  rotation(Axis::Z, 0, "Rz2"),  //
+                  driven(R, Axis::Y, 2, "dq3", -1),
+                  translation(Axis::Z, 0.225, "Tz3"),
+                  translation(Axis::X, 1.280, "Tx3"),
+                  rotation(Axis::Z, 0, "Rz3"),  //
+                  driven(R, Axis::X, 3, "dq4", -1),
+                  translation(Axis::Y, 0, "Ty4"),
+                  translation(Axis::Z, 0, "Tz4"),
+                  rotation(Axis::Z, 0, "Rz4"),  //
+                  driven(R, Axis::Y, 4, "dq5", -1),
+                  translation(Axis::Z, 0, "Tz5"),
+                  rotation(Axis::Z, 0, "Rz5"),  //
+                  driven(R, Axis::X, 5, "", -1)});
+}
+
+/// Planar arm about z with a length and an offset error each link: dq1, dl1, dq2, dl2, ...
+inline Chain planar_arm(const std::vector<double>& lengths) {
+    std::vector<Joint> joints;
+    std::vector<Element> elements;
+    for (std::size_t k = 0; k < lengths.size(); ++k) {
+        const std::string number = std::to_string(k + 1);
+        joints.push_back({"q" + number, -std::numbers::pi, std::numbers::pi});
+        elements.push_back(driven(Motion::Rotation, Axis::Z, static_cast<Index>(k), "dq" + number));
+        elements.push_back(translation(Axis::X, lengths[k], "dl" + number));
+    }
+    return Chain(std::move(joints), std::move(elements));
+}
+
+/// Gantry (x, y, z) with a spherical wrist (z, y, x), no error parameters.
+inline Chain gantry_with_wrist() {
+    const auto T = Motion::Translation;
+    const auto R = Motion::Rotation;
+    return Chain(
+        {{"x", 0, 2}, {"y", 0, 1.5}, {"z", -1, 0}, {"a", -3, 3}, {"b", -2, 2}, {"c", -3, 3}},
+        {driven(T, Axis::X, 0), driven(T, Axis::Y, 1), driven(T, Axis::Z, 2), driven(R, Axis::Z, 3),
+         translation(Axis::Z, -0.2), driven(R, Axis::Y, 4), translation(Axis::X, 0.1),
+         driven(R, Axis::X, 5)});
+}
+
+/// SCARA: two parallel arms, a vertical slide, a turning flange; no error parameters.
+inline Chain scara() {
+    const auto R = Motion::Rotation;
+    return Chain({{"q1", -2, 2}, {"q2", -2.4, 2.4}, {"q3", -0.3, 0}, {"q4", -3, 3}},
+                 {driven(R, Axis::Z, 0), translation(Axis::X, 0.4), driven(R, Axis::Z, 1),
+                  translation(Axis::X, 0.3), driven(Motion::Translation, Axis::Z, 2),
+                  driven(R, Axis::Z, 3)});
+}
+
+}  // namespace posewise::testing
