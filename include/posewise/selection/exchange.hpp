@@ -21,9 +21,4 @@ struct SelectOptions {
 /// the parameters (naming how many directions are missing) or if no start found K poses that do.
 Plan select_poses(const Blocks& candidates, const SelectOptions& options);
 
-/// Upper bound of the criterion over all K-subsets, from any positive definite M (the formula of
-/// the criterion's Kiefer phi_p family): see bound.cpp. Infinity where no bound is known.
-double upper_bound(Criterion criterion, const Blocks& candidates, Index pose_count,
-                   const MatrixXd& M);
-
 }  // namespace posewise

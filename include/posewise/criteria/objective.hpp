@@ -1,0 +1,27 @@
+#pragma once
+
+#include "posewise/criteria/criterion.hpp"
+
+namespace posewise {
+
+/// A criterion made ready for many information matrices of one problem.
+struct Objective {
+    Criterion criterion = Criterion::D;
+    Index pose_count = 1;                ///< m, for O1
+    const Blocks* test_poses = nullptr;  ///< for G; the caller keeps them alive
+    MatrixXd mean_test_information;      ///< mean of B0^T B0 over the test poses, for V
+};
+
+/// Throws InputError if pose_count is below 1, or for G and V without test poses.
+Objective make_objective(Criterion criterion, Index pose_count, const Blocks* test_poses = nullptr);
+
+/// The criterion of M (parameters square, symmetric). Minus infinity if M is singular, not
+/// positive definite or not finite; never NaN.
+double evaluate(const Objective& objective, const MatrixXd& M);
+
+/// The symmetric matrix J with d evaluate(M) = trace(J dM); zero where evaluate() is not finite.
+/// Where the least or largest eigenvalue (or the worst test pose) is not unique, one of the
+/// supergradients.
+MatrixXd gradient(const Objective& objective, const MatrixXd& M);
+
+}  // namespace posewise
