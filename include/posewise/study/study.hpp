@@ -26,7 +26,7 @@ struct StudyRow {
 
 struct StudyOptions {
     std::vector<Criterion> criteria{Criterion::D};
-    std::vector<Index> pose_counts;  ///< empty: from the least identifying count to all
+    std::vector<Index> pose_counts;  ///< empty: from the least identifying count to all but one
     Index random_subsets = 100;
     Index starts = 20;  ///< of the exchange
     std::uint64_t seed = 1;
@@ -34,8 +34,10 @@ struct StudyOptions {
 
 /// Accuracy against number of poses: choose k of the measured configurations by each criterion and
 /// at random, calibrate with them from registration on, and judge on the configurations left out.
-/// `progress(done, total)` is called from one thread at a time. The same result for any number of
-/// threads.
+/// `progress(done, total)` is called from one thread at a time and must not throw. The same result
+/// for any number of threads.
+/// Throws InputError if not even all configurations identify the model, or for a pose count that is
+/// not in [1, configurations].
 std::vector<StudyRow> study_pose_counts(const Campaign& campaign, const Measurements& measurements,
                                         const StudyOptions& options,
                                         const std::function<void(Index, Index)>& progress = {});

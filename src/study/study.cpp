@@ -1,0 +1,178 @@
+#include "posewise/study/study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/random.hpp"
+#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/selection/exchange.hpp"
+
+namespace posewise {
+namespace {
+
+/// What every case of a study shares.
+struct Setting {
+    const Campaign& campaign;
+    const Measurements& measurements;
+    const StudyOptions& options;
+    Blocks blocks;  ///< of all configurations, at the registered parameters
+};
+
+/// One subset to be chosen, calibrated with and judged; cases are independent of each other.
+struct Job {
+    Index pose_count = 0;
+    StudyCase* result = nullptr;
+    bool is_random = false;
+    std::size_t number = 0;  ///< which criterion, or which random subset
+};
+
+Blocks make_study_blocks(const Campaign& campaign, const Measurements& measurements) {
+    const Parameters registered = register_base_and_targets(campaign, measurements);
+    // Nothing can be studied if not even all configurations identify the model: this says why.
+    identify(campaign, measurements, registered);
+    const double mean_repeats = static_cast<double>(measurements.observations.rows()) /
+                                static_cast<double>(measurements.configuration_count());
+    return make_blocks(campaign, registered, measurements.configurations, mean_repeats);
+}
+
+std::vector<Index> choose_pose_counts(const Campaign& campaign, const Measurements& measurements,
+                                      const std::vector<Index>& asked) {
+    const Index all = measurements.configuration_count();
+    for (const Index count : asked) {
+        if (count < 1 || count > all) {
+            throw InputError("a pose count is " + std::to_string(count) +
+                             ", must be from 1 to the number of configurations, " +
+                             std::to_string(all));
+        }
+    }
+    if (!asked.empty()) return asked;
+    const Index least = least_pose_count(campaign);
+    std::vector<Index> counts;
+    for (Index count = least; count < all; ++count) counts.push_back(count);
+    if (counts.empty()) {
+        throw InputError("there are " + std::to_string(all) + " configurations, a study needs " +
+                         std::to_string(least + 1) +
+                         ": as many as identify the model and one to judge on");
+    }
+    return counts;
+}
+
+std::vector<Index> choose_poses(const Setting& setting, const Job& job) {
+    const Index all = setting.blocks.count();
+    if (job.is_random) {
+        // The stream depends on size and number only, so more subsets or sizes change no other.
+        const auto item = (static_cast<std::uint64_t>(job.pose_count) << 32) + job.number;
+        return RandomStream(setting.options.seed, item).subset(all, job.pose_count);
+    }
+    SelectOptions options;
+    options.criterion = setting.options.criteria[job.number];
+    options.pose_count = job.pose_count;
+    options.starts = setting.options.starts;
+    options.seed = setting.options.seed;
+    return select_poses(setting.blocks, options).poses;
+}
+
+/// Leaves the case "not identified" if its poses cannot be found or do not identify the model.
+void run(const Setting& setting, const Job& job) {
+    try {
+        StudyCase& result = *job.result;
+        result.poses = choose_poses(setting, job);
+        const Measurements& measurements = setting.measurements;
+        const Measurements chosen = take(measurements, result.poses);
+        const Parameters start = register_base_and_targets(setting.campaign, chosen);
+        const Estimate estimate = identify(setting.campaign, chosen, start);
+        const auto left_out = all_but(measurements.configuration_count(), result.poses);
+        if (!left_out.empty()) {
+            result.held_out = make_metrics(
+                residuals(setting.campaign, estimate.parameters, take(measurements, left_out)));
+        }
+        result.identified = true;
+    } catch (const InputError&) {
+        // Counted, not fatal: too few or badly spread poses are what a study is to show.
+    }
+}
+
+/// The cases of all rows; pointers into `rows`, which must not be resized any more.
+std::vector<Job> list_jobs(std::vector<StudyRow>& rows) {
+    std::vector<Job> jobs;
+    for (StudyRow& row : rows) {
+        for (std::size_t i = 0; i < row.optimal.size(); ++i) {
+            jobs.push_back({row.pose_count, &row.optimal[i], false, i});
+        }
+        for (std::size_t i = 0; i < row.random.size(); ++i) {
+            jobs.push_back({row.pose_count, &row.random[i], true, i});
+        }
+    }
+    return jobs;
+}
+
+/// Runs all jobs over the threads. No exception may leave a parallel region: that of the first job
+/// (by number, whatever finished first) is thrown behind it.
+void run_all(const Setting& setting, const std::vector<Job>& jobs,
+             const std::function<void(Index, Index)>& progress) {
+    std::vector<std::exception_ptr> failures(jobs.size());
+    Index done = 0;
+#pragma omp parallel for schedule(dynamic)
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        try {
+            run(setting, jobs[i]);
+        } catch (...) {
+            failures[i] = std::current_exception();
+        }
+#pragma omp critical(posewise_study_progress)
+        {
+            ++done;
+            if (progress) progress(done, static_cast<Index>(jobs.size()));
+        }
+    }
+    for (const auto& failure : failures) {
+        if (failure) std::rethrow_exception(failure);
+    }
+}
+
+}  // namespace
+
+std::vector<StudyRow> study_pose_counts(const Campaign& campaign, const Measurements& measurements,
+                                        const StudyOptions& options,
+                                        const std::function<void(Index, Index)>& progress) {
+    if (options.random_subsets < 0 || options.starts < 1) {
+        throw InputError("random subsets and starts must be at least 0 and 1, are " +
+                         std::to_string(options.random_subsets) + " and " +
+                         std::to_string(options.starts));
+    }
+    const auto counts = choose_pose_counts(campaign, measurements, options.pose_counts);
+    const Setting setting{campaign, measurements, options,
+                          make_study_blocks(campaign, measurements)};
+    std::vector<StudyRow> rows;
+    for (const Index count : counts) {
+        StudyRow row;
+        row.pose_count = count;
+        row.optimal.resize(options.criteria.size());
+        row.random.resize(static_cast<std::size_t>(options.random_subsets));
+        rows.push_back(std::move(row));
+    }
+    run_all(setting, list_jobs(rows), progress);
+    return rows;
+}
+
+std::optional<double> held_out_quantile(const std::vector<StudyCase>& cases, double p) {
+    std::vector<double> errors;
+    for (const StudyCase& study_case : cases) {
+        if (study_case.identified && study_case.held_out.point_count > 0) {
+            errors.push_back(study_case.held_out.distance_rms);
+        }
+    }
+    if (errors.empty()) return std::nullopt;
+    std::sort(errors.begin(), errors.end());
+    const double position = std::clamp(p, 0.0, 1.0) * static_cast<double>(errors.size() - 1);
+    const double below = std::floor(position);
+    const auto lower = static_cast<std::size_t>(below);
+    const std::size_t upper = std::min(lower + 1, errors.size() - 1);
+    return errors[lower] + (position - below) * (errors[upper] - errors[lower]);
+}
+
+}  // namespace posewise
