@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "posewise/calibrator/estimate.hpp"
+#include "posewise/report/table.hpp"
+
+namespace posewise {
+
+/// Metrics side by side in mm, one named column each: distance RMS, maximum, mean and 95 %, then
+/// RMS and maximum of x, y and z. A column without points shows "-".
+Table metrics_table(const std::vector<std::pair<std::string, Metrics>>& columns);
+
+/// Every parameter with value and standard deviation: errors of the robot in mm and mrad, targets
+/// in mm, the base's position in mm and its turn as the rotation vector in degrees.
+Table parameter_table(const Campaign& campaign, const Estimate& estimate);
+
+/// The `count` strongest correlations between two parameters, by name.
+Table correlation_table(const Estimate& estimate, Index count);
+
+}  // namespace posewise

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "posewise/study/study.hpp"
+
+namespace posewise {
+
+/// Throws InputError if an image's path does not end in .svg or .png or has control characters.
+void check_image_path(const std::string& path);
+
+/// The gnuplot script that draws held-out error against pose count into `image_path` (ending
+/// `.svg` or `.png`): one line each criterion, the random subsets' median over their 10-90 % band,
+/// error in mm on a logarithmic axis. Texts and paths are quoted, so nothing in them is executed.
+/// Throws InputError as check_image_path() does, or for a study without any held-out error.
+std::string study_plot_script(const std::vector<Criterion>& criteria,
+                              const std::vector<StudyRow>& rows, const std::string& title,
+                              const std::string& image_path);
+
+/// Runs gnuplot on a script file, not through a shell. Throws InputError, naming the script that
+/// can be run later, if gnuplot is absent or fails.
+void run_gnuplot(const std::string& script_path);
+
+}  // namespace posewise

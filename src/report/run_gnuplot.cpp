@@ -1,0 +1,50 @@
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/report/plot.hpp"
+
+extern char** environ;
+
+namespace posewise {
+namespace {
+
+InputError plot_error(const std::string& reason, const std::string& script_path) {
+    return InputError("the plot was not drawn, " + reason + "; its script is left, try: gnuplot " +
+                      script_path);
+}
+
+/// The exit code of a child; -1 if it was killed by a signal.
+int wait_for(pid_t child) {
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0) {
+        if (errno != EINTR) return -1;
+    }
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace
+
+void run_gnuplot(const std::string& script_path) {
+    // A path that starts with "-" would be taken for an option.
+    std::string script = script_path.rfind('-', 0) == 0 ? "./" + script_path : script_path;
+    std::string program = "gnuplot";
+    const std::array<char*, 3> arguments{program.data(), script.data(), nullptr};
+    pid_t child = 0;
+    const int error =
+        posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments.data(), environ);
+    if (error == ENOENT) throw plot_error("gnuplot is not installed", script_path);
+    if (error != 0) {
+        throw plot_error(std::string("gnuplot cannot be started: ") + std::strerror(error),
+                         script_path);
+    }
+    const int code = wait_for(child);
+    if (code == 127) throw plot_error("gnuplot is not installed", script_path);
+    if (code != 0) throw plot_error("gnuplot failed", script_path);
+}
+
+}  // namespace posewise

@@ -1,0 +1,86 @@
+#include "posewise/report/study_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "posewise/report/units.hpp"
+
+namespace posewise {
+namespace {
+
+std::string cell(const std::optional<double>& metres) { return metres ? format_mm(*metres) : "-"; }
+
+std::string unidentified_cell(const std::vector<StudyCase>& cases) {
+    if (cases.empty()) return "-";
+    return std::to_string(
+        std::count_if(cases.begin(), cases.end(),
+                      [](const StudyCase& study_case) { return !study_case.identified; }));
+}
+
+/// As a CSV field: in quotes if it needs them.
+std::string quote(const std::string& text) {
+    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
+}
+
+std::string csv_line(const StudyRow& row, const StudyCase& study_case, std::string_view chosen_by,
+                     std::size_t subset, const std::vector<std::string>& ids) {
+    std::string rms;
+    std::string max;
+    if (study_case.identified && study_case.held_out.point_count > 0) {
+        rms = format_short(mm_per_m * study_case.held_out.distance_rms, 9);
+        max = format_short(mm_per_m * study_case.held_out.distance_max, 9);
+    }
+    std::string poses;
+    for (const Index pose : study_case.poses) {
+        poses += (poses.empty() ? "" : " ") + ids[static_cast<std::size_t>(pose)];
+    }
+    return fmt::format("{},{},{},{},{},{},{}\n", row.pose_count, chosen_by, subset,
+                       study_case.identified ? "yes" : "no", rms, max, quote(poses));
+}
+
+}  // namespace
+
+Table study_table(const std::vector<Criterion>& criteria, const std::vector<StudyRow>& rows) {
+    Table table;
+    table.header = {"poses"};
+    for (const Criterion criterion : criteria) {
+        table.header.push_back(std::string(criterion_name(criterion)) + "/mm");
+    }
+    for (const char* name : {"random 10 %/mm", "50 %/mm", "90 %/mm", "subsets", "unidentified"}) {
+        table.header.emplace_back(name);
+    }
+    for (const StudyRow& row : rows) {
+        std::vector<std::string> cells{std::to_string(row.pose_count)};
+        for (const StudyCase& optimal : row.optimal) {
+            cells.push_back(cell(held_out_quantile({optimal}, 0.5)));
+        }
+        for (const double p : {0.1, 0.5, 0.9})
+            cells.push_back(cell(held_out_quantile(row.random, p)));
+        cells.push_back(std::to_string(row.random.size()));
+        cells.push_back(unidentified_cell(row.random));
+        table.rows.push_back(std::move(cells));
+    }
+    return table;
+}
+
+std::string study_csv(const std::vector<Criterion>& criteria, const std::vector<StudyRow>& rows,
+                      const std::vector<std::string>& configuration_ids) {
+    std::string text =
+        "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,configurations\n";
+    for (const StudyRow& row : rows) {
+        for (std::size_t i = 0; i < row.optimal.size(); ++i) {
+            text +=
+                csv_line(row, row.optimal[i], criterion_name(criteria[i]), 0, configuration_ids);
+        }
+        for (std::size_t i = 0; i < row.random.size(); ++i) {
+            text += csv_line(row, row.random[i], "random", i, configuration_ids);
+        }
+    }
+    return text;
+}
+
+}  // namespace posewise

@@ -1,0 +1,61 @@
+#include "posewise/report/table.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace posewise {
+namespace {
+
+bool is_number(const std::string& cell) {
+    if (cell.empty() || cell == "-") return true;
+    char* end = nullptr;
+    std::strtod(cell.c_str(), &end);
+    return end == cell.c_str() + cell.size();
+}
+
+struct Column {
+    std::size_t width = 0;
+    bool right_aligned = true;
+};
+
+const std::string& cell_at(const std::vector<std::string>& row, std::size_t column) {
+    static const std::string empty;
+    return column < row.size() ? row[column] : empty;
+}
+
+std::vector<Column> measure(const Table& table) {
+    std::vector<Column> columns(table.header.size());
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        columns[i].width = table.header[i].size();
+        for (const auto& row : table.rows) {
+            columns[i].width = std::max(columns[i].width, cell_at(row, i).size());
+            columns[i].right_aligned = columns[i].right_aligned && is_number(cell_at(row, i));
+        }
+    }
+    return columns;
+}
+
+std::string format_row(const std::vector<std::string>& row, const std::vector<Column>& columns) {
+    std::string line;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        const std::string& cell = cell_at(row, i);
+        const std::string padding(columns[i].width - cell.size(), ' ');
+        line += i == 0 ? "" : "  ";
+        line += columns[i].right_aligned ? padding + cell : cell + padding;
+    }
+    line.erase(line.find_last_not_of(' ') + 1);  // no trailing blanks
+    return line + '\n';
+}
+
+}  // namespace
+
+std::string format_table(const Table& table) {
+    const auto columns = measure(table);
+    std::vector<std::string> rule;
+    for (const Column& column : columns) rule.emplace_back(column.width, '-');
+    std::string text = format_row(table.header, columns) + format_row(rule, columns);
+    for (const auto& row : table.rows) text += format_row(row, columns);
+    return text;
+}
+
+}  // namespace posewise
