@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "common.hpp"
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/io/estimate_file.hpp"
+#include "posewise/report/calibration_tables.hpp"
+#include "posewise/report/units.hpp"
+
+namespace posewise::cli {
+namespace {
+
+constexpr const char* footer = R"(
+Example:
+  posewise calibrate campaign.yaml -m measurements.csv --out estimate.json
+
+Finds base and targets from nothing, then identifies all parameters together, and prints
+  - the error left, in mm: nominal (only base and targets fitted), calibrated (all samples), means
+    (of each configuration's samples), held out (each configuration predicted by a calibration
+    without it: what to expect at poses that were not measured);
+  - the noise floor, from the repeats: no calibration gets below it;
+  - every parameter with its standard deviation, the base as position and rotation vector;
+  - the strongest correlations: what these poses can hardly tell apart.
+With --plan the calibration sees only the plan's configurations and is judged on the others too.
+The method two-step is that of Wu et al. 2015; it heads to the same optimum, slowly, and the output
+says whether it got there.)";
+
+constexpr Index leave_one_out_limit = 100;
+constexpr Index default_folds = 10;
+constexpr Index correlations_shown = 5;
+
+struct Arguments {
+    InputPaths paths;
+    std::string plan;
+    std::string method = "lm";
+    TwoStepOptions two_step;
+    std::optional<Index> iteration_limit;
+    std::string validate;
+    std::optional<Index> folds;
+    std::string out;
+};
+
+/// The measured configurations, split by the plan if there is one.
+struct Split {
+    Measurements used;
+    std::optional<Measurements> left_out;
+};
+
+Split read_split(const Arguments& arguments, const io::CampaignFile& file) {
+    auto all = io::read_measurements(arguments.paths.measurements, file);
+    if (arguments.plan.empty()) return {std::move(all), std::nullopt};
+    const auto planned = find_planned(all, arguments.plan);
+    const auto others = all_but(all.configuration_count(), planned);
+    Split split{take(all, planned), std::nullopt};
+    if (!others.empty()) split.left_out = take(all, others);
+    return split;
+}
+
+Estimate identify_by_method(const Arguments& arguments, const Campaign& campaign,
+                            const Measurements& measurements, const Parameters& start) {
+    if (arguments.method == "two-step") {
+        TwoStepOptions options = arguments.two_step;
+        options.iteration_limit = arguments.iteration_limit.value_or(options.iteration_limit);
+        return identify_two_step(campaign, measurements, start, options);
+    }
+    LevenbergMarquardtOptions options;
+    options.iteration_limit = arguments.iteration_limit.value_or(options.iteration_limit);
+    return identify(campaign, measurements, start, options);
+}
+
+/// Base and targets fitted, the robot as its maker says.
+Metrics fit_nominal(const Campaign& campaign, const Measurements& measurements) {
+    const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
+    return identify(nominal, measurements, register_base_and_targets(nominal, measurements)).fit;
+}
+
+std::optional<CrossValidation> hold_out(const Arguments& arguments, const Campaign& campaign,
+                                        const Measurements& measurements, const Parameters& start) {
+    const Index count = measurements.configuration_count();
+    const Index folds =
+        arguments.folds.value_or(count <= leave_one_out_limit ? count : default_folds);
+    if (folds == 0) return std::nullopt;
+    if (folds < 2 || folds > count) {
+        throw InputError(
+            fmt::format("--folds is {}, must be 0 or from 2 to the number of configurations, {}",
+                        folds, count));
+    }
+    return cross_validate(campaign, measurements, start, folds);
+}
+
+std::string describe_ending(const Arguments& arguments, const Estimate& estimate) {
+    std::string text = fmt::format("{}: {} after {} iterations", arguments.method,
+                                   ending_name(estimate.ending), estimate.iterations);
+    if (estimate.ending != Ending::Converged) text += "; this is not the optimum";
+    return text + fmt::format(
+                      "\nvariance factor {} with {} degrees of freedom (1: noise and model "
+                      "error stated right)\n",
+                      format_short(estimate.variance_factor, 4), estimate.degrees_of_freedom);
+}
+
+void print_accuracy(const io::CalibrationReport& report, const std::optional<Metrics>& left_out) {
+    std::vector<std::pair<std::string, Metrics>> columns{{"nominal", report.nominal},
+                                                         {"calibrated", report.estimate.fit},
+                                                         {"means", report.estimate.fit_means}};
+    if (report.held_out) {
+        columns.emplace_back("held out", report.held_out->samples);
+        columns.emplace_back("held-out means", report.held_out->means);
+    }
+    if (left_out) columns.emplace_back("not in plan", *left_out);
+    if (report.validation) columns.emplace_back("validation", *report.validation);
+    print_section("Accuracy", metrics_table(columns));
+    print("\n");
+    if (report.held_out) {
+        print(fmt::format("held out: {} folds, {} of them not identifiable\n",
+                          report.held_out->folds, report.held_out->failures.size()));
+    }
+    print(report.repeatability ? fmt::format("noise floor from repeats: {} mm per coordinate\n",
+                                             format_mm(*report.repeatability, 5))
+                               : "noise floor: unknown, no configuration was repeated\n");
+}
+
+void calibrate(const Arguments& arguments) {
+    const auto file = io::read_campaign(arguments.paths.campaign);
+    const Campaign& campaign = file.campaign;
+    const auto [used, others] = read_split(arguments, file);
+    const Parameters start = register_base_and_targets(campaign, used);
+    const auto metrics_of = [&](const Measurements& measurements, const Estimate& estimate) {
+        return make_metrics(residuals(campaign, estimate.parameters, measurements));
+    };
+    io::CalibrationReport report;
+    report.method = arguments.method;
+    report.measurements = arguments.paths.measurements;
+    report.estimate = identify_by_method(arguments, campaign, used, start);
+    report.nominal = fit_nominal(campaign, used);
+    report.repeatability = repeatability(used);
+    report.held_out = hold_out(arguments, campaign, used, start);
+    if (!arguments.validate.empty()) {
+        report.validation =
+            metrics_of(io::read_measurements(arguments.validate, file), report.estimate);
+    }
+    if (!arguments.out.empty()) io::write_estimate(arguments.out, campaign, report);
+
+    std::optional<Metrics> left_out;
+    if (others) left_out = metrics_of(*others, report.estimate);
+    print(fmt::format("{}: {} configurations, {} samples, {} parameters\n", campaign.name,
+                      used.configuration_count(), used.observations.rows(),
+                      parameter_count(campaign)));
+    print(describe_ending(arguments, report.estimate));
+    print_accuracy(report, left_out);
+    print_section("Parameters (errors of the robot, base, targets in the flange frame)",
+                  parameter_table(campaign, report.estimate));
+    print_section("Strongest correlations", correlation_table(report.estimate, correlations_shown));
+}
+
+void add_options(CLI::App& command, Arguments& arguments) {
+    command.add_option("--plan", arguments.plan, "Use only the configurations of this plan file");
+    command.add_option("--method", arguments.method, "lm or two-step")
+        ->check(CLI::IsMember({"lm", "two-step"}))
+        ->capture_default_str();
+    command
+        .add_option("--alpha", arguments.two_step.alpha, "two-step: part of each robot step taken")
+        ->check(CLI::Range(1e-6, 1.0))
+        ->capture_default_str();
+    command
+        .add_option("--max-iterations", arguments.iteration_limit,
+                    "Most iterations (default: lm 100, two-step 200)")
+        ->check(CLI::Range(Index{1}, Index{1000000}));
+    command.add_option("--validate", arguments.validate,
+                       "Second measurement file, to judge the result on");
+    command.add_option("--folds", arguments.folds,
+                       "Groups to hold out in turn; 0: none (default: every configuration by "
+                       "itself up to 100 of them, else 10)");
+    command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file");
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& program) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App* command =
+        program.add_subcommand("calibrate", "Identify the robot's errors from measurements");
+    add_campaign_argument(*command, arguments->paths);
+    add_measurements_option(*command, arguments->paths);
+    add_options(*command, *arguments);
+    command->footer(footer);
+    command->callback([arguments] { calibrate(*arguments); });
+}
+
+}  // namespace posewise::cli

@@ -1,0 +1,101 @@
+#include "common.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/io/plan_file.hpp"
+#include "posewise/measurement/point_sensor.hpp"
+#include "posewise/report/units.hpp"
+
+namespace posewise::cli {
+
+void add_campaign_argument(CLI::App& command, InputPaths& paths) {
+    command.add_option("CAMPAIGN", paths.campaign, "Campaign file (YAML): robot, sensor, spread")
+        ->required();
+}
+
+void add_measurements_option(CLI::App& command, InputPaths& paths) {
+    command
+        .add_option("-m,--measurements", paths.measurements,
+                    "Measured configurations (CSV, or MATLAB .mat)")
+        ->required();
+}
+
+CLI::Validator criterion_check() {
+    return CLI::Validator(
+        [](const std::string& name) {
+            try {
+                parse_criterion(name);
+            } catch (const InputError& error) {
+                return std::string(error.what());
+            }
+            return std::string();
+        },
+        "CRITERION");
+}
+
+double mean_repeats(const Measurements& measurements) {
+    return static_cast<double>(measurements.observations.rows()) /
+           static_cast<double>(measurements.configuration_count());
+}
+
+std::vector<Index> find_planned(const Measurements& measurements, const std::string& plan_path) {
+    std::vector<Index> planned;
+    for (const std::string& id : io::read_plan_ids(plan_path)) {
+        const auto found = std::find(measurements.ids.begin(), measurements.ids.end(), id);
+        if (found == measurements.ids.end()) {
+            throw InputError(plan_path + ": configuration '" + id +
+                             "' of the plan is not among the measured ones");
+        }
+        planned.push_back(found - measurements.ids.begin());
+    }
+    return planned;
+}
+
+void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+
+void print_section(const std::string& title, const Table& table) {
+    print('\n' + title + "\n\n" + format_table(table));
+}
+
+std::string describe(const Sensor& sensor) {
+    const auto* points = dynamic_cast<const PointSensor*>(&sensor);
+    if (points == nullptr) return fmt::format("{} numbers a pose", sensor.row_count());
+    Index known = 0;
+    for (Index j = 0; j < points->target_count(); ++j) known += points->is_known(j) ? 1 : 0;
+    return fmt::format("points of {} targets ({} known, {} to be identified), sigma {} mm",
+                       points->target_count(), known, points->target_count() - known,
+                       format_short(mm_per_m * points->sigma()));
+}
+
+std::string describe_scaling(const Campaign& campaign, double repeats) {
+    std::string text = fmt::format(
+        "noise: {}, mean of {} samples, model error {} mm\nscale: {} mm and {} mrad a parameter",
+        describe(*campaign.sensor), format_short(repeats),
+        format_short(mm_per_m * campaign.model_error),
+        format_short(mm_per_m * campaign.spread.length),
+        format_short(mrad_per_rad * campaign.spread.angle));
+    if (!campaign.spread.by_name.empty()) text += ", others by name in the campaign file";
+    return text + '\n';
+}
+
+std::string format_error(double si_value, bool is_angle) {
+    return format_short(mm_per_m * si_value, 4) + ' ' + std::string(error_unit(is_angle));
+}
+
+Progress::Progress(std::string label, bool asked_for)
+    : label_(std::move(label)), shown_(asked_for || isatty(STDERR_FILENO) == 1) {}
+
+void Progress::operator()(Index done, Index total) {
+    const Index percent = 100 * done / total;
+    if (!shown_ || percent == last_percent_) return;
+    last_percent_ = percent;
+    std::fprintf(stderr, "\r%s %3ld %%%s", label_.c_str(), static_cast<long>(percent),
+                 done == total ? "\n" : "");
+}
+
+}  // namespace posewise::cli

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "posewise/io/measurements_file.hpp"
+#include "posewise/report/table.hpp"
+
+/// What several subcommands share: their arguments, how they print.
+namespace posewise::cli {
+
+/// The files most commands begin with.
+struct InputPaths {
+    std::string campaign;
+    std::string measurements;
+};
+void add_campaign_argument(CLI::App& command, InputPaths& paths);
+void add_measurements_option(CLI::App& command, InputPaths& paths);
+
+/// Accepts the name of a criterion; anything else is a usage error that lists them.
+CLI::Validator criterion_check();
+
+/// Samples per configuration, on average: the repeats that selection reckons with.
+double mean_repeats(const Measurements& measurements);
+
+/// Indices of the configurations a plan file asks for. Throws InputError if one is not there.
+std::vector<Index> find_planned(const Measurements& measurements, const std::string& plan_path);
+
+/// Everything is printed to standard output through these two.
+void print(const std::string& text);
+void print_section(const std::string& title, const Table& table);
+
+/// One sentence each: "3 targets at unknown places, sigma 0.05 mm", and the noise and column scales
+/// that whitened, scaled numbers rest on.
+std::string describe(const Sensor& sensor);
+std::string describe_scaling(const Campaign& campaign, double repeats);
+
+/// "1 mm", "-0.5 mrad": a small error with its unit.
+std::string format_error(double si_value, bool is_angle);
+
+/// A counter on standard error, shown if that is a terminal or the user asks for it.
+class Progress {
+  public:
+    Progress(std::string label, bool asked_for);
+    void operator()(Index done, Index total);
+
+  private:
+    std::string label_;
+    bool shown_;
+    Index last_percent_ = -1;
+};
+
+}  // namespace posewise::cli

@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "common.hpp"
+#include "posewise/core/version.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "posewise/report/units.hpp"
+
+namespace posewise::cli {
+namespace {
+
+constexpr const char* footer = R"(
+Example:
+  posewise simulate campaign.yaml --truth 7 --poses 24 --repeats 10 --out simulated.csv
+
+Draws a robot with errors of the campaign's spread (by the seed --truth), sends it to random
+configurations within the joint limits and measures with the sensor's noise. The file starts with
+comment lines that hold the command, so it can be made again. Prints the true parameters, to
+compare a calibration with:
+  parameter      error
+  Tx1        -0.8412 mm)";
+
+struct Arguments {
+    InputPaths paths;
+    std::optional<std::uint64_t> seed;
+    std::string out;
+    SimulateOptions options;
+};
+
+std::vector<std::string> make_comments(const Arguments& arguments, const Campaign& campaign) {
+    const SimulateOptions& options = arguments.options;
+    return {fmt::format("{}: simulated, not measured, by posewise {}", campaign.name, version),
+            fmt::format("posewise simulate {} --truth {} --seed {} --poses {} --repeats {}",
+                        arguments.paths.campaign, options.truth_seed, options.seed,
+                        options.pose_count, options.repeats)};
+}
+
+/// The robot's true errors; base and targets are at the campaign's, moved by the spread.
+Table truth_table(const Campaign& campaign, const Parameters& truth) {
+    const auto names = campaign.robot.parameter_names();
+    Table table{{"parameter", "error", ""}, {}};
+    for (Index k = 0; k < truth.robot.size(); ++k) {
+        const bool turns = campaign.robot.parameter_element(k).motion == Motion::Rotation;
+        table.rows.push_back({names[static_cast<std::size_t>(k)],
+                              format_fixed(mm_per_m * truth.robot[k], 4),
+                              std::string(error_unit(turns))});
+    }
+    return table;
+}
+
+void run_simulation(Arguments arguments) {
+    const auto file = io::read_campaign(arguments.paths.campaign);
+    arguments.options.seed = arguments.seed.value_or(file.seed);
+    const Simulation simulation = simulate(file.campaign, arguments.options);
+    io::write_measurements_csv(arguments.out, file.campaign, simulation.measurements,
+                               make_comments(arguments, file.campaign));
+    print(fmt::format("{} configurations, {} samples: {}\n",
+                      simulation.measurements.configuration_count(),
+                      simulation.measurements.observations.rows(), arguments.out));
+    print_section("True errors of the robot", truth_table(file.campaign, simulation.truth));
+}
+
+void add_options(CLI::App& command, Arguments& arguments) {
+    const auto count = CLI::Range(Index{1}, Index{100000});
+    command.add_option("--truth", arguments.options.truth_seed, "Seed of the true parameters")
+        ->capture_default_str();
+    command.add_option("--seed", arguments.seed,
+                       "Seed of configurations and noise (default: the campaign's)");
+    command.add_option("-k,--poses", arguments.options.pose_count, "Number of configurations")
+        ->required()
+        ->check(count);
+    command.add_option("--repeats", arguments.options.repeats, "Samples of each configuration")
+        ->check(count)
+        ->capture_default_str();
+    command.add_option("-o,--out", arguments.out, "Measurement file to write (CSV)")->required();
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& program) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App* command = program.add_subcommand("simulate", "Make a synthetic measurement file");
+    add_campaign_argument(*command, arguments->paths);
+    add_options(*command, *arguments);
+    command->footer(footer);
+    command->callback([arguments] { run_simulation(*arguments); });
+}
+
+}  // namespace posewise::cli
