@@ -14,6 +14,9 @@ PointSensor::PointSensor(std::vector<std::optional<Vector3d>> known_targets, dou
     }
     Index offset = 0;
     for (const auto& target : known_targets_) {
+        if (target && !target->allFinite()) {
+            throw InputError("a known target's position has a value that is not a finite number");
+        }
         unknown_offset_.push_back(target ? -1 : offset);
         if (!target) offset += 3;
     }

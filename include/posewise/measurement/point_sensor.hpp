@@ -14,7 +14,8 @@ class PointSensor final : public Sensor {
   public:
     /// `known_targets[i]` is target i's position in the flange frame (m), or nothing if it is
     /// unknown; sigma (m) the standard deviation of one coordinate of one observation.
-    /// Throws InputError if there is no target or sigma is not positive and finite.
+    /// Throws InputError if there is no target, one is not finite, or sigma is not positive and
+    /// finite.
     PointSensor(std::vector<std::optional<Vector3d>> known_targets, double sigma);
 
     Index target_count() const { return static_cast<Index>(known_targets_.size()); }

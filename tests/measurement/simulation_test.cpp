@@ -1,0 +1,93 @@
+#include "posewise/measurement/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/model/sampling.hpp"
+#include "support/campaigns.hpp"
+
+namespace posewise {
+namespace {
+
+using namespace testing;
+
+/// Bounds that a chi-square sum over n degrees of freedom, divided by n, leaves once in 15000.
+void expect_variance(double mean_square, Index degrees_of_freedom, double variance) {
+    const double four_sigmas = 4 * std::sqrt(2.0 / static_cast<double>(degrees_of_freedom));
+    EXPECT_NEAR(mean_square / variance, 1, four_sigmas);
+}
+
+/// Observed minus expected, of every configuration's mean.
+RowMatrixXd mean_errors(const Campaign& campaign, const Simulation& simulation) {
+    RowMatrixXd errors = mean_observations(simulation.measurements);
+    for (Index i = 0; i < errors.rows(); ++i) {
+        const VectorXd q = simulation.measurements.configurations.row(i).transpose();
+        errors.row(i) -=
+            campaign.sensor
+                ->predict(world_from_flange(campaign, simulation.truth, q), simulation.truth.sensor)
+                .transpose();
+    }
+    return errors;
+}
+
+TEST(Simulate, ALongerCampaignBeginsWithTheShorterOne) {
+    const Campaign campaign = tracked_campaign(fanuc());
+    const Simulation longer = simulate(campaign, {.pose_count = 12, .repeats = 2});
+    const Simulation shorter = simulate(campaign, {.pose_count = 5, .repeats = 2});
+    const Measurements prefix = take(longer.measurements, {0, 1, 2, 3, 4});
+    EXPECT_EQ(shorter.measurements.configurations, prefix.configurations);
+    EXPECT_EQ(shorter.measurements.observations, prefix.observations);
+    EXPECT_EQ(shorter.measurements.ids, prefix.ids);
+    EXPECT_EQ(shorter.truth.robot, longer.truth.robot);
+}
+
+TEST(Simulate, SensorNoiseHasTheStatedVariance) {
+    const Campaign campaign = tracked_campaign(fanuc());
+    const Simulation simulation = simulate(campaign, {.pose_count = 300, .repeats = 5});
+    const double sigma = repeatability(simulation.measurements).value();
+    expect_variance(sigma * sigma, 300 * 4 * 9, 5e-5 * 5e-5);
+}
+
+TEST(Simulate, RepeatsShareTheModelError) {
+    Campaign campaign = tracked_campaign(fanuc());
+    campaign.model_error = 2e-4;
+    const Simulation simulation = simulate(campaign, {.pose_count = 300, .repeats = 4});
+    const RowMatrixXd errors = mean_errors(campaign, simulation);
+    const Index n = errors.size();
+    expect_variance(errors.squaredNorm() / static_cast<double>(n), n,
+                    2e-4 * 2e-4 + 5e-5 * 5e-5 / 4);
+}
+
+TEST(Simulate, TruthDependsOnItsOwnSeedOnly) {
+    const Campaign campaign = tracked_campaign(fanuc());
+    const Simulation a = simulate(campaign, {.pose_count = 3, .truth_seed = 1, .seed = 1});
+    const Simulation b = simulate(campaign, {.pose_count = 3, .truth_seed = 1, .seed = 2});
+    const Simulation c = simulate(campaign, {.pose_count = 3, .truth_seed = 2, .seed = 1});
+    EXPECT_EQ(a.truth.robot, b.truth.robot);
+    EXPECT_NE(a.measurements.configurations, b.measurements.configurations);
+    EXPECT_NE(a.truth.robot, c.truth.robot);
+    EXPECT_EQ(a.measurements.configurations, c.measurements.configurations);
+}
+
+TEST(DrawTruth, SpreadsTheErrorsAsStated) {
+    Campaign campaign = tracked_campaign(fanuc());
+    campaign.spread = {5e-4, 2e-3, {}};
+    const VectorXd scale = parameter_scale(campaign).segment(6, 18);
+    double sum = 0;
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        sum += draw_truth(campaign, seed).robot.cwiseQuotient(scale).squaredNorm();
+    }
+    expect_variance(sum / (200 * 18), 200 * 18, 1);
+}
+
+TEST(Simulate, RefusesWhatItCannotSimulate) {
+    Campaign campaign = tracked_campaign(fanuc());
+    EXPECT_THROW(simulate(campaign, {}), InputError);
+    EXPECT_THROW(simulate(campaign, {.pose_count = -1}), InputError);
+    EXPECT_THROW(simulate(campaign, {.pose_count = 3, .repeats = 0}), InputError);
+    campaign.has_nominal_targets = false;
+    EXPECT_THROW(simulate(campaign, {.pose_count = 3}), InputError);
+}
+
+}  // namespace
+}  // namespace posewise
