@@ -1,0 +1,213 @@
+#include "posewise/calibrator/identification.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "posewise/model/sampling.hpp"
+#include "support/campaigns.hpp"
+
+namespace posewise {
+namespace {
+
+using testing::tracked_campaign;
+
+Campaign with_sigma(double sigma) {
+    Campaign campaign = tracked_campaign(testing::fanuc());
+    campaign.model_error = 0;
+    campaign.sensor =
+        std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(3, std::nullopt), sigma);
+    return campaign;
+}
+
+Estimate calibrate(const Campaign& campaign, const Measurements& measurements) {
+    return identify(campaign, measurements, register_base_and_targets(campaign, measurements));
+}
+
+/// Estimated minus true, in the 33 parameters' own coordinates.
+VectorXd error_of(const Parameters& estimate, const Parameters& truth) {
+    VectorXd error(6 + truth.robot.size() + truth.sensor.size());
+    const Eigen::AngleAxisd turn(
+        Matrix3d(estimate.world_from_base.linear() * truth.world_from_base.linear().transpose()));
+    error << estimate.world_from_base.translation() - truth.world_from_base.translation(),
+        turn.angle() * turn.axis(), estimate.robot - truth.robot, estimate.sensor - truth.sensor;
+    return error;
+}
+
+TEST(Identify, RecoversTheTruthFromExactMeasurements) {
+    const Simulation simulated = simulate(with_sigma(1e-14), {24, 1, 7, 8});
+    const Estimate estimate = calibrate(with_sigma(5e-5), simulated.measurements);
+    EXPECT_EQ(estimate.ending, Ending::Converged);
+    EXPECT_LT(error_of(estimate.parameters, simulated.truth).norm(), 1e-10);
+    EXPECT_LT(estimate.fit.distance_max, 1e-11);
+}
+
+TEST(Identify, HoldsOnPosesItHasNotSeen) {
+    const Campaign campaign = with_sigma(5e-5);
+    const Simulation simulated = simulate(campaign, {30, 1, 7, 8});
+    const Estimate estimate = calibrate(campaign, simulated.measurements);
+    const auto fresh = simulate_measurements(campaign, simulated.truth,
+                                             random_configurations(campaign.robot, 200, 99), 1, 98);
+    const double noise_alone = std::sqrt(3.0) * 5e-5;
+    const double held_out =
+        make_metrics(residuals(campaign, estimate.parameters, fresh)).distance_rms;
+    const double nominal =
+        make_metrics(
+            residuals(campaign, register_base_and_targets(campaign, simulated.measurements), fresh))
+            .distance_rms;
+    EXPECT_GT(held_out, noise_alone);
+    EXPECT_LT(held_out, 1.5 * noise_alone);
+    EXPECT_GT(nominal, 10 * held_out);
+}
+
+TEST(Identify, CovarianceIsThatOfManySimulatedCalibrations) {
+    const Campaign campaign = with_sigma(5e-5);
+    const Parameters truth = draw_truth(campaign, 3);
+    const auto configurations = random_configurations(campaign.robot, 20, 4);
+    const int runs = 300;
+    double mahalanobis = 0;
+    double variance_factor = 0;
+    for (int run = 0; run < runs; ++run) {
+        const auto measurements = simulate_measurements(campaign, truth, configurations, 1,
+                                                        1000 + static_cast<std::uint64_t>(run));
+        const Estimate estimate = identify(campaign, measurements, truth);
+        const MatrixXd covariance = estimate.covariance / estimate.variance_factor;
+        const VectorXd error = error_of(estimate.parameters, truth);
+        mahalanobis += error.dot(covariance.ldlt().solve(error));
+        variance_factor += estimate.variance_factor;
+    }
+    // chi^2 with 33 degrees of freedom: mean 33, standard deviation sqrt(66) a run.
+    EXPECT_NEAR(mahalanobis / runs, 33, 4 * std::sqrt(66.0 / runs));
+    const double freedom = 20 * 9 - 33;
+    EXPECT_NEAR(variance_factor / runs, 1, 4 * std::sqrt(2 / freedom / runs));
+}
+
+TEST(Identify, CovarianceShrinksWithRepeatsAsOneOverTheirNumber) {
+    const Campaign campaign = with_sigma(5e-5);
+    const Parameters truth = draw_truth(campaign, 3);
+    const auto configurations = random_configurations(campaign.robot, 20, 4);
+    const auto one = simulate_measurements(campaign, truth, configurations, 1, 5);
+    Measurements four = one;  // the same mean, claimed to be of four observations
+    four.observations.resize(80, 9);
+    four.first_sample = {0};
+    for (Index i = 0; i < 20; ++i) {
+        for (Index k = 0; k < 4; ++k) four.observations.row(4 * i + k) = one.observations.row(i);
+        four.first_sample.push_back(4 * (i + 1));
+    }
+    const Estimate a = identify(campaign, one, truth);
+    const Estimate b = identify(campaign, four, truth);
+    EXPECT_LT((a.covariance / a.variance_factor - 4 * b.covariance / b.variance_factor).norm(),
+              1e-6 * a.covariance.norm());
+}
+
+TEST(Identify, DoesNotDependOnTheOrderOfConfigurations) {
+    const Campaign campaign = with_sigma(5e-5);
+    const Simulation simulated = simulate(campaign, {12, 3, 1, 2});
+    const auto reversed = take(simulated.measurements, {11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0});
+    const Estimate a = calibrate(campaign, simulated.measurements);
+    const Estimate b = calibrate(campaign, reversed);
+    EXPECT_LT(error_of(a.parameters, b.parameters).norm(), 1e-9);
+    EXPECT_NEAR(a.fit.distance_rms, b.fit.distance_rms, 1e-12);
+}
+
+TEST(Identify, NamesParametersThatCannotBeToldApart) {
+    Campaign campaign = with_sigma(5e-5);
+    std::vector<Element> elements = campaign.robot.elements();
+    elements.insert(elements.begin() + 5, testing::translation(Axis::X, 0, "Tx2"));
+    campaign = with_robot(campaign, Chain(campaign.robot.joints(), elements));
+    const auto measurements = simulate(campaign, {24, 1, 7, 8}).measurements;
+    try {
+        calibrate(campaign, measurements);
+        FAIL() << "an unidentifiable model was identified";
+    } catch (const InputError& error) {
+        const std::string message = error.what();
+        for (const char* name : {"dq2", "dq3", "Tx2"}) {
+            EXPECT_NE(message.find(name), std::string::npos) << message;
+        }
+    }
+}
+
+TEST(Identify, RefusesFewerEquationsThanParameters) {
+    const Campaign campaign = with_sigma(5e-5);
+    const auto measurements = simulate(campaign, {3, 1, 7, 8}).measurements;
+    EXPECT_THROW(identify(campaign, measurements, campaign.nominal), InputError);
+}
+
+TEST(Identify, SaysWhenIterationsRanOut) {
+    const Campaign campaign = with_sigma(5e-5);
+    const Simulation simulated = simulate(campaign, {12, 1, 7, 8});
+    const Parameters start = register_base_and_targets(campaign, simulated.measurements);
+    EXPECT_EQ(identify(campaign, simulated.measurements, start, {0, 1e-12}).ending,
+              Ending::IterationLimit);
+}
+
+TEST(IdentifyTwoStep, HeadsToTheJointOptimumAndSaysIfItGotThere) {
+    const Campaign campaign = with_sigma(5e-5);
+    const auto measurements = simulate(campaign, {24, 1, 7, 8}).measurements;
+    const Parameters start = register_base_and_targets(campaign, measurements);
+    const double optimum = identify(campaign, measurements, start).fit_means.distance_rms;
+    double previous = make_metrics(mean_residuals(campaign, start, measurements)).distance_rms;
+    for (const Index cycles : {1, 3, 10}) {
+        const Estimate estimate = identify_two_step(campaign, measurements, start, {cycles});
+        EXPECT_EQ(estimate.ending, Ending::IterationLimit);
+        EXPECT_LT(estimate.fit_means.distance_rms, previous);
+        EXPECT_GE(estimate.fit_means.distance_rms, optimum * (1 - 1e-9));
+        previous = estimate.fit_means.distance_rms;
+    }
+    const Estimate patient = identify_two_step(campaign, measurements, start, {20000, 1, 1e-7});
+    EXPECT_EQ(patient.ending, Ending::Converged);
+    EXPECT_LT(patient.fit_means.distance_rms, 1.01 * optimum);
+}
+
+TEST(IdentifyTwoStep, ReportsTheJointCovariance) {
+    const Campaign campaign = with_sigma(5e-5);
+    const auto measurements = simulate(campaign, {24, 1, 7, 8}).measurements;
+    const Parameters start = identify(campaign, measurements, campaign.nominal).parameters;
+    const Estimate joint = identify(campaign, measurements, start);
+    const Estimate two_step = identify_two_step(campaign, measurements, start);
+    EXPECT_LT((joint.covariance - two_step.covariance).norm(), 1e-6 * joint.covariance.norm());
+}
+
+TEST(IdentifyTwoStep, RefusesAStepSizeOutsideZeroToOne) {
+    const Campaign campaign = with_sigma(5e-5);
+    const auto measurements = simulate(campaign, {24, 1, 7, 8}).measurements;
+    for (const double alpha : {0.0, -1.0, 1.5, std::nan("")}) {
+        EXPECT_THROW(identify_two_step(campaign, measurements, campaign.nominal, {10, alpha}),
+                     InputError);
+    }
+}
+
+TEST(CrossValidate, LeavesOutEachConfigurationOnce) {
+    const Campaign campaign = with_sigma(5e-5);
+    const auto measurements = simulate(campaign, {20, 2, 7, 8}).measurements;
+    const Parameters start = register_base_and_targets(campaign, measurements);
+    const CrossValidation result = cross_validate(campaign, measurements, start, 20);
+    EXPECT_TRUE(result.failures.empty());
+    EXPECT_EQ(result.samples.point_count, 20 * 2 * 3);
+    EXPECT_EQ(result.means.point_count, 20 * 3);
+    // By hand for one fold, and worse than the fit.
+    const auto seen = take(measurements, all_but(20, {4}));
+    const Estimate without = identify(campaign, seen, start);
+    const double left_out =
+        make_metrics(residuals(campaign, without.parameters, take(measurements, {4}))).distance_max;
+    EXPECT_LE(left_out, result.samples.distance_max);
+    EXPECT_GT(result.samples.distance_rms, calibrate(campaign, measurements).fit.distance_rms);
+}
+
+TEST(CrossValidate, CountsFoldsThatCannotBeIdentified) {
+    const Campaign campaign = with_sigma(5e-5);
+    const auto measurements = simulate(campaign, {6, 1, 7, 8}).measurements;
+    const Parameters start = register_base_and_targets(campaign, measurements);
+    const CrossValidation halves = cross_validate(campaign, measurements, start, 2);
+    EXPECT_EQ(halves.failures.size(), 2U);
+    EXPECT_EQ(halves.samples.point_count, 0);
+    EXPECT_THROW(cross_validate(campaign, measurements, start, 1), InputError);
+    EXPECT_THROW(cross_validate(campaign, measurements, start, 7), InputError);
+}
+
+}  // namespace
+}  // namespace posewise

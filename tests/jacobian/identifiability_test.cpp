@@ -1,0 +1,198 @@
+#include "posewise/jacobian/identifiability.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/model/complete_model.hpp"
+#include "posewise/model/sampling.hpp"
+#include "support/campaigns.hpp"
+
+namespace posewise {
+namespace {
+
+using testing::driven;
+using testing::rotation;
+using testing::tracked_campaign;
+using testing::translation;
+
+std::vector<std::string> names_of(const Campaign& campaign, const std::vector<Index>& parameters) {
+    const auto all = parameter_names(campaign);
+    std::vector<std::string> names;
+    for (const Index k : parameters) names.push_back(all[static_cast<std::size_t>(k)]);
+    return names;
+}
+
+Index irreducible_count(const Chain& robot) {
+    const Campaign campaign = tracked_campaign(complete_model(robot));
+    return static_cast<Index>(find_identifiable(campaign).kept.size());
+}
+
+/// The seed report's mistake: T_x of the vertical upper arm instead of T_z.
+Chain seed_report_chain() {
+    const Chain fanuc = testing::fanuc();
+    std::vector<Element> elements;
+    for (const Element& element : fanuc.elements()) {
+        elements.push_back(element);
+        if (element.parameter != "Tz2") continue;
+        elements.back().parameter.clear();
+        elements.push_back(translation(Axis::X, 0, "Tx2"));
+    }
+    return Chain(fanuc.joints(), elements);
+}
+
+Chain ur_type() {
+    const auto R = Motion::Rotation;
+    const double quarter = 90 * testing::degree;
+    std::vector<Joint> joints;
+    for (const char* name : {"q1", "q2", "q3", "q4", "q5", "q6"}) joints.push_back({name, -3, 3});
+    return Chain(
+        joints,
+        {driven(R, Axis::Z, 0), translation(Axis::Z, 0.1273), rotation(Axis::X, quarter),
+         driven(R, Axis::Z, 1), translation(Axis::X, -0.612), driven(R, Axis::Z, 2),
+         translation(Axis::X, -0.5723), driven(R, Axis::Z, 3), translation(Axis::Z, 0.163941),
+         rotation(Axis::X, quarter), driven(R, Axis::Z, 4), translation(Axis::Z, 0.1157),
+         rotation(Axis::X, -quarter), driven(R, Axis::Z, 5), translation(Axis::Z, 0.0922)});
+}
+
+Chain seven_joint_arm() {
+    const auto R = Motion::Rotation;
+    std::vector<Joint> joints;
+    std::vector<Element> elements;
+    for (Index j = 0; j < 7; ++j) {
+        joints.push_back({"q" + std::to_string(j + 1), -2, 2});
+        elements.push_back(driven(R, j % 2 == 0 ? Axis::Z : Axis::Y, j));
+        if (j % 2 == 0) elements.push_back(translation(Axis::Z, 0.4));
+    }
+    return Chain(joints, elements);
+}
+
+Chain rail_with_fanuc() {
+    const Chain fanuc = testing::fanuc();
+    std::vector<Joint> joints{{"rail", 0, 4}};
+    std::vector<Element> elements{driven(Motion::Translation, Axis::Y, 0)};
+    for (const Joint& joint : fanuc.joints()) joints.push_back(joint);
+    for (Element element : fanuc.elements()) {
+        for (JointTerm& term : element.joints) ++term.joint;
+        elements.push_back(element);
+    }
+    return Chain(joints, elements);
+}
+
+TEST(FindIndependentColumns, ExpressesADroppedColumnByTheKeptOnes) {
+    MatrixXd J(4, 4);
+    J.leftCols<2>() << 1, 2, 0, 1, 3, -1, 1, 1;
+    J.col(2) = 2 * J.col(0) - 0.5 * J.col(1);
+    J.col(3).setZero();
+    const Identifiability found = find_independent_columns(J, {0, 1, 2, 3});
+    EXPECT_EQ(found.kept, (std::vector<Index>{0, 1}));
+    ASSERT_EQ(found.dropped.size(), 2U);
+    ASSERT_EQ(found.dropped[0].absorbed_by.size(), 2U);
+    EXPECT_NEAR(found.dropped[0].absorbed_by[0].coefficient, 2, 1e-12);
+    EXPECT_NEAR(found.dropped[0].absorbed_by[1].coefficient, -0.5, 1e-12);
+    EXPECT_TRUE(found.dropped[1].absorbed_by.empty()) << "a zero column moves nothing";
+}
+
+TEST(FindIndependentColumns, KeepsWhatComesFirstInPriority) {
+    MatrixXd J = MatrixXd::Random(6, 3);
+    J.col(2) = J.col(0);
+    EXPECT_EQ(find_independent_columns(J, {0, 1, 2}).kept, (std::vector<Index>{0, 1}));
+    EXPECT_EQ(find_independent_columns(J, {2, 1, 0}).kept, (std::vector<Index>{1, 2}));
+}
+
+TEST(IrreducibleModel, OfTheFanucIsTheEighteenOfTheRules) {
+    const Chain irreducible = irreducible_model(tracked_campaign(testing::fanuc()));
+    auto names = irreducible.parameter_names();
+    auto expected = testing::fanuc().parameter_names();
+    std::sort(names.begin(), names.end());
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(names, expected);
+}
+
+TEST(IrreducibleModel, PredictsAsTheStatedChainDoes) {
+    const Chain stated = testing::fanuc();
+    const Chain irreducible = irreducible_model(tracked_campaign(stated));
+    const VectorXd zero = VectorXd::Zero(18);
+    const RowMatrixXd configurations = random_configurations(stated, 20, 3);
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        const VectorXd q = configurations.row(i).transpose();
+        EXPECT_TRUE(stated.base_from_flange(q, zero).isApprox(irreducible.base_from_flange(q, zero),
+                                                              1e-14));
+    }
+}
+
+TEST(FindIdentifiable, SeedReportsSetLacksOneDirectionAndSaysWhich) {
+    const Campaign campaign = tracked_campaign(seed_report_chain());
+    const Identifiability found = find_identifiable(campaign);
+    EXPECT_EQ(parameter_count(campaign), 33);
+    EXPECT_EQ(found.kept.size(), 32U);
+    ASSERT_EQ(found.dropped.size(), 1U);
+    EXPECT_EQ(names_of(campaign, {found.dropped[0].parameter}), std::vector<std::string>{"Tx2"});
+    // Moving the elbow along x by t is turning the upper arm by t / 1.075 and the forearm back.
+    ASSERT_EQ(found.dropped[0].absorbed_by.size(), 2U);
+    std::vector<Index> absorbing;
+    for (const auto& term : found.dropped[0].absorbed_by) {
+        absorbing.push_back(term.parameter);
+        EXPECT_NEAR(std::abs(term.coefficient), 1 / 1.075, 1e-12);
+    }
+    EXPECT_EQ(names_of(campaign, absorbing), (std::vector<std::string>{"dq2", "dq3"}));
+    EXPECT_GT(found.least_kept_residual, 1e6 * found.largest_dropped_residual);
+}
+
+TEST(FindIdentifiable, CountIsFourRevoluteTwoPrismaticThreeTargets) {
+    const Index targets = 3 * 3;
+    EXPECT_EQ(irreducible_count(testing::fanuc()), 4 * 6 + targets);
+    EXPECT_EQ(irreducible_count(ur_type()), 4 * 6 + targets);
+    EXPECT_EQ(irreducible_count(testing::planar_arm({1, 0.8, 0.5})), 4 * 3 + targets);
+    EXPECT_EQ(irreducible_count(testing::scara()), 4 * 3 + 2 * 1 + targets);
+    EXPECT_EQ(irreducible_count(testing::gantry_with_wrist()), 4 * 3 + 2 * 3 + targets);
+    EXPECT_EQ(irreducible_count(seven_joint_arm()), 4 * 7 + targets);
+    EXPECT_EQ(irreducible_count(rail_with_fanuc()), 4 * 6 + 2 * 1 + targets);
+}
+
+TEST(FindIdentifiable, DroppedColumnIsTheStatedCombination) {
+    const Campaign campaign = tracked_campaign(complete_model(testing::fanuc()));
+    const Identifiability found = find_identifiable(campaign);
+    // Other configurations than the search looked at.
+    const MatrixXd J =
+        make_plain_blocks(campaign, campaign.nominal, random_configurations(campaign.robot, 40, 77))
+            .matrix;
+    EXPECT_EQ(found.dropped.size(), 12U);
+    for (const DroppedParameter& dropped : found.dropped) {
+        VectorXd combination = VectorXd::Zero(J.rows());
+        for (const auto& term : dropped.absorbed_by) {
+            combination += term.coefficient * J.col(term.parameter);
+        }
+        EXPECT_LT((combination - J.col(dropped.parameter)).norm(), 1e-9 * combination.norm());
+    }
+}
+
+TEST(LeastPoseCount, IsFiveForThreeTargetsAndNineForOne) {
+    Campaign campaign = tracked_campaign(testing::fanuc());
+    EXPECT_EQ(least_pose_count(campaign), 5);
+    campaign.sensor =
+        std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(1, std::nullopt), 5e-5);
+    campaign.nominal.sensor = Vector3d(0.28, 0.05, -0.11);
+    EXPECT_EQ(least_pose_count(campaign), 9);
+}
+
+TEST(WeakestDirections, AreTheLastRightSingularVectors) {
+    const MatrixXd stacked = VectorXd(Eigen::Vector3d(3, 1e-3, 2)).asDiagonal();
+    const auto directions = weakest_directions(stacked, 2, 1);
+    ASSERT_EQ(directions.size(), 2U);
+    EXPECT_NEAR(directions[0].singular_value, 1e-3, 1e-15);
+    EXPECT_EQ(directions[0].terms[0].parameter, 1);
+    EXPECT_NEAR(directions[0].terms[0].coefficient, 1, 1e-12);
+    EXPECT_EQ(directions[1].terms[0].parameter, 2);
+}
+
+TEST(WeakestDirections, OfFewerRowsThanColumnsHaveSingularValueZero) {
+    const MatrixXd stacked = MatrixXd::Random(2, 5);
+    const auto directions = weakest_directions(stacked, 3);
+    for (const auto& direction : directions) EXPECT_EQ(direction.singular_value, 0);
+}
+
+}  // namespace
+}  // namespace posewise
