@@ -1,0 +1,57 @@
+// One calibration of a simulated FANUC campaign (33 parameters, 24 configurations of 10 samples),
+// from registration with no initial guess to the covariance (target: at most 5 ms).
+#include <benchmark/benchmark.h>
+
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "support/campaigns.hpp"
+
+namespace posewise {
+namespace {
+
+struct Scene {
+    Campaign campaign = testing::tracked_campaign(testing::fanuc());
+    Measurements measurements = simulate(campaign, {.pose_count = 24, .repeats = 10}).measurements;
+};
+
+void BM_registration(benchmark::State& state) {
+    const Scene scene;
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(register_base_and_targets(scene.campaign, scene.measurements));
+    }
+}
+BENCHMARK(BM_registration)->Unit(benchmark::kMillisecond);
+
+void BM_calibration_by_levenberg_marquardt(benchmark::State& state) {
+    const Scene scene;
+    Estimate estimate;
+    for (auto _ : state) {
+        const Parameters start = register_base_and_targets(scene.campaign, scene.measurements);
+        estimate = identify(scene.campaign, scene.measurements, start);
+    }
+    if (estimate.ending != Ending::Converged) state.SkipWithError("did not converge");
+    state.counters["iterations"] = static_cast<double>(estimate.iterations);
+}
+BENCHMARK(BM_calibration_by_levenberg_marquardt)->Unit(benchmark::kMillisecond);
+
+void BM_calibration_by_two_steps(benchmark::State& state) {
+    const Scene scene;
+    for (auto _ : state) {
+        const Parameters start = register_base_and_targets(scene.campaign, scene.measurements);
+        benchmark::DoNotOptimize(identify_two_step(scene.campaign, scene.measurements, start));
+    }
+}
+BENCHMARK(BM_calibration_by_two_steps)->Unit(benchmark::kMillisecond);
+
+void BM_leave_one_configuration_out(benchmark::State& state) {
+    const Scene scene;
+    const Parameters start = register_base_and_targets(scene.campaign, scene.measurements);
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(cross_validate(scene.campaign, scene.measurements, start, 24));
+    }
+}
+BENCHMARK(BM_leave_one_configuration_out)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace posewise
