@@ -8,6 +8,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/noise.hpp"
 
 namespace posewise {
 
@@ -45,9 +46,9 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
         differentiate_pose(campaign, parameters, q, motion, augmented.leftCols(size));
         augmented.col(size) = problem.means.row(i).transpose() -
                               campaign.sensor->predict(motion.world_from_flange, parameters.sensor);
-        campaign.sensor->whiten(motion.world_from_flange, parameters.sensor,
-                                static_cast<double>(problem.measurements.sample_count(i)),
-                                campaign.model_error, augmented);
+        whiten(mean_covariance(campaign, motion.world_from_flange, parameters.sensor,
+                               static_cast<double>(problem.measurements.sample_count(i))),
+               augmented);
         system.J.middleRows(rows * i, rows) = augmented.leftCols(size) * problem.scale.asDiagonal();
         system.r.segment(rows * i, rows) = augmented.col(size);
     }
@@ -63,9 +64,9 @@ double sum_of_squares(const IdentificationProblem& problem, const Parameters& pa
             campaign, parameters, problem.measurements.configurations.row(i).transpose());
         r.col(0) =
             problem.means.row(i).transpose() - campaign.sensor->predict(flange, parameters.sensor);
-        campaign.sensor->whiten(flange, parameters.sensor,
-                                static_cast<double>(problem.measurements.sample_count(i)),
-                                campaign.model_error, r);
+        whiten(mean_covariance(campaign, flange, parameters.sensor,
+                               static_cast<double>(problem.measurements.sample_count(i))),
+               r);
         sum += r.squaredNorm();
     }
     return sum;

@@ -1,6 +1,6 @@
 #include "posewise/jacobian/identification.hpp"
 
-#include <cassert>
+#include "posewise/measurement/noise.hpp"
 
 namespace posewise {
 namespace {
@@ -57,8 +57,7 @@ Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,
     Blocks blocks = make_unfilled_blocks(campaign, configurations);
     const VectorXd scale = parameter_scale(campaign);
     fill(campaign, parameters, configurations, blocks, [&](const FlangeMotion& motion, auto& J) {
-        campaign.sensor->whiten(motion.world_from_flange, parameters.sensor, repeats,
-                                campaign.model_error, J);
+        whiten(mean_covariance(campaign, motion.world_from_flange, parameters.sensor, repeats), J);
         J *= scale.asDiagonal();
     });
     return blocks;

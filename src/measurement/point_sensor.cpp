@@ -9,8 +9,9 @@ namespace posewise {
 PointSensor::PointSensor(std::vector<std::optional<Vector3d>> known_targets, double sigma)
     : known_targets_(std::move(known_targets)), sigma_(sigma) {
     if (known_targets_.empty()) throw InputError("a point sensor needs at least one target");
-    if (!(sigma > 0) || !std::isfinite(sigma)) {
-        throw InputError("sigma is " + std::to_string(sigma) + " m, must be positive and finite");
+    if (!(sigma >= 1e-15) || !std::isfinite(sigma)) {
+        throw InputError("sigma is " + std::to_string(sigma) +
+                         " m, must be finite and at least 1e-15 m");
     }
     Index offset = 0;
     for (const auto& target : known_targets_) {
@@ -84,15 +85,9 @@ void PointSensor::differentiate(const FlangeMotion& motion, const VectorXd& unkn
     }
 }
 
-void PointSensor::whiten(const Isometry3d& /*world_from_flange*/, const VectorXd& /*unknowns*/,
-                         double repeats, double model_error, Eigen::Ref<RowMatrixXd> rows) const {
-    rows /= std::sqrt(model_error * model_error + sigma_ * sigma_ / repeats);
-}
-
-VectorXd PointSensor::color_noise(const Isometry3d& /*world_from_flange*/,
-                                  const VectorXd& /*unknowns*/,
-                                  const VectorXd& standard_normal) const {
-    return sigma_ * standard_normal;
+MatrixXd PointSensor::covariance(const Isometry3d& /*world_from_flange*/,
+                                 const VectorXd& /*unknowns*/) const {
+    return sigma_ * sigma_ * MatrixXd::Identity(row_count(), row_count());
 }
 
 }  // namespace posewise

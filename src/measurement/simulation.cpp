@@ -2,6 +2,7 @@
 
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
+#include "posewise/measurement/noise.hpp"
 #include "posewise/model/sampling.hpp"
 
 namespace posewise {
@@ -36,9 +37,9 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
         const Isometry3d flange = world_from_flange(campaign, truth, q);
         const VectorXd expected =
             sensor.predict(flange, truth.sensor) + campaign.model_error * draw_normal(stream, rows);
+        const MatrixXd noise_factor = cholesky_factor(sensor.covariance(flange, truth.sensor));
         for (Index k = 0; k < repeats; ++k) {
-            const VectorXd noise =
-                sensor.color_noise(flange, truth.sensor, draw_normal(stream, rows));
+            const VectorXd noise = noise_factor * draw_normal(stream, rows);
             measurements.observations.row(i * repeats + k) = (expected + noise).transpose();
         }
         measurements.ids.push_back(std::to_string(i));

@@ -74,16 +74,6 @@ TEST(PointSensor, NamesOnlyUnknownTargets) {
     EXPECT_EQ(sensor.unknown_offset(2), 3);
 }
 
-TEST(PointSensor, WhitensByNoiseOverRepeatsAndModelErrorInQuadrature) {
-    const PointSensor sensor({std::nullopt}, 3e-5);
-    RowMatrixXd rows = RowMatrixXd::Identity(3, 3);
-    sensor.whiten(Isometry3d::Identity(), VectorXd::Zero(3), 1, 4e-5, rows);
-    EXPECT_TRUE(rows.isApprox(RowMatrixXd::Identity(3, 3) / 5e-5, 1e-14));
-    rows.setIdentity();
-    sensor.whiten(Isometry3d::Identity(), VectorXd::Zero(3), 9, 0, rows);
-    EXPECT_TRUE(rows.isApprox(RowMatrixXd::Identity(3, 3) / 1e-5, 1e-14));
-}
-
 TEST(PointSensor, RefusesNoTargetsAndSenselessSigma) {
     EXPECT_THROW(PointSensor({}, 1e-5), InputError);
     for (const double sigma : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),

@@ -32,10 +32,8 @@ class PointSensor final : public Sensor {
     VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const override;
     void differentiate(const FlangeMotion& motion, const VectorXd& unknowns,
                        Eigen::Ref<RowMatrixXd> J_measured_parameters) const override;
-    void whiten(const Isometry3d& world_from_flange, const VectorXd& unknowns, double repeats,
-                double model_error, Eigen::Ref<RowMatrixXd> rows) const override;
-    VectorXd color_noise(const Isometry3d& world_from_flange, const VectorXd& unknowns,
-                         const VectorXd& standard_normal) const override;
+    MatrixXd covariance(const Isometry3d& world_from_flange,
+                        const VectorXd& unknowns) const override;
 
   private:
     std::vector<std::optional<Vector3d>> known_targets_;

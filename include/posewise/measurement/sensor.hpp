@@ -30,17 +30,9 @@ class Sensor {
     virtual void differentiate(const FlangeMotion& motion, const VectorXd& unknowns,
                                Eigen::Ref<RowMatrixXd> J_measured_parameters) const = 0;
 
-    /// Multiplies `rows` (row_count() rows, any number of columns) from the left by the inverse
-    /// factor of the covariance of the mean of `repeats` observations. model_error (m) is the
-    /// standard deviation of what the model cannot express; repeats do not reduce it:
-    /// variance = model_error^2 + sigma^2 / repeats.
-    virtual void whiten(const Isometry3d& world_from_flange, const VectorXd& unknowns,
-                        double repeats, double model_error, Eigen::Ref<RowMatrixXd> rows) const = 0;
-
-    /// One observation's noise at this pose: row_count() independent standard normal numbers in,
-    /// noise in m (or rad) out.
-    virtual VectorXd color_noise(const Isometry3d& world_from_flange, const VectorXd& unknowns,
-                                 const VectorXd& standard_normal) const = 0;
+    /// Covariance of the noise of one observation at this pose: row_count() square, m^2 (rad^2).
+    virtual MatrixXd covariance(const Isometry3d& world_from_flange,
+                                const VectorXd& unknowns) const = 0;
 };
 
 }  // namespace posewise
