@@ -1,0 +1,132 @@
+#include "posewise/report/study_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/report/plot.hpp"
+
+namespace posewise {
+namespace {
+
+StudyCase identified(std::vector<Index> poses, double rms, double max) {
+    StudyCase result;
+    result.poses = std::move(poses);
+    result.identified = true;
+    result.held_out.point_count = 3;
+    result.held_out.distance_rms = rms;
+    result.held_out.distance_max = max;
+    return result;
+}
+
+/// Two pose counts; the first has a random subset that cannot identify the model.
+std::vector<StudyRow> example_rows() {
+    StudyCase unidentified;
+    unidentified.poses = {0, 2};
+    return {{2, {identified({0, 1}, 3e-4, 9e-4)}, {unidentified, identified({1, 2}, 2e-3, 4e-3)}},
+            {3, {identified({0, 1, 2}, 2e-4, 5e-4)}, {identified({0, 1, 2}, 4e-4, 8e-4)}}};
+}
+
+const std::vector<Criterion> criteria{Criterion::D};
+
+TEST(StudyTable, ShowsErrorsInMillimetresAndCountsTheUnidentified) {
+    const Table table = study_table(criteria, example_rows());
+    EXPECT_EQ(table.header, (std::vector<std::string>{"poses", "d/mm", "random 10 %/mm", "50 %/mm",
+                                                      "90 %/mm", "subsets", "unidentified"}));
+    ASSERT_EQ(table.rows.size(), 2u);
+    EXPECT_EQ(table.rows[0],
+              (std::vector<std::string>{"2", "0.3000", "2.0000", "2.0000", "2.0000", "2", "1"}));
+    EXPECT_EQ(table.rows[1],
+              (std::vector<std::string>{"3", "0.2000", "0.4000", "0.4000", "0.4000", "1", "0"}));
+}
+
+TEST(StudyTable, ShowsADashWhereNothingWasIdentified) {
+    const Table table = study_table(criteria, {{2, {StudyCase{}}, {}}});
+    EXPECT_EQ(table.rows[0], (std::vector<std::string>{"2", "-", "-", "-", "-", "0", "-"}));
+}
+
+TEST(StudyCsv, HoldsEveryCase) {
+    EXPECT_EQ(study_csv(criteria, example_rows(), {"a", "b,c", "d"}),
+              "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,configurations\n"
+              "2,d,0,yes,0.3,0.9,\"a b,c\"\n"
+              "2,random,0,no,,,a d\n"
+              "2,random,1,yes,2,4,\"b,c d\"\n"
+              "3,d,0,yes,0.2,0.5,\"a b,c d\"\n"
+              "3,random,0,yes,0.4,0.8,\"a b,c d\"\n");
+}
+
+TEST(StudyPlotScript, DrawsBandMedianAndCriterion) {
+    const auto script = study_plot_script(criteria, example_rows(), "robot", "out.svg");
+    EXPECT_NE(script.find("$random << EOD\n2 2 2 2\n3 0.4 0.4 0.4\nEOD\n"), std::string::npos);
+    EXPECT_NE(script.find("$optimal0 << EOD\n2 0.3\n3 0.2\nEOD\n"), std::string::npos);
+    EXPECT_NE(script.find("set logscale y"), std::string::npos);
+    EXPECT_NE(script.find("(mm)"), std::string::npos);
+}
+
+TEST(StudyPlotScript, QuotesTextsSoThatNothingIsExecuted) {
+    const auto script = study_plot_script(criteria, example_rows(), "it's\n`touch x`", "o'ut`.png");
+    EXPECT_NE(script.find("set title 'it''s `touch x`' noenhanced\n"), std::string::npos);
+    EXPECT_NE(script.find("set output 'o''ut`.png'\n"), std::string::npos);
+}
+
+TEST(StudyPlotScript, RefusesOtherImagesAndEmptyStudies) {
+    EXPECT_THROW(study_plot_script(criteria, example_rows(), "", "out.pdf"), InputError);
+    EXPECT_THROW(study_plot_script(criteria, example_rows(), "", "a\nb.svg"), InputError);
+    EXPECT_THROW(study_plot_script(criteria, example_rows(), "", ".svg"), InputError);
+    EXPECT_THROW(study_plot_script(criteria, {{2, {StudyCase{}}, {}}}, "", "out.svg"), InputError);
+}
+
+class RunGnuplot : public ::testing::Test {
+  protected:
+    void SetUp() override { std::filesystem::create_directories(folder_); }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    std::string write_script(const std::string& name, const std::string& text) const {
+        const std::string path = (folder_ / name).string();
+        std::ofstream(path) << text;
+        return path;
+    }
+
+    const std::filesystem::path folder_ =
+        std::filesystem::temp_directory_path() /
+        ("posewise_plot_" +
+         std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+};
+
+TEST_F(RunGnuplot, DrawsIntoFilesWithAwkwardNames) {
+    if (std::system("gnuplot --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no gnuplot here";
+    for (const std::string name : {"plain.svg", "it's `a` $(name) \"with\" \\ signs.png"}) {
+        const auto image = (folder_ / name).string();
+        const auto script = study_plot_script(criteria, example_rows(), name, image);
+        run_gnuplot(write_script("script with blank.gnuplot", script));
+        EXPECT_GT(std::filesystem::file_size(image), 1000u) << name;
+    }
+}
+
+TEST_F(RunGnuplot, NamesTheScriptWhenItFails) {
+    const auto script = write_script("bad.gnuplot", "exit status 3\n");
+    try {
+        run_gnuplot(script);
+        FAIL() << "no error";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find(script), std::string::npos);
+    }
+}
+
+TEST_F(RunGnuplot, SaysThatGnuplotIsAbsent) {
+    const std::string path = std::getenv("PATH");
+    setenv("PATH", folder_.c_str(), 1);
+    try {
+        run_gnuplot(write_script("any.gnuplot", ""));
+        ADD_FAILURE() << "no error";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("not installed"), std::string::npos);
+    }
+    setenv("PATH", path.c_str(), 1);
+}
+
+}  // namespace
+}  // namespace posewise

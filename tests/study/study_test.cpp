@@ -1,0 +1,182 @@
+#include "posewise/study/study.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <set>
+
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "support/campaigns.hpp"
+
+namespace posewise {
+namespace {
+
+struct Example {
+    Campaign campaign = testing::tracked_campaign(testing::fanuc());
+    Measurements measurements;
+
+    explicit Example(Index poses = 14) {
+        SimulateOptions options;
+        options.pose_count = poses;
+        options.repeats = 2;
+        measurements = simulate(campaign, options).measurements;
+    }
+};
+
+StudyOptions small_options() {
+    StudyOptions options;
+    options.criteria = {Criterion::D, Criterion::A};
+    options.pose_counts = {6, 9};
+    options.random_subsets = 8;
+    options.starts = 4;
+    return options;
+}
+
+StudyCase case_with_error(double rms) {
+    StudyCase result;
+    result.identified = true;
+    result.held_out.point_count = 1;
+    result.held_out.distance_rms = rms;
+    return result;
+}
+
+TEST(StudyPoseCounts, JudgesEachSubsetOnWhatItLeftOut) {
+    const Example example;
+    const auto rows = study_pose_counts(example.campaign, example.measurements, small_options());
+    ASSERT_EQ(rows.size(), 2u);
+    for (const StudyRow& row : rows) {
+        ASSERT_EQ(row.optimal.size(), 2u);
+        ASSERT_EQ(row.random.size(), 8u);
+        for (const StudyCase& optimal : row.optimal) {
+            EXPECT_TRUE(optimal.identified);
+            EXPECT_EQ(optimal.poses.size(), static_cast<std::size_t>(row.pose_count));
+            EXPECT_EQ(optimal.held_out.point_count, (14 - row.pose_count) * 2 * 3);
+        }
+    }
+    // By hand: calibrate with the chosen ones, predict the others.
+    const StudyCase& chosen = rows[1].optimal[0];
+    const auto part = take(example.measurements, chosen.poses);
+    const auto estimate =
+        identify(example.campaign, part, register_base_and_targets(example.campaign, part));
+    const auto held_out =
+        make_metrics(residuals(example.campaign, estimate.parameters,
+                               take(example.measurements, all_but(14, chosen.poses))));
+    EXPECT_DOUBLE_EQ(chosen.held_out.distance_rms, held_out.distance_rms);
+    EXPECT_DOUBLE_EQ(chosen.held_out.distance_max, held_out.distance_max);
+}
+
+TEST(StudyPoseCounts, IsTheSameForAnyNumberOfThreads) {
+    const Example example;
+    const int threads = omp_get_max_threads();
+    omp_set_num_threads(1);
+    const auto one = study_pose_counts(example.campaign, example.measurements, small_options());
+    omp_set_num_threads(3);
+    const auto three = study_pose_counts(example.campaign, example.measurements, small_options());
+    omp_set_num_threads(threads);
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        for (std::size_t k = 0; k < one[i].random.size(); ++k) {
+            EXPECT_EQ(one[i].random[k].poses, three[i].random[k].poses);
+            EXPECT_EQ(one[i].random[k].identified, three[i].random[k].identified);
+            EXPECT_EQ(one[i].random[k].held_out.distance_rms,
+                      three[i].random[k].held_out.distance_rms);
+        }
+        for (std::size_t k = 0; k < one[i].optimal.size(); ++k) {
+            EXPECT_EQ(one[i].optimal[k].poses, three[i].optimal[k].poses);
+            EXPECT_EQ(one[i].optimal[k].held_out.distance_rms,
+                      three[i].optimal[k].held_out.distance_rms);
+        }
+    }
+}
+
+TEST(StudyPoseCounts, DrawsTheSameSubsetsWhenAskedForMoreOfThem) {
+    const Example example;
+    StudyOptions options = small_options();
+    const auto few = study_pose_counts(example.campaign, example.measurements, options);
+    options.random_subsets = 12;
+    options.pose_counts = {9};
+    const auto more = study_pose_counts(example.campaign, example.measurements, options);
+    std::set<std::vector<Index>> different;
+    for (std::size_t k = 0; k < 12; ++k) {
+        different.insert(more[0].random[k].poses);
+        if (k < 8) {
+            EXPECT_EQ(few[1].random[k].poses, more[0].random[k].poses);
+        }
+    }
+    EXPECT_GT(different.size(), 9u);
+}
+
+TEST(StudyPoseCounts, CountsSubsetsThatCannotIdentify) {
+    const Example example;
+    StudyOptions options = small_options();
+    options.pose_counts = {4, 14};  // 36 equations but a 6R robot with three points needs five
+    const auto rows = study_pose_counts(example.campaign, example.measurements, options);
+    for (const StudyCase& random : rows[0].random) {
+        EXPECT_FALSE(random.identified);
+        EXPECT_EQ(random.poses.size(), 4u);
+    }
+    EXPECT_FALSE(rows[0].optimal[0].identified);
+    EXPECT_TRUE(rows[1].optimal[0].identified);
+    EXPECT_EQ(rows[1].optimal[0].held_out.point_count, 0);
+}
+
+TEST(StudyPoseCounts, GoesFromTheLeastCountToAllButOne) {
+    const Example example(8);
+    StudyOptions options = small_options();
+    options.pose_counts.clear();
+    options.random_subsets = 0;
+    const auto rows = study_pose_counts(example.campaign, example.measurements, options);
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_EQ(rows.front().pose_count, 5);
+    EXPECT_EQ(rows.back().pose_count, 7);
+}
+
+TEST(StudyPoseCounts, ReportsProgressToTheEnd) {
+    const Example example;
+    Index last = 0;
+    Index total = 0;
+    study_pose_counts(example.campaign, example.measurements, small_options(),
+                      [&](Index done, Index all) {
+                          EXPECT_EQ(done, last + 1);
+                          last = done;
+                          total = all;
+                      });
+    EXPECT_EQ(last, 20);
+    EXPECT_EQ(total, 20);
+}
+
+TEST(StudyPoseCounts, RefusesWhatCannotBeStudied) {
+    const Example example;
+    StudyOptions options = small_options();
+    options.pose_counts = {15};
+    EXPECT_THROW(study_pose_counts(example.campaign, example.measurements, options), InputError);
+    options.pose_counts = {0};
+    EXPECT_THROW(study_pose_counts(example.campaign, example.measurements, options), InputError);
+    options = small_options();
+    options.starts = 0;
+    EXPECT_THROW(study_pose_counts(example.campaign, example.measurements, options), InputError);
+    const Example too_few(4);
+    options = small_options();
+    options.pose_counts = {4};
+    EXPECT_THROW(study_pose_counts(too_few.campaign, too_few.measurements, options), InputError);
+    options.pose_counts.clear();
+    EXPECT_THROW(study_pose_counts(too_few.campaign, too_few.measurements, options), InputError);
+}
+
+TEST(HeldOutQuantile, IsLinearBetweenOrderStatistics) {
+    const std::vector<StudyCase> cases{case_with_error(4), case_with_error(1), StudyCase{},
+                                       case_with_error(2), case_with_error(8)};
+    EXPECT_DOUBLE_EQ(*held_out_quantile(cases, 0), 1);
+    EXPECT_DOUBLE_EQ(*held_out_quantile(cases, 0.5), 3);
+    EXPECT_DOUBLE_EQ(*held_out_quantile(cases, 0.9), 4 + 0.7 * 4);
+    EXPECT_DOUBLE_EQ(*held_out_quantile(cases, 1), 8);
+}
+
+TEST(HeldOutQuantile, IsAbsentWithoutAnIdentifiedCase) {
+    EXPECT_FALSE(held_out_quantile({}, 0.5));
+    EXPECT_FALSE(held_out_quantile({StudyCase{}}, 0.5));
+}
+
+}  // namespace
+}  // namespace posewise
