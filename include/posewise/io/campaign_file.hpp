@@ -13,14 +13,24 @@ namespace posewise::io {
 struct MatMapping {
     std::string joints = "q";         ///< samples x joints
     std::vector<std::string> points;  ///< one variable a target, samples x 3
-    double joint_unit = 1;            ///< in rad or m
-    double point_unit = 1;            ///< in m
+    double angle_unit = 1;            ///< of revolute joints, in rad
+    double length_unit = 1;           ///< of points and prismatic joints, in m
+};
+
+/// Which error parameters the robot of a campaign has.
+enum class ErrorModel {
+    Stated,    ///< those that the file names in brackets
+    Complete,  ///< every geometric error of a rigid link, reduced to an irreducible set
 };
 
 /// A campaign file: the campaign and the defaults of the command line.
 struct CampaignFile {
     std::string path;
     Campaign campaign;
+    /// The robot as the file's elements state it. With ErrorModel::Complete, campaign.robot is
+    /// the irreducible form of its complete model, else the same.
+    Chain declared_robot;
+    ErrorModel error_model = ErrorModel::Stated;
     Criterion criterion = Criterion::D;
     std::uint64_t seed = 1;
     MatMapping mat;
@@ -28,6 +38,11 @@ struct CampaignFile {
 
 /// Reads a campaign from YAML. Throws InputError with path:line:column for anything missing,
 /// misspelt or out of range.
+///
+/// An element of the robot is written `kind amount [parameter]`: the kind is T or R and an axis,
+/// the amount a sum of lengths or angles with their unit and of joints, each with an optional
+/// coefficient, the bracket names its error parameter and may be missing:
+/// `Rz q1`, `Tx 312 mm [Tx1]`, `Ry q2 + 0.5 deg [dq2]`, `Ry -q3 + 0.98*q2`, `Ty 0 [Ty1]`.
 CampaignFile read_campaign(const std::string& path);
 
 }  // namespace posewise::io

@@ -18,7 +18,8 @@ struct CalibrationReport {
     std::optional<Metrics> validation;  ///< on a separate file
 };
 
-/// Writes the report as JSON, SI units in the names, 17 digits.
+/// Writes the report as JSON, units in the names (accuracy in mm, all else in m and rad), numbers
+/// with as many digits as it takes to read them back exactly. Same input, same bytes.
 void write_estimate(const std::string& path, const Campaign& campaign,
                     const CalibrationReport& report);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/measurement/measurements.hpp"
@@ -9,19 +10,22 @@ namespace posewise::io {
 
 /// Reads measurements by the file's ending: `.mat` or else CSV. Throws InputError with
 /// path:line:column. Refused: missing or unknown columns, ragged rows, text or non-finite numbers,
-/// two configurations with the same joint values, angles in rad beyond 2 pi + limits (degrees by
-/// the look of them), a configuration whose samples have different joint values.
+/// two configurations with the same joint values, angles in rad over a full turn beyond the limits
+/// (degrees by the look of them), a configuration whose samples differ in a joint by over 1e-6.
 Measurements read_measurements(const std::string& path, const CampaignFile& file);
 
-/// CSV with a header that carries the units: config, sample, <joint>_rad|_deg|_m|_mm, then the
-/// sensor's columns with _m or _mm.
+/// CSV with a header that carries the units: config, <joint>_rad or _deg (_m or _mm if it slides),
+/// the sensor's columns with _m or _mm, and optionally sample; in any order. Separated by commas,
+/// semicolons or tabs; lines behind # are comments. Rows of one config may stand anywhere.
 Measurements read_measurements_csv(const std::string& path, const Campaign& campaign);
 
-/// MATLAB 5-7 file; consecutive rows with equal joint values are samples of one configuration.
+/// MATLAB file (4 to 7.3) of real double matrices; rows with equal joint values are samples of one
+/// configuration. Configurations are named 0, 1, ... in the order they first occur.
 Measurements read_measurements_mat(const std::string& path, const Campaign& campaign,
                                    const MatMapping& mapping);
 
-/// Writes CSV (rad and mm, 17 digits). `comment_lines` go first, each behind "# ".
+/// Writes CSV (rad and mm, digits enough to read the numbers back exactly). `comment_lines` go
+/// first, each behind "# ".
 void write_measurements_csv(const std::string& path, const Campaign& campaign,
                             const Measurements& measurements,
                             const std::vector<std::string>& comment_lines = {});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
@@ -9,7 +10,8 @@
 namespace posewise::io {
 
 /// Writes a plan as JSON: version, campaign, criterion, value, bound, efficiency, how it was made
-/// (seed, starts, stop reason), what it assumes (noise, scales), and the poses: id, joints in rad.
+/// (seed, starts, stop reason), what it assumes (noise, scales), and the poses: id, joints in rad
+/// or m. `source` names the file of the candidates. A bound that is not known is null.
 void write_plan(const std::string& path, const Plan& plan, const Campaign& campaign,
                 const Measurements& candidates, const std::string& source);
 

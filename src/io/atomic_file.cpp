@@ -1,0 +1,117 @@
+#include "posewise/io/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "posewise/core/errors.hpp"
+
+namespace posewise::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+InputError failure(const std::string& path, const std::string& what) {
+    return input_error_at({path}, what + ": " + std::strerror(errno));
+}
+
+/// An open file that is closed again whatever happens.
+class FileDescriptor {
+  public:
+    FileDescriptor(const std::string& path, int flags) : fd_(::open(path.c_str(), flags, 0666)) {}
+    ~FileDescriptor() {
+        if (fd_ >= 0) ::close(fd_);
+    }
+    FileDescriptor(const FileDescriptor&) = delete;
+    FileDescriptor& operator=(const FileDescriptor&) = delete;
+
+    bool is_open() const { return fd_ >= 0; }
+
+    bool write(const std::string& content) const {
+        std::size_t done = 0;
+        while (done < content.size()) {
+            const ssize_t count = ::write(fd_, content.data() + done, content.size() - done);
+            if (count < 0 && errno != EINTR) return false;
+            if (count > 0) done += static_cast<std::size_t>(count);
+        }
+        return true;
+    }
+
+    bool sync() const { return ::fsync(fd_) == 0; }
+
+    bool read(std::string& content) const {
+        char buffer[1 << 16];
+        for (;;) {
+            const ssize_t count = ::read(fd_, buffer, sizeof buffer);
+            if (count == 0) return true;
+            if (count < 0 && errno != EINTR) return false;
+            if (count > 0) content.append(buffer, static_cast<std::size_t>(count));
+        }
+    }
+
+  private:
+    int fd_;
+};
+
+/// A name beside the file that no other writer uses.
+std::string temporary_name(const std::string& path) {
+    static std::atomic<unsigned> count{0};
+    return path + "." + std::to_string(::getpid()) + "." + std::to_string(count++) + ".tmp";
+}
+
+/// Where a path leads: a link is followed, so that the file it names is replaced, not the link.
+std::string follow_link(const std::string& path) {
+    std::error_code error;
+    if (!fs::is_symlink(path, error)) return path;
+    const fs::path target = fs::weakly_canonical(path, error);
+    return error ? path : target.string();
+}
+
+}  // namespace
+
+void write_file(const std::string& path, const std::string& content) {
+    const std::string target = follow_link(path);
+    std::error_code error;
+    const fs::file_status status = fs::status(target, error);
+    if (fs::is_directory(status)) {
+        throw input_error_at({path}, "is a directory; must be the name of a file to write");
+    }
+    if (fs::exists(status) && !fs::is_regular_file(status)) {  // a pipe or device: not replaceable
+        const FileDescriptor file(target, O_WRONLY | O_CLOEXEC);
+        if (!file.is_open() || !file.write(content)) throw failure(path, "cannot be written");
+        return;
+    }
+    const std::string temporary = temporary_name(target);
+    {
+        const FileDescriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC);
+        if (!file.is_open()) throw failure(path, "cannot be written");
+        if (!file.write(content) || !file.sync()) {
+            const InputError problem = failure(path, "cannot be written");
+            ::unlink(temporary.c_str());
+            throw problem;
+        }
+    }
+    if (::rename(temporary.c_str(), target.c_str()) != 0) {
+        const InputError problem = failure(path, "cannot be replaced");
+        ::unlink(temporary.c_str());
+        throw problem;
+    }
+}
+
+std::string read_file(const std::string& path) {
+    std::error_code error;
+    if (fs::is_directory(path, error)) {
+        throw input_error_at({path}, "is a directory; must be a file");
+    }
+    const FileDescriptor file(path, O_RDONLY | O_CLOEXEC);
+    std::string content;
+    if (!file.is_open() || !file.read(content)) throw failure(path, "cannot be read");
+    return content;
+}
+
+}  // namespace posewise::io

@@ -1,0 +1,150 @@
+#include "posewise/io/campaign_file.hpp"
+
+#include "campaign_sections.hpp"
+#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/model/complete_model.hpp"
+#include "text.hpp"
+
+namespace posewise::io {
+namespace {
+
+Isometry3d read_base(const YamlValue& value) {
+    const YamlMap base(value, {"position_<length>", "rpy_<angle>"});
+    const Vector3d rpy = base.require_measure("rpy").vector_to_si();
+    Isometry3d world_from_base = Isometry3d::Identity();
+    world_from_base.translation() = base.require_measure("position").vector_to_si();
+    world_from_base.linear() = (Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) *
+                                Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
+                                Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX()))
+                                   .toRotationMatrix();
+    return world_from_base;
+}
+
+/// A number and its unit in the value itself, `0.5 mrad`, for a length or an angle.
+double read_amount(const YamlValue& value, Quantity quantity) {
+    const std::string text = value.text();
+    const auto blank = std::min(text.find_first_of(" \t"), text.size());
+    const ParsedNumber number = parse_number(std::string_view(text).substr(0, blank));
+    const Unit* const unit = find_unit(trim(std::string_view(text).substr(blank)));
+    if (!number.ok() || unit == nullptr || unit->quantity != quantity || !(number.value > 0)) {
+        throw value.error("is '" + text + "'; must be a positive number and a unit, " +
+                          list_words(unit_names(quantity)));
+    }
+    return unit->to_si(number.value);
+}
+
+ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign) {
+    const YamlMap map(value, {"length_<length>", "angle_<angle>", "parameters"});
+    ParameterSpread spread;
+    if (const auto length = map.find_measure("length")) spread.length = read_positive(*length);
+    if (const auto angle = map.find_measure("angle")) spread.angle = read_positive(*angle);
+    const auto parameters = map.find("parameters");
+    if (!parameters) return spread;
+    const std::vector<std::string> names = parameter_names(campaign);
+    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    for (const YamlEntry& entry : parameters->entries()) {
+        const auto found = std::find(names.begin(), names.end(), entry.key);
+        if (found == names.end()) {
+            throw input_error_at(entry.key_location, "'" + entry.key +
+                                                         "' is no parameter of this campaign; " +
+                                                         suggest(entry.key, names));
+        }
+        const auto index = static_cast<std::size_t>(found - names.begin());
+        const auto quantity = is_angle[index] ? Quantity::Angle : Quantity::Length;
+        spread.by_name[entry.key] = read_amount(entry.value, quantity);
+    }
+    return spread;
+}
+
+double read_unit(const YamlMap& map, std::string_view key, Quantity quantity) {
+    const auto value = map.find(key);
+    if (!value) return 1;
+    const Unit* const unit = find_unit(value->text());
+    if (unit == nullptr || unit->quantity != quantity) {
+        throw value->error("is '" + value->text() + "'; must be " +
+                           list_words(unit_names(quantity)));
+    }
+    return unit->to_si(1);
+}
+
+MatMapping read_mat_mapping(const YamlValue& measurements, Index target_count) {
+    const YamlValue value = YamlMap(measurements, {"mat"}).require("mat");
+    const YamlMap map(value, {"joints", "points", "angle_unit", "length_unit"});
+    MatMapping mapping;
+    mapping.joints = map.require("joints").text();
+    for (const YamlValue& point : map.require("points").list()) {
+        mapping.points.push_back(point.text());
+    }
+    if (static_cast<Index>(mapping.points.size()) != target_count) {
+        throw map.require("points").error("names " + std::to_string(mapping.points.size()) +
+                                          " variables; must name " + std::to_string(target_count) +
+                                          ", one for each target of the sensor");
+    }
+    mapping.angle_unit = read_unit(map, "angle_unit", Quantity::Angle);
+    mapping.length_unit = read_unit(map, "length_unit", Quantity::Length);
+    return mapping;
+}
+
+Criterion read_criterion(const YamlValue& value) {
+    try {
+        return parse_criterion(value.text());
+    } catch (const InputError& problem) {
+        throw value.error(std::string("is not usable: ") + problem.what());
+    }
+}
+
+Campaign make_complete(const Campaign& campaign, const YamlValue& robot) {
+    try {
+        return with_robot(campaign, irreducible_model(campaign));
+    } catch (const InputError& problem) {
+        throw robot.error(std::string("has no irreducible model: ") + problem.what());
+    }
+}
+
+}  // namespace
+
+double read_positive(const YamlMeasure& measure, bool zero_allowed) {
+    const double value = measure.to_si();
+    if (value < 0 || (value == 0 && !zero_allowed)) {
+        throw measure.value.error("is " + measure.value.text() + "; must be " +
+                                  (zero_allowed ? "zero or positive" : "positive"));
+    }
+    return value;
+}
+
+CampaignFile read_campaign(const std::string& path) {
+    const YamlMap map(read_yaml(path), {"name", "robot", "sensor", "model_error_<length>", "base",
+                                        "spread", "criterion", "seed", "measurements"});
+    CampaignFile file;
+    file.path = path;
+    Campaign& campaign = file.campaign;
+    campaign.name = map.require("name").text();
+
+    const RobotSection robot = read_robot(map.require("robot"));
+    file.declared_robot = robot.declared;
+    file.error_model = robot.error_model;
+    const SensorSection sensor = read_sensor(map.require("sensor"));
+    campaign.sensor = sensor.sensor;
+    campaign.nominal.sensor = sensor.unknowns;
+    campaign.has_nominal_targets = sensor.has_positions;
+    if (const auto base = map.find("base")) {
+        campaign.nominal.world_from_base = read_base(*base);
+        campaign.has_nominal_base = true;
+    }
+    campaign = with_robot(campaign, robot.declared);
+    if (robot.error_model == ErrorModel::Complete) {
+        campaign = make_complete(campaign, map.require("robot"));
+    }
+    if (const auto error = map.find_measure("model_error")) {
+        campaign.model_error = read_positive(*error, true);
+    }
+    if (const auto spread = map.find("spread")) campaign.spread = read_spread(*spread, campaign);
+    if (const auto criterion = map.find("criterion")) file.criterion = read_criterion(*criterion);
+    if (const auto seed = map.find("seed")) file.seed = seed->natural_number();
+    if (const auto measurements = map.find("measurements")) {
+        file.mat = read_mat_mapping(*measurements, sensor.sensor->target_count());
+    }
+    return file;
+}
+
+}  // namespace posewise::io

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "posewise/core/errors.hpp"
+
+namespace posewise::io {
+
+/// Rows of separated fields, one line each. The separator (comma, semicolon or tab) is taken from
+/// the first row; blank lines and lines behind `#` are skipped; a byte order mark and carriage
+/// returns at the end of lines do not matter; fields may stand in double quotes.
+class CsvReader {
+  public:
+    explicit CsvReader(const std::string& path);
+
+    /// Moves to the next row; false at the end.
+    bool next_row();
+
+    /// Fields of the row, valid until the next, without blanks and quotes around them.
+    const std::vector<std::string_view>& fields() const { return fields_; }
+    long line() const { return line_; }
+    /// Where a field of the row begins; field = fields().size() is the end of the row.
+    FileLocation locate(std::size_t field) const;
+
+  private:
+    void split();
+    std::size_t field_end(std::size_t begin) const;
+
+    std::string path_;
+    std::string content_;
+    std::size_t next_ = 0;  // where the next line begins
+    long line_ = 0;
+    char separator_ = '\0';  // not known before the first row
+    std::string_view row_;
+    std::vector<std::string_view> fields_;
+};
+
+/// Text as a field: in quotes if it must be. A quotation mark inside becomes an apostrophe.
+std::string csv_field(std::string_view text);
+
+}  // namespace posewise::io

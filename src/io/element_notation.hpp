@@ -1,0 +1,43 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/model/chain.hpp"
+
+namespace posewise::io {
+
+/// Reads a robot's elements, one line of text each, in order (notation: see read_campaign()).
+class ElementParser {
+  public:
+    /// `joint_names` in the order of the robot's joints.
+    explicit ElementParser(std::vector<std::string> joint_names);
+
+    /// The element in `text`, whose first character stands at `start`. Throws InputError that
+    /// points at the character where the notation, a unit, a joint or a name goes wrong.
+    Element parse(std::string_view text, const FileLocation& start);
+
+    /// What a joint drives in the elements so far; nothing if none.
+    std::optional<Motion> joint_motion(Index joint) const {
+        return driven_[static_cast<std::size_t>(joint)];
+    }
+
+  private:
+    class Cursor;
+
+    void parse_sum(Cursor& cursor, Element& element) const;
+    void parse_term(Cursor& cursor, double sign, Element& element) const;
+    void add_nominal(Cursor& cursor, double number, std::size_t start, Element& element) const;
+    void add_joint(Cursor& cursor, double coefficient, Element& element) const;
+    void parse_parameter(Cursor& cursor, Element& element);
+
+    std::vector<std::string> joint_names_;
+    std::vector<std::optional<Motion>> driven_;
+    std::map<std::string, long> parameter_lines_;
+};
+
+}  // namespace posewise::io

@@ -1,0 +1,133 @@
+#include "posewise/io/estimate_file.hpp"
+
+#include <numbers>
+
+#include "json.hpp"
+#include "posewise/measurement/point_sensor.hpp"
+
+namespace posewise::io {
+namespace {
+
+constexpr double mm = 1e3;
+
+Json metrics_to_json(const Metrics& metrics) {
+    const auto millimetres = [](const std::array<double, 3>& xyz) {
+        return Json{{"x", mm * xyz[0]}, {"y", mm * xyz[1]}, {"z", mm * xyz[2]}};
+    };
+    return {{"point_count", metrics.point_count},
+            {"distance_rms_mm", mm * metrics.distance_rms},
+            {"distance_max_mm", mm * metrics.distance_max},
+            {"distance_mean_mm", mm * metrics.distance_mean},
+            {"distance_p95_mm", mm * metrics.distance_p95},
+            {"coordinate_rms_mm", millimetres(metrics.coordinate_rms)},
+            {"coordinate_max_mm", millimetres(metrics.coordinate_max)}};
+}
+
+/// Roll, pitch, yaw about the fixed x, y and z axes, degrees; pitch within +-90.
+Vector3d rpy_deg(const Matrix3d& R) {
+    const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
+    const bool is_upright = std::hypot(R(0, 0), R(1, 0)) < 1e-12;  // only yaw - roll is defined
+    const double roll = is_upright ? 0 : std::atan2(R(2, 1), R(2, 2));
+    const double yaw = is_upright ? std::atan2(-R(0, 1), R(1, 1)) : std::atan2(R(1, 0), R(0, 0));
+    return Vector3d(roll, pitch, yaw) * (180 / std::numbers::pi);
+}
+
+Json base_to_json(const Isometry3d& world_from_base) {
+    Eigen::Quaterniond q(world_from_base.linear());
+    if (q.w() < 0) q.coeffs() *= -1;
+    return {{"position_m", vector_to_json(Vector3d(world_from_base.translation()))},
+            {"quaternion_wxyz", {q.w(), q.x(), q.y(), q.z()}},
+            {"rpy_deg", vector_to_json(rpy_deg(world_from_base.linear()))}};
+}
+
+Json targets_to_json(const PointSensor& sensor, const VectorXd& unknowns) {
+    Json targets = Json::object();
+    for (Index j = 0; j < sensor.target_count(); ++j) {
+        targets["target" + std::to_string(j + 1)] = {
+            {"position_m", vector_to_json(sensor.target(j, unknowns))},
+            {"known", sensor.is_known(j)}};
+    }
+    return targets;
+}
+
+/// The robot's error parameters: value (added to the nominal one) and standard deviation.
+Json robot_to_json(const Campaign& campaign, const Estimate& estimate, const VectorXd& sigmas) {
+    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    Json robot = Json::object();
+    for (Index k = 0; k < estimate.parameters.robot.size(); ++k) {
+        const auto i = static_cast<std::size_t>(6 + k);
+        const std::string unit = si_suffix(is_angle[i]);
+        robot[estimate.names[i]] = {{"value" + unit, estimate.parameters.robot[k]},
+                                    {"sigma" + unit, sigmas[6 + k]}};
+    }
+    return robot;
+}
+
+/// Standard deviations of base and targets, by parameter name and unit.
+Json other_sigmas_to_json(const Campaign& campaign, const Estimate& estimate,
+                          const VectorXd& sigmas) {
+    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const auto robot_end = static_cast<std::size_t>(6 + estimate.parameters.robot.size());
+    Json others = Json::object();
+    for (std::size_t i = 0; i < estimate.names.size(); ++i) {
+        if (i >= 6 && i < robot_end) continue;
+        others[estimate.names[i] + si_suffix(is_angle[i])] = sigmas[static_cast<Index>(i)];
+    }
+    return others;
+}
+
+Json correlations_to_json(const Estimate& estimate) {
+    constexpr Index count = 10;
+    Json list = Json::array();
+    for (const Correlation& pair : strongest_correlations(estimate, count)) {
+        list.push_back({{"first", estimate.names[static_cast<std::size_t>(pair.first)]},
+                        {"second", estimate.names[static_cast<std::size_t>(pair.second)]},
+                        {"coefficient", pair.coefficient}});
+    }
+    return list;
+}
+
+Json held_out_to_json(const CrossValidation& held_out) {
+    return {{"folds", held_out.folds},
+            {"samples", metrics_to_json(held_out.samples)},
+            {"means", metrics_to_json(held_out.means)},
+            {"failures", held_out.failures}};
+}
+
+Json accuracy_to_json(const CalibrationReport& report) {
+    Json accuracy = {{"nominal", metrics_to_json(report.nominal)},
+                     {"fit", metrics_to_json(report.estimate.fit)},
+                     {"fit_means", metrics_to_json(report.estimate.fit_means)}};
+    if (report.repeatability) accuracy["repeatability_mm"] = mm * *report.repeatability;
+    if (report.held_out) accuracy["held_out"] = held_out_to_json(*report.held_out);
+    if (report.validation) accuracy["validation"] = metrics_to_json(*report.validation);
+    return accuracy;
+}
+
+}  // namespace
+
+void write_estimate(const std::string& path, const Campaign& campaign,
+                    const CalibrationReport& report) {
+    const Estimate& estimate = report.estimate;
+    const VectorXd sigmas = standard_deviations(estimate);
+    Json document = make_document("estimate");
+    document["campaign"] = campaign.name;
+    document["measurements"] = report.measurements;
+    document["method"] = report.method;
+    document["ending"] = ending_name(estimate.ending);
+    document["iterations"] = estimate.iterations;
+    document["degrees_of_freedom"] = estimate.degrees_of_freedom;
+    document["variance_factor"] = estimate.variance_factor;
+    document["base"] = base_to_json(estimate.parameters.world_from_base);
+    document["robot"] = robot_to_json(campaign, estimate, sigmas);
+    if (const auto* const points = dynamic_cast<const PointSensor*>(campaign.sensor.get())) {
+        document["targets"] = targets_to_json(*points, estimate.parameters.sensor);
+    }
+    document["sigma"] = other_sigmas_to_json(campaign, estimate, sigmas);
+    document["strongest_correlations"] = correlations_to_json(estimate);
+    document["accuracy"] = accuracy_to_json(report);
+    document["assumes"] = assumptions_to_json(campaign);
+    write_json(path, document);
+}
+
+}  // namespace posewise::io

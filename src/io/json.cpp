@@ -1,0 +1,80 @@
+#include "json.hpp"
+
+#include "posewise/core/errors.hpp"
+#include "posewise/core/version.hpp"
+#include "posewise/io/atomic_file.hpp"
+#include "posewise/measurement/point_sensor.hpp"
+
+namespace posewise::io {
+namespace {
+
+/// Line and column of a byte, counted from 1.
+FileLocation locate(const std::string& path, const std::string& content, std::size_t byte) {
+    const std::string before = content.substr(0, byte > 0 ? byte - 1 : 0);
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const auto line_begin = before.rfind('\n');
+    const std::size_t column =
+        line_begin == std::string::npos ? before.size() : before.size() - line_begin - 1;
+    return {path, static_cast<long>(line), static_cast<long>(column) + 1};
+}
+
+}  // namespace
+
+Json make_document(const std::string& kind) {
+    Json document;
+    document["kind"] = "posewise " + kind;
+    document["posewise_version"] = version;
+    return document;
+}
+
+void write_json(const std::string& path, const Json& document) {
+    try {
+        write_file(path, document.dump(2) + "\n");
+    } catch (const Json::type_error&) {  // the only one dump() has
+        throw input_error_at({path},
+                             "cannot be written, since a name or id is not UTF-8 text; "
+                             "must be UTF-8 (or plain ASCII)");
+    }
+}
+
+Json read_document(const std::string& path, const std::string& kind) {
+    const std::string content = read_file(path);
+    Json document;
+    try {
+        document = Json::parse(content);
+    } catch (const Json::parse_error& problem) {
+        const auto location =
+            content.empty() ? FileLocation{path} : locate(path, content, problem.byte);
+        throw input_error_at(location,
+                             "is not JSON here; must be a " + kind + " as posewise writes it");
+    }
+    const auto found = document.is_object() ? document.find("kind") : document.end();
+    if (found == document.end() || *found != "posewise " + kind) {
+        throw input_error_at({path}, "kind: must be \"posewise " + kind + "\", as in a " + kind +
+                                         " written by posewise");
+    }
+    return document;
+}
+
+const char* si_suffix(bool is_angle) { return is_angle ? "_rad" : "_m"; }
+
+Json vector_to_json(const Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+Json assumptions_to_json(const Campaign& campaign) {
+    Json assumptions;
+    if (const auto* const points = dynamic_cast<const PointSensor*>(campaign.sensor.get())) {
+        assumptions["sigma_m"] = points->sigma();
+    }
+    assumptions["model_error_m"] = campaign.model_error;
+    const VectorXd scale = parameter_scale(campaign);
+    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    Json& expected = assumptions["expected_error"];
+    std::size_t k = 0;
+    for (const std::string& name : parameter_names(campaign)) {
+        expected[name + si_suffix(is_angle[k])] = scale[static_cast<Index>(k)];
+        ++k;
+    }
+    return assumptions;
+}
+
+}  // namespace posewise::io

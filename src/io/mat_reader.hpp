@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "posewise/core/types.hpp"
+
+struct _mat_t;
+
+namespace posewise::io {
+
+/// Real matrices of a MATLAB file. Whatever is wrong with the file or a variable throws InputError.
+class MatReader {
+  public:
+    explicit MatReader(const std::string& path);
+    ~MatReader();
+    MatReader(const MatReader&) = delete;
+    MatReader& operator=(const MatReader&) = delete;
+
+    /// A variable of `columns` columns and at least one row, all finite.
+    MatrixXd read(const std::string& name, Index columns) const;
+
+  private:
+    std::string path_;
+    std::uintmax_t byte_count_;
+    _mat_t* file_;
+};
+
+}  // namespace posewise::io

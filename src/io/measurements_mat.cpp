@@ -1,0 +1,65 @@
+#include <map>
+
+#include "mat_reader.hpp"
+#include "posewise/io/measurements_file.hpp"
+#include "sample_collector.hpp"
+
+namespace posewise::io {
+namespace {
+
+/// Joint values, samples x joints, in rad and m.
+MatrixXd read_joints(const MatReader& file, const std::string& path, const Chain& robot,
+                     const MatMapping& mapping) {
+    MatrixXd joints = file.read(mapping.joints, robot.joint_count());
+    for (Index j = 0; j < joints.cols(); ++j) {
+        const bool turns = robot.joint_motion(j) == Motion::Rotation;
+        joints.col(j) *= turns ? mapping.angle_unit : mapping.length_unit;
+        if (mapping.angle_unit != 1) continue;
+        for (Index row = 0; row < joints.rows(); ++row) {
+            check_not_degrees(robot, j, joints(row, j), [&] {
+                return FileLocation{path + ": variable '" + mapping.joints + "', row " +
+                                    std::to_string(row + 1)};
+            });
+        }
+    }
+    return joints;
+}
+
+}  // namespace
+
+Measurements read_measurements_mat(const std::string& path, const Campaign& campaign,
+                                   const MatMapping& mapping) {
+    const Index rows = campaign.sensor->row_count();
+    if (static_cast<Index>(mapping.points.size()) * 3 != rows) {
+        throw input_error_at({path}, "the campaign maps " + std::to_string(mapping.points.size()) +
+                                         " variables to points; must map " +
+                                         std::to_string(rows / 3) +
+                                         " under measurements.mat.points");
+    }
+    const MatReader file(path);
+    const MatrixXd joints = read_joints(file, path, campaign.robot, mapping);
+    MatrixXd observations(joints.rows(), rows);
+    for (std::size_t k = 0; k < mapping.points.size(); ++k) {
+        const MatrixXd points = file.read(mapping.points[k], 3);
+        if (points.rows() != joints.rows()) {
+            throw input_error_at({path}, "variable '" + mapping.points[k] + "' has " +
+                                             std::to_string(points.rows()) + " rows; must have " +
+                                             std::to_string(joints.rows()) + " as '" +
+                                             mapping.joints + "'");
+        }
+        observations.middleCols(3 * static_cast<Index>(k), 3) = mapping.length_unit * points;
+    }
+    SampleCollector samples(campaign);
+    std::map<std::vector<double>, std::string> ids;
+    for (Index row = 0; row < joints.rows(); ++row) {
+        const VectorXd q = joints.row(row);
+        const auto next = std::to_string(ids.size());
+        const std::string& id =
+            ids.emplace(std::vector<double>(q.begin(), q.end()), next).first->second;
+        samples.add(id, q, observations.row(row).transpose(),
+                    [&path](Index) { return FileLocation{path}; });
+    }
+    return samples.finish(path);
+}
+
+}  // namespace posewise::io

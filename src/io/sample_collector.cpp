@@ -1,0 +1,117 @@
+#include "sample_collector.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace posewise::io {
+namespace {
+
+constexpr double joint_tolerance = 1e-6;  // rad or m, within one configuration
+
+/// " (line 3)", or nothing for a file without lines.
+std::string in_line(const FileLocation& location) {
+    return location.line > 0 ? fmt::format(" (line {})", location.line) : "";
+}
+
+}  // namespace
+
+SampleCollector::SampleCollector(const Campaign& campaign) : campaign_(campaign) {}
+
+void SampleCollector::add(const std::string& id, const VectorXd& joints,
+                          const VectorXd& observation, const LocateJoint& locate) {
+    const auto next = static_cast<Index>(ids_.size());
+    const auto [entry, is_new] = configuration_of_id_.emplace(id, next);
+    if (is_new) {
+        ids_.push_back(id);
+        configurations_.push_back(joints);
+        first_places_.push_back(locate(0));
+    } else {
+        check_same_joints(entry->second, joints, locate);
+    }
+    configuration_.push_back(entry->second);
+    observations_.insert(observations_.end(), observation.begin(), observation.end());
+}
+
+void SampleCollector::check_same_joints(Index configuration, const VectorXd& joints,
+                                        const LocateJoint& locate) const {
+    const auto i = static_cast<std::size_t>(configuration);
+    for (Index j = 0; j < joints.size(); ++j) {
+        const double first = configurations_[i][j];
+        if (std::abs(joints[j] - first) <= joint_tolerance) continue;
+        throw input_error_at(
+            locate(j),
+            fmt::format("configuration '{}' has {} = {:g} here and {:g} before{}; samples of one "
+                        "configuration must agree within 1e-6 (rad or m)",
+                        ids_[i], campaign_.robot.joints()[static_cast<std::size_t>(j)].name,
+                        joints[j], first, in_line(first_places_[i])));
+    }
+}
+
+void SampleCollector::check_all_different() const {
+    std::vector<std::size_t> order(ids_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto& q = configurations_;
+    std::stable_sort(order.begin(), order.end(), [&q](std::size_t a, std::size_t b) {
+        return std::lexicographical_compare(q[a].begin(), q[a].end(), q[b].begin(), q[b].end());
+    });
+    for (std::size_t k = 1; k < order.size(); ++k) {
+        const std::size_t first = order[k - 1];
+        const std::size_t second = order[k];
+        if (q[first] != q[second]) continue;
+        throw input_error_at(
+            first_places_[second],
+            fmt::format("configuration '{}' has the same joint values as '{}'{}; samples of one "
+                        "configuration must have the same id",
+                        ids_[second], ids_[first], in_line(first_places_[first])));
+    }
+}
+
+Measurements SampleCollector::finish(const std::string& path) const {
+    if (ids_.empty()) {
+        throw input_error_at({path}, "has a header but no rows; must have at least one sample");
+    }
+    check_all_different();
+    Measurements measurements;
+    measurements.ids = ids_;
+    measurements.configurations.resize(static_cast<Index>(ids_.size()),
+                                       campaign_.robot.joint_count());
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+        measurements.configurations.row(static_cast<Index>(i)) = configurations_[i].transpose();
+    }
+    std::vector<Index>& first = measurements.first_sample;
+    first.assign(ids_.size() + 1, 0);
+    for (const Index i : configuration_) ++first[static_cast<std::size_t>(i) + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+
+    std::vector<Index> next = first;
+    const Index rows = campaign_.sensor->row_count();
+    const Eigen::Map<const RowMatrixXd> observations(
+        observations_.data(), static_cast<Index>(configuration_.size()), rows);
+    measurements.observations.resize(observations.rows(), rows);
+    for (Index sample = 0; sample < observations.rows(); ++sample) {
+        const Index i = configuration_[static_cast<std::size_t>(sample)];
+        measurements.observations.row(next[static_cast<std::size_t>(i)]++) =
+            observations.row(sample);
+    }
+    return measurements;
+}
+
+void check_not_degrees(const Chain& robot, Index joint, double value,
+                       const std::function<FileLocation()>& locate) {
+    const Joint& limits = robot.joints()[static_cast<std::size_t>(joint)];
+    constexpr double turn = 2 * std::numbers::pi;
+    if (robot.joint_motion(joint) != Motion::Rotation ||
+        (value >= limits.lower - turn && value <= limits.upper + turn)) {
+        return;
+    }
+    throw input_error_at(
+        locate(), fmt::format("{} = {:g} rad is more than a full turn beyond its limits ({:g} to "
+                              "{:g} rad) and looks like degrees; state degrees as such",
+                              limits.name, value, limits.lower, limits.upper));
+}
+
+}  // namespace posewise::io

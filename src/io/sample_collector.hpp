@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/measurements.hpp"
+
+namespace posewise::io {
+
+/// Samples as a file has them, row by row in any order, on the way to Measurements.
+class SampleCollector {
+  public:
+    /// Where joint j of the row at hand stands in the file.
+    using LocateJoint = std::function<FileLocation(Index joint)>;
+
+    explicit SampleCollector(const Campaign& campaign);
+
+    /// One more sample of configuration `id`: joints in rad or m, observation in m. Throws
+    /// InputError if its joint values differ by over 1e-6 from the configuration's first sample.
+    void add(const std::string& id, const VectorXd& joints, const VectorXd& observation,
+             const LocateJoint& locate);
+
+    /// Samples grouped by configuration, in the order the configurations first occurred. Throws
+    /// InputError if there are none or if two configurations have the same joint values.
+    Measurements finish(const std::string& path) const;
+
+  private:
+    void check_same_joints(Index configuration, const VectorXd& joints,
+                           const LocateJoint& locate) const;
+    void check_all_different() const;
+
+    const Campaign& campaign_;
+    std::unordered_map<std::string, Index> configuration_of_id_;
+    std::vector<std::string> ids_;
+    std::vector<VectorXd> configurations_;
+    std::vector<FileLocation> first_places_;  // of each configuration
+    std::vector<Index> configuration_;        // of each sample
+    std::vector<double> observations_;        // of all samples, one after another
+};
+
+/// Throws InputError (at `locate()`) if a revolute joint's value, read in rad, lies over a full
+/// turn beyond its limits: as degrees do.
+void check_not_degrees(const Chain& robot, Index joint, double value,
+                       const std::function<FileLocation()>& locate);
+
+}  // namespace posewise::io

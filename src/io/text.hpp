@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace posewise::io {
+
+/// Without spaces, tabs and carriage returns at both ends.
+std::string_view trim(std::string_view text);
+
+/// Letters, digits and underscores, not starting with a digit.
+bool is_identifier(std::string_view text);
+
+/// "a, b or c".
+std::string list_words(const std::vector<std::string>& words);
+
+/// The advice after an unknown name: "did you mean 'x'?" if one of the known is near, else
+/// "known are a, b and c".
+std::string suggest(std::string_view unknown, const std::vector<std::string>& known);
+
+/// A number read from text, or what is wrong with it.
+struct ParsedNumber {
+    double value = 0;
+    std::string_view problem;  ///< "is not a number", ...; empty: none
+
+    bool ok() const { return problem.empty(); }
+};
+
+/// The whole text as one finite decimal number with a decimal point.
+ParsedNumber parse_number(std::string_view text);
+
+}  // namespace posewise::io

@@ -1,0 +1,43 @@
+#include "units.hpp"
+
+#include <array>
+#include <numbers>
+
+namespace posewise::io {
+namespace {
+
+constexpr std::array<Unit, 6> units{{
+    {"mm", Quantity::Length, 1, 1e3},
+    {"m", Quantity::Length, 1, 1},
+    {"um", Quantity::Length, 1, 1e6},
+    {"deg", Quantity::Angle, std::numbers::pi, 180},
+    {"rad", Quantity::Angle, 1, 1},
+    {"mrad", Quantity::Angle, 1, 1e3},
+}};
+
+}  // namespace
+
+const Unit* find_unit(std::string_view name) {
+    for (const Unit& unit : units) {
+        if (unit.name == name) return &unit;
+    }
+    return nullptr;
+}
+
+std::vector<std::string> unit_names(Quantity quantity) {
+    std::vector<std::string> names;
+    for (const Unit& unit : units) {
+        if (unit.quantity == quantity) names.emplace_back(unit.name);
+    }
+    return names;
+}
+
+NameWithUnit split_unit(std::string_view name) {
+    const auto underscore = name.rfind('_');
+    if (underscore == std::string_view::npos) return {name, nullptr};
+    const Unit* const unit = find_unit(name.substr(underscore + 1));
+    return unit != nullptr ? NameWithUnit{name.substr(0, underscore), unit}
+                           : NameWithUnit{name, nullptr};
+}
+
+}  // namespace posewise::io

@@ -1,0 +1,217 @@
+#include "yaml_reader.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+#include "posewise/io/atomic_file.hpp"
+#include "text.hpp"
+
+namespace posewise::io {
+namespace {
+
+FileLocation locate(const std::string& path, const YAML::Mark& mark) {
+    if (mark.is_null()) return {path};
+    return {path, mark.line + 1, mark.column + 1};
+}
+
+std::string describe(const YAML::Node& node) {
+    if (node.IsMap()) return "is a map";
+    if (node.IsSequence()) return "is a list";
+    if (node.IsScalar()) return "is '" + node.Scalar() + "'";
+    return "has no value";
+}
+
+/// `sigma_<length>` as sigma_mm, sigma_m, ...; other keys as they are.
+std::vector<std::string> spell_out_units(const std::vector<std::string>& keys) {
+    std::vector<std::string> spelled;
+    for (const std::string& key : keys) {
+        const auto bracket = key.find('<');
+        if (bracket == std::string::npos) {
+            spelled.push_back(key);
+            continue;
+        }
+        const auto quantity = key.ends_with("<angle>") ? Quantity::Angle : Quantity::Length;
+        for (const std::string& unit : unit_names(quantity)) {
+            spelled.push_back(key.substr(0, bracket) + unit);
+        }
+    }
+    return spelled;
+}
+
+}  // namespace
+
+YamlValue::YamlValue(YAML::Node node, FileLocation location, std::string name)
+    : node_(std::move(node)), location_(std::move(location)), name_(std::move(name)) {}
+
+InputError YamlValue::error(const std::string& problem) const {
+    return input_error_at(location_, (name_.empty() ? "the file" : name_) + " " + problem);
+}
+
+std::string YamlValue::text() const {
+    if (!node_.IsScalar()) throw error(describe(node_) + "; must be text");
+    return node_.Scalar();
+}
+
+FileLocation YamlValue::text_location() const {
+    FileLocation location = location_;
+    if (node_.Tag() == "!") ++location.column;  // quoted
+    return location;
+}
+
+double YamlValue::number() const {
+    if (!node_.IsScalar()) throw error(describe(node_) + "; must be a number");
+    const ParsedNumber number = parse_number(node_.Scalar());
+    if (!number.ok()) {
+        throw error(describe(node_) + ", which " + std::string(number.problem) +
+                    "; must be a finite number without unit");
+    }
+    return number.value;
+}
+
+std::uint64_t YamlValue::natural_number() const {
+    const std::string digits = node_.IsScalar() ? node_.Scalar() : "";
+    std::uint64_t number = 0;
+    const auto [end, problem] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (problem != std::errc() || end != digits.data() + digits.size()) {
+        throw error(describe(node_) + "; must be a whole number from 0 to 18446744073709551615");
+    }
+    return number;
+}
+
+bool YamlValue::boolean() const {
+    const std::string word = node_.IsScalar() ? node_.Scalar() : "";
+    if (word != "true" && word != "false") throw error(describe(node_) + "; must be true or false");
+    return word == "true";
+}
+
+std::vector<YamlValue> YamlValue::list() const {
+    if (!node_.IsSequence()) throw error(describe(node_) + "; must be a list");
+    std::vector<YamlValue> items;
+    for (const YAML::Node& item : node_) {
+        items.emplace_back(item, locate(location_.path, item.Mark()),
+                           name_ + "[" + std::to_string(items.size() + 1) + "]");
+    }
+    return items;
+}
+
+std::vector<double> YamlValue::numbers(std::size_t count) const {
+    const std::vector<YamlValue> items = list();
+    if (items.size() != count) {
+        throw error("has " + std::to_string(items.size()) + " values; must have " +
+                    std::to_string(count));
+    }
+    std::vector<double> values;
+    for (const YamlValue& item : items) values.push_back(item.number());
+    return values;
+}
+
+std::vector<YamlEntry> YamlValue::entries() const {
+    if (!node_.IsMap()) throw error(describe(node_) + "; must be a map of keys and values");
+    std::vector<YamlEntry> entries;
+    std::map<std::string, long> lines;
+    for (const auto& pair : node_) {
+        const YAML::Node key = pair.first;
+        const YAML::Node value = pair.second;
+        const FileLocation location = locate(location_.path, key.Mark());
+        if (!key.IsScalar()) throw input_error_at(location, "a key must be text");
+        const auto [first, is_new] = lines.emplace(key.Scalar(), location.line);
+        if (!is_new) {
+            throw input_error_at(location, "key '" + key.Scalar() +
+                                               "' occurs twice, first in line " +
+                                               std::to_string(first->second) + "; keep one");
+        }
+        const bool is_placed = !value.IsNull() && !value.Mark().is_null();
+        entries.push_back(
+            {key.Scalar(), location,
+             YamlValue(value, is_placed ? locate(location_.path, value.Mark()) : location,
+                       name_.empty() ? key.Scalar() : name_ + "." + key.Scalar())});
+    }
+    return entries;
+}
+
+Vector3d YamlMeasure::vector_to_si() const {
+    const std::vector<double> values = value.numbers(3);
+    return {unit->to_si(values[0]), unit->to_si(values[1]), unit->to_si(values[2])};
+}
+
+YamlMap::YamlMap(const YamlValue& value, const std::vector<std::string>& keys)
+    : value_(value), entries_(value.entries()), keys_(spell_out_units(keys)) {
+    for (const YamlEntry& entry : entries_) {
+        if (std::find(keys_.begin(), keys_.end(), entry.key) == keys_.end()) {
+            const std::string where = value.name().empty() ? "" : " in " + value.name();
+            throw input_error_at(entry.key_location, "unknown key '" + entry.key + "'" + where +
+                                                         "; " + suggest(entry.key, keys_));
+        }
+    }
+}
+
+std::optional<YamlValue> YamlMap::find(std::string_view key) const {
+    for (const YamlEntry& entry : entries_) {
+        if (entry.key == key) return entry.value;
+    }
+    return std::nullopt;
+}
+
+YamlValue YamlMap::require(std::string_view key) const {
+    if (auto value = find(key)) return *value;
+    throw missing({std::string(key)});
+}
+
+std::optional<YamlMeasure> YamlMap::find_measure(std::string_view stem) const {
+    std::optional<YamlMeasure> measure;
+    for (const YamlEntry& entry : entries_) {
+        const NameWithUnit name = split_unit(entry.key);
+        if (name.unit == nullptr || name.stem != stem) continue;
+        if (measure) {
+            throw input_error_at(entry.key_location,
+                                 "'" + std::string(stem) + "' is stated in two units; keep one");
+        }
+        measure = YamlMeasure{entry.value, name.unit};
+    }
+    return measure;
+}
+
+YamlMeasure YamlMap::require_measure(std::string_view stem) const {
+    if (auto measure = find_measure(stem)) return *measure;
+    std::vector<std::string> alternatives;
+    for (const std::string& key : keys_) {
+        if (const auto name = split_unit(key); name.unit != nullptr && name.stem == stem) {
+            alternatives.push_back(key);
+        }
+    }
+    throw missing(alternatives);
+}
+
+InputError YamlMap::missing(const std::vector<std::string>& alternatives) const {
+    return value_.error("has no key " + list_words(alternatives) + "; it must be stated");
+}
+
+YamlValue read_yaml(const std::string& path) {
+    const std::string content = read_file(path);
+    constexpr std::size_t size_limit = 1 << 20;
+    if (content.size() > size_limit) {
+        throw input_error_at({path}, "has " + std::to_string(content.size()) +
+                                         " bytes; a campaign file has at most 1 MiB");
+    }
+    std::vector<YAML::Node> documents;
+    try {
+        documents = YAML::LoadAll(content);
+    } catch (const YAML::Exception& problem) {
+        throw input_error_at(locate(path, problem.mark),
+                             "is not YAML: " + problem.msg + "; correct it there or just before");
+    }
+    if (documents.empty() || documents[0].IsNull()) {
+        throw input_error_at({path}, "is empty; must be a campaign in YAML");
+    }
+    if (documents.size() > 1) {
+        throw input_error_at(locate(path, documents[1].Mark()),
+                             "a second document begins; must be one document");
+    }
+    return YamlValue(documents[0], locate(path, documents[0].Mark()), "");
+}
+
+}  // namespace posewise::io

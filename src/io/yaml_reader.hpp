@@ -1,0 +1,89 @@
+#pragma once
+
+#include <yaml-cpp/node/node.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/core/types.hpp"
+#include "units.hpp"
+
+namespace posewise::io {
+
+struct YamlEntry;
+
+/// A value of a YAML file that knows its name and where it stands, so that whatever is wrong with
+/// it can be said in one line. Every reader throws InputError for a value of another kind.
+class YamlValue {
+  public:
+    YamlValue(YAML::Node node, FileLocation location, std::string name);
+
+    const FileLocation& location() const { return location_; }
+    /// "robot.joints.q1"; empty for the whole file.
+    const std::string& name() const { return name_; }
+
+    /// `path:line:column: name problem`.
+    InputError error(const std::string& problem) const;
+
+    std::string text() const;
+    /// Where the first character of text() stands (behind the quotation mark if there is one).
+    FileLocation text_location() const;
+    double number() const;
+    std::uint64_t natural_number() const;
+    bool boolean() const;
+    /// Items of a list.
+    std::vector<YamlValue> list() const;
+    /// A list of exactly `count` numbers.
+    std::vector<double> numbers(std::size_t count) const;
+    /// Keys and values of a map, in the order of the file. No key occurs twice.
+    std::vector<YamlEntry> entries() const;
+
+  private:
+    YAML::Node node_;
+    FileLocation location_;
+    std::string name_;
+};
+
+struct YamlEntry {
+    std::string key;
+    FileLocation key_location;
+    YamlValue value;
+};
+
+/// A value whose unit is the suffix of its key: `sigma_mm: 0.05`.
+struct YamlMeasure {
+    YamlValue value;
+    const Unit* unit;
+
+    double to_si() const { return unit->to_si(value.number()); }
+    /// A list of exactly three numbers as a vector.
+    Vector3d vector_to_si() const;
+};
+
+/// A map of which all possible keys are known. `sigma_<length>` stands for `sigma` with any unit
+/// of length as suffix, `<angle>` likewise. Throws InputError for any other key, with a suggestion.
+class YamlMap {
+  public:
+    YamlMap(const YamlValue& value, const std::vector<std::string>& keys);
+
+    std::optional<YamlValue> find(std::string_view key) const;
+    YamlValue require(std::string_view key) const;
+    /// The value of `stem_<unit>`. Throws InputError if it is stated in two units.
+    std::optional<YamlMeasure> find_measure(std::string_view stem) const;
+    YamlMeasure require_measure(std::string_view stem) const;
+
+  private:
+    InputError missing(const std::vector<std::string>& alternatives) const;
+
+    YamlValue value_;
+    std::vector<YamlEntry> entries_;
+    std::vector<std::string> keys_;  // units spelled out
+};
+
+/// The one document of a YAML file. Throws InputError with path:line:column.
+YamlValue read_yaml(const std::string& path);
+
+}  // namespace posewise::io
