@@ -152,6 +152,26 @@ Isometry3d Chain::base_from_flange(const VectorXd& q, const VectorXd& parameters
     return product.pose();
 }
 
+std::vector<Isometry3d> Chain::base_from_links(const VectorXd& q,
+                                               const VectorXd& parameters) const {
+    std::vector<Isometry3d> links(joints_.size() + 2, Isometry3d::Identity());
+    std::vector<bool> is_found(joints_.size(), false);
+    RunningProduct product{Matrix3d::Identity(), Vector3d::Zero()};
+    Index k = 0;
+    for (const Element& element : elements_) {
+        double amount = drive(element, q);
+        if (!element.parameter.empty()) amount += parameters[k++];
+        product.append(element.motion, element.axis, amount);
+        for (const JointTerm& term : element.joints) {
+            const auto joint = static_cast<std::size_t>(term.joint);
+            if (!is_found[joint]) links[joint + 1] = product.pose();
+            is_found[joint] = true;
+        }
+    }
+    links.back() = product.pose();
+    return links;
+}
+
 void Chain::differentiate(const Isometry3d& world_from_base, const VectorXd& q,
                           const VectorXd& parameters, FlangeMotion& motion) const {
     motion.twists.resize(6, 6 + parameter_count());

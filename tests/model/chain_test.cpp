@@ -184,5 +184,30 @@ TEST(Chain, RefusesConfigurationsItCannotTake) {
     EXPECT_THROW(arm.check_configuration(Vector2d(0, infinity)), InputError);
 }
 
+TEST(Chain, KnowsTheFramesOfItsLinks) {
+    const Chain arm = planar_arm({1, 0.8});
+    const VectorXd q = Eigen::Vector2d(90 * degree, -90 * degree);
+    const auto links = arm.base_from_links(q, VectorXd::Zero(4));
+    ASSERT_EQ(links.size(), 4U);
+    EXPECT_TRUE(links[0].isApprox(Isometry3d::Identity()));
+    EXPECT_LT(links[1].translation().norm(), 1e-15);
+    EXPECT_LT((links[1].linear().col(0) - Vector3d::UnitY()).norm(), 1e-15);
+    EXPECT_LT((links[2].translation() - Vector3d(0, 1, 0)).norm(), 1e-15);
+    EXPECT_LT((links[2].linear().col(0) - Vector3d::UnitX()).norm(), 1e-15);
+    EXPECT_LT((links[3].translation() - Vector3d(0.8, 1, 0)).norm(), 1e-15);
+}
+
+TEST(Chain, PutsTheFrameOfACoupledJointBehindItsFirstElement) {
+    const auto R = Motion::Rotation;
+    Element elbow = driven(R, Axis::Y, 1);
+    elbow.joints.push_back({0, -1});
+    const Chain parallelogram({{"q1", -1, 1}, {"q2", -1, 1}},
+                              {driven(R, Axis::Y, 0), translation(Axis::Z, 1), elbow});
+    const auto links = parallelogram.base_from_links(Eigen::Vector2d(0.5, 0.2), VectorXd());
+    EXPECT_LT(links[1].translation().norm(), 1e-15);
+    EXPECT_NEAR(links[2].translation().norm(), 1, 1e-15);
+    EXPECT_TRUE(links[3].isApprox(links[2]));
+}
+
 }  // namespace
 }  // namespace posewise

@@ -77,6 +77,11 @@ class Chain {
     /// (parameter_count(), rad or m; zero is nominal).
     Isometry3d base_from_flange(const VectorXd& q, const VectorXd& parameters) const;
 
+    /// Frames of all links at the same arguments, joint_count() + 2 of them: [0] the base itself,
+    /// [j] right behind the first element that joint j (counting from 1) drives, the last one the
+    /// flange.
+    std::vector<Isometry3d> base_from_links(const VectorXd& q, const VectorXd& parameters) const;
+
     /// Flange pose in the world and its twist by every parameter, in one pass over the elements:
     /// a rotation contributes (axis; origin cross axis), a translation (0; axis), both read off
     /// the running product. `motion` is resized at need only, so a reused one costs no allocation.
