@@ -13,6 +13,7 @@
 namespace posewise {
 
 IdentificationProblem make_problem(const Campaign& campaign, const Measurements& measurements) {
+    check_noise(campaign);
     if (measurements.configurations.cols() != campaign.robot.joint_count()) {
         throw InputError(fmt::format("measurements have {} joints, the robot has {}",
                                      measurements.configurations.cols(),
@@ -46,7 +47,7 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
         differentiate_pose(campaign, parameters, q, motion, augmented.leftCols(size));
         augmented.col(size) = problem.means.row(i).transpose() -
                               campaign.sensor->predict(motion.world_from_flange, parameters.sensor);
-        whiten(mean_covariance(campaign, motion.world_from_flange, parameters.sensor,
+        whiten(mean_covariance(campaign, motion, parameters.sensor,
                                static_cast<double>(problem.measurements.sample_count(i))),
                augmented);
         system.J.middleRows(rows * i, rows) = augmented.leftCols(size) * problem.scale.asDiagonal();
@@ -59,12 +60,14 @@ double sum_of_squares(const IdentificationProblem& problem, const Parameters& pa
     const Campaign& campaign = problem.campaign;
     double sum = 0;
     RowMatrixXd r(campaign.sensor->row_count(), 1);
+    FlangeMotion motion;
+    VectorXd q(campaign.robot.joint_count());
     for (Index i = 0; i < problem.means.rows(); ++i) {
-        const Isometry3d flange = world_from_flange(
-            campaign, parameters, problem.measurements.configurations.row(i).transpose());
-        r.col(0) =
-            problem.means.row(i).transpose() - campaign.sensor->predict(flange, parameters.sensor);
-        whiten(mean_covariance(campaign, flange, parameters.sensor,
+        q = problem.measurements.configurations.row(i).transpose();
+        campaign.robot.differentiate(parameters.world_from_base, q, parameters.robot, motion);
+        r.col(0) = problem.means.row(i).transpose() -
+                   campaign.sensor->predict(motion.world_from_flange, parameters.sensor);
+        whiten(mean_covariance(campaign, motion, parameters.sensor,
                                static_cast<double>(problem.measurements.sample_count(i))),
                r);
         sum += r.squaredNorm();

@@ -9,6 +9,7 @@ Blocks make_unfilled_blocks(const Campaign& campaign, const RowMatrixXd& configu
     for (Index i = 0; i < configurations.rows(); ++i) {
         campaign.robot.check_configuration(configurations.row(i).transpose());
     }
+    check_noise(campaign);
     const Index rows = campaign.sensor->row_count();
     Blocks blocks;
     blocks.matrix.resize(rows * configurations.rows(), parameter_count(campaign));
@@ -42,7 +43,8 @@ void differentiate_pose(const Campaign& campaign, const Parameters& parameters,
                         Eigen::Ref<RowMatrixXd> J_measured_parameters) {
     campaign.robot.differentiate(parameters.world_from_base, configuration, parameters.robot,
                                  motion);
-    campaign.sensor->differentiate(motion, parameters.sensor, J_measured_parameters);
+    campaign.sensor->differentiate(motion.world_from_flange, motion.twists, parameters.sensor,
+                                   J_measured_parameters);
 }
 
 Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
@@ -57,7 +59,7 @@ Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,
     Blocks blocks = make_unfilled_blocks(campaign, configurations);
     const VectorXd scale = parameter_scale(campaign);
     fill(campaign, parameters, configurations, blocks, [&](const FlangeMotion& motion, auto& J) {
-        whiten(mean_covariance(campaign, motion.world_from_flange, parameters.sensor, repeats), J);
+        whiten(mean_covariance(campaign, motion, parameters.sensor, repeats), J);
         J *= scale.asDiagonal();
     });
     return blocks;

@@ -2,17 +2,86 @@
 
 #include <Eigen/Cholesky>
 #include <cassert>
+#include <cmath>
+
+#include "posewise/core/errors.hpp"
 
 namespace posewise {
+namespace {
 
-MatrixXd mean_covariance(const Campaign& campaign, const Isometry3d& world_from_flange,
+/// J_q diag(s): how far one standard deviation of each joint moves the observation.
+RowMatrixXd joint_noise_effect(const Campaign& campaign, const FlangeMotion& motion,
+                               const VectorXd& sensor_unknowns) {
+    RowMatrixXd J(campaign.sensor->row_count(), motion.joint_twists.cols());
+    campaign.sensor->differentiate(motion.world_from_flange, motion.joint_twists, sensor_unknowns,
+                                   J);
+    return J * campaign.joint_repeatability.asDiagonal();
+}
+
+bool is_sigma(double value) { return std::isfinite(value) && value >= 0; }
+
+}  // namespace
+
+void check_noise(const Campaign& campaign) {
+    if (!is_sigma(campaign.model_error)) {
+        throw InputError("model error is " + std::to_string(campaign.model_error) +
+                         " m, must be finite and not negative");
+    }
+    const VectorXd& s = campaign.joint_repeatability;
+    if (s.size() != 0 && s.size() != campaign.robot.joint_count()) {
+        throw InputError("joint repeatability has " + std::to_string(s.size()) +
+                         " values, the robot has " + std::to_string(campaign.robot.joint_count()) +
+                         " joints");
+    }
+    for (Index j = 0; j < s.size(); ++j) {
+        if (is_sigma(s[j])) continue;
+        throw InputError("repeatability of joint '" +
+                         campaign.robot.joints()[static_cast<std::size_t>(j)].name + "' is " +
+                         std::to_string(s[j]) + ", must be finite and not negative");
+    }
+}
+
+MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
                          const VectorXd& sensor_unknowns, double repeats) {
-    MatrixXd covariance = campaign.sensor->covariance(world_from_flange, sensor_unknowns) / repeats;
+    MatrixXd covariance =
+        campaign.sensor->covariance(motion.world_from_flange, sensor_unknowns) / repeats;
     covariance.diagonal().array() += campaign.model_error * campaign.model_error;
+    if (campaign.joint_repeatability.size() > 0) {
+        const RowMatrixXd effect = joint_noise_effect(campaign, motion, sensor_unknowns);
+        covariance.noalias() += effect * effect.transpose();
+    }
     return covariance;
 }
 
+bool has_constant_noise(const Campaign& campaign) {
+    return campaign.joint_repeatability.size() == 0 && campaign.sensor->has_constant_covariance();
+}
+
+MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& motion, Index joint,
+                              const FlangeMotionRate& rate, const VectorXd& sensor_unknowns,
+                              double repeats) {
+    const Twist direction = motion.joint_twists.col(joint);
+    MatrixXd covariance_rate =
+        campaign.sensor->covariance_rate(motion.world_from_flange, direction, sensor_unknowns) /
+        repeats;
+    if (campaign.joint_repeatability.size() > 0) {
+        const RowMatrixXd effect = joint_noise_effect(campaign, motion, sensor_unknowns);
+        RowMatrixXd effect_rate(effect.rows(), effect.cols());
+        campaign.sensor->differentiate_along(motion.world_from_flange, motion.joint_twists,
+                                             direction, rate.joint_twists, sensor_unknowns,
+                                             effect_rate);
+        const MatrixXd half =
+            effect_rate * campaign.joint_repeatability.asDiagonal() * effect.transpose();
+        covariance_rate += half + half.transpose();
+    }
+    return covariance_rate;
+}
+
 void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows) {
+    if (covariance.isDiagonal(0)) {
+        rows.array().colwise() *= covariance.diagonal().array().rsqrt();
+        return;
+    }
     const MatrixXd L = cholesky_factor(covariance);
     L.triangularView<Eigen::Lower>().solveInPlace(rows);
 }

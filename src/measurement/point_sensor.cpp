@@ -1,18 +1,48 @@
 #include "posewise/measurement/point_sensor.hpp"
 
-#include <cmath>
-
 #include "posewise/core/errors.hpp"
 
 namespace posewise {
+namespace {
+
+Vector3d velocity_of(const Vector3d& point, const Twist& twist) {
+    return twist.tail<3>() + twist.head<3>().cross(point);
+}
+
+/// The three rows of one target, filled through plain pointers because this is the hot loop of
+/// planning. A twist is six numbers: w, v.
+struct PointRows {
+    double* x;
+    double* y;
+    double* z;
+
+    PointRows(Eigen::Ref<RowMatrixXd> J, Index target)
+        : x(&J(3 * target, 0)), y(&J(3 * target + 1, 0)), z(&J(3 * target + 2, 0)) {}
+
+    /// Column k becomes v + w cross point.
+    void set(Index k, const double* twist, const Vector3d& point) {
+        x[k] = twist[3];
+        y[k] = twist[4];
+        z[k] = twist[5];
+        add_turn(k, twist, point);
+    }
+    /// Adds w cross point to column k.
+    void add_turn(Index k, const double* twist, const Vector3d& point) {
+        x[k] += twist[1] * point.z() - twist[2] * point.y();
+        y[k] += twist[2] * point.x() - twist[0] * point.z();
+        z[k] += twist[0] * point.y() - twist[1] * point.x();
+    }
+};
+
+}  // namespace
 
 PointSensor::PointSensor(std::vector<std::optional<Vector3d>> known_targets, double sigma)
-    : known_targets_(std::move(known_targets)), sigma_(sigma) {
+    : PointSensor(std::move(known_targets), IsotropicNoise{sigma}) {}
+
+PointSensor::PointSensor(std::vector<std::optional<Vector3d>> known_targets, PointNoise noise)
+    : known_targets_(std::move(known_targets)), noise_(noise) {
     if (known_targets_.empty()) throw InputError("a point sensor needs at least one target");
-    if (!(sigma >= 1e-15) || !std::isfinite(sigma)) {
-        throw InputError("sigma is " + std::to_string(sigma) +
-                         " m, must be finite and at least 1e-15 m");
-    }
+    check_noise(noise_);
     Index offset = 0;
     for (const auto& target : known_targets_) {
         if (target && !target->allFinite()) {
@@ -63,31 +93,67 @@ VectorXd PointSensor::predict(const Isometry3d& world_from_flange, const VectorX
     return points;
 }
 
-void PointSensor::differentiate(const FlangeMotion& motion, const VectorXd& unknowns,
+void PointSensor::differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                                const VectorXd& unknowns,
                                 Eigen::Ref<RowMatrixXd> J_measured_parameters) const {
-    const Index twist_count = motion.twists.cols();
-    auto J_targets = J_measured_parameters.rightCols(J_measured_parameters.cols() - twist_count);
+    auto J_targets = J_measured_parameters.rightCols(J_measured_parameters.cols() - twists.cols());
     J_targets.setZero();
     for (Index j = 0; j < target_count(); ++j) {
-        const Vector3d x = motion.world_from_flange * target(j, unknowns);
-        double* const row_x = &J_measured_parameters(3 * j, 0);
-        double* const row_y = &J_measured_parameters(3 * j + 1, 0);
-        double* const row_z = &J_measured_parameters(3 * j + 2, 0);
-        for (Index k = 0; k < twist_count; ++k) {  // v + w cross x, row by row
-            const double* const t = &motion.twists(0, k);
-            row_x[k] = t[3] + t[1] * x.z() - t[2] * x.y();
-            row_y[k] = t[4] + t[2] * x.x() - t[0] * x.z();
-            row_z[k] = t[5] + t[0] * x.y() - t[1] * x.x();
-        }
-        if (!is_known(j)) {
-            J_targets.block<3, 3>(3 * j, unknown_offset(j)) = motion.world_from_flange.linear();
+        const Vector3d x = world_from_flange * target(j, unknowns);
+        PointRows rows(J_measured_parameters, j);
+        for (Index k = 0; k < twists.cols(); ++k) rows.set(k, &twists(0, k), x);
+        if (J_targets.cols() > 0 && !is_known(j)) {
+            J_targets.block<3, 3>(3 * j, unknown_offset(j)) = world_from_flange.linear();
         }
     }
 }
 
-MatrixXd PointSensor::covariance(const Isometry3d& /*world_from_flange*/,
-                                 const VectorXd& /*unknowns*/) const {
-    return sigma_ * sigma_ * MatrixXd::Identity(row_count(), row_count());
+void PointSensor::differentiate_along(const Isometry3d& world_from_flange,
+                                      const TwistMatrix& twists, const Twist& direction,
+                                      const TwistMatrix& twist_rates, const VectorXd& unknowns,
+                                      Eigen::Ref<RowMatrixXd> J_rate) const {
+    auto J_targets = J_rate.rightCols(J_rate.cols() - twists.cols());
+    J_targets.setZero();
+    const Vector3d w = direction.head<3>();
+    for (Index j = 0; j < target_count(); ++j) {
+        const Vector3d x = world_from_flange * target(j, unknowns);
+        const Vector3d velocity = velocity_of(x, direction);
+        PointRows rows(J_rate, j);
+        for (Index k = 0; k < twists.cols(); ++k) {
+            rows.set(k, &twist_rates(0, k), x);
+            rows.add_turn(k, &twists(0, k), velocity);
+        }
+        if (J_targets.cols() > 0 && !is_known(j)) {
+            auto J_target = J_targets.block<3, 3>(3 * j, unknown_offset(j));
+            for (Index a = 0; a < 3; ++a)
+                J_target.col(a) = w.cross(world_from_flange.linear().col(a));
+        }
+    }
+}
+
+MatrixXd PointSensor::covariance(const Isometry3d& world_from_flange,
+                                 const VectorXd& unknowns) const {
+    MatrixXd covariance = MatrixXd::Zero(row_count(), row_count());
+    for (Index j = 0; j < target_count(); ++j) {
+        covariance.block<3, 3>(3 * j, 3 * j) =
+            point_covariance(noise_, world_from_flange * target(j, unknowns));
+    }
+    return covariance;
+}
+
+MatrixXd PointSensor::covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
+                                      const VectorXd& unknowns) const {
+    MatrixXd rate = MatrixXd::Zero(row_count(), row_count());
+    for (Index j = 0; j < target_count(); ++j) {
+        const Vector3d x = world_from_flange * target(j, unknowns);
+        rate.block<3, 3>(3 * j, 3 * j) =
+            point_covariance_rate(noise_, x, velocity_of(x, direction));
+    }
+    return rate;
+}
+
+bool PointSensor::has_constant_covariance() const {
+    return !std::holds_alternative<LaserTrackerNoise>(noise_);
 }
 
 }  // namespace posewise

@@ -26,6 +26,7 @@ Parameters draw_truth(const Campaign& campaign, std::uint64_t seed) {
 Measurements simulate_measurements(const Campaign& campaign, const Parameters& truth,
                                    const RowMatrixXd& configurations, Index repeats,
                                    std::uint64_t seed) {
+    check_noise(campaign);
     const Sensor& sensor = *campaign.sensor;
     const Index rows = sensor.row_count();
     Measurements measurements;
@@ -33,7 +34,10 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
     measurements.observations.resize(configurations.rows() * repeats, rows);
     for (Index i = 0; i < configurations.rows(); ++i) {
         RandomStream stream(seed, static_cast<std::uint64_t>(i));
-        const VectorXd q = configurations.row(i).transpose();
+        VectorXd q = configurations.row(i).transpose();
+        if (campaign.joint_repeatability.size() > 0) {
+            q += campaign.joint_repeatability.cwiseProduct(draw_normal(stream, q.size()));
+        }
         const Isometry3d flange = world_from_flange(campaign, truth, q);
         const VectorXd expected =
             sensor.predict(flange, truth.sensor) + campaign.model_error * draw_normal(stream, rows);

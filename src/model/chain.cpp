@@ -31,6 +31,18 @@ struct RunningProduct {
         R.col(j) = c * R.col(j) - s * column;
     }
 
+    /// How what follows moves by a further amount along or about the axis.
+    Twist twist(Motion motion, Axis axis) const {
+        const Vector3d direction = R.col(static_cast<Index>(axis));
+        Twist result;
+        if (motion == Motion::Rotation) {
+            result << direction, p.cross(direction);
+        } else {
+            result << Vector3d::Zero(), direction;
+        }
+        return result;
+    }
+
     Isometry3d pose() const {
         Isometry3d T;
         T.linear() = R;
@@ -39,6 +51,14 @@ struct RunningProduct {
         return T;
     }
 };
+
+/// [a, b]: the rate of twist b when what it belongs to moves by twist a.
+Twist lie_bracket(const Twist& a, const Twist& b) {
+    const Vector3d w = a.head<3>();
+    Twist result;
+    result << w.cross(b.head<3>()), w.cross(b.tail<3>()) + a.tail<3>().cross(b.head<3>());
+    return result;
+}
 
 double drive(const Element& element, const VectorXd& q) {
     double amount = element.value;
@@ -152,6 +172,39 @@ Isometry3d Chain::base_from_flange(const VectorXd& q, const VectorXd& parameters
     return product.pose();
 }
 
+/// One pass over the elements. After an element that moves something has added its twist to its
+/// columns of `motion`, visit(element, twist, column) is called; the column is that of its error
+/// parameter, or -1.
+template <typename Visit>
+void Chain::walk(const Isometry3d& world_from_base, const VectorXd& q, const VectorXd& parameters,
+                 FlangeMotion& motion, const Visit& visit) const {
+    motion.twists.resize(6, 6 + parameter_count());
+    motion.joint_twists.setZero(6, joint_count());
+    const Vector3d base = world_from_base.translation();
+    for (Index axis = 0; axis < 3; ++axis) {
+        const Vector3d unit = Vector3d::Unit(axis);
+        motion.twists.col(axis) << Vector3d::Zero(), unit;
+        motion.twists.col(3 + axis) << unit, base.cross(unit);
+    }
+    RunningProduct product{world_from_base.linear(), base};
+    Index next_column = 6;
+    for (const Element& element : elements_) {
+        double amount = drive(element, q);
+        const Index column = element.parameter.empty() ? -1 : next_column++;
+        if (column >= 0) amount += parameters[column - 6];
+        if (column >= 0 || !element.joints.empty()) {
+            const Twist twist = product.twist(element.motion, element.axis);
+            if (column >= 0) motion.twists.col(column) = twist;
+            for (const JointTerm& term : element.joints) {
+                motion.joint_twists.col(term.joint) += term.coefficient * twist;
+            }
+            visit(element, twist, column);
+        }
+        product.append(element.motion, element.axis, amount);
+    }
+    motion.world_from_flange = product.pose();
+}
+
 std::vector<Isometry3d> Chain::base_from_links(const VectorXd& q,
                                                const VectorXd& parameters) const {
     std::vector<Isometry3d> links(joints_.size() + 2, Isometry3d::Identity());
@@ -174,32 +227,29 @@ std::vector<Isometry3d> Chain::base_from_links(const VectorXd& q,
 
 void Chain::differentiate(const Isometry3d& world_from_base, const VectorXd& q,
                           const VectorXd& parameters, FlangeMotion& motion) const {
-    motion.twists.resize(6, 6 + parameter_count());
-    const Vector3d base = world_from_base.translation();
-    for (Index axis = 0; axis < 3; ++axis) {
-        const Vector3d unit = Vector3d::Unit(axis);
-        motion.twists.col(axis) << Vector3d::Zero(), unit;
-        motion.twists.col(3 + axis) << unit, base.cross(unit);
+    walk(world_from_base, q, parameters, motion, [](const Element&, const Twist&, Index) {});
+}
+
+void Chain::differentiate_twice(const Isometry3d& world_from_base, const VectorXd& q,
+                                const VectorXd& parameters, FlangeMotion& motion,
+                                std::vector<FlangeMotionRate>& rates) const {
+    rates.resize(joints_.size());
+    for (FlangeMotionRate& rate : rates) {
+        rate.twists.setZero(6, 6 + parameter_count());
+        rate.joint_twists.setZero(6, joint_count());
     }
-    RunningProduct product{world_from_base.linear(), base};
-    Index column = 6;
-    for (const Element& element : elements_) {
-        double amount = drive(element, q);
-        if (!element.parameter.empty()) {
-            amount += parameters[column - 6];
-            const Vector3d axis = product.R.col(static_cast<Index>(element.axis));
-            auto twist = motion.twists.col(column++);
-            if (element.motion == Motion::Rotation) {
-                twist.head<3>() = axis;
-                twist.tail<3>() = product.p.cross(axis);
-            } else {
-                twist.head<3>().setZero();
-                twist.tail<3>() = axis;
+    const auto visit = [&](const Element& element, const Twist& twist, Index column) {
+        for (Index j = 0; j < joint_count(); ++j) {
+            // So far motion.joint_twists holds what joint j moves up to this element.
+            const Twist change = lie_bracket(motion.joint_twists.col(j), twist);
+            FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
+            if (column >= 0) rate.twists.col(column) = change;
+            for (const JointTerm& term : element.joints) {
+                rate.joint_twists.col(term.joint) += term.coefficient * change;
             }
         }
-        product.append(element.motion, element.axis, amount);
-    }
-    motion.world_from_flange = product.pose();
+    };
+    walk(world_from_base, q, parameters, motion, visit);
 }
 
 Chain without_parameters(const Chain& chain) {

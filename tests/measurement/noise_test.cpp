@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "posewise/core/errors.hpp"
 #include "support/campaigns.hpp"
+#include "support/derivative_check.hpp"
+#include "support/sweep.hpp"
 
 namespace posewise {
 namespace {
@@ -15,15 +18,86 @@ Campaign one_target_campaign(double sigma, double model_error) {
     return campaign;
 }
 
+FlangeMotion motion_at(const Campaign& campaign, const VectorXd& q,
+                       std::vector<FlangeMotionRate>& rates) {
+    FlangeMotion motion;
+    campaign.robot.differentiate_twice(campaign.nominal.world_from_base, q, campaign.nominal.robot,
+                                       motion, rates);
+    return motion;
+}
+
+/// FANUC, three targets, a laser tracker and joints that do not repeat exactly.
+Campaign noisy_campaign() {
+    Campaign campaign = testing::tracked_campaign(testing::fanuc());
+    campaign.sensor = std::make_shared<PointSensor>(
+        std::vector<std::optional<Vector3d>>(3, std::nullopt), LaserTrackerNoise{1e-5, 8e-6});
+    campaign.joint_repeatability = VectorXd::LinSpaced(6, 1e-5, 6e-5);
+    return campaign;
+}
+
 TEST(MeanCovariance, IsNoiseOverRepeatsAndModelErrorInQuadrature) {
     const auto covariance = [](double sigma, double model_error, double repeats) {
-        return mean_covariance(one_target_campaign(sigma, model_error), Isometry3d::Identity(),
-                               VectorXd(), repeats);
+        FlangeMotion motion;
+        motion.world_from_flange.setIdentity();
+        return mean_covariance(one_target_campaign(sigma, model_error), motion, VectorXd(),
+                               repeats);
     };
     const MatrixXd I = MatrixXd::Identity(3, 3);
     EXPECT_TRUE(covariance(3e-5, 4e-5, 1).isApprox(25e-10 * I, 1e-14));
     EXPECT_TRUE(covariance(3e-5, 0, 9).isApprox(1e-10 * I, 1e-14));
     EXPECT_TRUE(covariance(3e-5, 4e-5, 9).isApprox(17e-10 * I, 1e-14));
+}
+
+TEST(MeanCovariance, JointErrorsCorrelateTheTargetsAndRepeatsDoNotReduceThem) {
+    Campaign campaign = noisy_campaign();
+    const VectorXd q = VectorXd::LinSpaced(6, -0.5, 0.7);
+    std::vector<FlangeMotionRate> rates;
+    const FlangeMotion motion = motion_at(campaign, q, rates);
+    const VectorXd& targets = campaign.nominal.sensor;
+    const VectorXd s = campaign.joint_repeatability;
+    const auto predict = [&](const VectorXd& joints) {
+        return campaign.sensor->predict(world_from_flange(campaign, campaign.nominal, joints),
+                                        targets);
+    };
+    const MatrixXd effect = testing::numerical_jacobian(predict, q) * s.asDiagonal();
+    const MatrixXd with = mean_covariance(campaign, motion, targets, 5);
+    campaign.joint_repeatability.resize(0);
+    const MatrixXd without = mean_covariance(campaign, motion, targets, 5);
+    EXPECT_TRUE((with - without).isApprox(effect * effect.transpose(), 1e-8));
+}
+
+TEST(MeanCovarianceRate, AgreesWithDifferences) {
+    const Campaign campaign = noisy_campaign();
+    const VectorXd& targets = campaign.nominal.sensor;
+    std::vector<FlangeMotionRate> rates;
+    std::vector<FlangeMotionRate> ignored;
+    for (std::uint64_t item = 0; item < static_cast<std::uint64_t>(testing::sweep_count() / 50);
+         ++item) {
+        RandomStream stream(72, item);
+        const VectorXd q = testing::random_vector(stream, 6, 2);
+        const FlangeMotion motion = motion_at(campaign, q, rates);
+        MatrixXd J(81, 6);
+        for (Index j = 0; j < 6; ++j) {
+            J.col(j) = 1e8 * mean_covariance_rate(campaign, motion, j,
+                                                  rates[static_cast<std::size_t>(j)], targets, 3)
+                                 .reshaped();
+        }
+        const auto covariance = [&](const VectorXd& joints) -> VectorXd {
+            return 1e8 * mean_covariance(campaign, motion_at(campaign, joints, ignored), targets, 3)
+                             .reshaped();
+        };
+        testing::expect_is_jacobian(J, covariance, q);
+    }
+}
+
+TEST(CheckNoise, RefusesJointRepeatabilityThatDoesNotFit) {
+    Campaign campaign = noisy_campaign();
+    EXPECT_NO_THROW(check_noise(campaign));
+    campaign.joint_repeatability[2] = -1e-5;
+    EXPECT_THROW(check_noise(campaign), InputError);
+    campaign.joint_repeatability.resize(5);
+    campaign.joint_repeatability.setConstant(1e-5);
+    EXPECT_THROW(check_noise(campaign), InputError);
 }
 
 TEST(Whiten, MakesCorrelatedErrorsIndependent) {
@@ -32,6 +106,11 @@ TEST(Whiten, MakesCorrelatedErrorsIndependent) {
     RowMatrixXd rows = cholesky_factor(covariance);
     EXPECT_TRUE((rows * rows.transpose()).isApprox(covariance, 1e-14));
     whiten(covariance, rows);
+    EXPECT_TRUE(rows.isApprox(RowMatrixXd::Identity(3, 3), 1e-14));
+
+    const MatrixXd diagonal = Vector3d(4, 9, 0.25).asDiagonal();
+    rows = cholesky_factor(diagonal);
+    whiten(diagonal, rows);
     EXPECT_TRUE(rows.isApprox(RowMatrixXd::Identity(3, 3), 1e-14));
 }
 

@@ -32,7 +32,7 @@ void expect_right_jacobian(const PointSensor& sensor, double magnitude, std::uin
     campaign.robot.differentiate(campaign.nominal.world_from_base, q, campaign.nominal.robot,
                                  motion);
     RowMatrixXd J = RowMatrixXd::Constant(sensor.row_count(), parameter_count(campaign), 99.0);
-    sensor.differentiate(motion, campaign.nominal.sensor, J);
+    sensor.differentiate(motion.world_from_flange, motion.twists, campaign.nominal.sensor, J);
     const auto predict = [&](const VectorXd& step) {
         const Parameters moved = advance(campaign.nominal, step);
         return sensor.predict(world_from_flange(campaign, moved, q), moved.sensor);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/noise.hpp"
 #include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 
@@ -56,6 +57,26 @@ TEST(Simulate, RepeatsShareTheModelError) {
     const Index n = errors.size();
     expect_variance(errors.squaredNorm() / static_cast<double>(n), n,
                     2e-4 * 2e-4 + 5e-5 * 5e-5 / 4);
+}
+
+TEST(Simulate, ObservationsHaveTheStatedCovarianceOfTheirMean) {
+    Campaign campaign = tracked_campaign(fanuc());
+    campaign.sensor = std::make_shared<PointSensor>(
+        std::vector<std::optional<Vector3d>>(3, std::nullopt), LaserTrackerNoise{2e-5, 2e-5});
+    campaign.joint_repeatability = VectorXd::Constant(6, 3e-5);
+    const Simulation simulation = simulate(campaign, {.pose_count = 400, .repeats = 3});
+    RowMatrixXd errors = mean_errors(campaign, simulation);
+    double chi_square = 0;
+    for (Index i = 0; i < errors.rows(); ++i) {
+        FlangeMotion motion;
+        campaign.robot.differentiate(simulation.truth.world_from_base,
+                                     simulation.measurements.configurations.row(i).transpose(),
+                                     simulation.truth.robot, motion);
+        RowMatrixXd error = errors.row(i).transpose();
+        whiten(mean_covariance(campaign, motion, simulation.truth.sensor, 3), error);
+        chi_square += error.squaredNorm();
+    }
+    expect_variance(chi_square / 3600, 3600, 1);
 }
 
 TEST(Simulate, TruthDependsOnItsOwnSeedOnly) {

@@ -128,6 +128,55 @@ TEST(Chain, DifferentiatesTheFanucAnywhere) {
     }
 }
 
+/// Chain::differentiate_twice() against differences of differentiate() by the joints.
+void expect_right_rates(const Chain& chain, const Isometry3d& world_from_base, const VectorXd& q,
+                        const VectorXd& parameters) {
+    FlangeMotion motion;
+    std::vector<FlangeMotionRate> rates;
+    chain.differentiate_twice(world_from_base, q, parameters, motion, rates);
+    const auto columns = [](const TwistMatrix& a, const TwistMatrix& b) -> VectorXd {
+        VectorXd all(a.size() + b.size());
+        all << a.reshaped(), b.reshaped();
+        return all;
+    };
+    MatrixXd J(motion.twists.size() + motion.joint_twists.size(), q.size());
+    for (Index j = 0; j < q.size(); ++j) {
+        const FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
+        J.col(j) = columns(rate.twists, rate.joint_twists);
+    }
+    const auto twists = [&](const VectorXd& joints) {
+        FlangeMotion moved;
+        chain.differentiate(world_from_base, joints, parameters, moved);
+        return columns(moved.twists, moved.joint_twists);
+    };
+    expect_is_jacobian(J, twists, q);
+    const auto pose = [&](const VectorXd& joints) {
+        return twist_between(motion.world_from_flange,
+                             world_from_base * chain.base_from_flange(joints, parameters));
+    };
+    expect_is_jacobian(motion.joint_twists, pose, q);
+}
+
+TEST(Chain, KnowsHowItsTwistsChangeWithTheJoints) {
+    const Chain coupled({{"q1", -3, 3}, {"q2", -3, 3}, {"s", -1, 1}},
+                        {driven(Motion::Rotation, Axis::Y, 0, "a"),
+                         translation(Axis::X, 0.7, "b"),
+                         {Motion::Rotation, Axis::X, 0.2, {{0, -0.5}, {1, 1}}, "c"},
+                         rotation(Axis::Z, 0.3, "d"),
+                         driven(Motion::Translation, Axis::Z, 2, "e", 0.8),
+                         driven(Motion::Rotation, Axis::Z, 1, "f", 2),
+                         translation(Axis::Y, 0.1, "g")});
+    for (const Chain& chain : {coupled, fanuc(), gantry_with_wrist(), scara()}) {
+        for (std::uint64_t item = 0; item < static_cast<std::uint64_t>(sweep_count() / 50);
+             ++item) {
+            RandomStream stream(44, item);
+            const Isometry3d base = random_pose(stream);
+            const VectorXd q = random_vector(stream, chain.joint_count(), 2);
+            expect_right_rates(chain, base, q, random_vector(stream, chain.parameter_count(), 0.2));
+        }
+    }
+}
+
 TEST(Chain, MovesWithItsBase) {
     RandomStream stream(23);
     const Chain robot = fanuc();

@@ -16,7 +16,11 @@ using Eigen::VectorXd;
 /// Rows are observations, so one pose's rows are contiguous in memory.
 using RowMatrixXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Columns are twists (angular; linear), see Chain::differentiate().
+/// How a rigid body moves: angular velocity w; velocity v of the point at the world origin. A point
+/// x of the body moves by v + w cross x.
+using Twist = Eigen::Matrix<double, 6, 1>;
+
+/// Columns are twists, see Chain::differentiate().
 using TwistMatrix = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 }  // namespace posewise

@@ -36,6 +36,9 @@ struct Campaign {
     /// Standard deviation (m) of what the model cannot express; acts like noise that repeats do
     /// not reduce.
     double model_error = 1e-4;
+    /// Standard deviation of each joint about where it was sent (rad or m): one error a
+    /// configuration, the same for all its repeats. Empty: none.
+    VectorXd joint_repeatability;
     /// Expected base and targets, for planning and simulation; robot errors are zero.
     Parameters nominal;
     /// Whether base and targets in `nominal` were stated, not made up.

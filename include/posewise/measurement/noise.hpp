@@ -4,10 +4,25 @@
 
 namespace posewise {
 
+/// Throws InputError if joint_repeatability has another size than the joints (and is not empty) or
+/// a value that is negative or not finite, or if model_error is.
+void check_noise(const Campaign& campaign);
+
 /// Covariance of the mean of `repeats` observations at a pose: the sensor's divided by repeats,
-/// plus model_error^2 on the diagonal, which repeats do not reduce. Sensor rows square, m^2.
-MatrixXd mean_covariance(const Campaign& campaign, const Isometry3d& world_from_flange,
+/// plus what repeats do not reduce: model_error^2 on the diagonal, and J_q diag(s^2) J_q^T of the
+/// joints' repeatability s (the robot stands still while it is observed again), which correlates
+/// the targets. Sensor rows square, m^2.
+MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
                          const VectorXd& sensor_unknowns, double repeats);
+
+/// Whether mean_covariance() is the same at every pose.
+bool has_constant_noise(const Campaign& campaign);
+
+/// Rate of mean_covariance() with one joint. `rate` is that joint's, as of
+/// Chain::differentiate_twice().
+MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& motion, Index joint,
+                              const FlangeMotionRate& rate, const VectorXd& sensor_unknowns,
+                              double repeats);
 
 /// Multiplies `rows` from the left by L^-1, where covariance = L L^T (Cholesky): errors with this
 /// covariance become independent with variance 1.

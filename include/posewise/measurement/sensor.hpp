@@ -26,13 +26,30 @@ class Sensor {
     virtual VectorXd predict(const Isometry3d& world_from_flange,
                              const VectorXd& unknowns) const = 0;
 
-    /// The identification Jacobian of one pose: row_count() x (motion.twists.cols() + unknowns).
-    virtual void differentiate(const FlangeMotion& motion, const VectorXd& unknowns,
+    /// Derivative of predict() by flange motions and by the sensor's own unknowns:
+    /// row_count() x (twists.cols() + unknowns), or without the unknowns' columns. With the
+    /// twists of a FlangeMotion this is the identification Jacobian of one pose.
+    virtual void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                               const VectorXd& unknowns,
                                Eigen::Ref<RowMatrixXd> J_measured_parameters) const = 0;
+
+    /// Rate of differentiate() while the flange moves by `direction` and the twists change at
+    /// `twist_rates` (6 x twists.cols()); same shape.
+    virtual void differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                                     const Twist& direction, const TwistMatrix& twist_rates,
+                                     const VectorXd& unknowns,
+                                     Eigen::Ref<RowMatrixXd> J_rate) const = 0;
 
     /// Covariance of the noise of one observation at this pose: row_count() square, m^2 (rad^2).
     virtual MatrixXd covariance(const Isometry3d& world_from_flange,
                                 const VectorXd& unknowns) const = 0;
+
+    /// Rate of covariance() while the flange moves by `direction`.
+    virtual MatrixXd covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
+                                     const VectorXd& unknowns) const = 0;
+
+    /// Whether covariance() is the same at every pose, so that its rate is zero.
+    virtual bool has_constant_covariance() const = 0;
 };
 
 }  // namespace posewise

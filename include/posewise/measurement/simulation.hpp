@@ -24,7 +24,8 @@ struct Simulation {
 Parameters draw_truth(const Campaign& campaign, std::uint64_t seed);
 
 /// Observations of given configurations (m x joints) by a robot with the true parameters: sensor
-/// noise on every sample, model error on every configuration (the same for all its samples).
+/// noise on every sample; model error and joint errors on every configuration (the same for all its
+/// samples).
 /// Configuration i and its noise come from stream (seed, i), whatever the number of configurations.
 Measurements simulate_measurements(const Campaign& campaign, const Parameters& truth,
                                    const RowMatrixXd& configurations, Index repeats,

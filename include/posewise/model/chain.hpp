@@ -45,6 +45,14 @@ struct FlangeMotion {
     /// translations of the base along the world axes, 3-5 its rotations about world axes through
     /// the base origin, the rest the chain's error parameters.
     TwistMatrix twists;
+    /// 6 x joints: the twist by each joint, whatever elements it drives.
+    TwistMatrix joint_twists;
+};
+
+/// How the columns of a FlangeMotion change with one joint.
+struct FlangeMotionRate {
+    TwistMatrix twists;        ///< 6 x (6 + R)
+    TwistMatrix joint_twists;  ///< 6 x joints
 };
 
 /// A serial robot as a product of elementary transforms from base to flange:
@@ -88,7 +96,18 @@ class Chain {
     void differentiate(const Isometry3d& world_from_base, const VectorXd& q,
                        const VectorXd& parameters, FlangeMotion& motion) const;
 
+    /// The same, and rates[j] by joint j. The twist of an element changes only with the elements
+    /// before it, by the Lie bracket of theirs with it; the base's columns do not change. As
+    /// `motion`, `rates` is resized at need only.
+    void differentiate_twice(const Isometry3d& world_from_base, const VectorXd& q,
+                             const VectorXd& parameters, FlangeMotion& motion,
+                             std::vector<FlangeMotionRate>& rates) const;
+
   private:
+    template <typename Visit>
+    void walk(const Isometry3d& world_from_base, const VectorXd& q, const VectorXd& parameters,
+              FlangeMotion& motion, const Visit& visit) const;
+
     std::vector<Joint> joints_;
     std::vector<Element> elements_;
     std::vector<Index> parameter_elements_;  // parameter -> its element
