@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <functional>
+#include <limits>
+#include <optional>
 
 #include "posewise/core/errors.hpp"
 #include "posewise/report/units.hpp"
@@ -36,19 +37,55 @@ std::string terminal(const std::string& image_path) {
                : "pngcairo size 1350,840 rounded font 'Helvetica,18' linewidth 1.4";
 }
 
-/// Lines "count value..." of the p-quantiles, of the rows that have them.
-std::string data_lines(const std::vector<StudyRow>& rows,
-                       const std::function<std::vector<StudyCase>(const StudyRow&)>& cases,
-                       const std::vector<double>& quantiles) {
+/// Range of the error axis in mm. A quantile that falls among subsets that could not identify the
+/// model has no number; it is drawn at the upper edge.
+struct ErrorAxis {
+    double lower = std::numeric_limits<double>::infinity();
+    double upper = 0;
+
+    void include(const std::optional<double>& metres) {
+        if (!metres) return;
+        lower = std::min(lower, mm_per_m * *metres / 1.5);
+        upper = std::max(upper, mm_per_m * *metres * 1.5);
+    }
+    bool is_empty() const { return !(upper > 0) || !(lower > 0); }
+    std::string format(const std::optional<double>& metres) const {
+        return format_short(metres ? mm_per_m * *metres : upper, 9);
+    }
+};
+
+constexpr std::array band_quantiles{0.1, 0.5, 0.9};
+
+ErrorAxis find_error_axis(const std::vector<StudyRow>& rows) {
+    ErrorAxis axis;
+    for (const StudyRow& row : rows) {
+        for (const double p : band_quantiles) axis.include(held_out_quantile(row.random, p));
+        for (const StudyCase& optimal : row.optimal) axis.include(held_out_quantile({optimal}, 0));
+    }
+    return axis;
+}
+
+/// Lines "count 10% 50% 90%" of the rows whose 10 % quantile is a number.
+std::string band_lines(const std::vector<StudyRow>& rows, const ErrorAxis& axis) {
     std::string lines;
     for (const StudyRow& row : rows) {
-        const auto of_row = cases(row);
-        if (!held_out_quantile(of_row, 0.5)) continue;
+        if (!held_out_quantile(row.random, band_quantiles[0])) continue;
         lines += std::to_string(row.pose_count);
-        for (const double p : quantiles) {
-            lines += ' ' + format_short(mm_per_m * *held_out_quantile(of_row, p), 9);
+        for (const double p : band_quantiles) {
+            lines += ' ' + axis.format(held_out_quantile(row.random, p));
         }
         lines += '\n';
+    }
+    return lines;
+}
+
+/// Lines "count error" of one criterion, where it identified the model.
+std::string criterion_lines(const std::vector<StudyRow>& rows, std::size_t criterion,
+                            const ErrorAxis& axis) {
+    std::string lines;
+    for (const StudyRow& row : rows) {
+        const auto error = held_out_quantile({row.optimal[criterion]}, 0);
+        if (error) lines += fmt::format("{} {}\n", row.pose_count, axis.format(error));
     }
     return lines;
 }
@@ -58,33 +95,27 @@ struct Drawing {
     std::string data;
     std::string clauses;
 
+    /// `{0}` in the clause is the name of the data.
     void add(const std::string& name, const std::string& lines, const std::string& clause) {
+        if (lines.empty()) return;
         data += fmt::format("${} << EOD\n{}EOD\n", name, lines);
         clauses += clauses.empty() ? "plot " : ", \\\n     ";
         clauses += fmt::format(fmt::runtime(clause), '$' + name);
     }
 };
 
-Drawing draw(const std::vector<Criterion>& criteria, const std::vector<StudyRow>& rows) {
+Drawing draw(const std::vector<Criterion>& criteria, const std::vector<StudyRow>& rows,
+             const ErrorAxis& axis) {
     constexpr std::array colors{"#0b6fa4", "#c8401f", "#2f8f4e", "#8a4fb0", "#c98a00",
                                 "#d0418f", "#5b6b00", "#006d77", "#7f3b08", "#333333"};
     Drawing drawing;
-    const auto random =
-        data_lines(rows, [](const StudyRow& row) { return row.random; }, {0.1, 0.5, 0.9});
-    if (!random.empty()) {
-        drawing.add(
-            "random", random,
-            "{0} using 1:2:4 with filledcurves fc rgb '#c9cfd6' title 'random, 10-90 %', "
-            "{0} using 1:3 with lines lw 2 dt (8,5) lc rgb '#5f6b77' title 'random, median'");
-    }
+    drawing.add("random", band_lines(rows, axis),
+                "{0} using 1:2:4 with filledcurves fc rgb '#c9cfd6' title 'random, 10-90 %', "
+                "{0} using 1:3 with lines lw 2 dt (8,5) lc rgb '#5f6b77' title 'random, median'");
     for (std::size_t i = 0; i < criteria.size(); ++i) {
-        const auto lines = data_lines(
-            rows, [i](const StudyRow& row) { return std::vector{row.optimal[i]}; }, {0.5});
-        if (lines.empty()) continue;
         std::string name(criterion_name(criteria[i]));
-        std::transform(name.begin(), name.end(), name.begin(),
-                       [](char c) { return std::toupper(c); });
-        drawing.add(fmt::format("optimal{}", i), lines,
+        for (char& c : name) c = static_cast<char>(std::toupper(c));
+        drawing.add(fmt::format("optimal{}", i), criterion_lines(rows, i, axis),
                     fmt::format("{{0}} using 1:2 with linespoints lw 2.5 pt 7 ps 0.6 lc rgb '{}' "
                                 "title 'optimal, {}'",
                                 colors[i % colors.size()], name));
@@ -108,21 +139,24 @@ std::string study_plot_script(const std::vector<Criterion>& criteria,
                               const std::vector<StudyRow>& rows, const std::string& title,
                               const std::string& image_path) {
     check_image_path(image_path);
-    const Drawing drawing = draw(criteria, rows);
-    if (drawing.clauses.empty()) {
+    const ErrorAxis axis = find_error_axis(rows);
+    if (axis.is_empty()) {
         throw InputError(
             "the study has no held-out error to plot: no subset that left a "
             "configuration out identified the model");
     }
+    const Drawing drawing = draw(criteria, rows, axis);
     return fmt::format(
         "set terminal {}\nset output {}\nset title {} noenhanced\n"
         "set xlabel 'poses used for calibration'\n"
         "set ylabel 'held-out distance RMS (mm)'\n"
-        "set logscale y\nset format y '%g'\nset xtics out nomirror\nset ytics out nomirror\n"
+        "set logscale y\nset yrange [{}:{}]\nset format y '%g'\nset xtics out nomirror\nset ytics "
+        "out nomirror\n"
         "set border 3 lc rgb '#5f6b77'\nset grid ytics mytics lc rgb '#dfe3e8', lc rgb '#eff1f3'\n"
         "set mytics 10\nset offsets graph 0.02, graph 0.02\nset key top right reverse Left\n"
         "{}{}\nset output\n",
-        terminal(image_path), quote(image_path), quote(title), drawing.data, drawing.clauses);
+        terminal(image_path), quote(image_path), quote(title), format_short(axis.lower),
+        format_short(axis.upper), drawing.data, drawing.clauses);
 }
 
 }  // namespace posewise

@@ -1,8 +1,8 @@
 #include "posewise/study/study.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
+#include <limits>
 
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
@@ -87,8 +87,8 @@ void run(const Setting& setting, const Job& job) {
         const Estimate estimate = identify(setting.campaign, chosen, start);
         const auto left_out = all_but(measurements.configuration_count(), result.poses);
         if (!left_out.empty()) {
-            result.held_out = make_metrics(
-                residuals(setting.campaign, estimate.parameters, take(measurements, left_out)));
+            result.held_out = make_metrics(mean_residuals(setting.campaign, estimate.parameters,
+                                                          take(measurements, left_out)));
         }
         result.identified = true;
     } catch (const InputError&) {
@@ -160,19 +160,23 @@ std::vector<StudyRow> study_pose_counts(const Campaign& campaign, const Measurem
 }
 
 std::optional<double> held_out_quantile(const std::vector<StudyCase>& cases, double p) {
+    constexpr double worst = std::numeric_limits<double>::infinity();
     std::vector<double> errors;
     for (const StudyCase& study_case : cases) {
-        if (study_case.identified && study_case.held_out.point_count > 0) {
+        if (!study_case.identified) {
+            errors.push_back(worst);
+        } else if (study_case.held_out.point_count > 0) {
             errors.push_back(study_case.held_out.distance_rms);
         }
     }
     if (errors.empty()) return std::nullopt;
     std::sort(errors.begin(), errors.end());
     const double position = std::clamp(p, 0.0, 1.0) * static_cast<double>(errors.size() - 1);
-    const double below = std::floor(position);
-    const auto lower = static_cast<std::size_t>(below);
-    const std::size_t upper = std::min(lower + 1, errors.size() - 1);
-    return errors[lower] + (position - below) * (errors[upper] - errors[lower]);
+    const auto lower = static_cast<std::size_t>(position);
+    const double part = position - static_cast<double>(lower);
+    const double upper_error = errors[part > 0 ? lower + 1 : lower];
+    if (upper_error == worst) return std::nullopt;
+    return errors[lower] + part * (upper_error - errors[lower]);
 }
 
 }  // namespace posewise

@@ -22,11 +22,13 @@ StudyCase identified(std::vector<Index> poses, double rms, double max) {
     return result;
 }
 
-/// Two pose counts; the first has a random subset that cannot identify the model.
+/// Two pose counts; at the first, one of three random subsets cannot identify the model.
 std::vector<StudyRow> example_rows() {
     StudyCase unidentified;
     unidentified.poses = {0, 2};
-    return {{2, {identified({0, 1}, 3e-4, 9e-4)}, {unidentified, identified({1, 2}, 2e-3, 4e-3)}},
+    return {{2,
+             {identified({0, 1}, 3e-4, 9e-4)},
+             {unidentified, identified({1, 2}, 2e-3, 4e-3), identified({1, 2}, 2e-3, 4e-3)}},
             {3, {identified({0, 1, 2}, 2e-4, 5e-4)}, {identified({0, 1, 2}, 4e-4, 8e-4)}}};
 }
 
@@ -38,7 +40,7 @@ TEST(StudyTable, ShowsErrorsInMillimetresAndCountsTheUnidentified) {
                                                       "90 %/mm", "subsets", "unidentified"}));
     ASSERT_EQ(table.rows.size(), 2u);
     EXPECT_EQ(table.rows[0],
-              (std::vector<std::string>{"2", "0.3000", "2.0000", "2.0000", "2.0000", "2", "1"}));
+              (std::vector<std::string>{"2", "0.3000", "2.0000", "2.0000", "-", "3", "1"}));
     EXPECT_EQ(table.rows[1],
               (std::vector<std::string>{"3", "0.2000", "0.4000", "0.4000", "0.4000", "1", "0"}));
 }
@@ -54,13 +56,14 @@ TEST(StudyCsv, HoldsEveryCase) {
               "2,d,0,yes,0.3,0.9,\"a b,c\"\n"
               "2,random,0,no,,,a d\n"
               "2,random,1,yes,2,4,\"b,c d\"\n"
+              "2,random,2,yes,2,4,\"b,c d\"\n"
               "3,d,0,yes,0.2,0.5,\"a b,c d\"\n"
               "3,random,0,yes,0.4,0.8,\"a b,c d\"\n");
 }
 
 TEST(StudyPlotScript, DrawsBandMedianAndCriterion) {
     const auto script = study_plot_script(criteria, example_rows(), "robot", "out.svg");
-    EXPECT_NE(script.find("$random << EOD\n2 2 2 2\n3 0.4 0.4 0.4\nEOD\n"), std::string::npos);
+    EXPECT_NE(script.find("$random << EOD\n2 2 2 3\n3 0.4 0.4 0.4\nEOD\n"), std::string::npos);
     EXPECT_NE(script.find("$optimal0 << EOD\n2 0.3\n3 0.2\nEOD\n"), std::string::npos);
     EXPECT_NE(script.find("set logscale y"), std::string::npos);
     EXPECT_NE(script.find("(mm)"), std::string::npos);

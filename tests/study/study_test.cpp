@@ -52,7 +52,7 @@ TEST(StudyPoseCounts, JudgesEachSubsetOnWhatItLeftOut) {
         for (const StudyCase& optimal : row.optimal) {
             EXPECT_TRUE(optimal.identified);
             EXPECT_EQ(optimal.poses.size(), static_cast<std::size_t>(row.pose_count));
-            EXPECT_EQ(optimal.held_out.point_count, (14 - row.pose_count) * 2 * 3);
+            EXPECT_EQ(optimal.held_out.point_count, (14 - row.pose_count) * 3);
         }
     }
     // By hand: calibrate with the chosen ones, predict the others.
@@ -61,8 +61,8 @@ TEST(StudyPoseCounts, JudgesEachSubsetOnWhatItLeftOut) {
     const auto estimate =
         identify(example.campaign, part, register_base_and_targets(example.campaign, part));
     const auto held_out =
-        make_metrics(residuals(example.campaign, estimate.parameters,
-                               take(example.measurements, all_but(14, chosen.poses))));
+        make_metrics(mean_residuals(example.campaign, estimate.parameters,
+                                    take(example.measurements, all_but(14, chosen.poses))));
     EXPECT_DOUBLE_EQ(chosen.held_out.distance_rms, held_out.distance_rms);
     EXPECT_DOUBLE_EQ(chosen.held_out.distance_max, held_out.distance_max);
 }
@@ -165,17 +165,27 @@ TEST(StudyPoseCounts, RefusesWhatCannotBeStudied) {
 }
 
 TEST(HeldOutQuantile, IsLinearBetweenOrderStatistics) {
-    const std::vector<StudyCase> cases{case_with_error(4), case_with_error(1), StudyCase{},
-                                       case_with_error(2), case_with_error(8)};
+    const std::vector<StudyCase> cases{case_with_error(4), case_with_error(1), case_with_error(2),
+                                       case_with_error(8)};
     EXPECT_DOUBLE_EQ(*held_out_quantile(cases, 0), 1);
     EXPECT_DOUBLE_EQ(*held_out_quantile(cases, 0.5), 3);
     EXPECT_DOUBLE_EQ(*held_out_quantile(cases, 0.9), 4 + 0.7 * 4);
     EXPECT_DOUBLE_EQ(*held_out_quantile(cases, 1), 8);
 }
 
-TEST(HeldOutQuantile, IsAbsentWithoutAnIdentifiedCase) {
+TEST(HeldOutQuantile, CountsTheUnidentifiedAsWorst) {
+    const std::vector<StudyCase> cases{case_with_error(4), StudyCase{}, case_with_error(1)};
+    EXPECT_DOUBLE_EQ(*held_out_quantile(cases, 0.5), 4);
+    EXPECT_FALSE(held_out_quantile(cases, 0.51));
+    EXPECT_FALSE(held_out_quantile(cases, 1));
+}
+
+TEST(HeldOutQuantile, IsAbsentWithoutAnErrorToCount) {
+    StudyCase nothing_left;
+    nothing_left.identified = true;
     EXPECT_FALSE(held_out_quantile({}, 0.5));
     EXPECT_FALSE(held_out_quantile({StudyCase{}}, 0.5));
+    EXPECT_FALSE(held_out_quantile({nothing_left}, 0.5));
 }
 
 }  // namespace

@@ -14,7 +14,9 @@ namespace posewise {
 struct StudyCase {
     std::vector<Index> poses;
     bool identified = false;  ///< false: these poses cannot identify the model
-    Metrics held_out;         ///< samples of the configurations left out; no points if none is left
+    /// Means of the configurations left out (so that repeat noise does not blur the comparison); no
+    /// points if none is left.
+    Metrics held_out;
 };
 
 /// All subsets of one size.
@@ -42,8 +44,9 @@ std::vector<StudyRow> study_pose_counts(const Campaign& campaign, const Measurem
                                         const StudyOptions& options,
                                         const std::function<void(Index, Index)>& progress = {});
 
-/// The p-quantile (0..1, linear between order statistics) of the held-out distance RMS of
-/// identified cases; nothing if there is none.
+/// The p-quantile (0..1, linear between order statistics) of the held-out distance RMS. Cases that
+/// are not identified count as worse than any other, so that dropping them cannot flatter the rest;
+/// nothing if the quantile falls among them or nothing was left out.
 std::optional<double> held_out_quantile(const std::vector<StudyCase>& cases, double p);
 
 }  // namespace posewise
