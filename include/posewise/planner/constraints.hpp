@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/model/cell.hpp"
+
+namespace posewise {
+
+enum class Constraint {
+    JointLimits,    ///< with their margin
+    FixedJoints,    ///< at their value to 1e-9 rad or m
+    TargetBoxes,    ///< every target in one of them
+    KeepOuts,       ///< links that move, against keep-outs
+    SelfCollision,  ///< links against links, but for those fixed to the same or the next frame
+    Range,          ///< this and the next four: as many targets as must be seen, each by itself
+    Azimuth,
+    Elevation,
+    Incidence,
+    LineOfSight,
+    VisibleTargets,  ///< all five at once for as many targets as must be seen
+};
+inline constexpr std::size_t constraint_count = 11;
+
+/// As campaign files call it: "tracker.elevation".
+const char* constraint_name(Constraint constraint);
+
+/// How far a configuration is from breaking each constraint.
+struct ConstraintReport {
+    /// By Constraint, in m or rad: at least 0 if it is met; infinite if the cell has no such
+    /// constraint.
+    std::array<double, constraint_count> clearance;
+    std::vector<bool> is_visible;  ///< each target; empty if the cell does not speak of sight
+
+    double operator[](Constraint constraint) const {
+        return clearance[static_cast<std::size_t>(constraint)];
+    }
+    /// The smallest clearance. A metre counts as a radian: at arm's length they are alike.
+    double margin() const;
+    bool is_feasible() const { return margin() >= 0; }
+};
+
+/// A cell around the robot of a campaign, checked once and then asked for many configurations.
+/// Calls have no side effects, so threads may share one.
+class Constraints {
+  public:
+    /// Throws InputError if the cell contradicts itself or does not fit the campaign: intervals
+    /// out of order, shapes without extent, a margin that leaves no range, a fixed value outside
+    /// the limits, a number of normals other than that of targets, targets within a link that
+    /// hides them, a cell that speaks of targets or the tracker where the sensor has no targets or
+    /// the campaign does not state its base and targets.
+    Constraints(const Campaign& campaign, Cell cell);
+
+    const Cell& cell() const { return cell_; }
+    /// The robot with its limits drawn in by the margin; fixed joints keep theirs.
+    const Chain& robot() const { return robot_; }
+
+    /// Nominal geometry throughout. Throws InputError as Chain::check_configuration().
+    ConstraintReport check(const VectorXd& q) const;
+    /// check(q).margin(): at least 0 where q is feasible, continuous in q.
+    double margin(const VectorXd& q) const { return check(q).margin(); }
+    /// The smaller of the clearances KeepOuts and SelfCollision.
+    double collision_clearance(const VectorXd& q) const;
+    /// A bound on the rate of collision_clearance() along a joint: m per rad (m per m), by the
+    /// length of the arm behind it.
+    const VectorXd& clearance_rates() const { return clearance_rates_; }
+
+  private:
+    struct Posture;
+    Posture pose_links(const VectorXd& q) const;
+    double limit_clearance(const VectorXd& q) const;
+    double fixed_clearance(const VectorXd& q) const;
+    double box_clearance(const Posture& posture) const;
+    double keep_out_clearance(const Posture& posture) const;
+    double self_clearance(const Posture& posture) const;
+    double line_clearance(const Posture& posture, const Vector3d& target) const;
+    void check_sight(const Posture& posture, ConstraintReport& report) const;
+
+    Cell cell_;
+    Chain robot_;
+    Isometry3d tracker_from_base_;
+    std::vector<Vector3d> targets_;                           // in the flange frame
+    std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // of links that may collide
+    std::vector<std::size_t> screens_;                        // keep-outs that hide
+    VectorXd clearance_rates_;
+};
+
+/// Largest difference of a joint between two configurations, rad or m.
+double joint_distance(const VectorXd& a, const VectorXd& b);
+
+}  // namespace posewise

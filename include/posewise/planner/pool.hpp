@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+
+#include "posewise/core/blocks.hpp"
+#include "posewise/planner/constraints.hpp"
+
+namespace posewise {
+
+/// How many candidates a constraint removed.
+struct Rejections {
+    Index first = 0;   ///< those for which it was the first violated, in the order of Constraint
+    Index in_all = 0;  ///< those that violate it, whatever else they violate
+};
+
+/// The candidates that satisfy all constraints, in the order they were drawn.
+struct Pool {
+    RowMatrixXd configurations;  ///< feasible x joints
+    /// Of each configuration, whether each target is seen; empty if the cell does not speak of
+    /// sight.
+    std::vector<std::vector<bool>> is_visible;
+    Index candidate_count = 0;
+    std::array<Rejections, constraint_count> rejections{};  ///< by Constraint
+};
+
+/// Draws `count` configurations of a scrambled Halton sequence within the limits and margins, fixed
+/// joints at their values, and keeps the feasible ones. The same for any number of threads. Throws
+/// InputError for a count below 1, or if none is feasible: it names the constraints to blame.
+Pool make_pool(const Constraints& constraints, Index count, std::uint64_t seed);
+
+/// One line a constraint that removed anything: "keep_out: 812 (310 first)", the largest first.
+std::string describe_rejections(const Pool& pool);
+
+/// The configurations checked as they are, not drawn.
+Pool filter_pool(const Constraints& constraints, const RowMatrixXd& candidates);
+
+/// As make_blocks(), with the rows of visible targets only: `is_visible[i]` says which targets (3
+/// rows each) configuration i shows; without entries, all of all.
+Blocks make_visible_blocks(const Campaign& campaign, const Parameters& parameters,
+                           const RowMatrixXd& configurations,
+                           const std::vector<std::vector<bool>>& is_visible, double repeats = 1);
+
+}  // namespace posewise

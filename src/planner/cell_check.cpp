@@ -1,0 +1,190 @@
+#include "cell_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/measurement/point_sensor.hpp"
+
+namespace posewise::planner {
+namespace {
+
+void require(bool is_met, const std::string& problem) {
+    if (!is_met) throw InputError("cell: " + problem);
+}
+
+void check_interval(const Interval& interval, const char* name) {
+    require(interval.lower <= interval.upper,
+            std::string("tracker.") + name + " is " + std::to_string(interval.lower) + " to " +
+                std::to_string(interval.upper) + " (m or rad); the lower end must come first");
+}
+
+bool is_direction(const Vector3d& normal) { return std::abs(normal.norm() - 1) < 1e-9; }
+
+void check_sight(const Sight& sight, std::size_t target_count) {
+    check_interval(sight.range, "range");
+    check_interval(sight.azimuth, "azimuth");
+    check_interval(sight.elevation, "elevation");
+    const bool is_turn = std::isinf(sight.azimuth.upper - sight.azimuth.lower) ||
+                         sight.azimuth.upper - sight.azimuth.lower <= 2 * std::numbers::pi + 1e-9;
+    require(is_turn, "tracker.azimuth is wider than a full turn");
+    require(sight.acceptance_half_angle > 0 && sight.acceptance_half_angle <= std::numbers::pi,
+            "reflectors.acceptance_half_angle is " + std::to_string(sight.acceptance_half_angle) +
+                " rad, must be above 0 and at most pi");
+    require(sight.normals.empty() || sight.normals.size() == target_count,
+            "reflectors.normals are " + std::to_string(sight.normals.size()) + ", must be " +
+                std::to_string(target_count) + ", one a target");
+    require(std::all_of(sight.normals.begin(), sight.normals.end(), is_direction),
+            "reflectors.normals must have length 1");
+    const Index most = static_cast<Index>(target_count);
+    const Index needed = sight.least_visible.value_or(most);
+    require(needed >= 0 && needed <= most, "reflectors.at_least_visible is " +
+                                               std::to_string(needed) + ", must be from 0 to " +
+                                               std::to_string(most) + ", the number of targets");
+}
+
+void check_links(const Cell& cell, const Chain& robot, const std::vector<Vector3d>& targets) {
+    for (const Link& link : cell.links) {
+        check_shape(link.solid);
+        require(link.frame >= 0 && link.frame <= robot.joint_count() + 1,
+                "link '" + link.name + "' is fixed to frame " + std::to_string(link.frame) +
+                    ", must be from 0 (base) to " + std::to_string(robot.joint_count() + 1) +
+                    " (flange)");
+        if (!cell.sight || !cell.sight->is_line_required) continue;
+        if (link.frame != robot.joint_count() + 1) continue;
+        for (std::size_t j = 0; j < targets.size(); ++j) {
+            require(!contains(link.solid, targets[j]),
+                    "target " + std::to_string(j + 1) + " lies within link '" + link.name +
+                        "', so it can never be seen; make the link smaller");
+        }
+    }
+}
+
+void check_fixed(const Cell& cell, const Chain& robot) {
+    for (const auto& [index, value] : cell.fixed_joints) {
+        require(index >= 0 && index < robot.joint_count(),
+                "fixed joint index " + std::to_string(index) + " is none of the robot's " +
+                    std::to_string(robot.joint_count()) + " joints");
+        const Joint& joint = robot.joints()[static_cast<std::size_t>(index)];
+        require(value >= joint.lower && value <= joint.upper,
+                "fixed joint '" + joint.name + "' is " + std::to_string(value) +
+                    ", must lie within its limits and margin, " + std::to_string(joint.lower) +
+                    " to " + std::to_string(joint.upper) + " (rad or m)");
+    }
+}
+
+void check_motion(const Cell& cell, const Chain& robot) {
+    const Index joints = robot.joint_count();
+    require(cell.home.size() == 0 || (cell.home.size() == joints && cell.home.allFinite()),
+            "home must have one finite value a joint");
+    require(cell.speed.size() == 0 || (cell.speed.size() == joints && cell.speed.allFinite() &&
+                                       (cell.speed.array() > 0).all()),
+            "speed must have one positive value a joint");
+}
+
+/// Length of the arm up to the frame right behind each element (index + 1; 0 is the base):
+/// translations, prismatic ones at their longest.
+std::vector<double> lengths_along(const Chain& robot) {
+    std::vector<double> lengths{0};
+    for (const Element& element : robot.elements()) {
+        double length = 0;
+        if (element.motion == Motion::Translation) {
+            length = std::abs(element.value);
+            for (const JointTerm& term : element.joints) {
+                const Joint& joint = robot.joints()[static_cast<std::size_t>(term.joint)];
+                length += std::abs(term.coefficient) *
+                          std::max(std::abs(joint.lower), std::abs(joint.upper));
+            }
+        }
+        lengths.push_back(lengths.back() + length);
+    }
+    return lengths;
+}
+
+/// Number of elements in front of a frame of Chain::base_from_links().
+std::size_t elements_before(const Chain& robot, Index frame) {
+    if (frame == 0) return 0;
+    const auto drives = [frame](const Element& element) {
+        return std::any_of(element.joints.begin(), element.joints.end(),
+                           [frame](const JointTerm& term) { return term.joint == frame - 1; });
+    };
+    const auto& elements = robot.elements();
+    if (frame > robot.joint_count()) return elements.size();
+    return static_cast<std::size_t>(std::find_if(elements.begin(), elements.end(), drives) -
+                                    elements.begin()) +
+           1;
+}
+
+}  // namespace
+
+std::vector<Vector3d> nominal_targets(const Campaign& campaign, const Cell& cell) {
+    const auto* const sensor = dynamic_cast<const PointSensor*>(campaign.sensor.get());
+    if (cell.sight || !cell.target_boxes.empty()) {
+        require(sensor != nullptr, "sight and target_boxes need a sensor that measures targets");
+        require(campaign.has_nominal_targets,
+                "sight and target_boxes need to know where the targets are; the sensor must state "
+                "targets.position_mm");
+        require(!cell.sight || campaign.has_nominal_base,
+                "sight needs to know where the tracker is; the campaign must state its base");
+    }
+    std::vector<Vector3d> targets;
+    if (sensor == nullptr || !campaign.has_nominal_targets) return targets;
+    for (Index j = 0; j < sensor->target_count(); ++j) {
+        targets.push_back(sensor->target(j, campaign.nominal.sensor));
+    }
+    return targets;
+}
+
+void check_cell(const Cell& cell, const Chain& robot, const std::vector<Vector3d>& targets) {
+    for (const Box& box : cell.target_boxes) check_shape(box);
+    for (const KeepOut& keep_out : cell.keep_outs) check_shape(keep_out.solid);
+    check_links(cell, robot, targets);
+    require(std::isfinite(cell.safety_distance) && cell.safety_distance >= 0,
+            "safety_distance is " + std::to_string(cell.safety_distance) +
+                " m, must be finite and not negative");
+    require(std::isfinite(cell.least_joint_distance) && cell.least_joint_distance >= 0,
+            "least_joint_distance is " + std::to_string(cell.least_joint_distance) +
+                " rad or m, must be finite and not negative");
+    if (cell.sight) check_sight(*cell.sight, targets.size());
+    check_fixed(cell, robot);
+    check_motion(cell, robot);
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> colliding_pairs(const std::vector<Link>& links) {
+    std::set<Index> frames;
+    for (const Link& link : links) frames.insert(link.frame);
+    const auto rank = [&frames](const Link& link) {
+        return std::distance(frames.begin(), frames.find(link.frame));
+    };
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (std::size_t j = 0; j < links.size(); ++j) {
+        for (std::size_t i = 0; i < j; ++i) {
+            if (std::abs(rank(links[i]) - rank(links[j])) > 1) pairs.emplace_back(i, j);
+        }
+    }
+    return pairs;
+}
+
+VectorXd clearance_rates(const Chain& robot, const std::vector<Link>& links) {
+    const std::vector<double> lengths = lengths_along(robot);
+    VectorXd rates = VectorXd::Zero(robot.joint_count());
+    for (const Link& link : links) {
+        if (link.frame < 0 || link.frame > robot.joint_count() + 1) continue;  // check_cell() tells
+        const std::size_t end = elements_before(robot, link.frame);
+        const double reach = std::max(link.solid.from.norm(), link.solid.to.norm());
+        VectorXd of_link = VectorXd::Zero(robot.joint_count());
+        for (std::size_t k = 0; k < end; ++k) {
+            const Element& element = robot.elements()[k];
+            const bool turns = element.motion == Motion::Rotation;
+            const double lever = turns ? lengths[end] - lengths[k] + reach : 1;
+            for (const JointTerm& term : element.joints) {
+                of_link[term.joint] += std::abs(term.coefficient) * lever;
+            }
+        }
+        rates = rates.cwiseMax(of_link);
+    }
+    return rates;
+}
+
+}  // namespace posewise::planner

@@ -1,0 +1,214 @@
+#include "posewise/planner/constraints.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "cell_check.hpp"
+
+namespace posewise {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double interval_clearance(const Interval& interval, double value) {
+    return std::min(value - interval.lower, interval.upper - value);
+}
+
+/// Clearance of an azimuth to an interval that may lie across +-pi.
+double azimuth_clearance(const Interval& interval, double azimuth) {
+    if (!std::isfinite(interval.lower) || !std::isfinite(interval.upper)) {
+        return interval_clearance(interval, azimuth);
+    }
+    const double center = (interval.lower + interval.upper) / 2;
+    const double offset = std::remainder(azimuth - center, 2 * std::numbers::pi);
+    return (interval.upper - interval.lower) / 2 - std::abs(offset);
+}
+
+/// Angle between two vectors, exact also where it is small; 0 if one has no length.
+double angle_between(const Vector3d& a, const Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+}  // namespace
+
+/// Where everything that moves with the robot is, in the base frame.
+struct Constraints::Posture {
+    std::vector<Capsule> links;
+    std::vector<Vector3d> targets;
+    Isometry3d base_from_flange;
+};
+
+const char* constraint_name(Constraint constraint) {
+    static constexpr std::array<const char*, constraint_count> names{
+        "joint limits",
+        "fixed",
+        "target_boxes",
+        "keep_out",
+        "self-collision of links",
+        "tracker.range",
+        "tracker.azimuth",
+        "tracker.elevation",
+        "reflectors.acceptance_half_angle",
+        "tracker.line_of_sight",
+        "reflectors.at_least_visible"};
+    return names[static_cast<std::size_t>(constraint)];
+}
+
+double ConstraintReport::margin() const {
+    return *std::min_element(clearance.begin(), clearance.end());
+}
+
+Constraints::Constraints(const Campaign& campaign, Cell cell)
+    : cell_(std::move(cell)),
+      robot_(without_parameters(with_margin(campaign.robot, cell_.limit_margin))),
+      tracker_from_base_(campaign.nominal.world_from_base),
+      targets_(planner::nominal_targets(campaign, cell_)),
+      pairs_(planner::colliding_pairs(cell_.links)),
+      clearance_rates_(planner::clearance_rates(robot_, cell_.links)) {
+    planner::check_cell(cell_, robot_, targets_);
+    const Vector3d tracker = tracker_from_base_.inverse().translation();
+    for (std::size_t i = 0; i < cell_.keep_outs.size(); ++i) {
+        if (!contains(cell_.keep_outs[i].solid, tracker)) screens_.push_back(i);
+    }
+}
+
+Constraints::Posture Constraints::pose_links(const VectorXd& q) const {
+    const std::vector<Isometry3d> frames = robot_.base_from_links(q, VectorXd());
+    Posture posture{{}, {}, frames.back()};
+    for (const Link& link : cell_.links) {
+        posture.links.push_back(frames[static_cast<std::size_t>(link.frame)] * link.solid);
+    }
+    for (const Vector3d& target : targets_) posture.targets.push_back(frames.back() * target);
+    return posture;
+}
+
+double Constraints::limit_clearance(const VectorXd& q) const {
+    double least = infinity;
+    for (Index j = 0; j < q.size(); ++j) {
+        if (cell_.fixed_joints.count(j) != 0) continue;
+        const Joint& joint = robot_.joints()[static_cast<std::size_t>(j)];
+        least = std::min(least, interval_clearance({joint.lower, joint.upper}, q[j]));
+    }
+    return least;
+}
+
+double Constraints::fixed_clearance(const VectorXd& q) const {
+    constexpr double tolerance = 1e-9;
+    double least = infinity;
+    for (const auto& [joint, value] : cell_.fixed_joints) {
+        const double deviation = std::abs(q[joint] - value);
+        if (deviation > tolerance) least = std::min(least, -deviation);
+    }
+    return least;
+}
+
+double Constraints::box_clearance(const Posture& posture) const {
+    if (cell_.target_boxes.empty()) return infinity;
+    double least = infinity;
+    for (const Vector3d& target : posture.targets) {
+        double best = -infinity;
+        for (const Box& box : cell_.target_boxes) {
+            best = std::max(best, -signed_distance(target, box));
+        }
+        least = std::min(least, best);
+    }
+    return least;
+}
+
+double Constraints::keep_out_clearance(const Posture& posture) const {
+    double least = infinity;
+    for (std::size_t i = 0; i < posture.links.size(); ++i) {
+        if (cell_.links[i].frame == 0) continue;  // never moves
+        for (const KeepOut& keep_out : cell_.keep_outs) {
+            least = std::min(least, clearance(posture.links[i], keep_out.solid));
+        }
+    }
+    return least - cell_.safety_distance;
+}
+
+double Constraints::self_clearance(const Posture& posture) const {
+    double least = infinity;
+    for (const auto& [i, j] : pairs_) {
+        least = std::min(least, clearance(posture.links[i], posture.links[j]));
+    }
+    return least - cell_.safety_distance;
+}
+
+double Constraints::line_clearance(const Posture& posture, const Vector3d& target) const {
+    if (!cell_.sight->is_line_required) return infinity;
+    const Capsule line{tracker_from_base_.inverse().translation(), target, 0};
+    double least = infinity;
+    for (const Capsule& link : posture.links) {
+        least = std::min(least, clearance(line, link));
+    }
+    for (const std::size_t i : screens_) {
+        least = std::min(least, clearance(line, cell_.keep_outs[i].solid));
+    }
+    return least;
+}
+
+void Constraints::check_sight(const Posture& posture, ConstraintReport& report) const {
+    const Sight& sight = *cell_.sight;
+    const std::size_t count = posture.targets.size();
+    const Matrix3d tracker_R_flange =
+        tracker_from_base_.linear() * posture.base_from_flange.linear();
+    // Clearances of each target: range, azimuth, elevation, incidence, line, and the least of them.
+    constexpr std::size_t first = static_cast<std::size_t>(Constraint::Range);
+    constexpr std::size_t kinds = constraint_count - first;
+    std::array<std::vector<double>, kinds> clearances;
+    for (std::size_t j = 0; j < count; ++j) {
+        const Vector3d point = tracker_from_base_ * posture.targets[j];
+        const double incidence =
+            sight.normals.empty() ? infinity
+                                  : sight.acceptance_half_angle -
+                                        angle_between(tracker_R_flange * sight.normals[j], -point);
+        const double azimuth = std::atan2(point.y(), point.x());
+        const double elevation = std::atan2(point.z(), point.head<2>().norm());
+        std::array<double, kinds> of_target{interval_clearance(sight.range, point.norm()),
+                                            azimuth_clearance(sight.azimuth, azimuth),
+                                            interval_clearance(sight.elevation, elevation),
+                                            incidence,
+                                            line_clearance(posture, posture.targets[j]),
+                                            infinity};
+        of_target.back() = *std::min_element(of_target.begin(), of_target.end());
+        report.is_visible.push_back(of_target.back() >= 0);
+        for (std::size_t k = 0; k < kinds; ++k) clearances[k].push_back(of_target[k]);
+    }
+    const auto needed =
+        static_cast<std::size_t>(sight.least_visible.value_or(static_cast<Index>(count)));
+    if (needed == 0) return;
+    for (std::size_t k = 0; k < kinds; ++k) {  // the needed-th largest
+        const auto nth = clearances[k].begin() + static_cast<std::ptrdiff_t>(needed) - 1;
+        std::nth_element(clearances[k].begin(), nth, clearances[k].end(), std::greater<>());
+        report.clearance[first + k] = *nth;
+    }
+}
+
+ConstraintReport Constraints::check(const VectorXd& q) const {
+    robot_.check_configuration(q);
+    const Posture posture = pose_links(q);
+    ConstraintReport report;
+    report.clearance.fill(infinity);
+    const auto set = [&report](Constraint constraint, double value) {
+        report.clearance[static_cast<std::size_t>(constraint)] = value;
+    };
+    set(Constraint::JointLimits, limit_clearance(q));
+    set(Constraint::FixedJoints, fixed_clearance(q));
+    set(Constraint::TargetBoxes, box_clearance(posture));
+    set(Constraint::KeepOuts, keep_out_clearance(posture));
+    set(Constraint::SelfCollision, self_clearance(posture));
+    if (cell_.sight) check_sight(posture, report);
+    return report;
+}
+
+double Constraints::collision_clearance(const VectorXd& q) const {
+    const Posture posture = pose_links(q);
+    return std::min(keep_out_clearance(posture), self_clearance(posture));
+}
+
+double joint_distance(const VectorXd& a, const VectorXd& b) {
+    return (a - b).cwiseAbs().maxCoeff();
+}
+
+}  // namespace posewise

@@ -1,0 +1,98 @@
+#include "posewise/planner/pool.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+void count_rejections(const ConstraintReport& report,
+                      std::array<Rejections, constraint_count>& rejections) {
+    bool is_first = true;
+    for (std::size_t k = 0; k < constraint_count; ++k) {
+        if (report.clearance[k] >= 0) continue;
+        ++rejections[k].in_all;
+        if (is_first) ++rejections[k].first;
+        is_first = false;
+    }
+}
+
+/// Constraints that removed anything, the largest first.
+std::vector<std::size_t> by_rejections(const Pool& pool) {
+    std::vector<std::size_t> kinds(constraint_count);
+    std::iota(kinds.begin(), kinds.end(), std::size_t{0});
+    std::erase_if(kinds, [&](std::size_t k) { return pool.rejections[k].in_all == 0; });
+    std::stable_sort(kinds.begin(), kinds.end(), [&](std::size_t a, std::size_t b) {
+        return pool.rejections[a].in_all > pool.rejections[b].in_all;
+    });
+    return kinds;
+}
+
+InputError nothing_feasible(const Pool& pool) {
+    const std::vector<std::size_t> kinds = by_rejections(pool);
+    std::string violated;
+    for (const std::size_t k : kinds) {
+        violated += (violated.empty() ? "" : ", ") +
+                    std::string(constraint_name(static_cast<Constraint>(k))) + " by " +
+                    std::to_string(pool.rejections[k].in_all);
+    }
+    const Rejections& worst = pool.rejections[kinds.front()];
+    const std::string name = constraint_name(static_cast<Constraint>(kinds.front()));
+    return InputError("none of " + std::to_string(pool.candidate_count) +
+                      " candidates is feasible; violated are " + violated + "; " +
+                      (worst.in_all == pool.candidate_count ? name + " alone leaves nothing"
+                                                            : "together they leave nothing") +
+                      ", so relax " + name + " first");
+}
+
+}  // namespace
+
+Pool filter_pool(const Constraints& constraints, const RowMatrixXd& candidates) {
+    std::vector<ConstraintReport> reports(static_cast<std::size_t>(candidates.rows()));
+    for (Index i = 0; i < candidates.rows(); ++i) {
+        constraints.robot().check_configuration(candidates.row(i).transpose());
+    }
+#pragma omp parallel for schedule(dynamic, 64)
+    for (Index i = 0; i < candidates.rows(); ++i) {
+        reports[static_cast<std::size_t>(i)] = constraints.check(candidates.row(i).transpose());
+    }
+    Pool pool;
+    pool.candidate_count = candidates.rows();
+    std::vector<Index> feasible;
+    for (Index i = 0; i < candidates.rows(); ++i) {
+        ConstraintReport& report = reports[static_cast<std::size_t>(i)];
+        count_rejections(report, pool.rejections);
+        if (!report.is_feasible()) continue;
+        feasible.push_back(i);
+        if (constraints.cell().sight) pool.is_visible.push_back(std::move(report.is_visible));
+    }
+    pool.configurations = candidates(feasible, Eigen::all);
+    return pool;
+}
+
+Pool make_pool(const Constraints& constraints, Index count, std::uint64_t seed) {
+    if (count < 1) {
+        throw InputError("a pool of " + std::to_string(count) + " candidates, must be at least 1");
+    }
+    RowMatrixXd candidates = halton_configurations(constraints.robot(), count, {{}, 1, seed});
+    for (const auto& [joint, value] : constraints.cell().fixed_joints) {
+        candidates.col(joint).setConstant(value);
+    }
+    Pool pool = filter_pool(constraints, candidates);
+    if (pool.configurations.rows() == 0) throw nothing_feasible(pool);
+    return pool;
+}
+
+std::string describe_rejections(const Pool& pool) {
+    std::string text;
+    for (const std::size_t k : by_rejections(pool)) {
+        text += std::string(constraint_name(static_cast<Constraint>(k))) + ": " +
+                std::to_string(pool.rejections[k].in_all) + " (" +
+                std::to_string(pool.rejections[k].first) + " first)\n";
+    }
+    return text;
+}
+
+}  // namespace posewise

@@ -1,0 +1,202 @@
+#include "posewise/planner/tour.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/core/random.hpp"
+
+namespace posewise {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Home (node 0, if there is one) and poses with the ways between them.
+class Roadmap {
+  public:
+    Roadmap(const Constraints& constraints, const RowMatrixXd& poses, const TourOptions& options)
+        : constraints_(constraints), options_(options), speed_(constraints.cell().speed) {
+        if (speed_.size() == 0) speed_ = VectorXd::Ones(constraints.robot().joint_count());
+        nodes_.push_back(constraints.cell().home);
+        for (Index i = 0; i < poses.rows(); ++i) nodes_.push_back(poses.row(i).transpose());
+        for (const VectorXd& node : nodes_) {
+            if (node.size() != 0 || &node != &nodes_[0]) {
+                constraints.robot().check_configuration(node);
+            }
+        }
+        if (has_home() && constraints.collision_clearance(nodes_[0]) < 0) {
+            throw InputError("cell: home collides with a keep-out or the robot itself");
+        }
+        measure_times();
+        find_free_moves();
+    }
+
+    const MatrixXd& straight_times() const { return straight_times_; }
+
+    /// Times with what is known: of free moves and of vias. Not free and not yet examined counts
+    /// as longer than any tour of the others; found to be blocked, as infinite.
+    MatrixXd known_times() const {
+        const double unknown =
+            static_cast<double>(nodes_.size()) * (straight_times_.maxCoeff() + 1);
+        MatrixXd times = straight_times_;
+        for (Index i = 0; i < times.rows(); ++i) {
+            for (Index j = 0; j < i; ++j) {
+                if (is_free_(i, j)) continue;
+                const auto found = detours_.find({i, j});
+                times(i, j) = found == detours_.end() ? unknown : found->second.time;
+                times(j, i) = times(i, j);
+            }
+        }
+        return times;
+    }
+
+    /// Looks for a via of a move that needs one; false if it needs none or that was done before.
+    bool examine(Index i, Index j) {
+        if (i < j) std::swap(i, j);
+        if (is_free_(i, j) || detours_.count({i, j}) != 0) return false;
+        detours_[{i, j}] = find_detour(i, j);
+        return true;
+    }
+
+    Visit visit(Index from, Index to) const {
+        Visit visit{to - 1, std::nullopt, false};
+        const auto found = detours_.find({std::max(from, to), std::min(from, to)});
+        if (found == detours_.end()) return visit;
+        visit.is_blocked = found->second.time == infinity;
+        if (!visit.is_blocked) visit.via = found->second.via;
+        return visit;
+    }
+
+  private:
+    struct Detour {
+        double time = infinity;
+        VectorXd via;
+    };
+
+    bool has_home() const { return nodes_[0].size() != 0; }
+    const VectorXd& node(Index i) const { return nodes_[static_cast<std::size_t>(i)]; }
+
+    void measure_times() {
+        const auto count = static_cast<Index>(nodes_.size());
+        straight_times_ = MatrixXd::Zero(count, count);
+        for (Index i = 1; i < count; ++i) {
+            for (Index j = has_home() ? 0 : 1; j < i; ++j) {
+                straight_times_(i, j) = move_time(speed_, node(i), node(j));
+                straight_times_(j, i) = straight_times_(i, j);
+            }
+        }
+    }
+
+    void find_free_moves() {
+        const auto count = static_cast<Index>(nodes_.size());
+        is_free_ = Eigen::Matrix<char, Eigen::Dynamic, Eigen::Dynamic>::Ones(count, count);
+#pragma omp parallel for schedule(dynamic)
+        for (Index i = 1; i < count; ++i) {
+            for (Index j = has_home() ? 0 : 1; j < i; ++j) {
+                is_free_(i, j) =
+                    is_move_free(constraints_, node(i), node(j), options_.resolution) ? 1 : 0;
+            }
+        }
+    }
+
+    /// The quickest of the free ways over home and over random points about the middle of the
+    /// move, the farther out the more were tried.
+    Detour find_detour(Index i, Index j) const {
+        Detour best;
+        const auto consider = [&](const VectorXd& via) {
+            const double time = move_time(speed_, node(i), via) + move_time(speed_, via, node(j));
+            if (time >= best.time || constraints_.collision_clearance(via) < 0) return;
+            if (!is_move_free(constraints_, node(i), via, options_.resolution)) return;
+            if (!is_move_free(constraints_, via, node(j), options_.resolution)) return;
+            best = {time, via};
+        };
+        if (has_home() && j != 0) consider(nodes_[0]);
+        RandomStream stream(options_.order.seed,
+                            static_cast<std::uint64_t>(i * straight_times_.rows() + j));
+        for (Index k = 1; k <= options_.via_attempts; ++k) {
+            const double spread =
+                static_cast<double>(k) / static_cast<double>(options_.via_attempts);
+            consider(draw_via(node(i), node(j), spread, stream));
+        }
+        return best;
+    }
+
+    VectorXd draw_via(const VectorXd& a, const VectorXd& b, double spread,
+                      RandomStream& stream) const {
+        VectorXd via = (a + b) / 2;
+        for (Index k = 0; k < via.size(); ++k) {
+            const Joint& joint = constraints_.robot().joints()[static_cast<std::size_t>(k)];
+            const double drawn = stream.uniform(joint.lower, joint.upper);
+            if (constraints_.cell().fixed_joints.count(k) == 0) via[k] += spread * (drawn - via[k]);
+        }
+        return via;
+    }
+
+    const Constraints& constraints_;
+    const TourOptions& options_;
+    VectorXd speed_;
+    std::vector<VectorXd> nodes_;
+    MatrixXd straight_times_;
+    Eigen::Matrix<char, Eigen::Dynamic, Eigen::Dynamic> is_free_;  // lower triangle
+    std::map<std::pair<Index, Index>, Detour> detours_;            // larger index first
+};
+
+/// Examines the moves of the order that are not free; false if there was nothing left to examine.
+bool examine_moves(Roadmap& roadmap, const std::vector<Index>& poses) {
+    bool is_new = false;
+    Index here = 0;
+    for (const Index pose : poses) {
+        is_new = roadmap.examine(here, pose + 1) || is_new;
+        here = pose + 1;
+    }
+    return is_new;
+}
+
+}  // namespace
+
+double move_time(const VectorXd& speed, const VectorXd& a, const VectorXd& b) {
+    return (b - a).cwiseAbs().cwiseQuotient(speed).maxCoeff();
+}
+
+bool is_move_free(const Constraints& constraints, const VectorXd& a, const VectorXd& b,
+                  double resolution) {
+    constexpr double rounding = 1e-6;  // poses may touch their bound
+    const double motion = constraints.clearance_rates().dot((b - a).cwiseAbs());
+    double done = 0;
+    for (;;) {
+        const double share = motion > 0 ? std::min(done / motion, 1.0) : 1.0;
+        const double clearance = constraints.collision_clearance(a + share * (b - a));
+        if (clearance < -rounding) return false;
+        if (share == 1) return true;
+        done += std::max(clearance, resolution);
+    }
+}
+
+Tour plan_tour(const Constraints& constraints, const RowMatrixXd& poses,
+               const TourOptions& options) {
+    Roadmap roadmap(constraints, poses, options);
+    VisitingOrder order;
+    do {
+        order = shortest_order(roadmap.known_times(), options.order);
+    } while (examine_moves(roadmap, order.poses));
+
+    Tour tour;
+    const MatrixXd known = roadmap.known_times();
+    const MatrixXd& straight = roadmap.straight_times();
+    std::vector<Index> given(static_cast<std::size_t>(poses.rows()));
+    for (std::size_t i = 0; i < given.size(); ++i) given[i] = static_cast<Index>(i);
+    tour.planning_order_time = order_time(straight, given);
+    tour.nearest_neighbour_time = nearest_neighbour_order(straight).time;
+    Index here = 0;
+    for (const Index pose : order.poses) {
+        const Visit visit = roadmap.visit(here, pose + 1);
+        if (visit.is_blocked) ++tour.blocked_count;
+        tour.time += visit.is_blocked ? straight(here, pose + 1) : known(here, pose + 1);
+        tour.visits.push_back(visit);
+        here = pose + 1;
+    }
+    return tour;
+}
+
+}  // namespace posewise

@@ -1,0 +1,125 @@
+#include "posewise/planner/order.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "posewise/core/errors.hpp"
+#include "support/sweep.hpp"
+
+namespace posewise {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Chebyshev times between random points in six dimensions.
+MatrixXd random_times(RandomStream& stream, Index poses) {
+    MatrixXd points(6, poses + 1);
+    for (double& x : points.reshaped()) x = stream.uniform();
+    MatrixXd times(poses + 1, poses + 1);
+    for (Index i = 0; i <= poses; ++i) {
+        for (Index j = 0; j <= poses; ++j) {
+            times(i, j) = (points.col(i) - points.col(j)).cwiseAbs().maxCoeff();
+        }
+    }
+    return times;
+}
+
+/// The shortest open path by dynamic programming over subsets [Held & Karp 1962].
+double exact_time(const MatrixXd& times) {
+    const Index poses = times.rows() - 1;
+    const std::size_t sets = std::size_t{1} << poses;
+    // least(last, set): from the start through the poses of the set to `last`, one of them.
+    MatrixXd least = MatrixXd::Constant(poses, static_cast<Index>(sets), infinity);
+    for (Index i = 0; i < poses; ++i) least(i, Index{1} << i) = times(0, i + 1);
+    for (std::size_t set = 1; set < sets; ++set) {
+        for (Index i = 0; i < poses; ++i) {
+            const double here = least(i, static_cast<Index>(set));
+            if (here == infinity) continue;
+            for (Index j = 0; j < poses; ++j) {
+                const std::size_t larger = set | (std::size_t{1} << j);
+                if (larger == set) continue;
+                double& there = least(j, static_cast<Index>(larger));
+                there = std::min(there, here + times(i + 1, j + 1));
+            }
+        }
+    }
+    return least.col(static_cast<Index>(sets - 1)).minCoeff();
+}
+
+bool is_permutation(std::vector<Index> poses, Index count) {
+    std::sort(poses.begin(), poses.end());
+    for (Index i = 0; i < count; ++i) {
+        if (poses[static_cast<std::size_t>(i)] != i) return false;
+    }
+    return static_cast<Index>(poses.size()) == count;
+}
+
+TEST(ShortestOrder, IsTheExactOneForFewPoses) {
+    for (int i = 0; i < 30; ++i) {
+        RandomStream stream(21, static_cast<std::uint64_t>(i));
+        const MatrixXd times = random_times(stream, 3 + i % 10);
+        const VisitingOrder order = shortest_order(times);
+        EXPECT_TRUE(is_permutation(order.poses, times.rows() - 1));
+        EXPECT_NEAR(order.time, order_time(times, order.poses), 1e-12);
+        EXPECT_NEAR(order.time, exact_time(times), 1e-12) << times.rows() - 1 << " poses";
+    }
+}
+
+TEST(ShortestOrder, IsNeverLongerThanNearestNeighbour) {
+    for (int i = 0; i < 20; ++i) {
+        RandomStream stream(22, static_cast<std::uint64_t>(i));
+        const MatrixXd times = random_times(stream, stream.index(60));
+        const VisitingOrder order = shortest_order(times, {20, 1});
+        EXPECT_TRUE(is_permutation(order.poses, times.rows() - 1));
+        EXPECT_LE(order.time, nearest_neighbour_order(times).time + 1e-12);
+    }
+}
+
+TEST(ShortestOrder, FollowsPosesOnALine) {
+    VectorXd x(7);
+    x << 0, 5, 1, 4, 2, 6, 3;  // the start at 0
+    const MatrixXd times = (x.replicate(1, 7) - x.transpose().replicate(7, 1)).cwiseAbs();
+    EXPECT_EQ(shortest_order(times).poses, (std::vector<Index>{1, 3, 5, 2, 0, 4}));
+    EXPECT_EQ(shortest_order(times).time, 6);
+    EXPECT_EQ(nearest_neighbour_order(times).poses, (std::vector<Index>{1, 3, 5, 2, 0, 4}));
+}
+
+TEST(ShortestOrder, AvoidsImpossibleMovesIfItCan) {
+    RandomStream stream(23);
+    MatrixXd times = random_times(stream, 9);
+    for (int k = 0; k < 18; ++k) {
+        const Index i = stream.index(10);
+        const Index j = stream.index(10);
+        if (i != j) times(i, j) = times(j, i) = infinity;
+    }
+    const VisitingOrder order = shortest_order(times);
+    EXPECT_TRUE(std::isfinite(order.time));
+    EXPECT_NEAR(order.time, exact_time(times), 1e-12);
+    times.row(4).setConstant(infinity);
+    times.col(4).setConstant(infinity);
+    times(4, 4) = 0;
+    EXPECT_EQ(shortest_order(times).time, infinity);
+    EXPECT_TRUE(is_permutation(shortest_order(times).poses, 9));
+}
+
+TEST(ShortestOrder, TakesNoPoseAndOnePose) {
+    EXPECT_TRUE(shortest_order(MatrixXd::Zero(1, 1)).poses.empty());
+    MatrixXd two(2, 2);
+    two << 0, 3, 3, 0;
+    EXPECT_EQ(shortest_order(two).poses, std::vector<Index>{0});
+    EXPECT_EQ(shortest_order(two).time, 3);
+}
+
+TEST(ShortestOrder, RejectsTimesThatAreNone) {
+    EXPECT_THROW(shortest_order(MatrixXd::Zero(0, 0)), InputError);
+    EXPECT_THROW(shortest_order(MatrixXd::Zero(2, 3)), InputError);
+    MatrixXd times(2, 2);
+    times << 0, 1, 2, 0;
+    EXPECT_THROW(shortest_order(times), InputError);
+    EXPECT_THROW(shortest_order(-MatrixXd::Ones(2, 2)), InputError);
+    EXPECT_THROW(nearest_neighbour_order(MatrixXd::Constant(2, 2, std::nan(""))), InputError);
+}
+
+}  // namespace
+}  // namespace posewise

@@ -1,0 +1,126 @@
+#include "posewise/planner/pool.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "support/cell_recheck.hpp"
+#include "support/cells.hpp"
+
+namespace posewise {
+namespace {
+
+using testing::cell_campaign;
+using testing::CellRecheck;
+using testing::degree;
+using testing::demo_cell;
+
+TEST(MakePool, KeepsOnlyPosesThatASeparateDenseCheckAccepts) {
+    const Campaign campaign = cell_campaign();
+    const Cell cell = demo_cell();
+    const Pool pool = make_pool(Constraints(campaign, cell), 15000, 1);
+    EXPECT_GT(pool.configurations.rows(), 1000);
+    CellRecheck recheck(campaign, cell);
+    for (Index i = 0; i < std::min<Index>(pool.configurations.rows(), 150); ++i) {
+        const auto violations = recheck.violations(pool.configurations.row(i).transpose());
+        EXPECT_TRUE(violations.empty()) << "pose " << i << ": " << violations.front();
+        for (std::size_t j = 0; j < 3; ++j) {
+            EXPECT_EQ(pool.is_visible[static_cast<std::size_t>(i)][j], recheck.is_seen_[j]);
+        }
+    }
+}
+
+TEST(MakePool, RejectsOnlyWhatBreaksAConstraint) {
+    const Campaign campaign = cell_campaign();
+    Cell cell = demo_cell();
+    cell.safety_distance = 0;
+    const Constraints constraints(campaign, cell);
+    CellRecheck recheck(campaign, cell, -0.03);  // sampling sees what is within 30 mm
+    const RowMatrixXd candidates = halton_configurations(constraints.robot(), 300);
+    Index infeasible = 0;
+    for (Index i = 0; i < candidates.rows(); ++i) {
+        const VectorXd q = candidates.row(i).transpose();
+        if (constraints.check(q).is_feasible()) continue;
+        ++infeasible;
+        EXPECT_FALSE(recheck.violations(q).empty()) << "pose " << i;
+    }
+    EXPECT_GT(infeasible, 100);
+}
+
+TEST(MakePool, CountsWhatEachConstraintRemoved) {
+    const Pool pool = make_pool(Constraints(cell_campaign(), demo_cell()), 2000, 1);
+    Index first = 0;
+    for (const Rejections& rejections : pool.rejections) {
+        EXPECT_LE(rejections.first, rejections.in_all);
+        first += rejections.first;
+    }
+    EXPECT_EQ(first + pool.configurations.rows(), 2000);
+    EXPECT_NE(describe_rejections(pool).find("keep_out: "), std::string::npos);
+}
+
+TEST(MakePool, IsTheSameForAnyNumberOfThreads) {
+    const Constraints constraints(cell_campaign(), demo_cell());
+    omp_set_num_threads(1);
+    const Pool one = make_pool(constraints, 3000, 7);
+    omp_set_num_threads(2);
+    const Pool two = make_pool(constraints, 3000, 7);
+    EXPECT_EQ(one.configurations, two.configurations);
+    EXPECT_EQ(one.is_visible, two.is_visible);
+    EXPECT_NE(make_pool(constraints, 3000, 8).configurations, one.configurations);
+}
+
+TEST(MakePool, HoldsFixedJoints) {
+    Cell cell = demo_cell();
+    cell.fixed_joints[5] = 10 * degree;
+    const Pool pool = make_pool(Constraints(cell_campaign(), cell), 5000, 1);
+    EXPECT_EQ(pool.configurations.col(5).minCoeff(), 10 * degree);
+    EXPECT_EQ(pool.configurations.col(5).maxCoeff(), 10 * degree);
+}
+
+TEST(MakePool, SaysWhichConstraintLeavesNothing) {
+    Cell cell = demo_cell();
+    cell.target_boxes = {{Vector3d(9, 9, 9), Vector3d(10, 10, 10)}};
+    const Constraints unreachable(cell_campaign(), cell);
+    try {
+        make_pool(unreachable, 500, 1);
+        FAIL();
+    } catch (const InputError& error) {
+        const std::string text = error.what();
+        EXPECT_NE(text.find("none of 500 candidates"), std::string::npos) << text;
+        EXPECT_NE(text.find("target_boxes by 500"), std::string::npos) << text;
+        EXPECT_NE(text.find("target_boxes alone leaves nothing, so relax target_boxes first"),
+                  std::string::npos)
+            << text;
+    }
+    EXPECT_THROW(make_pool(Constraints(cell_campaign(), demo_cell()), 0, 1), InputError);
+}
+
+TEST(MakeVisibleBlocks, HaveTheRowsOfVisibleTargetsOnly) {
+    Campaign campaign = cell_campaign();
+    campaign.joint_repeatability = VectorXd::Constant(6, 1e-5);  // correlates the targets
+    const RowMatrixXd q = halton_configurations(campaign.robot, 3);
+    const std::vector<std::vector<bool>> visible{
+        {true, true, true}, {false, true, false}, {false, false, false}};
+    const Blocks blocks = make_visible_blocks(campaign, campaign.nominal, q, visible);
+    EXPECT_EQ(blocks.first_row, (std::vector<Index>{0, 9, 12, 12}));
+    const Blocks all = make_blocks(campaign, campaign.nominal, q);
+    EXPECT_LT((blocks[0] - all[0]).cwiseAbs().maxCoeff(), 1e-12);
+
+    // A sensor that has the second target only must tell the same of the robot.
+    Campaign one = campaign;
+    one.sensor = std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(1), 5e-5);
+    one.nominal.sensor = campaign.nominal.sensor.segment<3>(3);
+    const Blocks expected = make_blocks(one, one.nominal, q);
+    EXPECT_LT((blocks[1].leftCols(24) - expected[1].leftCols(24)).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_LT((blocks[1].middleCols(27, 3) - expected[1].rightCols(3)).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_EQ(blocks[1].middleCols(24, 3).norm(), 0);
+
+    EXPECT_EQ(make_visible_blocks(campaign, campaign.nominal, q, {}).matrix, all.matrix);
+    EXPECT_THROW(make_visible_blocks(campaign, campaign.nominal, q, {{true}}), InputError);
+    EXPECT_THROW(make_visible_blocks(campaign, campaign.nominal, q, {{true}, {true}, {true}}),
+                 InputError);
+}
+
+}  // namespace
+}  // namespace posewise
