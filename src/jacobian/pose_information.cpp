@@ -8,6 +8,17 @@
 #include "posewise/measurement/noise.hpp"
 
 namespace posewise {
+namespace {
+
+/// Rows that a pose does not show leave; none listed: all stay.
+void keep_rows(const std::vector<Index>& rows, RowMatrixXd& A) {
+    if (!rows.empty()) A = A(rows, Eigen::all).eval();
+}
+void keep_rows_and_columns(const std::vector<Index>& rows, MatrixXd& A) {
+    if (!rows.empty()) A = A(rows, rows).eval();
+}
+
+}  // namespace
 
 PoseInformation::PoseInformation(const Campaign& campaign, Parameters parameters, double repeats)
     : campaign_(campaign),
@@ -20,11 +31,14 @@ PoseInformation::PoseInformation(const Campaign& campaign, Parameters parameters
     }
 }
 
-MatrixXd PoseInformation::evaluate(const VectorXd& q) const {
+MatrixXd PoseInformation::evaluate(const VectorXd& q, const std::vector<Index>& rows) const {
     FlangeMotion motion;
     RowMatrixXd B(campaign_.sensor->row_count(), parameter_count());
     differentiate_pose(campaign_, parameters_, q, motion, B);
-    whiten(mean_covariance(campaign_, motion, parameters_.sensor, repeats_), B);
+    MatrixXd S = mean_covariance(campaign_, motion, parameters_.sensor, repeats_);
+    keep_rows(rows, B);
+    keep_rows_and_columns(rows, S);
+    whiten(S, B);
     B *= scale_.asDiagonal();
     MatrixXd M = MatrixXd::Zero(B.cols(), B.cols());
     M.selfadjointView<Eigen::Lower>().rankUpdate(B.transpose());
@@ -32,7 +46,8 @@ MatrixXd PoseInformation::evaluate(const VectorXd& q) const {
     return M;
 }
 
-VectorXd PoseInformation::differentiate(const VectorXd& q, const MatrixXd& Z) const {
+VectorXd PoseInformation::differentiate(const VectorXd& q, const MatrixXd& Z,
+                                        const std::vector<Index>& rows) const {
     const Sensor& sensor = *campaign_.sensor;
     FlangeMotion motion;
     std::vector<FlangeMotionRate> rates;
@@ -41,26 +56,31 @@ VectorXd PoseInformation::differentiate(const VectorXd& q, const MatrixXd& Z) co
     RowMatrixXd P(sensor.row_count(), parameter_count());
     sensor.differentiate(motion.world_from_flange, motion.twists, parameters_.sensor, P);
     P *= scale_.asDiagonal();
-    const Eigen::LLT<MatrixXd> cholesky(
-        mean_covariance(campaign_, motion, parameters_.sensor, repeats_));
+    MatrixXd S = mean_covariance(campaign_, motion, parameters_.sensor, repeats_);
+    keep_rows(rows, P);
+    keep_rows_and_columns(rows, S);
+    const Eigen::LLT<MatrixXd> cholesky(S);
     cholesky.solveInPlace(P);
     RowMatrixXd PZ = P * Z;
     const MatrixXd X = PZ * P.transpose();
     PZ *= scale_.asDiagonal();
 
     const bool is_constant = has_constant_noise(campaign_);
-    RowMatrixXd J_rate(P.rows(), P.cols());
+    RowMatrixXd J_rate;
+    MatrixXd S_rate;
     VectorXd gradient(q.size());
     for (Index j = 0; j < q.size(); ++j) {
         const FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
+        J_rate.resize(sensor.row_count(), parameter_count());
         sensor.differentiate_along(motion.world_from_flange, motion.twists,
                                    motion.joint_twists.col(j), rate.twists, parameters_.sensor,
                                    J_rate);
+        keep_rows(rows, J_rate);
         gradient[j] = 2 * PZ.cwiseProduct(J_rate).sum();
         if (is_constant) continue;
-        gradient[j] -= X.cwiseProduct(mean_covariance_rate(campaign_, motion, j, rate,
-                                                           parameters_.sensor, repeats_))
-                           .sum();
+        S_rate = mean_covariance_rate(campaign_, motion, j, rate, parameters_.sensor, repeats_);
+        keep_rows_and_columns(rows, S_rate);
+        gradient[j] -= X.cwiseProduct(S_rate).sum();
     }
     return gradient;
 }

@@ -4,6 +4,7 @@
 
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/noise.hpp"
 #include "posewise/model/complete_model.hpp"
 #include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
@@ -87,6 +88,32 @@ TEST(PoseInformation, DerivativeAgreesWithDifferencesForEveryElementAndNoise) {
                 EXPECT_LE((gradient - expected).norm(), 1e-8 * expected.norm());
             }
         }
+    }
+}
+
+TEST(PoseInformation, CountsOnlyTheRowsThatAreSeen) {
+    const std::vector<Index> seen{0, 1, 2, 6, 7, 8};
+    for (const Campaign& campaign : campaigns_of_every_noise(fanuc())) {
+        // Unseen rows as if they were measured infinitely badly.
+        const PoseInformation pose(campaign, campaign.nominal);
+        const VectorXd q = VectorXd::LinSpaced(6, -0.4, 0.9);
+        FlangeMotion motion;
+        RowMatrixXd J(9, pose.parameter_count());
+        differentiate_pose(campaign, campaign.nominal, q, motion, J);
+        MatrixXd S = mean_covariance(campaign, motion, campaign.nominal.sensor, 1);
+        S.diagonal().segment<3>(3).array() += 1e6;
+        whiten(S, J);
+        J *= parameter_scale(campaign).asDiagonal();
+        const MatrixXd M = pose.evaluate(q, seen);
+        EXPECT_LE((M - J.transpose() * J).norm(), 1e-12 * M.norm());
+
+        RandomStream stream(83);
+        const MatrixXd Z = random_symmetric(stream, pose.parameter_count());
+        const auto trace = [&](const VectorXd& joints) -> VectorXd {
+            return VectorXd::Constant(1, Z.cwiseProduct(pose.evaluate(joints, seen)).sum());
+        };
+        const VectorXd expected = numerical_jacobian(trace, q).transpose();
+        EXPECT_LE((pose.differentiate(q, Z, seen) - expected).norm(), 1e-8 * expected.norm());
     }
 }
 

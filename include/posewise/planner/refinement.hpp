@@ -1,0 +1,41 @@
+#pragma once
+
+#include <limits>
+
+#include "posewise/criteria/objective.hpp"
+#include "posewise/planner/design_space.hpp"
+#include "posewise/planner/search.hpp"
+
+namespace posewise {
+
+/// What a plan has besides the poses that are refined: a prior, poses already measured, or both.
+struct HeldPoses {
+    MatrixXd information;        ///< parameters square; empty: none
+    RowMatrixXd configurations;  ///< poses x joints; for the least joint distance
+};
+
+struct RefineOptions {
+    Index round_limit = 30;       ///< rounds of sweep and joint step, for each sharpness
+    double tolerance = 1e-10;     ///< relative gain of a round to stop at
+    int evaluation_limit = 2000;  ///< of one run of an optimiser
+    StopSignal stop;
+};
+
+struct Refinement {
+    RowMatrixXd configurations;  ///< poses x joints, rad or m; feasible
+    double value = -std::numeric_limits<double>::infinity();
+    double start_value = -std::numeric_limits<double>::infinity();
+    SearchEnding ending = SearchEnding::NotRun;
+};
+
+/// Moves the poses of a plan continuously to increase the objective: one pose at a time in a sweep,
+/// then all together, by a gradient method; in rounds until nothing is gained. A step into the
+/// infeasible is taken as far as it is feasible, and finished along the constraint without
+/// derivatives. E, G, O2, O3 and O4 have kinks: smoothed by growing sharpness first, then finished
+/// without derivatives on the criterion itself. Never worse than the start; one thread.
+/// Throws InputError if the start is infeasible, does not fit the space or does not identify the
+/// parameters.
+Refinement refine_poses(const DesignSpace& space, const Objective& objective, const HeldPoses& held,
+                        const RowMatrixXd& start, const RefineOptions& options = {});
+
+}  // namespace posewise

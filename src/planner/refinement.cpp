@@ -1,0 +1,282 @@
+#include "posewise/planner/refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "nlopt_adapter.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+bool has_kinks(Criterion criterion) {
+    return criterion == Criterion::E || criterion == Criterion::G || criterion == Criterion::O2 ||
+           criterion == Criterion::O3 || criterion == Criterion::O4;
+}
+
+/// What is maximised: D as it is, the others' logarithm, so that differences are relative.
+double merit(const Objective& objective, const MatrixXd& M) {
+    const double value = evaluate(objective, M);
+    return objective.criterion == Criterion::D || !std::isfinite(value) ? value : std::log(value);
+}
+
+/// Symmetric Z with d merit = trace(Z dM).
+MatrixXd merit_gradient(const Objective& objective, const MatrixXd& M) {
+    const MatrixXd Z = gradient(objective, M);
+    if (objective.criterion == Criterion::D) return Z;
+    const double value = evaluate(objective, M);
+    return std::isfinite(value) ? MatrixXd(Z / value) : Z;
+}
+
+/// A plan on its way.
+class Refiner {
+  public:
+    Refiner(const DesignSpace& space, const HeldPoses& held, const RowMatrixXd& start,
+            const RefineOptions& options)
+        : space_(space), held_(held), options_(options), poses_(start) {
+        for (Index i = 0; i < start.rows(); ++i) informations_.push_back(information(pose(i)));
+    }
+
+    const RowMatrixXd& poses() const { return poses_; }
+    SearchEnding ending() const { return ending_; }
+    bool has_stopped() const { return options_.stop.is_set(); }
+
+    double current(const Objective& objective) const {
+        return merit(objective, information_without(-1));
+    }
+
+    /// Rounds until a round gains no more than the tolerance.
+    void climb(const Objective& objective) {
+        ending_ = SearchEnding::EvaluationLimit;
+        for (Index round = 0; round < options_.round_limit && !has_stopped(); ++round) {
+            const double before = current(objective);
+            if (round == 0 || is_constrained()) sweep(objective, Method::Lbfgs);
+            move_together(objective);
+            if (current(objective) - before > options_.tolerance) continue;
+            ending_ = SearchEnding::Converged;
+            return;
+        }
+    }
+
+    /// Sweeps without derivatives, for objectives with kinks.
+    void finish(const Objective& objective) {
+        for (Index round = 0; round < 2 && !has_stopped(); ++round) {
+            const double before = current(objective);
+            sweep(objective, is_constrained() ? Method::Cobyla : Method::Sbplx);
+            if (current(objective) - before <= 1e-6) return;
+        }
+    }
+
+    /// The smallest margin of pose i at q: of the pose, and of its distance to the others.
+    double margin(Index i, const VectorXd& q) const {
+        double least = space_.margin ? space_.margin(q) : 0;
+        if (space_.least_joint_distance <= 0) return least;
+        const auto keep_away = [&](const RowMatrixXd& others, Index skipped) {
+            for (Index k = 0; k < others.rows(); ++k) {
+                if (k == skipped) continue;
+                const double distance = (others.row(k).transpose() - q).cwiseAbs().maxCoeff();
+                least = std::min(least, distance - space_.least_joint_distance);
+            }
+        };
+        keep_away(poses_, i);
+        keep_away(held_.configurations, -1);
+        return least;
+    }
+
+  private:
+    bool is_constrained() const { return space_.margin || space_.least_joint_distance > 0; }
+    VectorXd pose(Index i) const { return poses_.row(i).transpose(); }
+    MatrixXd information(const VectorXd& q) const { return space_.information(q); }
+
+    /// Held information and that of all poses but one; -1: of all. Summed anew each time, so that
+    /// rounding does not pile up.
+    MatrixXd information_without(Index skipped) const {
+        MatrixXd M = held_.information;
+        if (M.size() == 0) M.setZero(space_.parameter_count, space_.parameter_count);
+        for (std::size_t i = 0; i < informations_.size(); ++i) {
+            if (static_cast<Index>(i) != skipped) M += informations_[i];
+        }
+        return M;
+    }
+
+    void place(Index i, const VectorXd& q) {
+        poses_.row(i) = q.transpose();
+        informations_[static_cast<std::size_t>(i)] = information(q);
+    }
+
+    MaximiseOptions maximise_options(Method method) const {
+        MaximiseOptions options;
+        options.method = method;
+        options.evaluation_limit = options_.evaluation_limit;
+        options.stop = options_.stop;
+        if (method != Method::Lbfgs) {
+            options.value_tolerance = 1e-9;
+            options.first_step = 0.05;
+            options.evaluation_limit = std::min(options_.evaluation_limit, 200);
+        }
+        return options;
+    }
+
+    void sweep(const Objective& objective, Method method) {
+        for (Index i = 0; i < poses_.rows() && !has_stopped(); ++i) move_one(objective, i, method);
+    }
+
+    /// The best place of pose i with the others at rest.
+    void move_one(const Objective& objective, Index i, Method method) {
+        const MatrixXd rest = information_without(i);
+        BoxProblem problem;
+        problem.lower = space_.lower;
+        problem.upper = space_.upper;
+        problem.value = [&](const VectorXd& q, VectorXd* slope) {
+            const MatrixXd M = rest + information(q);
+            if (slope != nullptr) {
+                *slope = space_.information_gradient(q, merit_gradient(objective, M));
+            }
+            return merit(objective, M);
+        };
+        const VectorXd start = pose(i);
+        VectorXd best = start;
+        if (method == Method::Lbfgs) {
+            const VectorXd free = maximise(problem, start, maximise_options(Method::Lbfgs)).x;
+            if (!is_constrained() || margin(i, free) >= 0) {
+                place(i, free);
+                return;
+            }
+            const VectorXd edge = last_feasible(i, start, free);
+            if (problem.value(edge, nullptr) > problem.value(start, nullptr)) best = edge;
+            method = Method::Cobyla;
+        }
+        if (is_constrained()) problem.margin = [&](const VectorXd& q) { return margin(i, q); };
+        place(i, maximise(problem, best, maximise_options(method)).x);
+    }
+
+    /// The last feasible point of pose i found by bisection from a feasible start to an end.
+    VectorXd last_feasible(Index i, const VectorXd& start, const VectorXd& end) const {
+        double inside = 0;
+        double outside = 1;
+        for (int k = 0; k < 30; ++k) {
+            const double t = (inside + outside) / 2;
+            (margin(i, start + t * (end - start)) >= 0 ? inside : outside) = t;
+        }
+        return start + inside * (end - start);
+    }
+
+    /// All poses at once, then each as far as it is feasible; taken back if that is worse.
+    void move_together(const Objective& objective) {
+        const Index m = poses_.rows();
+        const Index n = poses_.cols();
+        const MatrixXd rest =
+            held_.information.size() > 0
+                ? held_.information
+                : MatrixXd(MatrixXd::Zero(space_.parameter_count, space_.parameter_count));
+        BoxProblem problem;
+        problem.lower = space_.lower.replicate(m, 1);
+        problem.upper = space_.upper.replicate(m, 1);
+        problem.value = [&](const VectorXd& x, VectorXd* slope) {
+            MatrixXd M = rest;
+            for (Index i = 0; i < m; ++i) M += information(x.segment(n * i, n));
+            if (slope != nullptr) {
+                const MatrixXd Z = merit_gradient(objective, M);
+                for (Index i = 0; i < m; ++i) {
+                    slope->segment(n * i, n) = space_.information_gradient(x.segment(n * i, n), Z);
+                }
+            }
+            return merit(objective, M);
+        };
+        const VectorXd start = poses_.reshaped<Eigen::RowMajor>();
+        const VectorXd free = maximise(problem, start, maximise_options(Method::Lbfgs)).x;
+        const double before = current(objective);
+        for (Index i = 0; i < m; ++i) {
+            const VectorXd end = free.segment(n * i, n);
+            const bool is_free = !is_constrained() || margin(i, end) >= 0;
+            place(i, is_free ? end : last_feasible(i, pose(i), end));
+        }
+        if (current(objective) >= before) return;
+        for (Index i = 0; i < m; ++i) place(i, start.segment(n * i, n));
+    }
+
+    const DesignSpace& space_;
+    const HeldPoses& held_;
+    const RefineOptions& options_;
+    RowMatrixXd poses_;
+    std::vector<MatrixXd> informations_;
+    SearchEnding ending_ = SearchEnding::NotRun;
+};
+
+/// Values of the criterion for a merit.
+double value_of(const Objective& objective, double merit_value) {
+    return objective.criterion == Criterion::D || !std::isfinite(merit_value)
+               ? merit_value
+               : std::exp(merit_value);
+}
+
+void check_shape(const DesignSpace& space, const RowMatrixXd& start) {
+    if (start.rows() >= 1 && start.cols() == space.joint_count() && start.allFinite()) return;
+    throw InputError("a plan to refine must have at least one pose, each of " +
+                     std::to_string(space.joint_count()) + " finite joint values");
+}
+
+void check_feasible(const DesignSpace& space, const RowMatrixXd& start, const Refiner& refiner) {
+    for (Index i = 0; i < start.rows(); ++i) {
+        const VectorXd q = start.row(i).transpose();
+        const bool is_inside =
+            (q.array() >= space.lower.array()).all() && (q.array() <= space.upper.array()).all();
+        if (is_inside && refiner.margin(i, q) >= 0) continue;
+        throw InputError("pose " + std::to_string(i + 1) +
+                         " of the plan to refine is outside the limits or constraints");
+    }
+}
+
+/// The better of what was and the refiner's plan, by the criterion itself.
+void keep_better(const Objective& objective, const Refiner& refiner, Refinement& result) {
+    const double value = value_of(objective, refiner.current(objective));
+    if (!(value > result.value)) return;
+    result.value = value;
+    result.configurations = refiner.poses();
+}
+
+/// Climbs the smoothed objective with growing sharpness, then finishes on the objective itself.
+void refine_with_kinks(const DesignSpace& space, const Objective& objective, const HeldPoses& held,
+                       const RefineOptions& options, Refinement& result) {
+    Refiner smooth(space, held, result.configurations, options);
+    for (const double sharpness : {4, 16, 64, 256}) {
+        Objective smoothed = objective;
+        smoothed.sharpness = sharpness;
+        smooth.climb(smoothed);
+        keep_better(objective, smooth, result);
+    }
+    result.ending = smooth.ending();
+    Refiner exact(space, held, result.configurations, options);
+    exact.finish(objective);
+    keep_better(objective, exact, result);
+}
+
+}  // namespace
+
+Refinement refine_poses(const DesignSpace& space, const Objective& objective, const HeldPoses& held,
+                        const RowMatrixXd& start, const RefineOptions& options) {
+    check_shape(space, start);
+    Refiner refiner(space, held, start, options);
+    check_feasible(space, start, refiner);
+    Refinement result;
+    result.configurations = start;
+    result.start_value = result.value = value_of(objective, refiner.current(objective));
+    if (!std::isfinite(result.value)) {
+        throw InputError("the plan to refine does not identify all parameters");
+    }
+    if (has_kinks(objective.criterion)) {
+        refine_with_kinks(space, objective, held, options, result);
+    } else {
+        refiner.climb(objective);
+        keep_better(objective, refiner, result);
+        result.ending = refiner.ending();
+    }
+    if (options.stop.is_interrupted()) {
+        result.ending = SearchEnding::Interrupted;
+    } else if (options.stop.is_late()) {
+        result.ending = SearchEnding::TimeLimit;
+    }
+    return result;
+}
+
+}  // namespace posewise
