@@ -3,7 +3,6 @@
 #include <matio.h>
 
 #include <cstring>
-#include <filesystem>
 
 #include "posewise/core/errors.hpp"
 #include "posewise/io/atomic_file.hpp"
@@ -46,30 +45,55 @@ std::string find_misfit(const matvar_t& variable) {
     return "";
 }
 
+/// Whether a MATLAB 5 file ends where its last element does. Each begins with its type and its byte
+/// count; the library fills what is missing at the end with whatever was in memory.
+bool is_whole(const std::string& content) {
+    constexpr std::size_t header_size = 128;
+    constexpr std::size_t tag_size = 8;
+    if (content.size() < header_size) return false;
+    const bool is_big_endian = content.compare(126, 2, "MI") == 0;
+    std::size_t position = header_size;
+    while (position + tag_size <= content.size()) {
+        std::size_t byte_count = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::size_t digit = is_big_endian ? k : 3 - k;
+            byte_count =
+                256 * byte_count + static_cast<unsigned char>(content[position + 4 + digit]);
+        }
+        position += tag_size + byte_count;
+    }
+    return position == content.size();
+}
+
 }  // namespace
 
-MatReader::MatReader(const std::string& path) : path_(path), byte_count_(read_file(path).size()) {
-    if (byte_count_ == 0) throw input_error_at({path}, "is empty; must be a MATLAB file");
+MatReader::MatReader(const std::string& path) : path_(path), file_(nullptr, Mat_Close) {
+    const std::string content = read_file(path);
+    if (content.empty()) throw input_error_at({path}, "is empty; must be a MATLAB file");
+    byte_count_ = content.size();
     Mat_LogInitFunc("posewise", count_damage);
-    file_ = Mat_Open(path.c_str(), MAT_ACC_RDONLY);
-    if (file_ == nullptr) {
+    file_.reset(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+    // Whatever is not MATLAB 5 to 7.3 is taken for MATLAB 4, which has no mark of its own.
+    const mat_ft version = file_ == nullptr ? MAT_FT_UNDEFINED : Mat_GetVersion(file_.get());
+    if (version != MAT_FT_MAT5 && version != MAT_FT_MAT73) {
         throw input_error_at({path},
-                             "is not a MATLAB file, or a damaged one; must be a .mat file "
-                             "of version 4 to 7.3");
+                             "is not a MATLAB file of version 5 to 7.3; must be one, as "
+                             "saved with -v7");
+    }
+    if (version == MAT_FT_MAT5 && !is_whole(content)) {
+        throw input_error_at({path}, "is cut short or damaged; must be a whole MATLAB file");
     }
 }
 
-MatReader::~MatReader() { Mat_Close(file_); }
-
 MatrixXd MatReader::read(const std::string& name, Index columns) const {
     damage_count = 0;
-    const Variable variable(Mat_VarReadInfo(file_, name.c_str()), Mat_VarFree);
+    const Variable variable(Mat_VarReadInfo(file_.get(), name.c_str()), Mat_VarFree);
     if (variable == nullptr) {
         const bool is_damaged = damage_count > 0;
-        throw variable_error(path_, name,
-                             is_damaged
-                                 ? "cannot be read: the file is damaged or cut short"
-                                 : "is not in the file; " + suggest(name, variable_names(file_)));
+        throw variable_error(
+            path_, name,
+            is_damaged ? "cannot be read: the file is damaged or cut short"
+                       : "is not in the file; " + suggest(name, variable_names(file_.get())));
     }
     if (const std::string misfit = find_misfit(*variable); !misfit.empty()) {
         throw variable_error(path_, name, misfit);
@@ -83,7 +107,7 @@ MatrixXd MatReader::read(const std::string& name, Index columns) const {
     }
     // Compression gains at most a factor of about 1030, so a larger size is damage.
     const bool is_plausible = rows <= 2000 * byte_count_ / width;
-    if (!is_plausible || Mat_VarReadDataAll(file_, variable.get()) != 0 || damage_count > 0 ||
+    if (!is_plausible || Mat_VarReadDataAll(file_.get(), variable.get()) != 0 || damage_count > 0 ||
         variable->data == nullptr || variable->nbytes != rows * width * sizeof(double)) {
         throw variable_error(path_, name, "cannot be read: the file is damaged or cut short");
     }

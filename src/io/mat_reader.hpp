@@ -10,21 +10,19 @@ struct _mat_t;
 
 namespace posewise::io {
 
-/// Real matrices of a MATLAB file. Whatever is wrong with the file or a variable throws InputError.
+/// Real matrices of a MATLAB file of version 5 to 7.3. Whatever is wrong with the file or a
+/// variable throws InputError.
 class MatReader {
   public:
     explicit MatReader(const std::string& path);
-    ~MatReader();
-    MatReader(const MatReader&) = delete;
-    MatReader& operator=(const MatReader&) = delete;
 
     /// A variable of `columns` columns and at least one row, all finite.
     MatrixXd read(const std::string& name, Index columns) const;
 
   private:
     std::string path_;
-    std::uintmax_t byte_count_;
-    _mat_t* file_;
+    std::size_t byte_count_ = 0;
+    std::unique_ptr<_mat_t, int (*)(_mat_t*)> file_;
 };
 
 }  // namespace posewise::io

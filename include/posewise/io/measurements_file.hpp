@@ -19,7 +19,7 @@ Measurements read_measurements(const std::string& path, const CampaignFile& file
 /// semicolons or tabs; lines behind # are comments. Rows of one config may stand anywhere.
 Measurements read_measurements_csv(const std::string& path, const Campaign& campaign);
 
-/// MATLAB file (4 to 7.3) of real double matrices; rows with equal joint values are samples of one
+/// MATLAB file (5 to 7.3) of real double matrices; rows with equal joint values are samples of one
 /// configuration. Configurations are named 0, 1, ... in the order they first occur.
 Measurements read_measurements_mat(const std::string& path, const Campaign& campaign,
                                    const MatMapping& mapping);

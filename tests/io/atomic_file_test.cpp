@@ -1,0 +1,62 @@
+#include "posewise/io/atomic_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/temporary_folder.hpp"
+
+namespace posewise::io {
+namespace {
+
+using testing::input_error_of;
+using testing::TemporaryFolder;
+
+TEST(WriteFile, ReplacesTheWholeFileAndLeavesNothingElse) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("a.txt", "a longer text than the new one");
+    write_file(path, "new");
+    EXPECT_EQ(read_file(path), "new");
+    EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(WriteFile, ReplacesTheFileBehindALink) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("a.txt", "old");
+    std::filesystem::create_symlink(path, folder.path("link"));
+    write_file(folder.path("link"), "new");
+    EXPECT_EQ(read_file(path), "new");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder.path("link")));
+}
+
+TEST(WriteFile, WritesToADeviceWithoutReplacingIt) {
+    write_file("/dev/null", "text");
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(WriteFile, RefusesAFolder) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder.path("a"));
+    EXPECT_EQ(input_error_of([&] { write_file(folder.path("a"), "text"); }),
+              "a: is a directory; must be the name of a file to write");
+    EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(WriteFile, RefusesAFolderThatDoesNotExist) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(input_error_of([&] { write_file(folder.path("a/b.txt"), "text"); }),
+              "a/b.txt: cannot be written: No such file or directory");
+}
+
+TEST(WriteFile, SaysThatTheDiskIsFull) {
+    if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "needs the device /dev/full";
+    EXPECT_EQ(input_error_of([] { write_file("/dev/full", "text"); }),
+              "/dev/full: cannot be written: No space left on device");
+}
+
+TEST(ReadFile, KeepsEveryByte) {
+    const TemporaryFolder folder;
+    const std::string bytes("\0\r\n\xFF", 4);
+    EXPECT_EQ(read_file(folder.write("a", bytes)), bytes);
+}
+
+}  // namespace
+}  // namespace posewise::io

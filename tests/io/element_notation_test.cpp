@@ -1,0 +1,117 @@
+#include <gtest/gtest.h>
+
+#include "campaign_text.hpp"
+#include "posewise/io/campaign_file.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace posewise::io {
+namespace {
+
+/// The error when line 10 of the campaign has this element; columns count from its first letter.
+std::string error_of(const std::string& element) {
+    const testing::TemporaryFolder folder;
+    const auto path = folder.write(
+        "c.yaml", testing::replaced(testing::campaign_text, "Tx 312 mm [Tx1]", element));
+    const std::string message = testing::input_error_of([&] { read_campaign(path); });
+    const std::string place = "c.yaml:10:";
+    if (message.rfind(place, 0) != 0) return message;
+    const auto colon = message.find(':', place.size());
+    const int column = std::stoi(message.substr(place.size(), colon - place.size())) - 6;
+    return std::to_string(column) + message.substr(colon);
+}
+
+TEST(BadElement, UnknownKind) {
+    EXPECT_EQ(error_of("Tw 3 mm"),
+              "1: an element begins with Tx, Ty, Tz, Rx, Ry or Rz, not 'Tw'; must be like "
+              "'Tx 312 mm [Tx1]' or 'Ry -q2 + 0.5 deg [dq2]'");
+}
+
+TEST(BadElement, NoAmount) {
+    EXPECT_EQ(error_of("Tx"),
+              "3: an amount or a joint is missing; must be like 'Tx 312 mm [Tx1]' "
+              "or 'Ry -q2 + 0.5 deg [dq2]'");
+    EXPECT_EQ(error_of("Tx [Tx1]").substr(0, 34), "4: an amount or a joint is missing");
+    EXPECT_EQ(error_of("Tx 3 mm + [Tx1]").substr(0, 35), "11: an amount or a joint is missing");
+}
+
+TEST(BadElement, NumberWithoutUnit) {
+    EXPECT_EQ(error_of("Tx 312 [Tx1]"), "4: a number without unit; must be in mm, m or um");
+}
+
+TEST(BadElement, UnitOfAnotherQuantity) {
+    EXPECT_EQ(error_of("Tx 312 deg [Tx1]"),
+              "8: Tx is a translation, its amount cannot be in 'deg'; must be in mm, m or um");
+    EXPECT_EQ(error_of("Rx 3 mm").substr(0, 61),
+              "6: Rx is a rotation, its amount cannot be in 'mm'; must be in");
+}
+
+TEST(BadElement, UnknownUnit) {
+    EXPECT_EQ(error_of("Tx 312 inch"),
+              "8: Tx is a translation, its amount cannot be in 'inch'; must be in mm, m or um");
+}
+
+TEST(BadElement, CoefficientWithoutStar) {
+    EXPECT_EQ(error_of("Rx 2 q1"), "6: a '*' is missing before joint 'q1'; must be like -1.5*q1");
+}
+
+TEST(BadElement, CoefficientOfZero) {
+    EXPECT_EQ(error_of("Rx 0*q1"),
+              "4: a joint's coefficient is 0; must not be, leave the joint out");
+}
+
+TEST(BadElement, UnknownJoint) {
+    EXPECT_EQ(error_of("Rx q1 + 2*p2"), "11: 'p2' is no joint of the robot; did you mean 'q2'?");
+}
+
+TEST(BadElement, JointTwice) {
+    EXPECT_EQ(error_of("Rx q1 - 2*q1"),
+              "11: joint 'q1' occurs twice in one element; write it once with a coefficient, like "
+              "2*q1");
+}
+
+TEST(BadElement, JointThatTurnsAndSlides) {
+    EXPECT_EQ(error_of("Tx q1"),
+              "4: Tx is a translation but joint 'q1' drives the other kind before; must drive one "
+              "kind, since its unit is either rad or m");
+}
+
+TEST(BadElement, NumberBeyondRange) {
+    EXPECT_EQ(error_of("Tx 1e999 mm"), "4: number beyond the range of numbers");
+    EXPECT_EQ(error_of("Tx 1e308 m + 1e308 m"),
+              "14: the amount is not finite; must be a finite number");
+}
+
+TEST(BadElement, BracketsThatHoldNoName) {
+    const std::string rule =
+        ": the brackets must hold the name of one error parameter: letters, digits and "
+        "underscores, like [Tx1]";
+    EXPECT_EQ(error_of("Tx 3 mm []"), "10" + rule);
+    EXPECT_EQ(error_of("Tx 3 mm [1x]"), "10" + rule);
+}
+
+TEST(BadElement, BracketThatIsNotClosed) {
+    EXPECT_EQ(error_of("Tx 3 mm [Tx1"), "13: a ']' must stand behind parameter 'Tx1'");
+    EXPECT_EQ(error_of("Tx 3 mm [Tx1 Tx2]"), "14: a ']' must stand behind parameter 'Tx1'");
+}
+
+TEST(BadElement, TextBehindTheElement) {
+    EXPECT_EQ(error_of("Tx 3 mm [Tx1] +").substr(0, 28), "15: '+' is not expected here");
+    EXPECT_EQ(error_of("Tx 3 mm 4").substr(0, 28), "9: '4' is not expected here;");
+}
+
+TEST(BadElement, DuplicateParameter) {
+    EXPECT_EQ(error_of("Tx 3 mm [dq1]"),
+              "10: parameter 'dq1' occurs twice, first in line 8; must have a name of its own");
+}
+
+TEST(BadElement, ParameterNamedLikeAJoint) {
+    EXPECT_EQ(error_of("Tx 3 mm [q2]"),
+              "10: parameter 'q2' has the name of a joint; must have one of its own, like dq2");
+}
+
+TEST(BadElement, QuotedElementsCountTheirColumnsBehindTheQuote) {
+    EXPECT_EQ(error_of("'Tx 312'"), "5: a number without unit; must be in mm, m or um");
+}
+
+}  // namespace
+}  // namespace posewise::io

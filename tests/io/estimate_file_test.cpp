@@ -1,0 +1,116 @@
+#include "posewise/io/estimate_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "campaign_text.hpp"
+#include "posewise/io/atomic_file.hpp"
+#include "posewise/io/campaign_file.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace posewise::io {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The crane's estimate with round numbers: parameter k is off by k / 3 mm or mrad.
+class EstimateFile : public ::testing::Test {
+  protected:
+    EstimateFile() {
+        campaign_ = read_campaign(folder_.write("c.yaml", testing::campaign_text)).campaign;
+        Estimate& estimate = report_.estimate;
+        const Index count = parameter_count(campaign_);
+        estimate.ending = Ending::Converged;
+        estimate.names = parameter_names(campaign_);
+        estimate.parameters =
+            advance(campaign_.nominal,
+                    1e-3 / 3 * VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1)));
+        estimate.covariance = 1e-8 * MatrixXd::Identity(count, count);
+        estimate.covariance(0, 1) = estimate.covariance(1, 0) = -0.9e-8;
+        estimate.fit.distance_rms = 1.5e-4;
+        estimate.fit.coordinate_max = {1e-3, 2e-3, 3e-3};
+        report_.method = "lm";
+        report_.measurements = "m.csv";
+    }
+
+    Json written() const {
+        write_estimate(path_, campaign_, report_);
+        return Json::parse(read_file(path_));
+    }
+
+    testing::TemporaryFolder folder_;
+    std::string path_ = folder_.path("estimate.json");
+    Campaign campaign_;
+    CalibrationReport report_;
+};
+
+TEST_F(EstimateFile, GivesEachRobotParameterWithItsUnitAndSigma) {
+    const Json robot = written().at("robot");
+    EXPECT_EQ(robot.size(), 4U);
+    const VectorXd& values = report_.estimate.parameters.robot;
+    EXPECT_EQ(robot.at("dq1").at("value_rad").get<double>(), values[0]);
+    EXPECT_EQ(robot.at("Tx1").at("value_m").get<double>(), values[1]);
+    EXPECT_EQ(robot.at("Ty2").at("value_m").get<double>(), values[3]);
+    EXPECT_DOUBLE_EQ(robot.at("dq2").at("sigma_rad").get<double>(), 1e-4);
+}
+
+TEST_F(EstimateFile, GivesTheBaseThreeWaysThatAgree) {
+    const Json base = written().at("base");
+    const Isometry3d& expected = report_.estimate.parameters.world_from_base;
+    const auto p = base.at("position_m").get<std::vector<double>>();
+    EXPECT_EQ(Vector3d(p[0], p[1], p[2]), expected.translation());
+    const auto q = base.at("quaternion_wxyz").get<std::vector<double>>();
+    EXPECT_TRUE(Eigen::Quaterniond(q[0], q[1], q[2], q[3])
+                    .toRotationMatrix()
+                    .isApprox(expected.linear(), 1e-14));
+    const auto rpy = base.at("rpy_deg").get<std::vector<double>>();
+    const auto text = testing::replaced(testing::campaign_text, "[0, 0, 90]",
+                                        Json(rpy).dump());  // as the campaign file takes it
+    const Campaign again = read_campaign(folder_.write("again.yaml", text)).campaign;
+    EXPECT_TRUE(again.nominal.world_from_base.linear().isApprox(expected.linear(), 1e-12));
+}
+
+TEST_F(EstimateFile, GivesTheTargetsByName) {
+    const Json target = written().at("targets").at("target2");
+    const auto p = target.at("position_m").get<std::vector<double>>();
+    EXPECT_EQ(Vector3d(p[0], p[1], p[2]), report_.estimate.parameters.sensor.tail(3));
+    EXPECT_FALSE(target.at("known").get<bool>());
+    EXPECT_DOUBLE_EQ(written().at("sigma").at("target2.z_m").get<double>(), 1e-4);
+}
+
+TEST_F(EstimateFile, GivesAccuracyInMillimetres) {
+    const Json fit = written().at("accuracy").at("fit");
+    EXPECT_DOUBLE_EQ(fit.at("distance_rms_mm").get<double>(), 0.15);
+    EXPECT_DOUBLE_EQ(fit.at("coordinate_max_mm").at("z").get<double>(), 3);
+}
+
+TEST_F(EstimateFile, LeavesOutWhatWasNotComputed) {
+    EXPECT_FALSE(written().at("accuracy").contains("held_out"));
+    EXPECT_FALSE(written().at("accuracy").contains("repeatability_mm"));
+    report_.repeatability = 5e-5;
+    report_.held_out = CrossValidation{};
+    report_.held_out->failures = {"fold 3: too few", "fold 4: too few"};
+    report_.validation = Metrics{};
+    const Json accuracy = written().at("accuracy");
+    EXPECT_DOUBLE_EQ(accuracy.at("repeatability_mm").get<double>(), 0.05);
+    EXPECT_EQ(accuracy.at("held_out").at("failures").size(), 2U);
+    EXPECT_TRUE(accuracy.contains("validation"));
+}
+
+TEST_F(EstimateFile, NamesTheStrongestCorrelation) {
+    const Json strongest = written().at("strongest_correlations").at(0);
+    EXPECT_EQ(strongest.at("first"), "base.x");
+    EXPECT_EQ(strongest.at("second"), "base.y");
+    EXPECT_NEAR(strongest.at("coefficient").get<double>(), -0.9, 1e-12);
+}
+
+TEST_F(EstimateFile, HasTheSameBytesForTheSameEstimate) {
+    written();
+    const std::string first = read_file(path_);
+    written();
+    EXPECT_EQ(read_file(path_), first);
+}
+
+}  // namespace
+}  // namespace posewise::io

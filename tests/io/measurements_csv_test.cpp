@@ -1,0 +1,229 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <numbers>
+
+#include "campaign_text.hpp"
+#include "posewise/io/measurements_file.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace posewise::io {
+namespace {
+
+using testing::input_error_of;
+using testing::replaced;
+using testing::TemporaryFolder;
+
+const std::string good =
+    "config,sample,q1_rad,q2_rad,lift_m,p1_x_m,p1_y_m,p1_z_m,p2_x_m,p2_y_m,p2_z_m\n"
+    "a,0,0.1,0.2,0.3,1,2,3,4,5,6\n"
+    "a,1,0.1,0.2,0.3,1.5,2,3,4,5,6\n"
+    "b,0,0.1,0.25,0.3,7,8,9,10,11,12\n";
+
+const Campaign& crane() {
+    static const Campaign campaign = [] {
+        const TemporaryFolder folder;
+        return read_campaign(folder.write("c.yaml", testing::campaign_text)).campaign;
+    }();
+    return campaign;
+}
+
+Measurements read(const std::string& text) {
+    const TemporaryFolder folder;
+    return read_measurements_csv(folder.write("m.csv", text), crane());
+}
+
+std::string error_of(const std::string& text) {
+    return input_error_of([&] { read(text); });
+}
+
+std::string error_with(const std::string& part, const std::string& by) {
+    return error_of(replaced(good, part, by));
+}
+
+void expect_equal(const Measurements& a, const Measurements& b) {
+    EXPECT_EQ(a.ids, b.ids);
+    EXPECT_EQ(a.first_sample, b.first_sample);
+    EXPECT_EQ(a.configurations, b.configurations);
+    EXPECT_EQ(a.observations, b.observations);
+}
+
+TEST(ReadMeasurementsCsv, GroupsSamplesByConfiguration) {
+    const Measurements measurements = read(good);
+    EXPECT_EQ(measurements.ids, (std::vector<std::string>{"a", "b"}));
+    EXPECT_EQ(measurements.first_sample, (std::vector<Index>{0, 2, 3}));
+    EXPECT_EQ(measurements.configurations(1, 1), 0.25);
+    EXPECT_EQ(measurements.observations(1, 0), 1.5);
+    EXPECT_EQ(measurements.observations(2, 5), 12);
+}
+
+TEST(ReadMeasurementsCsv, TakesConfigurationsInTurns) {
+    const auto text = good + "a,2,0.1,0.2,0.3,1.25,2,3,4,5,6\n";
+    const Measurements measurements = read(text);
+    EXPECT_EQ(measurements.first_sample, (std::vector<Index>{0, 3, 4}));
+    EXPECT_EQ(measurements.observations(2, 0), 1.25);
+    EXPECT_EQ(measurements.observations(3, 0), 7);
+}
+
+TEST(ReadMeasurementsCsv, ConvertsDegreesAndMillimetres) {
+    const auto text =
+        "lift_mm,config,q2_deg,q1_mrad,p2_z_mm,p1_x_um,p1_y_m,p1_z_m,p2_x_m,p2_y_m\n"
+        "312,a,90,100,1.5,2,0,0,0,0\n";
+    const Measurements measurements = read(text);
+    EXPECT_EQ(measurements.configurations(0, 0), 0.1);
+    EXPECT_DOUBLE_EQ(measurements.configurations(0, 1), std::numbers::pi / 2);
+    EXPECT_EQ(measurements.configurations(0, 2), 0.312);
+    EXPECT_EQ(measurements.observations(0, 0), 2e-6);
+    EXPECT_EQ(measurements.observations(0, 5), 1.5e-3);
+}
+
+TEST(ReadMeasurementsCsv, DoesNotMindHowTheFileWasSaved) {
+    const Measurements plain = read(good);
+    const auto with = [](char from, const std::string& to) {
+        std::string text;
+        for (const char c : good) text += c == from ? to : std::string(1, c);
+        return text;
+    };
+    expect_equal(read("\xEF\xBB\xBF" + good), plain);
+    expect_equal(read(with('\n', "\r\n")), plain);
+    expect_equal(read(with(',', ";")), plain);
+    expect_equal(read(with(',', "\t")), plain);
+    expect_equal(read(with(',', " , ")), plain);
+    expect_equal(read("# made by hand\n\n" + with('\n', "\n# more, of it\n\n")), plain);
+    expect_equal(read(good.substr(0, good.size() - 1)), plain);
+    expect_equal(read(replaced(replaced(good, "config", "\"config\""), "b,0", "\"b\",\"0\"")),
+                 plain);
+}
+
+TEST(ReadMeasurementsCsv, IsFastEnoughForAHundredThousandRows) {
+    std::string text = good.substr(0, good.find('\n') + 1);
+    for (int i = 0; i < 100000; ++i) {
+        text += std::to_string(i) + ",0,0.123456789,0." + std::to_string(100000 + i) +
+                ",0.3,1107.234,1279.674,1325.723,1191.728,1224.966,1292.864\n";
+    }
+    const TemporaryFolder folder;
+    const std::string path = folder.write("m.csv", text);
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_EQ(read_measurements_csv(path, crane()).configuration_count(), 100000);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+}
+
+TEST(WriteMeasurementsCsv, IsReadBackExactly) {
+    Measurements measurements = read(good);
+    measurements.ids = {"a,1", "#2"};
+    measurements.configurations(0, 0) = 1.0 / 3;
+    measurements.observations(0, 3) = 0.1 + 0.2;
+    const TemporaryFolder folder;
+    write_measurements_csv(folder.path("m.csv"), crane(), measurements, {"seed 1", "by hand"});
+    const Measurements again = read_measurements_csv(folder.path("m.csv"), crane());
+    EXPECT_EQ(again.ids, measurements.ids);
+    EXPECT_EQ(again.first_sample, measurements.first_sample);
+    EXPECT_EQ(again.configurations.leftCols(2), measurements.configurations.leftCols(2));
+    EXPECT_LT((again.observations - measurements.observations).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST(BadMeasurementsCsv, EmptyFile) {
+    EXPECT_EQ(error_of(""),
+              "m.csv: is empty; must begin with a header like "
+              "config,sample,q1_rad,...,p1_x_mm,...");
+    EXPECT_EQ(error_of("# only a comment\n").substr(0, 16), "m.csv: is empty;");
+}
+
+TEST(BadMeasurementsCsv, HeaderOnly) {
+    EXPECT_EQ(error_of(good.substr(0, good.find('\n') + 1)),
+              "m.csv: has a header but no rows; must have at least one sample");
+}
+
+TEST(BadMeasurementsCsv, MissingFile) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(input_error_of([&] { read_measurements_csv(folder.path("m.csv"), crane()); }),
+              "m.csv: cannot be read: No such file or directory");
+}
+
+TEST(BadMeasurementsCsv, MissingColumn) {
+    EXPECT_EQ(error_with(",p2_z_m\n", "\n"),
+              "m.csv:1:70: missing column p2_z_mm; the header must have "
+              "config,sample,q1_rad,q2_rad,lift_mm,p1_x_mm,p1_y_mm,p1_z_mm,p2_x_mm,p2_y_mm,"
+              "p2_z_mm");
+    EXPECT_EQ(error_with("config,", "").substr(0, 34), "m.csv:1:70: missing column config;");
+}
+
+TEST(BadMeasurementsCsv, UnknownColumn) {
+    EXPECT_EQ(error_with("q2_rad", "q4_rad"),
+              "m.csv:1:22: column 'q4_rad' is unknown; did you mean 'q1_rad'?");
+}
+
+TEST(BadMeasurementsCsv, ColumnTwice) {
+    EXPECT_EQ(error_with("q2_rad", "q1_deg"), "m.csv:1:22: column 'q1_deg' occurs twice; keep one");
+}
+
+TEST(BadMeasurementsCsv, ColumnWithoutUnit) {
+    EXPECT_EQ(error_with("q2_rad", "q2"),
+              "m.csv:1:22: column 'q2' has no unit; must be like q2_rad");
+    EXPECT_EQ(error_with("p2_x_m", "p2_x"),
+              "m.csv:1:57: column 'p2_x' has no unit; must be like p2_x_mm");
+}
+
+TEST(BadMeasurementsCsv, ColumnWithTheWrongUnit) {
+    EXPECT_EQ(error_with("lift_m", "lift_deg"),
+              "m.csv:1:29: column 'lift_deg' has the wrong kind of unit; must be like lift_mm");
+}
+
+TEST(BadMeasurementsCsv, RaggedRow) {
+    EXPECT_EQ(error_with("4,5,6\na,1", "4,5\na,1"),
+              "m.csv:2:26: row has 10 fields; must have 11 as the header");
+    EXPECT_EQ(error_with("4,5,6\na,1", "4,5,6,7\na,1"),
+              "m.csv:2:29: row has 12 fields; must have 11 as the header");
+}
+
+TEST(BadMeasurementsCsv, TextWhereANumberBelongs) {
+    EXPECT_EQ(error_with("1.5", "1.5mm"),
+              "m.csv:3:17: '1.5mm' is not a number; must be a finite number with a decimal point");
+    EXPECT_EQ(error_with("1.5", ""),
+              "m.csv:3:17: '' is not a number; must be a finite number with a decimal point");
+}
+
+TEST(BadMeasurementsCsv, NumbersThatAreNotFinite) {
+    for (const std::string text : {"nan", "inf", "-inf"}) {
+        EXPECT_EQ(error_with("1.5", text),
+                  "m.csv:3:17: '" + text +
+                      "' is not finite; must be a finite number with a decimal point");
+    }
+    EXPECT_EQ(error_with("1.5", "1e999").substr(0, 54),
+              "m.csv:3:17: '1e999' is beyond the range of numbers; mu");
+}
+
+TEST(BadMeasurementsCsv, AnglesThatLookLikeDegrees) {
+    EXPECT_EQ(error_with("b,0,0.1", "b,0,45"),
+              "m.csv:4:5: q1 = 45 rad is more than a full turn beyond its limits (-1.5708 to "
+              "1.5708 rad) and looks like degrees; state degrees as such");
+}
+
+TEST(BadMeasurementsCsv, DuplicateConfigurations) {
+    EXPECT_EQ(error_with("0.25", "0.2"),
+              "m.csv:4:5: configuration 'b' has the same joint values as 'a' (line 2); samples of "
+              "one configuration must have the same id");
+}
+
+TEST(BadMeasurementsCsv, SamplesOfOneConfigurationWithDifferentJoints) {
+    EXPECT_EQ(error_with("a,1,0.1,0.2,", "a,1,0.1,0.201,"),
+              "m.csv:3:9: configuration 'a' has q2 = 0.201 here and 0.2 before (line 2); samples "
+              "of one configuration must agree within 1e-6 (rad or m)");
+    EXPECT_EQ(error_with("a,1,0.1,0.2,", "a,1,0.1,0.2000005,"), "no error");
+}
+
+TEST(BadMeasurementsCsv, SampleTwice) {
+    EXPECT_EQ(error_with("a,1", "a,0"),
+              "m.csv:3:1: sample '0' of configuration 'a' occurs twice; keep one");
+}
+
+TEST(BadMeasurementsCsv, ConfigurationWithoutId) {
+    EXPECT_EQ(error_with("b,0", ",0"), "m.csv:4:1: config is empty; must be an id");
+}
+
+TEST(BadMeasurementsCsv, QuotationMarkThatIsNotClosed) {
+    EXPECT_EQ(error_with("b,0", "\"b,0"), "m.csv:4:1: a quotation mark is not closed in its line");
+}
+
+}  // namespace
+}  // namespace posewise::io
