@@ -3,9 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
+#include "limits.hpp"
+#include "objective_bound.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/criteria/information_function.hpp"
 #include "sensitivity.hpp"
 
 namespace posewise {
@@ -13,115 +15,116 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double sum_at(const VectorXd& values, const std::vector<Index>& indices) {
-    return std::accumulate(indices.begin(), indices.end(), 0.0,
-                           [&](double sum, Index i) { return sum + values[i]; });
+double sum_of(const VectorXd& values, const std::vector<Taken>& taken) {
+    double sum = 0;
+    for (const auto& [candidate, count] : taken) {
+        sum += static_cast<double>(count) * values[candidate];
+    }
+    return sum;
 }
 
-double sum_of_largest(const VectorXd& values, Index count) {
-    return sum_at(values, largest_indices(values, count));
-}
-
-/// The largest sum(a) / sum(b) over all K-subsets, exactly, for a, b >= 0 [Dinkelbach 1967].
-double largest_ratio(const VectorXd& a, const VectorXd& b, Index count) {
+/// The largest (a0 + sum a) / (b0 + sum b) over all choices, exactly, for a, b >= 0 [Dinkelbach
+/// 1967].
+double largest_ratio(const VectorXd& a, const VectorXd& b, double a0, double b0,
+                     const SelectOptions& options) {
     double ratio = 0;
     for (int iteration = 0; iteration < 100; ++iteration) {
-        const auto subset = largest_indices(a - ratio * b, count);
-        const double denominator = sum_at(b, subset);
+        const auto taken = most_valuable(a - ratio * b, options);
+        const double denominator = b0 + sum_of(b, taken);
         if (!(denominator > 0)) return infinity;
-        const double next = sum_at(a, subset) / denominator;
+        const double next = (a0 + sum_of(a, taken)) / denominator;
         if (next <= ratio * (1 + 1e-15)) break;
         ratio = next;
     }
     return ratio * (1 + 1e-12);
 }
 
-/// lambda_min / lambda_max <= v^T M v / u^T M u for any unit v, u.
-double condition_bound(const Blocks& candidates, Index pose_count, const MatrixXd& M) {
+/// lambda_min / lambda_max <= trace(Z M*) / trace(Y M*) for any Z, Y >= 0 of trace 1; here those of
+/// the softened extreme eigenvalues of M.
+double condition_bound(const Blocks& candidates, const SelectOptions& options, const MatrixXd& M,
+                       double p) {
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(M);
-    const VectorXd weak = eigen.eigenvectors().col(0);
-    const VectorXd strong = eigen.eigenvectors().col(M.rows() - 1);
-    return std::min(1.0, std::sqrt(largest_ratio(
-                             sensitivities(candidates, weak * weak.transpose()),
-                             sensitivities(candidates, strong * strong.transpose()), pose_count)));
+    const VectorXd& lambda = eigen.eigenvalues();
+    const auto weighted = [&](const Eigen::ArrayXd& weights) -> MatrixXd {
+        return eigen.eigenvectors() * (weights / weights.sum()).matrix().asDiagonal() *
+               eigen.eigenvectors().transpose();
+    };
+    const Index last = lambda.size() - 1;
+    Eigen::ArrayXd weak = VectorXd::Unit(lambda.size(), 0);
+    Eigen::ArrayXd strong = VectorXd::Unit(lambda.size(), last);
+    if (std::isfinite(p)) {
+        weak = (lambda[0] / lambda.array()).pow(p + 1);
+        strong = (lambda.array() / lambda[last]).pow(p - 1);
+    }
+    const MatrixXd Z = weighted(weak);
+    const MatrixXd Y = weighted(strong);
+    const MatrixXd H = held_information(candidates, options);
+    const double ratio = largest_ratio(sensitivities(candidates, Z), sensitivities(candidates, Y),
+                                       Z.cwiseProduct(H).sum(), Y.cwiseProduct(H).sum(), options);
+    return std::min(1.0, std::sqrt(ratio));
 }
-
-/// The information function phi as an increasing function of the criterion's value, its slope,
-/// and the way back.
-struct InformationScale {
-    Criterion criterion;
-    double parameter_count;
-    double pose_count;
-
-    double phi(double value) const {
-        switch (criterion) {
-            case Criterion::D:
-                return std::exp(value / parameter_count);
-            case Criterion::O1:
-                return pose_count * value * value;
-            case Criterion::O3:
-            case Criterion::O5:
-                return value * value;
-            default:
-                return value;
-        }
-    }
-    double slope(double value) const {
-        switch (criterion) {
-            case Criterion::D:
-                return phi(value) / parameter_count;
-            case Criterion::O1:
-            case Criterion::O3:
-            case Criterion::O5:
-                return 2 * phi(value) / value;
-            default:
-                return 1;
-        }
-    }
-    double value(double phi) const {
-        switch (criterion) {
-            case Criterion::D:
-                return parameter_count * std::log(phi);
-            case Criterion::O1:
-                return std::sqrt(phi / pose_count);
-            case Criterion::O3:
-            case Criterion::O5:
-                return std::sqrt(phi);
-            default:
-                return phi;
-        }
-    }
-};
 
 }  // namespace
 
-double upper_bound(const Objective& objective, const Blocks& candidates, Index pose_count,
-                   const MatrixXd& M) {
-    const double value = evaluate(objective, M);
-    if (!std::isfinite(value)) return infinity;
-    if (objective.criterion == Criterion::O2) return condition_bound(candidates, pose_count, M);
-    if (objective.criterion == Criterion::O4) {
-        const Objective worst_direction = make_objective(Criterion::O3, objective.pose_count);
-        return condition_bound(candidates, pose_count, M) *
-               upper_bound(worst_direction, candidates, pose_count, M);
-    }
-    const InformationScale scale{objective.criterion, static_cast<double>(M.rows()),
-                                 static_cast<double>(objective.pose_count)};
-    const VectorXd d = sensitivities(candidates, scale.slope(value) * gradient(objective, M));
-    return scale.value(sum_of_largest(d, pose_count));
+MatrixXd held_information(const Blocks& candidates, const SelectOptions& options) {
+    if (options.held.size() > 0) return options.held;
+    const Index L = candidates.parameter_count();
+    return MatrixXd::Zero(L, L);
 }
 
-double tightened_bound(const Objective& objective, const Blocks& candidates, Index pose_count,
-                       const MatrixXd& M, Index iterations) {
-    double bound = upper_bound(objective, candidates, pose_count, M);
-    MatrixXd relaxed = M;
-    for (Index t = 0; t < iterations; ++t) {
-        const VectorXd d = sensitivities(candidates, gradient(objective, relaxed));
-        const double step = 2.0 / static_cast<double>(t + 4);
-        relaxed += step * (information(candidates, largest_indices(d, pose_count)) - relaxed);
-        bound = std::min(bound, upper_bound(objective, candidates, pose_count, relaxed));
+Objective make_objective(const Blocks& candidates, const SelectOptions& options) {
+    const Blocks* test_poses = options.test_poses != nullptr ? options.test_poses : &candidates;
+    Objective objective =
+        make_objective(options.criterion, options.pose_count + options.held_pose_count, test_poses);
+    if (options.nuisance.empty()) return objective;
+    const Index L = candidates.parameter_count();
+    for (std::size_t k = 0; k < options.nuisance.size(); ++k) {
+        const Index column = options.nuisance[k];
+        if (column < 0 || column >= L || (k > 0 && column <= options.nuisance[k - 1])) {
+            throw InputError("nuisance column is " + std::to_string(column) +
+                             ", must be from 0 to " + std::to_string(L - 1) + " and ascending");
+        }
     }
-    return bound;
+    if (static_cast<Index>(options.nuisance.size()) == L) {
+        throw InputError("all " + std::to_string(L) +
+                         " columns are nuisance, at least one must be of interest");
+    }
+    if (objective.test_poses != nullptr || !has_information_function(options.criterion)) {
+        throw InputError("criterion " + std::string(criterion_name(options.criterion)) +
+                         " cannot have nuisance columns; d, a, e, o1, o3 and o5 can");
+    }
+    objective.nuisance = options.nuisance;
+    return objective;
+}
+
+double plan_value(const Blocks& candidates, const SelectOptions& options,
+                  const std::vector<Index>& poses) {
+    return evaluate(make_objective(candidates, options),
+                    held_information(candidates, options) + information(candidates, poses));
+}
+
+double upper_bound(const Objective& objective, const Blocks& candidates,
+                   const SelectOptions& options, const MatrixXd& M) {
+    if (!std::isfinite(evaluate(objective, M))) return infinity;
+    if (!has_information_function(objective.criterion)) {
+        const double condition = condition_bound(candidates, options, M, objective.sharpness);
+        if (objective.criterion == Criterion::O2) return condition;
+        Objective worst_direction = objective;
+        worst_direction.criterion = Criterion::O3;
+        return condition * upper_bound(worst_direction, candidates, options, M);
+    }
+    const MatrixXd Z = supporting_matrix(objective, M);
+    const VectorXd d = sensitivities(candidates, Z);
+    const double phi = Z.cwiseProduct(held_information(candidates, options)).sum() +
+                       sum_of(d, most_valuable(d, options));
+    return value_of_information(objective, phi, M.rows());
+}
+
+double upper_bound(const Blocks& candidates, const SelectOptions& options,
+                   const Certificate& certificate) {
+    Objective objective = make_objective(candidates, options);
+    objective.sharpness = certificate.sharpness;
+    return upper_bound(objective, candidates, options, certificate.M);
 }
 
 double efficiency(Criterion criterion, double value, double bound, Index parameter_count) {

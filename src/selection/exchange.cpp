@@ -1,213 +1,260 @@
 #include "posewise/selection/exchange.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <set>
+#include <numeric>
+#include <optional>
 
+#include "enumeration.hpp"
+#include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/random.hpp"
-#include "posewise/selection/bound.hpp"
+#include "relaxation.hpp"
 #include "sensitivity.hpp"
+#include "validation.hpp"
 
 namespace posewise {
 namespace {
 
-constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
-constexpr Index relaxation_iterations = 60;
+constexpr Index sweep_limit = 50;  // of the last sweeps over all candidates
+constexpr Index sweep_size = 4096;
 
-/// One search: candidates, what is maximised, and information held besides the chosen poses.
-struct Search {
-    const Blocks& candidates;
-    const Objective& objective;
-    MatrixXd held;
+/// When to give up early, and why.
+class Deadline {
+  public:
+    explicit Deadline(const SelectOptions& options) : options_(options) {}
 
-    MatrixXd information_of(const std::vector<Index>& poses) const {
-        return held + information(candidates, poses);
+    bool is_interrupted() const {
+        return options_.interrupted != nullptr && options_.interrupted->load();
     }
+    bool is_over() const {
+        if (is_interrupted()) return true;
+        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
+        return options_.time_limit > 0 && elapsed.count() > options_.time_limit;
+    }
+
+  private:
+    const SelectOptions& options_;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-struct SearchResult {
+std::vector<Index> by_decreasing(const VectorXd& values) {
+    std::vector<Index> order(static_cast<std::size_t>(values.size()));
+    std::iota(order.begin(), order.end(), Index{0});
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+        return values[a] != values[b] ? values[a] > values[b] : a < b;
+    });
+    return order;
+}
+
+/// K poses in the given order, as the limits allow; rounds repeat it for repeated poses. Fewer
+/// where the limits leave no more.
+std::vector<Index> take_in_order(const SearchProblem& problem, const std::vector<Index>& order) {
+    const SelectOptions& options = problem.options;
+    Occupancy occupancy(problem.candidates.count(), options);
     std::vector<Index> poses;
-    double value = minus_infinity;
-    bool converged = false;
-};
-
-bool is_improvement(double value, double over) {
-    return value > over + 1e-12 * std::max(1.0, std::abs(over));
+    const auto K = static_cast<std::size_t>(options.pose_count);
+    for (Index round = 0; round < options.repeat_limit && poses.size() < K; ++round) {
+        for (const Index i : order) {
+            if (poses.size() == K) break;
+            if (!occupancy.allows(i)) continue;
+            poses.push_back(i);
+            occupancy.add(i);
+        }
+    }
+    return poses;
 }
 
-/// A multiple of the identity, small beside the information of one pose, that makes log det finite.
-MatrixXd regularisation(const Blocks& candidates) {
-    const Index L = candidates.parameter_count();
-    const double mean_entry = candidates.matrix.squaredNorm() /
-                              static_cast<double>(std::max<Index>(1, candidates.count() * L));
-    return 1e-8 * mean_entry * MatrixXd::Identity(L, L);
+Choice make_choice(const SearchProblem& problem, std::vector<Index> poses) {
+    const Score score = problem.score(problem.regularised_information(poses));
+    return {std::move(poses), score};
 }
 
-/// Adds poses one at a time, each with the largest gain of log det(held + M), to K poses.
-void complete_greedily(const Blocks& candidates, const MatrixXd& held, Index pose_count,
-                       std::vector<Index>& poses) {
-    std::set<Index> chosen(poses.begin(), poses.end());
-    MatrixXd M = held + information(candidates, poses);
-    while (static_cast<Index>(poses.size()) < pose_count) {
-        const Eigen::LLT<MatrixXd> cholesky(M);
-        Index best = -1;
-        double best_gain = minus_infinity;
-        for (Index i = 0; i < candidates.count(); ++i) {
-            if (chosen.contains(i)) continue;
-            const MatrixXd whitened = cholesky.matrixL().solve(candidates[i].transpose());
-            const MatrixXd growth = MatrixXd::Identity(whitened.cols(), whitened.cols()) +
-                                    whitened.transpose() * whitened;
-            const double gain = growth.llt().matrixLLT().diagonal().array().log().sum();
-            if (best < 0 || gain > best_gain) {
-                best = i;
-                best_gain = gain;
+/// The poses of the largest relaxed weights.
+Choice make_first_start(const SearchProblem& problem, const Relaxation& relaxation) {
+    std::vector<Index> poses = take_in_order(problem, by_decreasing(relaxation.weights));
+    if (static_cast<Index>(poses.size()) < problem.options.pose_count) {
+        throw InputError("pose count is " + std::to_string(problem.options.pose_count) +
+                         ", but only " + std::to_string(poses.size()) +
+                         " poses were found that exclusions, groups and distances allow together");
+    }
+    return make_choice(problem, std::move(poses));
+}
+
+/// Poses drawn by their relaxed weights; nothing if the draw ran into the limits.
+std::optional<Choice> make_random_start(const SearchProblem& problem, const Relaxation& relaxation,
+                                        RandomStream& random) {
+    const double least = 1e-3 * static_cast<double>(problem.options.pose_count) /
+                         static_cast<double>(problem.candidates.count());
+    // Keys log(u) / w order a draw without replacement [Efraimidis, Spirakis 2006].
+    VectorXd keys = relaxation.weights;
+    for (double& key : keys) key = std::log(1 - random.uniform()) / std::max(key, least);
+    std::vector<Index> poses = take_in_order(problem, by_decreasing(keys));
+    if (static_cast<Index>(poses.size()) < problem.options.pose_count) return std::nullopt;
+    return make_choice(problem, std::move(poses));
+}
+
+Index shortlist_size(const Blocks& candidates, const SelectOptions& options) {
+    if (options.shortlist > 0) return options.shortlist;
+    const Index numbers_each =
+        std::max<Index>(1, candidates.matrix.size() / std::max<Index>(1, candidates.count()));
+    return std::clamp<Index>(250'000 / numbers_each, 800, 5000);
+}
+
+/// The most sensitive candidates at the relaxed optimum that are not excluded.
+Shortlist shortlist_by_sensitivity(const SearchProblem& problem, const Relaxation& relaxation) {
+    const std::vector<Index> capacity = capacities(problem.candidates.count(), problem.options);
+    const Index size = shortlist_size(problem.candidates, problem.options);
+    std::vector<Index> members;
+    for (const Index i : by_decreasing(relaxation.sensitivity)) {
+        if (static_cast<Index>(members.size()) == size) break;
+        if (capacity[static_cast<std::size_t>(i)] > 0) members.push_back(i);
+    }
+    return make_shortlist(problem.objective, problem.candidates, std::move(members));
+}
+
+/// Counts finished starts and tells the caller, one thread at a time.
+class Reporter {
+  public:
+    Reporter(const SelectOptions& options, double bound) : options_(options) {
+        progress_.starts = options.starts;
+        progress_.bound = bound;
+    }
+    void report(const Choice& choice) {
+        if (!options_.progress) return;
+#pragma omp critical(posewise_select_progress)
+        {
+            ++progress_.starts_done;
+            if (choice.score.identifies) {
+                progress_.value = std::max(progress_.value, choice.score.value);
             }
-        }
-        poses.push_back(best);
-        chosen.insert(best);
-        M += candidates[best].transpose() * candidates[best];
-    }
-}
-
-/// Replaces the pose at `position` by the candidate that improves the value most. Quasiconcavity
-/// screens (O4 does not have it): only a pose of larger sensitivity can improve the value.
-bool exchange_best(const Search& search, Index position, SearchResult& result) {
-    const auto at = static_cast<std::size_t>(position);
-    const Index removed = result.poses[at];
-    const MatrixXd M = search.information_of(result.poses);
-    const VectorXd d = sensitivities(search.candidates, gradient(search.objective, M));
-    const MatrixXd remaining =
-        M - search.candidates[removed].transpose() * search.candidates[removed];
-    const bool screens = search.objective.criterion != Criterion::O4;
-    Index best = -1;
-    double best_value = result.value;
-    for (Index i = 0; i < search.candidates.count(); ++i) {
-        if ((screens && d[i] <= d[removed]) ||
-            std::find(result.poses.begin(), result.poses.end(), i) != result.poses.end()) {
-            continue;
-        }
-        const MatrixXd exchanged =
-            remaining + search.candidates[i].transpose() * search.candidates[i];
-        const double value = evaluate(search.objective, exchanged);
-        if (is_improvement(value, best_value)) {
-            best = i;
-            best_value = value;
+            options_.progress(progress_);
         }
     }
-    if (best < 0) return false;
-    result.poses[at] = best;
-    result.value = evaluate(search.objective, search.information_of(result.poses));
-    return true;
-}
 
-/// Exchanges until no exchange improves, or the sweeps are used up.
-SearchResult improve(const Search& search, std::vector<Index> poses, Index sweep_limit) {
-    SearchResult result{std::move(poses), minus_infinity, false};
-    result.value = evaluate(search.objective, search.information_of(result.poses));
-    for (Index sweep = 0; sweep < sweep_limit && !result.converged; ++sweep) {
-        result.converged = true;
-        for (Index j = 0; j < static_cast<Index>(result.poses.size()); ++j) {
-            if (exchange_best(search, j, result)) result.converged = false;
-        }
-    }
-    std::sort(result.poses.begin(), result.poses.end());
-    return result;
-}
+  private:
+    const SelectOptions& options_;
+    SelectProgress progress_;
+};
 
-/// One start: some random poses (none for the first start), completed greedily and improved;
-/// while they do not identify the parameters, by the regularised determinant first.
-SearchResult run_start(const Search& search, const SelectOptions& options, Index start) {
-    const MatrixXd ridge = regularisation(search.candidates);
-    std::vector<Index> poses;
-    if (start > 0) {
+/// Searches from `first`, the start of the relaxation, and from random ones.
+std::vector<Choice> run_starts(const SearchProblem& problem, const Relaxation& relaxation,
+                               const Shortlist& shortlist, const Choice& first) {
+    const SelectOptions& options = problem.options;
+    Reporter reporter(options, relaxation.bound);
+    std::vector<Choice> choices(static_cast<std::size_t>(options.starts), first);
+#pragma omp parallel for schedule(dynamic)
+    for (Index start = 0; start < options.starts; ++start) {
+        if (start > 0 && problem.must_stop()) continue;
         RandomStream random(options.seed, static_cast<std::uint64_t>(start));
-        poses = random.subset(search.candidates.count(), (options.pose_count + 1) / 2);
+        Choice& choice = choices[static_cast<std::size_t>(start)];
+        if (start > 0) choice = make_random_start(problem, relaxation, random).value_or(first);
+        choice = improve_with_kicks(problem, shortlist, choice, random);
+        reporter.report(choice);
     }
-    complete_greedily(search.candidates, ridge, options.pose_count, poses);
-    if (!std::isfinite(evaluate(search.objective, search.information_of(poses)))) {
-        const Objective determinant = make_objective(Criterion::D, options.pose_count);
-        poses = improve({search.candidates, determinant, search.held + ridge}, poses,
-                        options.sweep_limit)
-                    .poses;
-        if (!std::isfinite(evaluate(search.objective, search.information_of(poses)))) {
-            return {poses, minus_infinity, true};
-        }
-    }
-    return improve(search, std::move(poses), options.sweep_limit);
+    return choices;
 }
 
-void check(const Blocks& candidates, const SelectOptions& options) {
-    if (!candidates.matrix.allFinite()) {
-        throw InputError("candidates have a value that is not a finite number");
+/// Exchanges with every candidate that could improve the choice, shortlisted or not, until none
+/// does.
+Choice sweep_all(const SearchProblem& problem, Choice choice) {
+    for (Index sweep = 0; sweep < sweep_limit && !problem.must_stop(); ++sweep) {
+        const VectorXd d = sensitivities(
+            problem.candidates,
+            gradient(problem.objective, problem.regularised_information(choice.poses)));
+        double least = std::numeric_limits<double>::infinity();
+        for (const Index pose : choice.poses) least = std::min(least, d[pose]);
+        const std::vector<Index> capacity = capacities(problem.candidates.count(), problem.options);
+        std::vector<Index> members;
+        for (const Index i : by_decreasing(d)) {
+            if (d[i] <= least || static_cast<Index>(members.size()) == sweep_size) break;
+            if (capacity[static_cast<std::size_t>(i)] > 0) members.push_back(i);
+        }
+        if (members.empty()) break;
+        const Shortlist shortlist =
+            make_shortlist(problem.objective, problem.candidates, std::move(members));
+        const Choice improved = improve(problem, shortlist, choice);
+        if (!is_better(improved.score, choice.score)) break;
+        choice = improved;
     }
-    if (options.pose_count < 1 || options.pose_count > candidates.count()) {
-        throw InputError("pose count is " + std::to_string(options.pose_count) +
-                         ", must be from 1 to the number of candidates, " +
-                         std::to_string(candidates.count()));
+    return choice;
+}
+
+double ridge_of(const Blocks& candidates) {
+    const double entries = static_cast<double>(candidates.count() * candidates.parameter_count());
+    return 1e-11 * std::max(candidates.matrix.squaredNorm() / entries, 1e-300);
+}
+
+struct Outcome {
+    Choice best;
+    std::vector<Choice> starts;  // what each start ended at
+    bool is_optimal = false;
+};
+
+/// The relaxation's own start may leave few enough other choices to try them all; else all starts.
+Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
+    const Shortlist shortlist = shortlist_by_sensitivity(problem, relaxation);
+    const Choice first = improve(problem, shortlist, make_first_start(problem, relaxation));
+    if (auto optimum = enumerate_open_choices(problem, relaxation, first)) {
+        return {*optimum, {*optimum}, true};
     }
-    if (options.starts < 1) {
-        throw InputError("starts is " + std::to_string(options.starts) + ", must be at least 1");
+    Outcome outcome{{}, run_starts(problem, relaxation, shortlist, first), false};
+    outcome.best = outcome.starts.front();
+    for (const Choice& choice : outcome.starts) {
+        if (is_better(choice.score, outcome.best.score)) outcome.best = choice;
     }
-    if (options.sweep_limit < 1) {
-        throw InputError("sweep limit is " + std::to_string(options.sweep_limit) +
-                         ", must be at least 1");
+    outcome.best = sweep_all(problem, outcome.best);
+    if (problem.must_stop()) return outcome;
+    if (auto optimum = enumerate_open_choices(problem, relaxation, outcome.best)) {
+        outcome.best = *optimum;
+        outcome.is_optimal = true;
     }
-    const Index L = candidates.parameter_count();
-    const VectorXd scale = candidates.matrix.colwise().norm().cwiseMax(1e-300).cwiseInverse();
-    const MatrixXd M = scale.asDiagonal() * information(candidates) * scale.asDiagonal();
-    const VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<MatrixXd>(M).eigenvalues();
-    const Index missing =
-        (eigenvalues.array() <= 1e-12 * std::max(1.0, eigenvalues[L - 1])).count();
-    if (missing > 0) {
-        throw InputError("all " + std::to_string(candidates.count()) +
-                         " candidates together leave " + std::to_string(missing) + " of " +
-                         std::to_string(L) +
-                         " parameter directions unseen; drop redundant parameters or add poses");
-    }
+    return outcome;
 }
 
 }  // namespace
 
 Plan select_poses(const Blocks& candidates, const SelectOptions& options) {
-    check(candidates, options);
-    const Objective objective = make_objective(options.criterion, options.pose_count, &candidates);
-    const Index L = candidates.parameter_count();
-    const Search search{candidates, objective, MatrixXd::Zero(L, L)};
-
-    std::vector<SearchResult> results(static_cast<std::size_t>(options.starts));
-#pragma omp parallel for schedule(dynamic)
-    for (Index start = 0; start < options.starts; ++start) {
-        results[static_cast<std::size_t>(start)] = run_start(search, options, start);
-    }
-
-    const auto best =
-        std::max_element(results.begin(), results.end(),
-                         [](const auto& a, const auto& b) { return a.value < b.value; });
-    if (!std::isfinite(best->value)) {
+    validate(candidates, options);
+    const Deadline deadline(options);
+    const Objective objective = make_objective(candidates, options);
+    const SearchProblem problem{candidates,
+                                options,
+                                objective,
+                                held_information(candidates, options),
+                                ridge_of(candidates),
+                                [&] { return deadline.is_over(); }};
+    const Relaxation relaxation = relax(objective, candidates, options, problem.must_stop);
+    const Outcome outcome = search(problem, relaxation);
+    const Choice& best = outcome.best;
+    if (!best.score.identifies) {
         throw InputError("pose count is " + std::to_string(options.pose_count) +
-                         ": no choice was found that identifies all " + std::to_string(L) +
-                         " parameters; ask for more poses");
+                         ": no choice was found that identifies all " +
+                         std::to_string(candidates.parameter_count()) +
+                         " parameters; ask for more poses or state a prior");
     }
     Plan plan;
-    plan.poses = best->poses;
-    plan.criterion = options.criterion;
-    plan.value = best->value;
-    plan.bound = std::max(
-        plan.value, tightened_bound(objective, candidates, options.pose_count,
-                                    information(candidates, plan.poses), relaxation_iterations));
-    plan.efficiency = efficiency(plan.criterion, plan.value, plan.bound, L);
-    plan.seed = options.seed;
-    plan.starts = options.starts;
+    plan.starts = static_cast<Index>(outcome.starts.size());
     plan.starts_at_best =
-        std::count_if(results.begin(), results.end(), [&](const SearchResult& result) {
-            return plan.value - result.value <= 1e-9 * std::max(1.0, std::abs(plan.value));
+        std::count_if(outcome.starts.begin(), outcome.starts.end(), [&](const Choice& choice) {
+            return choice.score.identifies && best.score.value - choice.score.value <=
+                                                  1e-9 * std::max(1.0, std::abs(best.score.value));
         });
-    const bool converged = std::all_of(results.begin(), results.end(),
-                                       [](const auto& result) { return result.converged; });
-    plan.stop_reason = converged ? StopReason::Converged : StopReason::SweepLimit;
+    plan.stop_reason = outcome.is_optimal          ? StopReason::Optimal
+                       : deadline.is_interrupted() ? StopReason::Interrupted
+                       : deadline.is_over()        ? StopReason::TimeLimit
+                                                   : StopReason::Converged;
+    plan.bound = outcome.is_optimal ? best.score.value : relaxation.bound;
+    plan.poses = best.poses;
+    std::sort(plan.poses.begin(), plan.poses.end());
+    plan.criterion = options.criterion;
+    plan.value = plan_value(candidates, options, plan.poses);
+    plan.bound = std::max(plan.bound, plan.value);
+    plan.efficiency =
+        efficiency(plan.criterion, plan.value, plan.bound,
+                   candidates.parameter_count() - static_cast<Index>(options.nuisance.size()));
+    plan.certificate = relaxation.certificate;
+    plan.seed = options.seed;
     return plan;
 }
 

@@ -4,41 +4,66 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
+#include "posewise/core/errors.hpp"
 #include "support/designs.hpp"
 
 namespace posewise {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::array all = {Criterion::O1, Criterion::O2, Criterion::O3, Criterion::O4,
                             Criterion::O5, Criterion::A,  Criterion::D,  Criterion::E,
                             Criterion::G,  Criterion::V};
 
-double best_value(const Objective& objective, const Blocks& candidates, Index k) {
-    double best = -std::numeric_limits<double>::infinity();
-    test::for_each_subset(candidates.count(), k, [&](const std::vector<Index>& subset) {
-        best = std::max(best, evaluate(objective, information(candidates, subset)));
+/// How many random problems a sweep tries: POSEWISE_SWEEP, or a quick 300.
+int sweep_count() {
+    const char* text = std::getenv("POSEWISE_SWEEP");
+    return text != nullptr ? std::atoi(text) : 300;
+}
+
+double best_value(const Blocks& candidates, const SelectOptions& options) {
+    double best = -infinity;
+    test::for_each_choice(candidates.count(), options, [&](const std::vector<Index>& poses) {
+        best = std::max(best, plan_value(candidates, options, poses));
     });
     return best;
 }
 
-TEST(UpperBound, IsNeverBelowTheBestSubset) {
-    for (std::uint64_t seed = 0; seed < 40; ++seed) {
-        const Blocks candidates = test::random_blocks(9, 1 + static_cast<Index>(seed % 3), 4, seed);
-        const Index k = 4 + static_cast<Index>(seed % 2);
-        const MatrixXd chosen = information(take(candidates, {0, 2, 4, 6, 8}));
-        const MatrixXd other = information(test::random_blocks(9, 1, 4, 1000 + seed));
-        for (const Criterion criterion : all) {
-            const Objective objective = make_objective(criterion, k, &candidates);
-            const double best = best_value(objective, candidates, k);
-            for (const MatrixXd& M : {chosen, other, information(candidates)}) {
-                const double bound = upper_bound(objective, candidates, k, M);
-                EXPECT_GE(bound, best - 1e-10 * std::abs(best)) << criterion_name(criterion);
-            }
-            const double tightened = tightened_bound(objective, candidates, k, chosen, 30);
-            EXPECT_GE(tightened, best - 1e-10 * std::abs(best)) << criterion_name(criterion);
-            EXPECT_LE(tightened, upper_bound(objective, candidates, k, chosen));
+/// A random problem: block height, prior, repeats, groups and nuisance vary with the seed.
+SelectOptions random_options(const Blocks& candidates, std::uint64_t seed) {
+    RandomStream random(seed, 1);
+    const Index L = candidates.parameter_count();
+    SelectOptions options;
+    options.pose_count = 2 + random.index(3);
+    if (random.index(2) == 0) options.held = random.uniform(0, 2) * MatrixXd::Identity(L, L);
+    options.repeat_limit = 1 + random.index(3);
+    if (random.index(3) == 0) {
+        for (Index i = 0; i < candidates.count(); ++i) options.groups.push_back(i % 3);
+        options.group_limit = 2;
+    }
+    if (random.index(3) == 0) options.excluded = {0, 3};
+    return options;
+}
+
+TEST(UpperBound, IsNeverBelowTheBestChoice) {
+    for (int problem = 0; problem < sweep_count(); ++problem) {
+        const auto seed = static_cast<std::uint64_t>(problem);
+        const Blocks candidates = test::random_blocks(7, 1 + problem % 3, 3, seed);
+        SelectOptions options = random_options(candidates, seed);
+        options.criterion = all[static_cast<std::size_t>(problem) % all.size()];
+        const bool may_have_nuisance = options.criterion == Criterion::D ||
+                                       options.criterion == Criterion::A ||
+                                       options.criterion == Criterion::E;
+        if (may_have_nuisance && problem % 4 == 0) options.nuisance = {1};
+        const double best = best_value(candidates, options);
+        const MatrixXd M = information(test::random_blocks(7, 1, 3, 1000 + seed));
+        for (const double sharpness : {2.0, 30.0, infinity}) {
+            const double bound = upper_bound(candidates, options, {M, sharpness});
+            EXPECT_GE(bound, best - 1e-10 * std::abs(best))
+                << criterion_name(options.criterion) << ", problem " << problem;
         }
     }
 }
@@ -47,26 +72,45 @@ TEST(UpperBound, IsTheValueItselfAtTheOptimumOfThePlanarArm) {
     const Blocks plan =
         test::planar_arm_blocks(Eigen::Vector2d(1, 0.8), test::optimal_planar_angles(2, 6));
     for (const Criterion criterion : {Criterion::D, Criterion::O1}) {
-        const Objective objective = make_objective(criterion, 6);
-        const double value = evaluate(objective, information(plan));
-        EXPECT_NEAR(upper_bound(objective, plan, 6, information(plan)), value, 1e-12);
+        SelectOptions options;
+        options.criterion = criterion;
+        options.pose_count = 6;
+        const double value = plan_value(plan, options, {0, 1, 2, 3, 4, 5});
+        EXPECT_NEAR(upper_bound(plan, options, {information(plan)}), value, 1e-12);
     }
 }
 
 TEST(UpperBound, IsInfiniteWhereTheMatrixIsSingular) {
     const Blocks candidates = test::random_blocks(9, 1, 4, 1);
     for (const Criterion criterion : all) {
-        const Objective objective = make_objective(criterion, 4, &candidates);
-        EXPECT_EQ(upper_bound(objective, candidates, 4, MatrixXd::Zero(4, 4)),
-                  std::numeric_limits<double>::infinity());
+        SelectOptions options;
+        options.criterion = criterion;
+        options.pose_count = 4;
+        EXPECT_EQ(upper_bound(candidates, options, {MatrixXd::Zero(4, 4)}), infinity);
+    }
+}
+
+TEST(Objective, RefusesNuisanceThatMakesNoSense) {
+    const Blocks candidates = test::random_blocks(9, 1, 3, 1);
+    SelectOptions options;
+    options.pose_count = 4;
+    for (const std::vector<Index>& nuisance :
+         {std::vector<Index>{3}, {-1}, {1, 0}, {1, 1}, {0, 1, 2}}) {
+        options.nuisance = nuisance;
+        EXPECT_THROW(make_objective(candidates, options), InputError);
+    }
+    options.nuisance = {0};
+    for (const Criterion criterion : {Criterion::G, Criterion::V, Criterion::O2, Criterion::O4}) {
+        options.criterion = criterion;
+        EXPECT_THROW(make_objective(candidates, options), InputError);
     }
 }
 
 TEST(Efficiency, IsAFractionForEveryCriterion) {
     EXPECT_DOUBLE_EQ(efficiency(Criterion::D, std::log(8.0), std::log(64.0), 3), 0.5);
     EXPECT_DOUBLE_EQ(efficiency(Criterion::A, 1, 4, 3), 0.25);
-    EXPECT_EQ(efficiency(Criterion::D, 1, std::numeric_limits<double>::infinity(), 3), 0);
-    EXPECT_EQ(efficiency(Criterion::D, -std::numeric_limits<double>::infinity(), 1, 3), 0);
+    EXPECT_EQ(efficiency(Criterion::D, 1, infinity, 3), 0);
+    EXPECT_EQ(efficiency(Criterion::D, -infinity, 1, 3), 0);
 }
 
 }  // namespace

@@ -5,11 +5,9 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/criteria/objective.hpp"
+#include "posewise/selection/bound.hpp"
 #include "support/designs.hpp"
 
 namespace posewise {
@@ -23,6 +21,8 @@ SelectOptions make_options(Criterion criterion, Index pose_count) {
     SelectOptions options;
     options.criterion = criterion;
     options.pose_count = pose_count;
+    options.enumeration = 0;  // so that it is the search that finds
+    options.starts = 6;
     return options;
 }
 
@@ -35,51 +35,110 @@ std::string message_of(const Blocks& candidates, const SelectOptions& options) {
     return "";
 }
 
+void expect_refusal(const Blocks& candidates, const SelectOptions& options,
+                    const std::string& part) {
+    const std::string message = message_of(candidates, options);
+    EXPECT_NE(message.find(part), std::string::npos) << "message: " << message;
+}
+
+/// The plan has the value of the best choice there is, and a bound that is not below it.
+void expect_best(const Blocks& candidates, const SelectOptions& options) {
+    double best = -std::numeric_limits<double>::infinity();
+    test::for_each_choice(candidates.count(), options, [&](const std::vector<Index>& poses) {
+        best = std::max(best, plan_value(candidates, options, poses));
+    });
+    const Plan plan = select_poses(candidates, options);
+    EXPECT_NEAR(plan.value, best, 1e-11 * std::abs(best)) << criterion_name(options.criterion);
+    EXPECT_EQ(plan.value, plan_value(candidates, options, plan.poses));
+    EXPECT_GE(plan.bound, plan.value);
+    const double certified = upper_bound(candidates, options, plan.certificate);
+    EXPECT_GE(certified, plan.value - 1e-10 * std::abs(plan.value));
+    EXPECT_GE(certified, plan.bound - 1e-10 * std::abs(plan.bound));
+    EXPECT_GT(plan.efficiency, 0);
+    EXPECT_LE(plan.efficiency, 1);
+    EXPECT_GE(plan.starts_at_best, 1);
+}
+
 TEST(SelectByExchange, FindsTheBestSubsetOfASmallSet) {
-    for (std::uint64_t seed = 0; seed < 6; ++seed) {
-        const Index rows = 1 + static_cast<Index>(seed % 3);
-        const Blocks candidates = test::random_blocks(12, rows, 4, seed);
+    const std::array<std::array<Index, 2>, 6> shapes = {
+        {{1, 4}, {2, 5}, {3, 7}, {6, 9}, {9, 20}, {13, 20}}};
+    for (std::uint64_t seed = 0; seed < shapes.size(); ++seed) {
+        const auto [rows, parameters] = shapes[seed];
+        const Blocks candidates = test::random_blocks(12, rows, parameters, seed);
         for (const Criterion criterion : all) {
-            const Objective objective = make_objective(criterion, 5, &candidates);
-            double best = -std::numeric_limits<double>::infinity();
-            std::vector<Index> best_subset;
-            test::for_each_subset(12, 5, [&](const std::vector<Index>& subset) {
-                const double value = evaluate(objective, information(candidates, subset));
-                if (value > best) {
-                    best = value;
-                    best_subset = subset;
-                }
-            });
-            const Plan plan = select_poses(candidates, make_options(criterion, 5));
-            EXPECT_NEAR(plan.value, best, 1e-12 * std::abs(best)) << criterion_name(criterion);
-            EXPECT_EQ(plan.poses, best_subset) << criterion_name(criterion);
-            EXPECT_GE(plan.bound, plan.value);
-            EXPECT_GT(plan.efficiency, 0);
-            EXPECT_LE(plan.efficiency, 1);
-            EXPECT_GE(plan.starts_at_best, 1);
-            EXPECT_EQ(plan.stop_reason, StopReason::Converged);
+            expect_best(candidates, make_options(criterion, 5));
         }
     }
 }
 
-TEST(SelectByExchange, FindsTheOptimalPlanOfThePlanarArm) {
-    RowMatrixXd angles = RowMatrixXd::Zero(24, 2);
-    angles.col(1).setLinSpaced(0, 2 * std::numbers::pi * 23 / 24);
-    const Blocks candidates = test::planar_arm_blocks(Eigen::Vector2d(1, 0.8), angles);
-    const Plan plan = select_poses(candidates, make_options(Criterion::D, 2));
-    EXPECT_NEAR(std::exp(plan.value), 10.24, 1e-12);
-    EXPECT_EQ(plan.poses[1] - plan.poses[0], 12);
-    EXPECT_NEAR(plan.efficiency, 1, 1e-9);
+TEST(SelectByExchange, FindsTheBestOfBlocksOfDifferentHeights) {
+    Blocks candidates = test::random_blocks(24, 1, 5, 3);
+    candidates.first_row = {0, 1, 4, 6, 7, 10, 12, 15, 16, 20, 24};
+    for (const Criterion criterion : {Criterion::D, Criterion::A, Criterion::E}) {
+        expect_best(candidates, make_options(criterion, 4));
+    }
+}
+
+TEST(SelectByExchange, HonoursEveryLimit) {
+    const Blocks candidates = test::random_blocks(9, 2, 4, 7);
+    for (const Criterion criterion : {Criterion::D, Criterion::V, Criterion::E, Criterion::O5}) {
+        SelectOptions repeats = make_options(criterion, 5);
+        repeats.repeat_limit = 3;
+        expect_best(candidates, repeats);
+        SelectOptions excluded = make_options(criterion, 4);
+        excluded.excluded = {1, 4, 8};
+        expect_best(candidates, excluded);
+        SelectOptions groups = make_options(criterion, 4);
+        groups.groups = {5, 5, 5, -1, -1, -1, 0, 0, 0};
+        groups.group_limit = 2;
+        expect_best(candidates, groups);
+        SelectOptions apart = make_options(criterion, 4);
+        apart.positions = VectorXd::LinSpaced(9, 0, 8);
+        apart.least_distance = 1.5;
+        expect_best(candidates, apart);
+    }
+}
+
+TEST(SelectByExchange, AddsToWhatIsHeld) {
+    const Blocks candidates = test::random_blocks(12, 2, 9, 8);
+    for (const Criterion criterion : all) {
+        SelectOptions options = make_options(criterion, 3);  // six rows, nine parameters
+        options.held = MatrixXd::Identity(9, 9) + information(candidates, {0, 1});
+        options.held_pose_count = 2;
+        options.excluded = {0, 1};
+        expect_best(candidates, options);
+    }
+}
+
+TEST(SelectByExchange, LeavesNuisanceOutOfTheValue) {
+    const Blocks candidates = test::random_blocks(12, 2, 6, 9);
+    for (const Criterion criterion : {Criterion::D, Criterion::A, Criterion::E, Criterion::O1}) {
+        SelectOptions options = make_options(criterion, 5);
+        options.nuisance = {0, 2, 3};
+        expect_best(candidates, options);
+    }
+}
+
+TEST(SelectByExchange, SaysWhenThePlanIsOptimal) {
+    const Blocks candidates = test::random_blocks(10, 3, 4, 5);
+    SelectOptions options = make_options(Criterion::D, 5);
+    options.enumeration = 1000;
+    const Plan plan = select_poses(candidates, options);
+    EXPECT_EQ(plan.stop_reason, StopReason::Optimal);
+    EXPECT_EQ(plan.bound, plan.value);
+    EXPECT_EQ(plan.efficiency, 1);
 }
 
 TEST(SelectByExchange, GivesTheSamePlanForAnyNumberOfThreads) {
-    const Blocks candidates = test::random_blocks(60, 3, 9, 5);
+    const Blocks candidates = test::random_blocks(300, 3, 9, 5);
     const int threads = omp_get_max_threads();
     for (const Criterion criterion : {Criterion::D, Criterion::O3, Criterion::V}) {
+        SelectOptions options = make_options(criterion, 8);
+        options.kicks = 5;
         omp_set_num_threads(1);
-        const Plan serial = select_poses(candidates, make_options(criterion, 8));
+        const Plan serial = select_poses(candidates, options);
         omp_set_num_threads(2);
-        const Plan parallel = select_poses(candidates, make_options(criterion, 8));
+        const Plan parallel = select_poses(candidates, options);
         EXPECT_EQ(serial.poses, parallel.poses);
         EXPECT_EQ(serial.value, parallel.value);
         EXPECT_EQ(serial.bound, parallel.bound);
@@ -89,31 +148,75 @@ TEST(SelectByExchange, GivesTheSamePlanForAnyNumberOfThreads) {
 }
 
 TEST(SelectByExchange, FindsThePosesThatJustIdentifyTheParameters) {
-    // Only poses 3 and 7 see the last parameter: two of twelve rows.
+    // Only poses 3 and 7 see the last parameter.
     RowMatrixXd matrix = test::random_blocks(12, 1, 4, 9).matrix;
     for (const Index row : {0, 1, 2, 4, 5, 6, 8, 9, 10, 11}) matrix(row, 3) = 0;
-    const Blocks candidates = make_equal_blocks(matrix, 1);
-    const Plan plan = select_poses(candidates, make_options(Criterion::E, 4));
-    EXPECT_TRUE(std::isfinite(plan.value));
+    for (const Criterion criterion : {Criterion::D, Criterion::E, Criterion::A}) {
+        expect_best(make_equal_blocks(matrix, 1), make_options(criterion, 4));
+    }
+}
+
+TEST(SelectByExchange, StopsInTimeOrWhenAskedWithABound) {
+    const Blocks candidates = test::random_blocks(2000, 3, 12, 5);
+    SelectOptions options = make_options(Criterion::D, 20);
+    options.time_limit = 0.05;
+    const Plan timed = select_poses(candidates, options);
+    EXPECT_EQ(timed.stop_reason, StopReason::TimeLimit);
+    EXPECT_GE(timed.bound, timed.value);
+    const std::atomic<bool> interrupted = true;
+    options.interrupted = &interrupted;
+    const Plan stopped = select_poses(candidates, options);
+    EXPECT_EQ(stopped.stop_reason, StopReason::Interrupted);
+    EXPECT_TRUE(std::isfinite(stopped.bound));
+    EXPECT_TRUE(std::isfinite(stopped.value));
+}
+
+TEST(SelectByExchange, TellsItsProgress) {
+    const Blocks candidates = test::random_blocks(20, 1, 4, 5);
+    SelectOptions options = make_options(Criterion::D, 6);
+    std::vector<SelectProgress> reports;
+    options.progress = [&](const SelectProgress& progress) { reports.push_back(progress); };
+    const Plan plan = select_poses(candidates, options);
+    ASSERT_EQ(static_cast<Index>(reports.size()), options.starts);
+    EXPECT_EQ(reports.back().starts_done, options.starts);
+    EXPECT_NEAR(reports.back().value, plan.value, 1e-9);
 }
 
 TEST(SelectByExchange, RefusesUnusableInput) {
     const Blocks candidates = test::random_blocks(6, 1, 4, 1);
-    EXPECT_NE(message_of(candidates, make_options(Criterion::D, 7)).find("pose count is 7"),
-              std::string::npos);
-    EXPECT_NE(message_of(candidates, make_options(Criterion::D, 0)), "");
-    EXPECT_NE(message_of(candidates, make_options(Criterion::D, 3)).find("more poses"),
-              std::string::npos);
+    expect_refusal(candidates, make_options(Criterion::D, 7), "pose count is 7");
+    expect_refusal(candidates, make_options(Criterion::D, 0), "pose count is 0");
+    expect_refusal(candidates, make_options(Criterion::D, 3), "more poses");
     SelectOptions options = make_options(Criterion::D, 5);
     options.starts = 0;
-    EXPECT_NE(message_of(candidates, options), "");
+    expect_refusal(candidates, options, "starts is 0");
+    options = make_options(Criterion::D, 5);
+    options.excluded = {2, 4};
+    expect_refusal(candidates, options, "from 1 to 4");
+    options.excluded = {6};
+    expect_refusal(candidates, options, "excluded candidate is 6");
+    options = make_options(Criterion::D, 5);
+    options.groups = {1, 2};
+    expect_refusal(candidates, options, "one for each of 6");
+    options.groups = {0, 0, 0, 0, 1, 1};
+    options.group_limit = 2;
+    expect_refusal(candidates, options, "only 4");
+    options = make_options(Criterion::D, 5);
+    options.held = MatrixXd::Identity(3, 3);
+    expect_refusal(candidates, options, "4 square");
+    options.held = -MatrixXd::Identity(4, 4);
+    expect_refusal(candidates, options, "positive semidefinite");
+    options = make_options(Criterion::D, 5);
+    options.least_distance = 1;
+    expect_refusal(candidates, options, "positions has 0 rows");
     Blocks blind = candidates;
     blind.matrix.col(2) = blind.matrix.col(1);
+    expect_refusal(blind, make_options(Criterion::D, 5), "columns 2 + 3");
     blind.matrix.col(3).setZero();
-    EXPECT_NE(message_of(blind, make_options(Criterion::D, 5)).find("2 of 4"), std::string::npos);
+    expect_refusal(blind, make_options(Criterion::D, 5), "2 of 4");
     Blocks not_finite = candidates;
     not_finite.matrix(1, 1) = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_NE(message_of(not_finite, make_options(Criterion::D, 5)), "");
+    expect_refusal(not_finite, make_options(Criterion::D, 5), "finite");
 }
 
 }  // namespace

@@ -48,21 +48,42 @@ inline RowMatrixXd optimal_planar_angles(Index joints, Index poses) {
     return angles;
 }
 
-/// All K-subsets of {0, ..., count - 1}, in lexicographic order.
-template <typename Visit>
-void for_each_subset(Index count, Index k, const Visit& visit) {
-    std::vector<Index> subset(static_cast<std::size_t>(k));
-    for (Index i = 0; i < k; ++i) subset[static_cast<std::size_t>(i)] = i;
-    while (true) {
-        visit(subset);
-        Index at = k - 1;
-        while (at >= 0 && subset[static_cast<std::size_t>(at)] == count - k + at) --at;
-        if (at < 0) return;
-        ++subset[static_cast<std::size_t>(at)];
-        for (Index i = at + 1; i < k; ++i) {
-            subset[static_cast<std::size_t>(i)] = subset[static_cast<std::size_t>(i - 1)] + 1;
+/// All choices of K out of `count` candidates that repeats, exclusions, groups and distances allow,
+/// by brute force and written independently of the library.
+template <typename Options, typename Visit>
+void for_each_choice(Index count, const Options& options, const Visit& visit) {
+    std::vector<Index> poses;
+    const auto is_allowed = [&](Index candidate) {
+        for (const Index excluded : options.excluded) {
+            if (excluded == candidate) return false;
         }
-    }
+        Index copies = 0;
+        Index in_group = 0;
+        for (const Index pose : poses) {
+            copies += pose == candidate;
+            if (!options.groups.empty()) {
+                in_group += options.groups[static_cast<std::size_t>(pose)] ==
+                            options.groups[static_cast<std::size_t>(candidate)];
+            }
+            const bool is_near =
+                options.least_distance > 0 && pose != candidate &&
+                (options.positions.row(pose) - options.positions.row(candidate)).norm() <
+                    options.least_distance;
+            if (is_near) return false;
+        }
+        return copies < options.repeat_limit &&
+               (options.group_limit == 0 || in_group < options.group_limit);
+    };
+    const auto complete = [&](const auto& self, Index from) -> void {
+        if (static_cast<Index>(poses.size()) == options.pose_count) return visit(poses);
+        for (Index candidate = from; candidate < count; ++candidate) {
+            if (!is_allowed(candidate)) continue;
+            poses.push_back(candidate);
+            self(self, candidate);
+            poses.pop_back();
+        }
+    };
+    complete(complete, 0);
 }
 
 }  // namespace posewise::test

@@ -1,24 +1,59 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <functional>
 
 #include "posewise/selection/plan.hpp"
 
 namespace posewise {
 
-struct SelectOptions {
-    Criterion criterion = Criterion::D;
-    Index pose_count = 0;     ///< K, must be stated
-    Index starts = 20;        ///< the first from the greedy choice, the others random
-    Index sweep_limit = 100;  ///< passes over all exchanges, for each start
-    std::uint64_t seed = 1;
+/// How far a selection has come; handed to SelectOptions::progress.
+struct SelectProgress {
+    Index starts_done = 0;
+    Index starts = 0;
+    double value = -std::numeric_limits<double>::infinity();  ///< of the best plan so far
+    double bound = std::numeric_limits<double>::infinity();
 };
 
-/// The best K of the candidates found by greedy start and block exchange with restarts (OpenMP
-/// over starts; the result does not depend on the number of threads), and a proven bound.
-/// For G and V the candidates themselves are the test poses.
-/// Throws InputError if K is not in [1, candidates], if all candidates together do not identify
-/// the parameters (naming how many directions are missing) or if no start found K poses that do.
+/// What to choose (the problem, up to and including `least_distance`) and how hard to try.
+struct SelectOptions {
+    Criterion criterion = Criterion::D;
+    Index pose_count = 0;  ///< K, must be stated
+    /// Test poses of G and V; the caller keeps them alive. Null: the candidates themselves.
+    const Blocks* test_poses = nullptr;
+    /// Columns estimated along but of no interest (D becomes Ds). Not with G and V.
+    std::vector<Index> nuisance;
+    /// Information there is before measuring: a prior (identity in scaled units), poses already
+    /// measured, or their sum. Empty: none.
+    MatrixXd held;
+    Index held_pose_count = 0;    ///< poses already measured; m of O1 is K more
+    Index repeat_limit = 1;       ///< how often one candidate may be chosen
+    std::vector<Index> excluded;  ///< candidates not to choose
+    std::vector<Index> groups;    ///< label of each candidate's region or payload; empty: none
+    Index group_limit = 0;        ///< most poses out of one group; 0: any number
+    RowMatrixXd positions;        ///< candidates x joints; empty unless least_distance is used
+    double least_distance = 0;    ///< Euclidean, between any two different poses chosen
+
+    Index starts = 20;         ///< independent searches
+    Index kicks = 20;          ///< perturbations of each start's plan without success until it ends
+    Index shortlist = 800;     ///< candidates searched; all are looked at in the last sweeps
+    Index enumeration = 5000;  ///< most choices left open by the bound that are all tried; 0: none
+    double gap = 1e-5;       ///< relative gap of the information function to end the relaxation at
+    std::uint64_t seed = 1;  ///< start i draws from stream (seed, i)
+    double time_limit = 0;   ///< s; 0: none. With a limit, results depend on the machine
+    const std::atomic<bool>* interrupted = nullptr;         ///< set to stop with the best so far
+    std::function<void(const SelectProgress&)> progress{};  ///< called from one thread at a time
+};
+
+/// The best K of the candidates, and a proven bound. The continuous relaxation gives the bound, a
+/// shortlist and the starts; block exchange with kicks (iterated local search) improves each start,
+/// over OpenMP threads whose number does not matter; last sweeps over all candidates end where no
+/// exchange improves. If the bound leaves few enough other choices they are tried, and the plan is
+/// optimal.
+/// Throws InputError if K is not in [1, candidates x repeats], if the limits leave fewer than K, if
+/// all candidates together do not identify the parameters (naming the columns of the unseen
+/// directions), if no start found K poses that do, or for options that contradict the candidates.
 Plan select_poses(const Blocks& candidates, const SelectOptions& options);
 
 }  // namespace posewise

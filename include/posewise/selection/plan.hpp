@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <limits>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "posewise/criteria/criterion.hpp"
@@ -11,22 +11,33 @@ namespace posewise {
 
 enum class StopReason {
     NotRun,
-    Converged,   ///< no exchange improves any start's best plan
-    SweepLimit,  ///< a start was still improving when its sweeps were used up
+    Converged,    ///< every start ended where no exchange with any candidate improves its plan
+    Optimal,      ///< all choices that could be better were ruled out or tried: none is
+    TimeLimit,    ///< the best so far when the time was up
+    Interrupted,  ///< the best so far when the caller asked to stop
 };
 
 std::string_view stop_reason_name(StopReason reason);
 
+/// What proves a plan's bound: upper_bound() needs nothing else, so a plan can be verified without
+/// an optimiser. Any positive definite M proves some bound; the optimum of the continuous
+/// relaxation the best one.
+struct Certificate {
+    MatrixXd M;
+    double sharpness = std::numeric_limits<double>::infinity();  ///< Objective::sharpness at M
+};
+
 /// A choice of poses out of candidates.
 struct Plan {
-    std::vector<Index> poses;  ///< candidate indices, ascending
+    std::vector<Index> poses;  ///< candidate indices, ascending; one listed twice is measured twice
     Criterion criterion = Criterion::D;
     double value = -std::numeric_limits<double>::infinity();
-    /// No K-subset of the candidates has a larger value. Infinity: nothing proven.
+    /// No K candidates have a larger value. Infinity: nothing proven.
     double bound = std::numeric_limits<double>::infinity();
-    /// In (0, 1]: the part of the best possible information per measurement that is proven
-    /// reached. D: exp((value - bound) / L), others: value / bound, O3..O5 likewise.
+    /// In [0, 1]: the part of the best possible value that is proven reached. D: exp((value -
+    /// bound) / parameters), others: value / bound.
     double efficiency = 0;
+    Certificate certificate;
     std::uint64_t seed = 0;
     Index starts = 0;
     Index starts_at_best = 0;  ///< how many independent starts ended at this value

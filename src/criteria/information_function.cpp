@@ -1,0 +1,94 @@
+#include "posewise/criteria/information_function.hpp"
+
+#include <cmath>
+
+#include "prediction.hpp"
+#include "regular.hpp"
+
+namespace posewise {
+namespace {
+
+/// d phi / d value.
+double information_slope(const Objective& objective, double value, Index parameter_count) {
+    const double phi = information_of_value(objective, value, parameter_count);
+    switch (objective.criterion) {
+        case Criterion::D:
+            return phi / static_cast<double>(interest_count(objective, parameter_count));
+        case Criterion::O1:
+        case Criterion::O3:
+        case Criterion::O5:
+            return 2 * phi / value;
+        default:
+            return 1;
+    }
+}
+
+/// The worst of the test poses is not below their mean by any weights, whose information function
+/// is the weighted A.
+MatrixXd supporting_matrix_of_worst_prediction(const Objective& objective, const MatrixXd& M) {
+    const Eigen::LLT<MatrixXd> cholesky(M);
+    const VectorXd slope = worst_variance(objective, cholesky).slope;
+    const MatrixXd C = weighted_information(*objective.test_poses, slope / slope.sum());
+    const MatrixXd W = inverse(cholesky);
+    const double trace = C.cwiseProduct(W).sum();
+    return W * C * W / (trace * trace);
+}
+
+}  // namespace
+
+Index interest_count(const Objective& objective, Index parameter_count) {
+    return parameter_count - static_cast<Index>(objective.nuisance.size());
+}
+
+bool has_information_function(Criterion criterion) {
+    return criterion != Criterion::O2 && criterion != Criterion::O4;
+}
+
+double information_of_value(const Objective& objective, double value, Index parameter_count) {
+    switch (objective.criterion) {
+        case Criterion::D:
+            return std::exp(value /
+                            static_cast<double>(interest_count(objective, parameter_count)));
+        case Criterion::O1:
+            return static_cast<double>(objective.pose_count) * value * value;
+        case Criterion::O3:
+        case Criterion::O5:
+            return value * value;
+        default:
+            return value;
+    }
+}
+
+double value_of_information(const Objective& objective, double phi, Index parameter_count) {
+    switch (objective.criterion) {
+        case Criterion::D:
+            return static_cast<double>(interest_count(objective, parameter_count)) * std::log(phi);
+        case Criterion::O1:
+            return std::sqrt(phi / static_cast<double>(objective.pose_count));
+        case Criterion::O3:
+        case Criterion::O5:
+            return std::sqrt(phi);
+        default:
+            return phi;
+    }
+}
+
+MatrixXd supporting_matrix(const Objective& objective, const MatrixXd& M) {
+    if (!objective.nuisance.empty()) {
+        Objective reduced_objective = objective;
+        reduced_objective.nuisance.clear();
+        const Reduction reduced = eliminate(M, objective.nuisance);
+        return reduced.N * supporting_matrix(reduced_objective, reduced.M) * reduced.N.transpose();
+    }
+    if (objective.criterion == Criterion::G) {
+        return supporting_matrix_of_worst_prediction(objective, M);
+    }
+    const MatrixXd Z = gradient(objective, M);
+    // The least eigenvalue of M* is below trace(Z M*) for any Z >= 0 of trace 1.
+    if (objective.criterion == Criterion::E || objective.criterion == Criterion::O3) {
+        return Z / Z.trace();
+    }
+    return information_slope(objective, evaluate(objective, M), M.rows()) * Z;
+}
+
+}  // namespace posewise

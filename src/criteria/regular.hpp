@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+
+#include "posewise/core/types.hpp"
+
+namespace posewise {
+
+/// Whether M is positive definite beyond rounding. What is left of a column after those before it,
+/// relative to the column, must exceed 1e-13: free of the columns' scales.
+inline bool is_regular(const Eigen::LLT<MatrixXd>& cholesky, const MatrixXd& M) {
+    if (M.rows() == 0 || cholesky.info() != Eigen::Success) return false;
+    const auto pivots = cholesky.matrixLLT().diagonal().array().square();
+    return ((pivots > 1e-13 * M.diagonal().array()) && pivots.isFinite()).all();
+}
+
+inline MatrixXd inverse(const Eigen::LLT<MatrixXd>& cholesky) {
+    return cholesky.solve(MatrixXd::Identity(cholesky.rows(), cholesky.cols()));
+}
+
+/// What an information matrix says about the parameters of interest: the Schur complement of the
+/// nuisance block, N^T M N with N = [I; -M22^-1 M21]. Both are empty if that block is singular.
+struct Reduction {
+    MatrixXd N;
+    MatrixXd M;
+};
+Reduction eliminate(const MatrixXd& M, const std::vector<Index>& nuisance);
+
+}  // namespace posewise

@@ -1,0 +1,61 @@
+#include "spectral.hpp"
+
+#include <cmath>
+
+namespace posewise {
+
+Sloped soft_least(const VectorXd& x, double p) {
+    Sloped result{0, VectorXd::Zero(x.size())};
+    Index at = 0;
+    const double least = x.minCoeff(&at);
+    if (std::isinf(p)) {
+        result.slope[at] = 1;
+        result.value = least;
+        return result;
+    }
+    const Eigen::ArrayXd ratio = least / x.array();  // in (0, 1]
+    const double sum = ratio.pow(p).sum();
+    result.value = least * std::pow(sum, -1 / p);
+    result.slope = std::pow(sum, -(1 + 1 / p)) * ratio.pow(p + 1);
+    return result;
+}
+
+Sloped soft_largest(const VectorXd& x, double p) {
+    Sloped result{0, VectorXd::Zero(x.size())};
+    Index at = 0;
+    const double largest = x.maxCoeff(&at);
+    if (std::isinf(p)) {
+        result.slope[at] = 1;
+        result.value = largest;
+        return result;
+    }
+    const Eigen::ArrayXd ratio = x.array() / largest;
+    const double sum = ratio.pow(p).sum();
+    result.value = largest * std::pow(sum, 1 / p);
+    result.slope = std::pow(sum, 1 / p - 1) * ratio.pow(p - 1);
+    return result;
+}
+
+Sloped spectral_criterion(const Objective& objective, const VectorXd& eigenvalues) {
+    const double p = objective.sharpness;
+    if (objective.criterion == Criterion::O5) {
+        const double value = 1 / eigenvalues.array().rsqrt().sum();
+        return {value, 0.5 * value * value * eigenvalues.array().pow(-1.5)};
+    }
+    const Sloped least = soft_least(eigenvalues, p);
+    if (objective.criterion == Criterion::E) return least;
+    if (objective.criterion == Criterion::O3) {
+        const double value = std::sqrt(least.value);
+        return {value, least.slope / (2 * value)};
+    }
+    const Sloped largest = soft_largest(eigenvalues, p);
+    const double condition = least.value / largest.value;
+    if (objective.criterion == Criterion::O2) {
+        const double value = std::sqrt(condition);
+        return {value, 0.5 * value * (least.slope / least.value - largest.slope / largest.value)};
+    }
+    const double value = std::sqrt(least.value * condition);  // O4
+    return {value, value * (least.slope / least.value - 0.5 * largest.slope / largest.value)};
+}
+
+}  // namespace posewise

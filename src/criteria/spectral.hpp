@@ -1,0 +1,22 @@
+#pragma once
+
+#include "posewise/criteria/objective.hpp"
+
+namespace posewise {
+
+/// A function of several numbers and its slope by each of them.
+struct Sloped {
+    double value = 0;
+    VectorXd slope;
+};
+
+/// (sum x^-p)^(-1/p) of positive numbers; the least itself for infinite p.
+Sloped soft_least(const VectorXd& x, double p);
+
+/// (sum x^p)^(1/p) of positive numbers; the largest itself for infinite p.
+Sloped soft_largest(const VectorXd& x, double p);
+
+/// O2, O3, O4, O5 or E as a function of M's eigenvalues (ascending, positive).
+Sloped spectral_criterion(const Objective& objective, const VectorXd& eigenvalues);
+
+}  // namespace posewise

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "posewise/core/blocks.hpp"
+
+namespace posewise {
+
+/// One number of eight candidates side by side, so that one instruction works on all of them.
+struct alignas(64) Lane {
+    std::array<double, 8> of{};
+};
+constexpr Index lane_width = 8;
+
+/// Blocks of some candidates in lanes: entry (row, parameter) of eight candidates is one Lane.
+/// Lower blocks are padded with zero rows, missing candidates with zero blocks.
+struct LaneBlocks {
+    Index rows = 0;  ///< of every block: one of lane_heights
+    Index parameters = 0;
+    Index groups = 0;  ///< of eight candidates
+    std::vector<Lane> entries;
+};
+
+/// Block heights there are kernels for.
+constexpr std::array<Index, 6> lane_heights{1, 2, 3, 6, 9, 12};
+
+/// The kernel height for blocks of these candidates; 0 if they are too high for any.
+Index lane_height(const Blocks& candidates);
+
+/// Nothing (rows 0) if they are too high for any kernel.
+LaneBlocks make_lane_blocks(const Blocks& candidates, std::span<const Index> chosen);
+
+/// Symmetric rows x rows matrices of each candidate, lower triangles in lanes.
+using LaneGrams = std::vector<Lane>;
+
+/// B_i F F^T B_i^T of each candidate (F has `parameters` rows).
+LaneGrams make_grams(const LaneBlocks& blocks, const MatrixXd& F);
+
+/// The trace of each candidate's matrix, padding included.
+VectorXd gram_traces(const LaneBlocks& blocks, const LaneGrams& G);
+
+/// det(I + G_i + X_i X_i^T) with X_i = B_i P: how much information each candidate adds, when M^-1 =
+/// F F^T made G and M^-1 + P P^T is the inverse at hand. P is parameters x at most rows. Only
+/// groups with `asked` set are computed; the others give zero.
+void lane_determinants(const LaneBlocks& blocks, const LaneGrams& G, const MatrixXd& P,
+                       std::span<const char> asked, std::span<Lane> result);
+
+/// trace((I + G_i + X_i X_i^T)^-1 (H_i + X_i Y_i^T + Y_i X_i^T)) with Y_i = B_i Q: by how much each
+/// candidate reduces trace(C M^-1), when M^-1 C M^-1 made H and P Q^T + Q P^T is its change.
+void lane_traces(const LaneBlocks& blocks, const LaneGrams& G, const LaneGrams& H,
+                 const MatrixXd& P, const MatrixXd& Q, std::span<const char> asked,
+                 std::span<Lane> result);
+
+}  // namespace posewise

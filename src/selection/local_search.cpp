@@ -1,0 +1,158 @@
+#include "local_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace posewise {
+namespace {
+
+/// One choice being improved.
+class LocalSearch {
+  public:
+    LocalSearch(const SearchProblem& problem, const Shortlist& shortlist)
+        : problem_(problem),
+          shortlist_(shortlist),
+          neighbourhood_(make_neighbourhood(problem.objective, problem.candidates, shortlist)),
+          occupancy_(problem.candidates.count(), problem.options) {}
+
+    const Choice& choice() const { return choice_; }
+
+    void start_at(const Choice& choice) {
+        occupy(choice);
+        settle();
+    }
+
+    void improve() {
+        const std::size_t K = choice_.poses.size();
+        std::size_t unimproved = 0;
+        for (std::size_t at = 0; unimproved < K && !problem_.must_stop(); at = (at + 1) % K) {
+            unimproved = exchange_at(at) ? 0 : unimproved + 1;
+        }
+    }
+
+    /// Starts at a choice with one to four poses replaced by random ones of the shortlist; at the
+    /// choice itself where the limits leave nothing to replace them by.
+    void start_near(const Choice& choice, RandomStream& random) {
+        occupy(choice);
+        const auto K = static_cast<Index>(choice.poses.size());
+        const std::vector<Index> kicked = random.subset(K, 1 + random.index(std::min<Index>(K, 4)));
+        for (const Index at : kicked) occupancy_.remove(pose_at(at));
+        std::size_t replaced = 0;
+        for (; replaced < kicked.size(); ++replaced) {
+            const Index drawn = draw_allowed(random);
+            if (drawn < 0) break;
+            pose_at(kicked[replaced]) = drawn;
+            occupancy_.add(drawn);
+        }
+        if (replaced < kicked.size()) {
+            for (std::size_t k = 0; k < replaced; ++k) occupancy_.remove(pose_at(kicked[k]));
+            for (const Index at : kicked) {
+                pose_at(at) = choice.poses[static_cast<std::size_t>(at)];
+                occupancy_.add(pose_at(at));
+            }
+        }
+        settle();
+    }
+
+  private:
+    void occupy(const Choice& choice) {
+        for (const Index pose : choice_.poses) occupancy_.remove(pose);
+        choice_ = choice;
+        for (const Index pose : choice_.poses) occupancy_.add(pose);
+    }
+
+    Index& pose_at(Index at) { return choice_.poses[static_cast<std::size_t>(at)]; }
+
+    /// The first allowed candidate from a random place of the shortlist on; -1 if none is.
+    Index draw_allowed(RandomStream& random) const {
+        const auto size = static_cast<Index>(shortlist_.members.size());
+        const Index from = random.index(size);
+        for (Index k = 0; k < size; ++k) {
+            const Index drawn = shortlist_.members[static_cast<std::size_t>((from + k) % size)];
+            if (occupancy_.allows(drawn)) return drawn;
+        }
+        return -1;
+    }
+
+    void settle() {
+        M_ = problem_.regularised_information(choice_.poses);
+        choice_.score = problem_.score(M_);
+        neighbourhood_->move_to(M_);
+    }
+
+    bool exchange_at(std::size_t at) {
+        const Index removed = choice_.poses[at];
+        occupancy_.remove(removed);
+        const Index found =
+            neighbourhood_->best_replacement(removed, choice_.score.value, occupancy_);
+        if (found >= 0) {
+            const Index candidate = shortlist_.members[static_cast<std::size_t>(found)];
+            choice_.poses[at] = candidate;
+            const Score score = problem_.score(problem_.regularised_information(choice_.poses));
+            if (is_better(score, choice_.score)) {
+                occupancy_.add(candidate);
+                settle();
+                return true;
+            }
+            choice_.poses[at] = removed;
+        }
+        occupancy_.add(removed);
+        return false;
+    }
+
+    const SearchProblem& problem_;
+    const Shortlist& shortlist_;
+    std::unique_ptr<Neighbourhood> neighbourhood_;
+    Occupancy occupancy_;
+    Choice choice_;
+    MatrixXd M_;  // regularised
+};
+
+}  // namespace
+
+bool is_better(const Score& a, const Score& b) {
+    if (a.identifies != b.identifies) return a.identifies;
+    return a.value > b.value + 1e-12 * std::max(1e-6, std::abs(b.value));
+}
+
+MatrixXd SearchProblem::regularised_information(const std::vector<Index>& poses) const {
+    MatrixXd M = held + information(candidates, poses);
+    M.diagonal().array() += ridge;
+    return M;
+}
+
+Score SearchProblem::score(const MatrixXd& regularised) const {
+    MatrixXd M = regularised;
+    M.diagonal().array() -= ridge;
+    const double value = evaluate(objective, M);
+    if (std::isfinite(value)) return {true, value};
+    return {false, evaluate(objective, regularised)};
+}
+
+Choice improve(const SearchProblem& problem, const Shortlist& shortlist, const Choice& choice) {
+    LocalSearch search(problem, shortlist);
+    search.start_at(choice);
+    search.improve();
+    return search.choice();
+}
+
+Choice improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
+                          const Choice& choice, RandomStream& random) {
+    LocalSearch search(problem, shortlist);
+    search.start_at(choice);
+    search.improve();
+    Choice best = search.choice();
+    for (Index failures = 0; failures < problem.options.kicks && !problem.must_stop();) {
+        search.start_near(best, random);
+        search.improve();
+        if (is_better(search.choice().score, best.score)) {
+            best = search.choice();
+            failures = 0;
+        } else {
+            ++failures;
+        }
+    }
+    return best;
+}
+
+}  // namespace posewise

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+
+#include "neighbourhood.hpp"
+#include "posewise/core/random.hpp"
+
+namespace posewise {
+
+/// How good a choice is: first whether it identifies the parameters, then the objective, of the
+/// regularised information matrix if it does not.
+struct Score {
+    bool identifies = false;
+    double value = -std::numeric_limits<double>::infinity();
+};
+/// Whether `a` is better than `b` beyond rounding.
+bool is_better(const Score& a, const Score& b);
+
+/// What all starts of one selection share.
+struct SearchProblem {
+    const Blocks& candidates;
+    const SelectOptions& options;
+    const Objective& objective;
+    MatrixXd held;
+    double ridge = 0;  ///< times the identity: small, but makes every matrix positive definite
+    std::function<bool()> must_stop;
+
+    MatrixXd regularised_information(const std::vector<Index>& poses) const;
+    Score score(const MatrixXd& regularised) const;
+};
+
+struct Choice {
+    std::vector<Index> poses;
+    Score score;
+};
+
+/// Exchanges each pose for the best of the shortlist, in turn, until no exchange improves.
+Choice improve(const SearchProblem& problem, const Shortlist& shortlist, const Choice& choice);
+
+/// Iterated local search: some poses of the best choice are replaced at random and the result
+/// improved, until `options.kicks` kicks in a row bring nothing.
+Choice improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
+                          const Choice& choice, RandomStream& random);
+
+}  // namespace posewise

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "posewise/selection/bound.hpp"
+
+namespace posewise {
+
+/// options.held, or zeros.
+MatrixXd held_information(const Blocks& candidates, const SelectOptions& options);
+
+/// upper_bound() with the objective made once for many M.
+double upper_bound(const Objective& objective, const Blocks& candidates,
+                   const SelectOptions& options, const MatrixXd& M);
+
+}  // namespace posewise

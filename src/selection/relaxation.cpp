@@ -1,0 +1,176 @@
+#include "relaxation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "limits.hpp"
+#include "objective_bound.hpp"
+#include "posewise/criteria/information_function.hpp"
+#include "projected_gradient.hpp"
+#include "sensitivity.hpp"
+
+namespace posewise {
+namespace {
+
+constexpr Index first_set_size = 1000;
+constexpr Index iteration_limit = 500;        // of each ascent
+constexpr Index rough_iteration_limit = 150;  // where the objective is sharpened step by step
+constexpr Index round_limit = 40;
+constexpr double first_sharpness = 8;
+constexpr double last_sharpness = 512;
+
+bool is_smooth(Criterion criterion) {
+    return criterion == Criterion::D || criterion == Criterion::A || criterion == Criterion::V ||
+           criterion == Criterion::O1 || criterion == Criterion::O5;
+}
+
+/// The `count` allowed candidates of largest value outside the set (all with more than `least`).
+std::vector<Index> best_outside(const VectorXd& values, const std::vector<char>& is_inside,
+                                double least, Index count) {
+    std::vector<Index> found;
+    for (Index i = 0; i < values.size(); ++i) {
+        if (is_inside[static_cast<std::size_t>(i)] == 0 && values[i] > least) found.push_back(i);
+    }
+    const auto kept = std::min(count, static_cast<Index>(found.size()));
+    std::partial_sort(found.begin(), found.begin() + kept, found.end(), [&](Index a, Index b) {
+        return values[a] != values[b] ? values[a] > values[b] : a < b;
+    });
+    found.resize(static_cast<std::size_t>(kept));
+    return found;
+}
+
+/// Working set, weights and the best certificate so far of one relaxation.
+class Relaxer {
+  public:
+    Relaxer(const Objective& objective, const Blocks& candidates, const SelectOptions& options)
+        : candidates_(candidates),
+          options_(options),
+          objective_(objective),
+          held_(held_information(candidates, options)),
+          set_(candidates),
+          is_inside_(static_cast<std::size_t>(candidates.count()), 0) {
+        if (!is_smooth(options.criterion)) objective_.sharpness = first_sharpness;
+        const std::vector<Index> capacity = capacities(candidates.count(), options);
+        for (Index i = 0; i < candidates.count(); ++i) {
+            if (capacity[static_cast<std::size_t>(i)] == 0)
+                is_inside_[static_cast<std::size_t>(i)] = 1;
+        }
+        start_set();
+    }
+
+    Relaxation run(const std::function<bool()>& must_stop) {
+        for (Index round = 0; round < round_limit; ++round) {
+            const double tolerance =
+                std::isinf(objective_.sharpness)
+                    ? 0.5 * options_.gap
+                    : std::max(0.5 * options_.gap, 0.02 / objective_.sharpness);
+            const WeightSearch search = ascend(
+                {objective_, set_, held_, upper_, static_cast<double>(options_.pose_count)},
+                weights_, tolerance,
+                is_smooth(options_.criterion) ? iteration_limit : rough_iteration_limit, must_stop);
+            weights_ = search.weights;
+            result_.iterations += search.iterations;
+            keep_if_better(search.M);
+            if (must_stop() || is_closed(search.M)) break;
+            const bool grown = grow(search);
+            if (!grown && !sharpen()) break;
+        }
+        return finish();
+    }
+
+  private:
+    void join(const std::vector<Index>& candidates) {
+        for (const Index i : candidates) is_inside_[static_cast<std::size_t>(i)] = 1;
+        set_.add(candidates);
+        weights_.conservativeResize(set_.size());
+        weights_.tail(static_cast<Index>(candidates.size())).setZero();
+        upper_ = VectorXd::Constant(set_.size(), static_cast<double>(options_.repeat_limit));
+    }
+
+    /// Candidates spread evenly over the list, as many as it takes to identify the parameters, all
+    /// with the same weight.
+    void start_set() {
+        std::vector<Index> open;
+        for (Index i = 0; i < candidates_.count(); ++i) {
+            if (is_inside_[static_cast<std::size_t>(i)] == 0) open.push_back(i);
+        }
+        const auto count = static_cast<Index>(open.size());
+        for (Index size = first_set_size;; size *= 4) {
+            const Index stride = std::max<Index>(1, count / size);
+            std::vector<Index> spread;
+            for (Index k = 0; k < count; k += stride) {
+                const Index i = open[static_cast<std::size_t>(k)];
+                if (is_inside_[static_cast<std::size_t>(i)] == 0) spread.push_back(i);
+            }
+            join(spread);
+            weights_.setConstant(static_cast<double>(options_.pose_count) /
+                                 static_cast<double>(set_.size()));
+            const MatrixXd M = held_ + set_.weighted_information(weights_);
+            if (stride == 1 || std::isfinite(evaluate(objective_, M))) return;
+        }
+    }
+
+    void keep_if_better(const MatrixXd& M) {
+        const double bound = upper_bound(objective_, candidates_, options_, M);
+        if (result_.certificate.M.size() > 0 && !(bound < result_.bound)) return;
+        result_.certificate = {M, objective_.sharpness};
+        result_.bound = bound;
+        best_weights_ = weights_;
+    }
+
+    bool is_closed(const MatrixXd& M) const {
+        Objective exact = objective_;
+        exact.sharpness = std::numeric_limits<double>::infinity();
+        const Index L = M.rows();
+        const double value = evaluate(exact, M);
+        return std::isfinite(value) &&
+               information_of_value(exact, result_.bound, L) <=
+                   (1 + options_.gap) * information_of_value(exact, value, L);
+    }
+
+    bool grow(const WeightSearch& search) {
+        const VectorXd d = sensitivities(candidates_, log_gradient(objective_, search.M));
+        const std::vector<Index> joining =
+            best_outside(d, is_inside_, search.threshold, std::max<Index>(200, set_.size() / 4));
+        if (!joining.empty()) join(joining);
+        return !joining.empty();
+    }
+
+    bool sharpen() {
+        if (!(objective_.sharpness < last_sharpness)) return false;
+        objective_.sharpness *= 4;
+        return true;
+    }
+
+    Relaxation finish() {
+        result_.weights = VectorXd::Zero(candidates_.count());
+        for (Index k = 0; k < best_weights_.size(); ++k) {
+            result_.weights[set_.members()[static_cast<std::size_t>(k)]] = best_weights_[k];
+        }
+        objective_.sharpness = result_.certificate.sharpness;
+        result_.sensitivity =
+            sensitivities(candidates_, log_gradient(objective_, result_.certificate.M));
+        return std::move(result_);
+    }
+
+    const Blocks& candidates_;
+    const SelectOptions& options_;
+    Objective objective_;
+    MatrixXd held_;
+    WorkingSet set_;
+    std::vector<char> is_inside_;  // or excluded
+    VectorXd weights_;             // of the set's members
+    VectorXd upper_;
+    VectorXd best_weights_;
+    Relaxation result_;
+};
+
+}  // namespace
+
+Relaxation relax(const Objective& objective, const Blocks& candidates, const SelectOptions& options,
+                 const std::function<bool()>& must_stop) {
+    return Relaxer(objective, candidates, options).run(must_stop);
+}
+
+}  // namespace posewise

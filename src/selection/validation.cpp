@@ -1,0 +1,123 @@
+#include "validation.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "limits.hpp"
+#include "objective_bound.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+void require_at_least(const char* name, Index value, Index least) {
+    if (value < least) {
+        throw InputError(std::string(name) + " is " + std::to_string(value) +
+                         ", must be at least " + std::to_string(least));
+    }
+}
+
+void validate_limits(const Blocks& candidates, const SelectOptions& options) {
+    const Index N = candidates.count();
+    require_at_least("repeat limit", options.repeat_limit, 1);
+    require_at_least("group limit", options.group_limit, 0);
+    for (const Index i : options.excluded) {
+        if (i < 0 || i >= N) {
+            throw InputError("excluded candidate is " + std::to_string(i) + ", must be from 0 to " +
+                             std::to_string(N - 1));
+        }
+    }
+    if (!options.groups.empty() && static_cast<Index>(options.groups.size()) != N) {
+        throw InputError("groups has " + std::to_string(options.groups.size()) +
+                         " labels, must have one for each of " + std::to_string(N) + " candidates");
+    }
+    if (!(options.least_distance >= 0) || !std::isfinite(options.least_distance)) {
+        throw InputError("least distance is " + std::to_string(options.least_distance) +
+                         ", must be finite and not negative");
+    }
+    if (options.least_distance > 0 &&
+        (options.positions.rows() != N || !options.positions.allFinite())) {
+        throw InputError("positions has " + std::to_string(options.positions.rows()) +
+                         " rows, must have a finite one for each of " + std::to_string(N) +
+                         " candidates");
+    }
+}
+
+void validate_held(const SelectOptions& options, Index L) {
+    if (options.held.size() == 0) return;
+    const bool has_shape = options.held.rows() == L && options.held.cols() == L;
+    if (!has_shape || !options.held.allFinite() ||
+        !options.held.isApprox(options.held.transpose())) {
+        throw InputError("held information is " + std::to_string(options.held.rows()) + " x " +
+                         std::to_string(options.held.cols()) +
+                         ", must be a finite symmetric matrix, " + std::to_string(L) + " square");
+    }
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(options.held, Eigen::EigenvaluesOnly);
+    if (eigen.eigenvalues()[0] < -1e-9 * std::abs(eigen.eigenvalues()[L - 1])) {
+        throw InputError("held information has the negative eigenvalue " +
+                         std::to_string(eigen.eigenvalues()[0]) +
+                         ", must be positive semidefinite");
+    }
+}
+
+/// The columns that make up a direction, e.g. "columns 3 and 7" (counted from 1).
+std::string columns_of(const VectorXd& direction) {
+    std::string text;
+    for (Index i = 0; i < direction.size(); ++i) {
+        if (std::abs(direction[i]) < 0.1 * direction.cwiseAbs().maxCoeff()) continue;
+        text += (text.empty() ? "" : " + ") + std::to_string(i + 1);
+    }
+    return text;
+}
+
+void validate_rank(const Blocks& candidates, const SelectOptions& options) {
+    const MatrixXd M = held_information(candidates, options) + information(candidates);
+    const VectorXd scale = M.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const MatrixXd normalised = scale.asDiagonal() * M * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(normalised);
+    const Index L = M.rows();
+    const Index missing = (eigen.eigenvalues().array() <= 1e-12).count();
+    if (missing == 0) return;
+    std::string columns;
+    for (Index k = 0; k < std::min<Index>(missing, 3); ++k) {
+        columns += (k > 0 ? "; " : "") + columns_of(eigen.eigenvectors().col(k));
+    }
+    throw InputError("all " + std::to_string(candidates.count()) + " candidates together leave " +
+                     std::to_string(missing) + " of " + std::to_string(L) +
+                     " parameter directions unseen (columns " + columns +
+                     (missing > 3 ? "; ..." : "") +
+                     "); drop redundant parameters, add poses or state a prior");
+}
+
+}  // namespace
+
+void validate(const Blocks& candidates, const SelectOptions& options) {
+    if (candidates.parameter_count() == 0) throw InputError("candidates have no columns");
+    if (!candidates.matrix.allFinite()) {
+        throw InputError("candidates have a value that is not a finite number");
+    }
+    require_at_least("starts", options.starts, 1);
+    require_at_least("kicks", options.kicks, 0);
+    require_at_least("shortlist", options.shortlist, 0);
+    require_at_least("held pose count", options.held_pose_count, 0);
+    if (!(options.gap > 0)) {
+        throw InputError("gap is " + std::to_string(options.gap) + ", must be positive");
+    }
+    if (!(options.time_limit >= 0)) {
+        throw InputError("time limit is " + std::to_string(options.time_limit) +
+                         " s, must not be negative");
+    }
+    validate_limits(candidates, options);
+    validate_held(options, candidates.parameter_count());
+    Index open = 0;
+    for (const Index capacity : capacities(candidates.count(), options)) open += capacity;
+    if (options.pose_count < 1 || options.pose_count > open) {
+        throw InputError("pose count is " + std::to_string(options.pose_count) +
+                         ", must be from 1 to " + std::to_string(open) +
+                         ", the number of candidates allowed (repeats counted)");
+    }
+    validate_rank(candidates, options);
+}
+
+}  // namespace posewise

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "posewise/selection/exchange.hpp"
+#include "support/designs.hpp"
+
+/// Optimal designs that are known in closed form or by proof.
+namespace posewise {
+namespace {
+
+double best_determinant(const Blocks& candidates, Index pose_count, Index repeat_limit = 1) {
+    SelectOptions options;
+    options.pose_count = pose_count;
+    options.repeat_limit = repeat_limit;
+    return std::exp(select_poses(candidates, options).value);
+}
+
+TEST(KnownDesigns, PlanarArmOfTwoAndThreeLinks) {
+    RowMatrixXd two = RowMatrixXd::Zero(24, 2);
+    for (Index i = 0; i < 24; ++i) two(i, 1) = 2 * std::numbers::pi * static_cast<double>(i) / 24;
+    EXPECT_NEAR(best_determinant(test::planar_arm_blocks(Eigen::Vector2d(1, 0.8), two), 2), 10.24,
+                1e-10);
+    RowMatrixXd three = RowMatrixXd::Zero(144, 3);
+    for (Index i = 0; i < 144; ++i) {
+        three(i, 1) = 2 * std::numbers::pi * static_cast<double>(i / 12) / 12;
+        three(i, 2) = 2 * std::numbers::pi * static_cast<double>(i % 12) / 12;
+    }
+    const Blocks arm = test::planar_arm_blocks(Vector3d(1, 0.8, 0.5), three);
+    EXPECT_NEAR(best_determinant(arm, 3), 116.64, 1e-9);
+    EXPECT_NEAR(best_determinant(arm, 4), 655.36, 1e-8);
+}
+
+TEST(KnownDesigns, QuadraticInTwoFactors) {
+    // [Box, Draper 1971]; n = 9 is the 3 x 3 grid.
+    RowMatrixXd rows(441, 6);
+    for (Index i = 0; i < 441; ++i) {
+        const double x = -1 + 0.1 * static_cast<double>(i / 21);
+        const double y = -1 + 0.1 * static_cast<double>(i % 21);
+        rows.row(i) << 1, x, y, x * x, y * y, x * y;
+    }
+    const Blocks grid = make_equal_blocks(rows, 1);
+    EXPECT_NEAR(best_determinant(grid, 9, 9), 5184, 1e-6);
+    // The grid comes close to the optima over the square, and not above.
+    for (const auto& [n, optimum] :
+         {std::pair{6, 267.737219}, std::pair{7, 980.77022}, std::pair{8, 2361.72939}}) {
+        const double found = best_determinant(grid, n, n);
+        EXPECT_LE(found, optimum * (1 + 1e-7));
+        EXPECT_GE(found, optimum * 0.99);
+    }
+}
+
+TEST(KnownDesigns, LargestDeterminantsOfSignMatrices) {
+    const std::array<double, 9> largest = {4, 16, 48, 160, 576, 4096, 14336, 73728, 327680};
+    for (Index n = 3; n <= 11; ++n) {
+        const Index count = Index{1} << (n - 1);  // the sign of a row does not matter
+        RowMatrixXd rows = RowMatrixXd::Ones(count, n);
+        for (Index i = 0; i < count; ++i) {
+            for (Index bit = 0; bit < n - 1; ++bit) {
+                if ((i >> bit & 1) != 0) rows(i, bit + 1) = -1;
+            }
+        }
+        const double expected = largest[static_cast<std::size_t>(n - 3)];
+        EXPECT_NEAR(std::sqrt(best_determinant(make_equal_blocks(rows, 1), n, n)), expected,
+                    1e-6 * expected)
+            << n;
+    }
+}
+
+/// All edges of the complete graph; det M of a choice counts its spanning trees.
+Blocks complete_graph(Index vertices) {
+    RowMatrixXd incidence(vertices * (vertices - 1) / 2, vertices);
+    incidence.setZero();
+    Index edge = 0;
+    for (Index a = 0; a < vertices; ++a) {
+        for (Index b = a + 1; b < vertices; ++b, ++edge) {
+            incidence(edge, a) = 1;
+            incidence(edge, b) = -1;
+        }
+    }
+    return make_equal_blocks(incidence.leftCols(vertices - 1), 1);
+}
+
+TEST(KnownDesigns, GraphsWithTheMostSpanningTrees) {
+    EXPECT_NEAR(best_determinant(complete_graph(6), 9), 81, 1e-6);      // K33
+    EXPECT_NEAR(best_determinant(complete_graph(8), 16), 4096, 1e-6);   // K44
+    EXPECT_NEAR(best_determinant(complete_graph(10), 15), 2000, 1e-6);  // Petersen
+}
+
+}  // namespace
+}  // namespace posewise

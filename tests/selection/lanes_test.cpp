@@ -1,0 +1,94 @@
+#include "../../src/selection/lanes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <numeric>
+
+#include "../../src/selection/projected_gradient.hpp"
+#include "../../src/selection/sensitivity.hpp"
+#include "support/designs.hpp"
+
+namespace posewise {
+namespace {
+
+std::vector<Index> indices_below(Index count) {
+    std::vector<Index> indices(static_cast<std::size_t>(count));
+    std::iota(indices.begin(), indices.end(), Index{0});
+    return indices;
+}
+
+TEST(Lanes, GainsMatchTheirDefinitionForEveryHeight) {
+    constexpr Index L = 11;
+    for (const Index rows : {1, 2, 3, 4, 6, 9, 11, 12}) {
+        const Blocks candidates = test::random_blocks(13, rows, L, 1);
+        const LaneBlocks lanes = make_lane_blocks(candidates, indices_below(13));
+        const MatrixXd F = test::random_blocks(L, 1, L, 2).matrix;
+        const MatrixXd E = test::random_blocks(L, 1, L, 3).matrix;
+        const MatrixXd P = test::random_blocks(L, 1, rows, 4).matrix;
+        const MatrixXd Q = test::random_blocks(L, 1, rows, 5).matrix;
+        const LaneGrams G = make_grams(lanes, F);
+        const LaneGrams H = make_grams(lanes, E);
+        const std::vector<char> asked(2, 1);
+        std::vector<Lane> determinants(2);
+        std::vector<Lane> traces(2);
+        lane_determinants(lanes, G, P, asked, determinants);
+        lane_traces(lanes, G, H, P, Q, asked, traces);
+        const VectorXd gram_trace = gram_traces(lanes, G);
+        for (Index i = 0; i < 13; ++i) {
+            const auto group = static_cast<std::size_t>(i / lane_width);
+            const auto lane = static_cast<std::size_t>(i % lane_width);
+            const MatrixXd B = candidates[i];
+            const MatrixXd S = MatrixXd::Identity(rows, rows) +
+                               B * (F * F.transpose() + P * P.transpose()) * B.transpose();
+            const MatrixXd T =
+                B * (E * E.transpose() + P * Q.transpose() + Q * P.transpose()) * B.transpose();
+            const double determinant = S.determinant();
+            const double trace = S.llt().solve(T).trace();
+            EXPECT_NEAR(determinants[group].of[lane], determinant, 1e-9 * determinant);
+            EXPECT_NEAR(traces[group].of[lane], trace, 1e-9 * (1 + std::abs(trace)));
+            EXPECT_NEAR(gram_trace[i], (B * F).squaredNorm(), 1e-10 * gram_trace[i]);
+        }
+    }
+}
+
+TEST(Sensitivities, MatchTheirDefinitionForAnyShape) {
+    for (const Index parameters : {1, 5, 16, 17, 33}) {
+        const Blocks candidates = test::random_blocks(30, 3, parameters, 1);
+        const MatrixXd definite = information(test::random_blocks(40, 1, parameters, 2));
+        for (const MatrixXd& Z : {definite, MatrixXd(-definite)}) {
+            const VectorXd d = sensitivities(candidates, Z);
+            for (Index i = 0; i < 30; ++i) {
+                const double expected = (candidates[i] * Z * candidates[i].transpose()).trace();
+                EXPECT_NEAR(d[i], expected, 1e-11 * std::abs(expected));
+            }
+        }
+    }
+}
+
+TEST(ProjectionOnTheCappedSimplex, IsFeasibleAndNearest) {
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        RandomStream random(seed);
+        const Index n = 1 + random.index(20);
+        VectorXd point(n);
+        VectorXd upper(n);
+        for (double& x : point) x = 3 * random.normal();
+        for (double& u : upper) u = static_cast<double>(1 + random.index(3));
+        const double total = random.uniform(0, upper.sum());
+        const VectorXd w = project_on_capped_simplex(point, upper, total);
+        EXPECT_NEAR(w.sum(), total, 1e-12 * (1 + total));
+        EXPECT_GE(w.minCoeff(), 0);
+        EXPECT_LE((w - upper).maxCoeff(), 0);
+        // (point - w) has no component towards any other feasible weight.
+        for (Index i = 0; i < n; ++i) {
+            for (Index j = 0; j < n; ++j) {
+                if (w[i] < upper[i] - 1e-12 && w[j] > 1e-12) {
+                    EXPECT_LE(point[i] - w[i], point[j] - w[j] + 1e-11);
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace posewise
