@@ -60,7 +60,7 @@ class Refiner {
 
     /// Sweeps without derivatives, for objectives with kinks.
     void finish(const Objective& objective) {
-        for (Index round = 0; round < 2 && !has_stopped(); ++round) {
+        for (Index round = 0; round < options_.kink_rounds && !has_stopped(); ++round) {
             const double before = current(objective);
             sweep(objective, is_constrained() ? Method::Cobyla : Method::Sbplx);
             if (current(objective) - before <= 1e-6) return;

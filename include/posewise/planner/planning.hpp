@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "posewise/planner/pool.hpp"
+#include "posewise/planner/refinement.hpp"
+#include "posewise/selection/exchange.hpp"
+
+namespace posewise {
+
+/// How far planning has come; handed to PlanOptions::progress.
+struct PlanProgress {
+    Index starts_done = 0;
+    Index starts = 0;
+    double value = -std::numeric_limits<double>::infinity();  ///< best so far
+};
+
+struct PlanOptions {
+    Criterion criterion = Criterion::V;
+    Index pose_count = 0;                ///< K, must be stated; held poses not counted
+    const Blocks* test_poses = nullptr;  ///< of G and V; the caller keeps them alive
+    /// Parameters estimated along but of no interest (see nuisance_of_robot()); not with G and V.
+    std::vector<Index> nuisance;
+    HeldPoses held;             ///< a prior, poses measured, or both
+    Index held_pose_count = 0;  ///< poses measured; m of O1 is K more
+
+    Index starts = 16;           ///< plans that are refined; the first is the best of the pool
+    Index bound_iterations = 8;  ///< of search_bound(); 0: no bound over the continuous region
+    std::uint64_t seed = 1;      ///< start i draws from stream (seed, i)
+    double time_limit = 0;       ///< s; 0: none. With a limit, results depend on the machine
+    const std::atomic<bool>* interrupted = nullptr;       ///< set to stop with the best so far
+    std::function<void(const PlanProgress&)> progress{};  ///< called from one thread at a time
+};
+
+/// A plan over continuous configurations.
+struct PlannedPoses {
+    RowMatrixXd configurations;  ///< K x joints, rad or m
+    Criterion criterion = Criterion::V;
+    double value = -std::numeric_limits<double>::infinity();
+    MatrixXd information;  ///< of held and planned poses together
+    Plan pool_plan;        ///< the best choice from the pool, its bound over the pool
+    /// No plan is better, if the search behind search_bound() met the global maxima. Infinity:
+    /// not searched (O2, O4), or stopped before.
+    double searched_bound = std::numeric_limits<double>::infinity();
+    /// efficiency() of the value against the searched bound; 0 without.
+    double efficiency = 0;
+    std::vector<SearchEnding> endings;  ///< of each start; NotRun: it identified too little
+    Index starts_at_best = 0;           ///< how many starts ended at this value, to 1e-6
+    bool is_interrupted = false;        ///< stopped early by flag or time: the best so far
+    std::uint64_t seed = 0;
+};
+
+/// K continuous poses: starts from selection on the pool (the first on all of it, the others on
+/// random parts), each refined by refine_poses() on one thread, the best finished. The result does
+/// not depend on the number of threads. `blocks` are those of `pool` (poses x joints, feasible).
+/// Throws InputError as select_poses(), or if pool and blocks differ in count.
+PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const Blocks& blocks,
+                        const PlanOptions& options);
+
+/// The same for a campaign in a cell, at nominal parameters.
+PlannedPoses plan_poses(const Campaign& campaign, const Constraints& constraints, const Pool& pool,
+                        double repeats, const PlanOptions& options);
+
+/// Columns of base and sensor unknowns: the nuisance if only the robot is of interest.
+std::vector<Index> nuisance_of_robot(const Campaign& campaign);
+
+}  // namespace posewise

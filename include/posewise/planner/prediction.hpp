@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+
+#include "posewise/core/blocks.hpp"
+#include "posewise/measurement/campaign.hpp"
+
+namespace posewise {
+
+/// How wrong the calibrated model's positions of targets will be, by the covariance M^-1 of the
+/// parameters alone (no noise of a later measurement), m.
+struct PredictedAccuracy {
+    double rms = 0;           ///< of the position error over workspace and targets
+    double percentile95 = 0;  ///< 95 % of position errors are below
+    double worst_rms = 0;     ///< of the worst configuration and target
+};
+
+/// Derivative of target positions at workspace configurations by the scaled parameters, in m:
+/// blocks of 3 rows a target. As test poses they make V the inverse of the predicted mean square
+/// position error and G that of the worst. `target`: that one only (from 0); -1: all.
+/// Throws InputError for a target the sensor does not have.
+Blocks make_prediction_blocks(const Campaign& campaign, const Parameters& parameters,
+                              const RowMatrixXd& workspace, Index target = -1);
+
+/// Accuracy over prediction blocks by the information matrix M (scaled parameters). The percentile
+/// is of 200 draws a position, from stream (seed, position). Throws InputError if M is not positive
+/// definite or there are no blocks.
+PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
+                                   std::uint64_t seed = 1);
+
+}  // namespace posewise

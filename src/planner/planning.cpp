@@ -1,0 +1,191 @@
+#include "posewise/planner/planning.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <numeric>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/core/random.hpp"
+#include "posewise/planner/searched_bound.hpp"
+#include "posewise/selection/bound.hpp"
+
+namespace posewise {
+namespace {
+
+/// What the starts share.
+struct Problem {
+    const DesignSpace& space;
+    const RowMatrixXd& pool;
+    const Blocks& blocks;
+    const PlanOptions& options;
+    StopSignal stop;
+    Objective objective;
+};
+
+/// Selection of K from the pool, as far as its time goes.
+SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
+                             const PlanOptions& options) {
+    SelectOptions select;
+    select.criterion = options.criterion;
+    select.pose_count = options.pose_count;
+    select.test_poses = options.test_poses;
+    select.nuisance = options.nuisance;
+    select.held = options.held.information;
+    select.held_pose_count = options.held_pose_count;
+    select.seed = options.seed;
+    select.interrupted = options.interrupted;
+    select.starts = 4;
+    select.kicks = 4;
+    select.gap = 1e-3;
+    if (space.least_joint_distance > 0) {
+        // Selection measures by Euclid: at distance d sqrt(n) one joint differs by d at least.
+        select.positions = pool;
+        select.least_distance =
+            space.least_joint_distance * std::sqrt(static_cast<double>(pool.cols()));
+        const RowMatrixXd& held = options.held.configurations;
+        for (Index i = 0; i < pool.rows() && held.rows() > 0; ++i) {
+            const double nearest =
+                (held.rowwise() - pool.row(i)).cwiseAbs().rowwise().maxCoeff().minCoeff();
+            if (nearest < space.least_joint_distance) select.excluded.push_back(i);
+        }
+    }
+    return select;
+}
+
+/// A choice from a random part of the pool, so that starts differ.
+RowMatrixXd choose_from_part(const Problem& problem, Index start) {
+    const PlanOptions& options = problem.options;
+    RandomStream random(options.seed, static_cast<std::uint64_t>(start));
+    const Index size = std::min(problem.pool.rows(), 20 * options.pose_count);
+    const std::vector<Index> part = random.subset(problem.pool.rows(), size);
+    const RowMatrixXd candidates = problem.pool(part, Eigen::all);
+    SelectOptions select = select_options(problem.space, candidates, options);
+    select.starts = 1;
+    select.kicks = 0;
+    if (select.test_poses == nullptr) select.test_poses = problem.objective.test_poses;
+    return candidates(select_poses(take(problem.blocks, part), select).poses, Eigen::all);
+}
+
+/// Refinements of all starts; those whose part of the pool identifies too little are left empty.
+std::vector<Refinement> refine_starts(const Problem& problem, const RowMatrixXd& first) {
+    const Index starts = problem.options.starts;
+    std::vector<Refinement> results(static_cast<std::size_t>(starts));
+    std::vector<std::exception_ptr> errors(results.size());
+    PlanProgress progress;
+    progress.starts = starts;
+    RefineOptions refine;
+    refine.kink_rounds = 0;
+    refine.stop = problem.stop;
+#pragma omp parallel for schedule(dynamic)
+    for (Index start = 0; start < starts; ++start) {
+        const auto s = static_cast<std::size_t>(start);
+        if (start > 0 && problem.stop.is_set()) continue;
+        try {
+            const RowMatrixXd chosen = start == 0 ? first : choose_from_part(problem, start);
+            results[s] = refine_poses(problem.space, problem.objective, problem.options.held,
+                                      chosen, refine);
+        } catch (const InputError&) {
+            if (start == 0) errors[s] = std::current_exception();
+        } catch (...) {
+            errors[s] = std::current_exception();
+        }
+        if (!problem.options.progress) continue;
+#pragma omp critical(posewise_plan_progress)
+        {
+            ++progress.starts_done;
+            progress.value = std::max(progress.value, results[s].value);
+            problem.options.progress(progress);
+        }
+    }
+    for (const std::exception_ptr& error : errors) {
+        if (error) std::rethrow_exception(error);
+    }
+    return results;
+}
+
+/// Value, information and bound of the best refinement.
+void report(const Problem& problem, const std::vector<Refinement>& results, Refinement best,
+            PlannedPoses& planned) {
+    const DesignSpace& space = problem.space;
+    for (const Refinement& result : results) {
+        planned.endings.push_back(result.ending);
+        const double behind = best.value - result.value;
+        if (behind <= 1e-6 * std::max(1.0, std::abs(best.value))) ++planned.starts_at_best;
+    }
+    planned.value = best.value;
+    planned.configurations = std::move(best.configurations);
+    planned.information = problem.options.held.information;
+    if (planned.information.size() == 0) {
+        planned.information.setZero(space.parameter_count, space.parameter_count);
+    }
+    for (Index i = 0; i < planned.configurations.rows(); ++i) {
+        planned.information += space.information(planned.configurations.row(i).transpose());
+    }
+}
+
+}  // namespace
+
+PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const Blocks& blocks,
+                        const PlanOptions& options) {
+    if (pool.rows() != blocks.count()) {
+        throw InputError("the pool has " + std::to_string(pool.rows()) + " poses, its blocks " +
+                         std::to_string(blocks.count()));
+    }
+    if (options.starts < 1) {
+        throw InputError("starts is " + std::to_string(options.starts) + ", must be at least 1");
+    }
+    SelectOptions select = select_options(space, pool, options);
+    const Problem problem{space,
+                          pool,
+                          blocks,
+                          options,
+                          {options.interrupted, deadline_after(options.time_limit)},
+                          make_objective(blocks, select)};
+    select.time_limit = options.time_limit / 2;
+    PlannedPoses planned;
+    planned.criterion = options.criterion;
+    planned.seed = options.seed;
+    planned.pool_plan = select_poses(blocks, select);
+
+    const auto results = refine_starts(problem, pool(planned.pool_plan.poses, Eigen::all));
+    Refinement best =
+        *std::max_element(results.begin(), results.end(),
+                          [](const auto& a, const auto& b) { return a.value < b.value; });
+    RefineOptions finish;
+    finish.stop = problem.stop;
+    finish.round_limit = 2;
+    best = refine_poses(space, problem.objective, options.held, best.configurations, finish);
+    report(problem, results, std::move(best), planned);
+
+    const MatrixXd& relaxed = planned.pool_plan.certificate.M;
+    planned.searched_bound =
+        search_bound(space, problem.objective, options.held, options.pose_count,
+                     relaxed.size() > 0 ? relaxed : planned.information, pool,
+                     options.bound_iterations, problem.stop);
+    planned.efficiency =
+        efficiency(options.criterion, planned.value, planned.searched_bound,
+                   space.parameter_count - static_cast<Index>(options.nuisance.size()));
+    planned.is_interrupted = problem.stop.is_set();
+    return planned;
+}
+
+PlannedPoses plan_poses(const Campaign& campaign, const Constraints& constraints, const Pool& pool,
+                        double repeats, const PlanOptions& options) {
+    const DesignSpace space = make_design_space(campaign, campaign.nominal, repeats, &constraints);
+    return plan_poses(space, pool.configurations,
+                      make_visible_blocks(campaign, campaign.nominal, pool.configurations,
+                                          pool.is_visible, repeats),
+                      options);
+}
+
+std::vector<Index> nuisance_of_robot(const Campaign& campaign) {
+    const Index robot_end = 6 + campaign.robot.parameter_count();
+    std::vector<Index> nuisance;
+    for (Index k = 0; k < parameter_count(campaign); ++k) {
+        if (k < 6 || k >= robot_end) nuisance.push_back(k);
+    }
+    return nuisance;
+}
+
+}  // namespace posewise

@@ -1,0 +1,66 @@
+#include "posewise/planner/prediction.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/core/random.hpp"
+#include "posewise/jacobian/identification.hpp"
+
+namespace posewise {
+
+Blocks make_prediction_blocks(const Campaign& campaign, const Parameters& parameters,
+                              const RowMatrixXd& workspace, Index target) {
+    const Index targets = campaign.sensor->row_count() / 3;
+    if (target < -1 || target >= targets) {
+        throw InputError("target " + std::to_string(target + 1) + " to predict: the sensor has " +
+                         std::to_string(targets));
+    }
+    Blocks blocks = make_plain_blocks(campaign, parameters, workspace);
+    blocks.matrix *= parameter_scale(campaign).asDiagonal();
+    if (target < 0) return blocks;
+    Blocks one;
+    one.matrix.resize(3 * workspace.rows(), blocks.parameter_count());
+    for (Index i = 0; i < workspace.rows(); ++i) {
+        one.matrix.middleRows(3 * i, 3) = blocks[i].middleRows(3 * target, 3);
+        one.first_row.push_back(3 * (i + 1));
+    }
+    return one;
+}
+
+PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
+                                   std::uint64_t seed) {
+    constexpr Index draws = 200;
+    const Eigen::LLT<MatrixXd> cholesky(M);
+    const Index positions = prediction.matrix.rows() / 3;
+    if (positions == 0) throw InputError("no workspace configurations to predict for");
+    if (cholesky.info() != Eigen::Success) {
+        throw InputError("the plan does not identify all parameters, so it predicts nothing");
+    }
+    // Error of a position = J0 dx with dx = L^-T z, M = L L^T.
+    const MatrixXd spread = cholesky.matrixL().solve(prediction.matrix.transpose());
+    PredictedAccuracy accuracy;
+    std::vector<double> errors;
+    double sum = 0;
+    for (Index i = 0; i < positions; ++i) {
+        const auto W = spread.middleCols(3 * i, 3);
+        const double square = W.squaredNorm();
+        sum += square;
+        accuracy.worst_rms = std::max(accuracy.worst_rms, std::sqrt(square));
+        const Matrix3d covariance = W.transpose() * W;
+        const Matrix3d L = covariance.llt().matrixL();
+        RandomStream random(seed, static_cast<std::uint64_t>(i));
+        for (Index k = 0; k < draws; ++k) {
+            const Vector3d z(random.normal(), random.normal(), random.normal());
+            errors.push_back((L * z).norm());
+        }
+    }
+    accuracy.rms = std::sqrt(sum / static_cast<double>(positions));
+    const auto rank = static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(errors.size()));
+    std::nth_element(errors.begin(), errors.begin() + rank, errors.end());
+    accuracy.percentile95 = errors[static_cast<std::size_t>(rank)];
+    return accuracy;
+}
+
+}  // namespace posewise
