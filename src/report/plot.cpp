@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -37,8 +38,7 @@ std::string terminal(const std::string& image_path) {
                : "pngcairo size 1350,840 rounded font 'Helvetica,18' linewidth 1.4";
 }
 
-/// Range of the error axis in mm. A quantile that falls among subsets that could not identify the
-/// model has no number; it is drawn at the upper edge.
+/// Range of the error axis in mm.
 struct ErrorAxis {
     double lower = std::numeric_limits<double>::infinity();
     double upper = 0;
@@ -49,12 +49,25 @@ struct ErrorAxis {
         upper = std::max(upper, mm_per_m * *metres * 1.5);
     }
     bool is_empty() const { return !(upper > 0) || !(lower > 0); }
-    std::string format(const std::optional<double>& metres) const {
-        return format_short(metres ? mm_per_m * *metres : upper, 9);
+    /// Places for labels: 1, 2 and 5 of each decade.
+    std::string format_ticks() const {
+        std::string ticks;
+        const int first = static_cast<int>(std::floor(std::log10(lower)));
+        const int last = static_cast<int>(std::floor(std::log10(upper)));
+        for (int decade = first; decade <= last; ++decade) {
+            for (const int digit : {1, 2, 5}) {
+                ticks += fmt::format("{}{}e{}", ticks.empty() ? "" : ", ", digit, decade);
+            }
+        }
+        return ticks;
     }
 };
 
 constexpr std::array band_quantiles{0.1, 0.5, 0.9};
+
+std::string format_plotted(const std::optional<double>& metres, const std::string& if_absent) {
+    return metres ? format_short(mm_per_m * *metres, 9) : if_absent;
+}
 
 ErrorAxis find_error_axis(const std::vector<StudyRow>& rows) {
     ErrorAxis axis;
@@ -65,27 +78,28 @@ ErrorAxis find_error_axis(const std::vector<StudyRow>& rows) {
     return axis;
 }
 
-/// Lines "count 10% 50% 90%" of the rows whose 10 % quantile is a number.
+/// Lines "count 10% 50% 90%" of the rows whose 10 % quantile is a number. A quantile that falls
+/// among subsets that could not identify the model has none: the band then reaches the upper edge.
 std::string band_lines(const std::vector<StudyRow>& rows, const ErrorAxis& axis) {
     std::string lines;
     for (const StudyRow& row : rows) {
-        if (!held_out_quantile(row.random, band_quantiles[0])) continue;
-        lines += std::to_string(row.pose_count);
-        for (const double p : band_quantiles) {
-            lines += ' ' + axis.format(held_out_quantile(row.random, p));
-        }
-        lines += '\n';
+        const auto error = [&](std::size_t i) {
+            return held_out_quantile(row.random, band_quantiles[i]);
+        };
+        if (!error(0)) continue;
+        lines += fmt::format("{} {} {} {}\n", row.pose_count, format_plotted(error(0), ""),
+                             format_plotted(error(1), "NaN"),
+                             format_plotted(error(2), format_short(axis.upper, 9)));
     }
     return lines;
 }
 
 /// Lines "count error" of one criterion, where it identified the model.
-std::string criterion_lines(const std::vector<StudyRow>& rows, std::size_t criterion,
-                            const ErrorAxis& axis) {
+std::string criterion_lines(const std::vector<StudyRow>& rows, std::size_t criterion) {
     std::string lines;
     for (const StudyRow& row : rows) {
         const auto error = held_out_quantile({row.optimal[criterion]}, 0);
-        if (error) lines += fmt::format("{} {}\n", row.pose_count, axis.format(error));
+        if (error) lines += fmt::format("{} {}\n", row.pose_count, format_plotted(error, ""));
     }
     return lines;
 }
@@ -110,12 +124,13 @@ Drawing draw(const std::vector<Criterion>& criteria, const std::vector<StudyRow>
                                 "#d0418f", "#5b6b00", "#006d77", "#7f3b08", "#333333"};
     Drawing drawing;
     drawing.add("random", band_lines(rows, axis),
-                "{0} using 1:2:4 with filledcurves fc rgb '#c9cfd6' title 'random, 10-90 %', "
+                "{0} using 1:2:4 with filledcurves fc rgb '#c9cfd6' title 'random, 10-90 % (open "
+                "top: not identifiable)', "
                 "{0} using 1:3 with lines lw 2 dt (8,5) lc rgb '#5f6b77' title 'random, median'");
     for (std::size_t i = 0; i < criteria.size(); ++i) {
         std::string name(criterion_name(criteria[i]));
         for (char& c : name) c = static_cast<char>(std::toupper(c));
-        drawing.add(fmt::format("optimal{}", i), criterion_lines(rows, i, axis),
+        drawing.add(fmt::format("optimal{}", i), criterion_lines(rows, i),
                     fmt::format("{{0}} using 1:2 with linespoints lw 2.5 pt 7 ps 0.6 lc rgb '{}' "
                                 "title 'optimal, {}'",
                                 colors[i % colors.size()], name));
@@ -150,13 +165,13 @@ std::string study_plot_script(const std::vector<Criterion>& criteria,
         "set terminal {}\nset output {}\nset title {} noenhanced\n"
         "set xlabel 'poses used for calibration'\n"
         "set ylabel 'held-out distance RMS (mm)'\n"
-        "set logscale y\nset yrange [{}:{}]\nset format y '%g'\nset xtics out nomirror\nset ytics "
-        "out nomirror\n"
-        "set border 3 lc rgb '#5f6b77'\nset grid ytics mytics lc rgb '#dfe3e8', lc rgb '#eff1f3'\n"
-        "set mytics 10\nset offsets graph 0.02, graph 0.02\nset key top right reverse Left\n"
+        "set logscale y\nset yrange [{}:{}]\nset format y '%g'\n"
+        "set xtics out nomirror\nset ytics out nomirror ({})\n"
+        "set border 3 lc rgb '#5f6b77'\nset grid ytics lc rgb '#dfe3e8'\n"
+        "set offsets graph 0.02, graph 0.02\nset key top right reverse Left\n"
         "{}{}\nset output\n",
         terminal(image_path), quote(image_path), quote(title), format_short(axis.lower),
-        format_short(axis.upper), drawing.data, drawing.clauses);
+        format_short(axis.upper), axis.format_ticks(), drawing.data, drawing.clauses);
 }
 
 }  // namespace posewise

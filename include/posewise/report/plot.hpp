@@ -12,10 +12,10 @@ void check_image_path(const std::string& path);
 
 /// The gnuplot script that draws held-out error against pose count into `image_path` (ending
 /// `.svg` or `.png`): one line each criterion, the random subsets' median over their 10-90 % band,
-/// error in mm on a logarithmic axis; a quantile that falls among subsets that could not identify
-/// the model is drawn at its upper edge. Texts and paths are quoted, so nothing in them is
-/// executed. Throws InputError as check_image_path() does, or for a study without any held-out
-/// error.
+/// error in mm on a logarithmic axis. The band's upper side leaves the plot where the 90 % quantile
+/// falls among subsets that could not identify the model; the median has a gap there. Texts and
+/// paths are quoted, so nothing in them is executed.
+/// Throws InputError as check_image_path() does, or for a study without any held-out error.
 std::string study_plot_script(const std::vector<Criterion>& criteria,
                               const std::vector<StudyRow>& rows, const std::string& title,
                               const std::string& image_path);
