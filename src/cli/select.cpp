@@ -81,7 +81,8 @@ void add_options(CLI::App& command, Arguments& arguments) {
     command.add_option("--starts", arguments.options.starts, "Starts of the exchange")
         ->check(CLI::Range(Index{1}, Index{1000000}))
         ->capture_default_str();
-    command.add_option("--seed", arguments.seed, "Of the random starts (default: the campaign's)");
+    command.add_option("--seed", arguments.seed, "Of the random starts (default: the campaign's)")
+        ->check(CLI::NonNegativeNumber);
     command
         .add_option("--repeats", arguments.repeats,
                     "Samples of each chosen configuration (default: as in the file)")

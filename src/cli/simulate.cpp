@@ -66,9 +66,12 @@ void run_simulation(Arguments arguments) {
 void add_options(CLI::App& command, Arguments& arguments) {
     const auto count = CLI::Range(Index{1}, Index{100000});
     command.add_option("--truth", arguments.options.truth_seed, "Seed of the true parameters")
+        ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
-    command.add_option("--seed", arguments.seed,
-                       "Seed of configurations and noise (default: the campaign's)");
+    command
+        .add_option("--seed", arguments.seed,
+                    "Seed of configurations and noise (default: the campaign's)")
+        ->check(CLI::NonNegativeNumber);
     command.add_option("-k,--poses", arguments.options.pose_count, "Number of configurations")
         ->required()
         ->check(count);

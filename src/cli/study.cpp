@@ -23,10 +23,11 @@ For each pose count: chooses that many of the measured configurations by each cr
 random, calibrates with them from nothing, and judges on the configurations left out. Prints the
 distance RMS left there, in mm:
   poses    d/mm  random 10 %/mm  50 %/mm  90 %/mm  subsets  unidentified
-      6  0.2993          0.5400   1.4900   4.9000      100             3
-is read: six configurations chosen by D leave 0.30 mm, half of all random sixes more than 1.5 mm,
-and 3 of the 100 random sixes could not identify the model at all. The pose count from which the
-first column stays flat is enough. "-": no number, since nothing was identified or left out.)";
+      6  0.2870          0.4468   2.4065        -      100            37
+     13  0.1889          0.2109   0.2598   0.3606      100             6
+is read: six configurations chosen by D leave 0.29 mm, half of all random sixes more than 2.4 mm.
+37 of the 100 random sixes could not identify the model at all; they count as the worst, so their
+90 % quantile is no number ("-"). The pose count from which a column stays flat is enough.)";
 
 struct Arguments {
     InputPaths paths;
@@ -117,7 +118,8 @@ void add_options(CLI::App& command, Arguments& arguments) {
     command.add_option("--starts", arguments.options.starts, "Starts of each exchange")
         ->check(CLI::Range(Index{1}, Index{1000000}))
         ->capture_default_str();
-    command.add_option("--seed", arguments.seed, "Of all random choices (default: the campaign's)");
+    command.add_option("--seed", arguments.seed, "Of all random choices (default: the campaign's)")
+        ->check(CLI::NonNegativeNumber);
     command.add_option("--csv", arguments.csv, "Write every subset's result to this file");
     command.add_option("--plot", arguments.plot, "Draw error against pose count: .svg or .png");
     command.add_flag("--progress", arguments.progress,
