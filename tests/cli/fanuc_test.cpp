@@ -1,0 +1,52 @@
+#include "program.hpp"
+
+/// The published campaign on the FANUC R-2000iC/165F, through the program; the figures are those of
+/// independent fits. The data are not ours to ship.
+namespace posewise::testing {
+namespace {
+
+class Fanuc : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        const std::string folder = std::string(POSEWISE_REAL_DATA) + "/fanuc_r2000ic_165f";
+        if (!std::filesystem::exists(folder + "/measurements.csv")) {
+            GTEST_SKIP() << "no real campaign at POSEWISE_REAL_DATA = " << POSEWISE_REAL_DATA;
+        }
+        csv_ = fanuc_design + " -m '" + folder + "/measurements.csv' ";
+        mat_ = fanuc_design + " -m '" + folder + "/calibration_dataset.mat' ";
+    }
+    std::string csv_;
+    std::string mat_;
+};
+
+TEST_F(Fanuc, CalibrationReachesTheKnownFigures) {
+    for (const std::string& input : {csv_, mat_}) {
+        const std::string text = run_well("calibrate " + input);
+        EXPECT_NE(text.find("lm: converged"), std::string::npos);
+        EXPECT_NEAR(number_behind(text, "distance RMS", 1), 0.1607, 1e-4);
+        EXPECT_NEAR(number_behind(text, "distance max", 1), 0.3271, 2e-4);
+        EXPECT_NEAR(number_behind(text, "distance RMS", 2), 0.1363, 1e-4);  // means
+        EXPECT_NEAR(number_behind(text, "distance RMS", 4), 0.2342, 5e-4);  // held-out means
+        EXPECT_NEAR(number_behind(text, "noise floor from repeats:"), 0.05185, 1e-5);
+    }
+}
+
+TEST_F(Fanuc, TwoStepComesNearTheSameOptimumAndSaysSo) {
+    const std::string text =
+        run_well("calibrate " + csv_ + "--method two-step --max-iterations 200 --folds 0");
+    EXPECT_LE(number_behind(text, "distance RMS", 2), 0.1378);
+    EXPECT_GE(number_behind(text, "distance RMS", 2), 0.1362);
+    EXPECT_NE(text.find("two-step: iteration limit after 200"), std::string::npos);
+}
+
+TEST_F(Fanuc, SixOptimalConfigurationsDoAsWellAsTwelveRandomOnes) {
+    const std::string text = run_well("study " + csv_ + "--criteria d --random 200 --poses 6,12");
+    EXPECT_NEAR(number_behind(text, "6 ", 0), 0.287, 0.01);
+    EXPECT_GT(number_behind(text, "6 ", 2), 1.0);  // random median
+    EXPECT_NEAR(number_behind(text, "12 ", 2), 0.283, 0.02);
+    EXPECT_GT(number_behind(text, "6 ", 5), 0);  // many sixes have q1 = 45 deg throughout
+}
+
+}  // namespace
+}  // namespace posewise::testing

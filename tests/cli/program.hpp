@@ -1,0 +1,111 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+
+/// Runs the built program as a user would, in a folder of its own.
+namespace posewise::testing {
+
+struct Outcome {
+    int code = -1;
+    std::string out;
+    std::string err;
+};
+
+inline std::string read_text(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+class Program : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("posewise_cli_" + std::string(test->test_suite_name()) + '_' + test->name());
+        std::filesystem::remove_all(folder_);
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    /// `arguments` as typed in a shell; `before` may set environment variables, `behind` may pipe.
+    Outcome run(const std::string& arguments, const std::string& before = "",
+                const std::string& behind = "") const {
+        const auto out = folder_ / ".out";
+        const auto err = folder_ / ".err";
+        const std::string line = "cd '" + folder_.string() + "' && " + before + " '" +
+                                 POSEWISE_PROGRAM + "' " + arguments + " 2> .err " + behind +
+                                 " > .out";
+        const int status = std::system(line.c_str());
+        Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out),
+                        read_text(err)};
+        std::filesystem::remove(out);
+        std::filesystem::remove(err);
+        return outcome;
+    }
+
+    /// Runs it and expects success and a silent standard error.
+    std::string run_well(const std::string& arguments, const std::string& before = "") const {
+        const Outcome outcome = run(arguments, before);
+        EXPECT_EQ(outcome.code, 0) << arguments;
+        EXPECT_EQ(outcome.err, "") << arguments;
+        return outcome.out;
+    }
+
+    /// Expects exit code 1, one line on standard error that holds `words`, and no file left.
+    void expect_input_error(const std::string& arguments, const std::string& words) const {
+        const auto files_before = file_count();
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.code, 1) << arguments;
+        EXPECT_EQ(outcome.err.rfind("posewise: ", 0), 0u) << outcome.err;
+        EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1) << outcome.err;
+        EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+        EXPECT_EQ(file_count(), files_before) << arguments;
+    }
+
+    std::size_t file_count() const {
+        const std::filesystem::directory_iterator files(folder_);
+        return static_cast<std::size_t>(std::distance(begin(files), end(files)));
+    }
+
+    bool has_file(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+    std::string text_of(const std::string& name) const { return read_text(folder_ / name); }
+    void write_text(const std::string& name, const std::string& text) const {
+        std::ofstream(folder_ / name) << text;
+    }
+
+    std::filesystem::path folder_;
+};
+
+inline const std::string fanuc_design =
+    std::string("'") + POSEWISE_SOURCE_DIR + "/designs/fanuc_r2000ic_165f/campaign.yaml'";
+inline const std::string seed_design =
+    std::string("'") + POSEWISE_SOURCE_DIR + "/designs/fanuc_r2000ic_165f/seed_report.yaml'";
+
+/// The number in `column` (0 is the first) of the first line that starts with `label`; blanks
+/// separate columns. Fails the test and gives NaN if there is none.
+inline double number_behind(const std::string& text, const std::string& label,
+                            std::size_t column = 0) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        const auto start = line.find_first_not_of(' ');
+        if (start == std::string::npos || line.compare(start, label.size(), label) != 0) continue;
+        std::istringstream words(line.substr(start + label.size()));
+        std::string word;
+        for (std::size_t i = 0; i <= column; ++i) words >> word;
+        return std::strtod(word.c_str(), nullptr);
+    }
+    ADD_FAILURE() << "no line '" << label << "' in\n" << text;
+    return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace posewise::testing

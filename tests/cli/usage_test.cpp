@@ -1,0 +1,54 @@
+#include <algorithm>
+
+#include "program.hpp"
+
+namespace posewise::testing {
+namespace {
+
+class Usage : public Program {};
+
+const std::string commands[] = {"inspect", "indices", "select", "calibrate", "study", "simulate"};
+
+TEST_F(Usage, VersionIsThatOfTheProject) {
+    EXPECT_EQ(run_well("--version"), std::string("posewise ") + POSEWISE_VERSION + '\n');
+}
+
+TEST_F(Usage, HelpNamesEveryCommand) {
+    const std::string help = run_well("--help");
+    for (const auto& command : commands) {
+        EXPECT_NE(help.find("\n  " + command), std::string::npos) << command;
+    }
+}
+
+TEST_F(Usage, HelpOfEveryCommandHasAnExample) {
+    for (const auto& command : commands) {
+        const std::string help = run_well(command + " --help");
+        EXPECT_NE(help.find("Example:\n  posewise " + command), std::string::npos) << help;
+    }
+}
+
+TEST_F(Usage, WrongUsageExitsWithTwo) {
+    for (const std::string arguments :
+         {"", "calibrated", "inspect", "inspect a.yaml --nonsense", "select a.yaml -m b.csv",
+          "select a.yaml -m b.csv -k 6 --criterion o6", "select a.yaml -m b.csv -k -1",
+          "select a.yaml -m b.csv -k six", "calibrate a.yaml -m b.csv --method newton",
+          "calibrate a.yaml -m b.csv --alpha 0", "study a.yaml -m b.csv --poses 5-9",
+          "study a.yaml -m b.csv --poses 9:5", "study a.yaml -m b.csv --poses ,",
+          "study a.yaml -m b.csv --criteria d,q", "simulate a.yaml -k 5",
+          "simulate a.yaml -k 5 --seed -1 --out a.csv"}) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.code, 2) << arguments;
+        EXPECT_EQ(outcome.out, "") << arguments;
+        EXPECT_NE(outcome.err, "") << arguments;
+    }
+    EXPECT_EQ(file_count(), 0u);
+}
+
+TEST_F(Usage, AMissingFileIsAnInputError) {
+    expect_input_error("inspect absent.yaml", "absent.yaml");
+    expect_input_error("calibrate " + fanuc_design + " -m absent.csv", "absent.csv");
+    expect_input_error("calibrate " + fanuc_design + " -m absent.mat", "absent.mat");
+}
+
+}  // namespace
+}  // namespace posewise::testing
