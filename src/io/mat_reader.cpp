@@ -2,7 +2,9 @@
 
 #include <matio.h>
 
-#include <cstring>
+#include <algorithm>
+#include <climits>
+#include <cmath>
 
 #include "posewise/core/errors.hpp"
 #include "posewise/io/atomic_file.hpp"
@@ -15,6 +17,8 @@ namespace {
 /// of it. Here the lines are counted, and nothing is printed.
 thread_local int damage_count = 0;
 void count_damage(int /*level*/, char* /*message*/) { ++damage_count; }
+
+constexpr const char* damaged = "cannot be read, the file is damaged; must be a whole MATLAB file";
 
 using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
 
@@ -92,7 +96,7 @@ MatrixXd MatReader::read(const std::string& name, Index columns) const {
         const bool is_damaged = damage_count > 0;
         throw variable_error(
             path_, name,
-            is_damaged ? "cannot be read: the file is damaged or cut short"
+            is_damaged ? damaged
                        : "is not in the file; " + suggest(name, variable_names(file_.get())));
     }
     if (const std::string misfit = find_misfit(*variable); !misfit.empty()) {
@@ -106,13 +110,17 @@ MatrixXd MatReader::read(const std::string& name, Index columns) const {
                                  "; must be samples x " + std::to_string(columns));
     }
     // Compression gains at most a factor of about 1030, so a larger size is damage.
-    const bool is_plausible = rows <= 2000 * byte_count_ / width;
-    if (!is_plausible || Mat_VarReadDataAll(file_.get(), variable.get()) != 0 || damage_count > 0 ||
-        variable->data == nullptr || variable->nbytes != rows * width * sizeof(double)) {
-        throw variable_error(path_, name, "cannot be read: the file is damaged or cut short");
+    const bool is_plausible = rows <= std::min<std::size_t>(2000 * byte_count_ / width, INT_MAX);
+    if (!is_plausible) throw variable_error(path_, name, damaged);
+    // What a damaged file lacks stays NaN: the library leaves it alone and does not tell.
+    MatrixXd values = MatrixXd::Constant(static_cast<Index>(rows), columns, NAN);
+    int start[2] = {0, 0};
+    int stride[2] = {1, 1};
+    int count[2] = {static_cast<int>(rows), static_cast<int>(columns)};
+    if (Mat_VarReadData(file_.get(), variable.get(), values.data(), start, stride, count) != 0 ||
+        damage_count > 0) {
+        throw variable_error(path_, name, damaged);
     }
-    MatrixXd values(static_cast<Index>(rows), columns);
-    std::memcpy(values.data(), variable->data, variable->nbytes);
     for (Index row = 0; row < values.rows(); ++row) {
         if (!values.row(row).allFinite()) {
             throw variable_error(path_, name,
