@@ -20,19 +20,6 @@ Isometry3d read_base(const YamlValue& value) {
     return world_from_base;
 }
 
-/// A number and its unit in the value itself, `0.5 mrad`, for a length or an angle.
-double read_amount(const YamlValue& value, Quantity quantity) {
-    const std::string text = value.text();
-    const auto blank = std::min(text.find_first_of(" \t"), text.size());
-    const ParsedNumber number = parse_number(std::string_view(text).substr(0, blank));
-    const Unit* const unit = find_unit(trim(std::string_view(text).substr(blank)));
-    if (!number.ok() || unit == nullptr || unit->quantity != quantity || !(number.value > 0)) {
-        throw value.error("is '" + text + "'; must be a positive number and a unit, " +
-                          list_words(unit_names(quantity)));
-    }
-    return unit->to_si(number.value);
-}
-
 ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign) {
     const YamlMap map(value, {"length_<length>", "angle_<angle>", "parameters"});
     ParameterSpread spread;
@@ -51,7 +38,7 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign) {
         }
         const auto index = static_cast<std::size_t>(found - names.begin());
         const auto quantity = is_angle[index] ? Quantity::Angle : Quantity::Length;
-        spread.by_name[entry.key] = read_amount(entry.value, quantity);
+        spread.by_name[entry.key] = read_amount(entry.value, quantity, Sign::Positive);
     }
     return spread;
 }
@@ -112,9 +99,23 @@ double read_positive(const YamlMeasure& measure, bool zero_allowed) {
     return value;
 }
 
+double read_amount(const YamlValue& value, Quantity quantity, Sign sign) {
+    const std::string text = value.text();
+    const auto blank = std::min(text.find_first_of(" \t"), text.size());
+    const ParsedNumber number = parse_number(std::string_view(text).substr(0, blank));
+    const Unit* const unit = find_unit(trim(std::string_view(text).substr(blank)));
+    const bool is_sign_right = sign == Sign::Any || number.value > 0;
+    if (!number.ok() || unit == nullptr || unit->quantity != quantity || !is_sign_right) {
+        throw value.error("is '" + text + "'; must be a " +
+                          (sign == Sign::Positive ? "positive " : "") + "number and a unit, " +
+                          list_words(unit_names(quantity)));
+    }
+    return unit->to_si(number.value);
+}
+
 CampaignFile read_campaign(const std::string& path) {
     const YamlMap map(read_yaml(path), {"name", "robot", "sensor", "model_error_<length>", "base",
-                                        "spread", "criterion", "seed", "measurements"});
+                                        "spread", "criterion", "seed", "measurements", "cell"});
     CampaignFile file;
     file.path = path;
     Campaign& campaign = file.campaign;
@@ -123,6 +124,7 @@ CampaignFile read_campaign(const std::string& path) {
     const RobotSection robot = read_robot(map.require("robot"));
     file.declared_robot = robot.declared;
     file.error_model = robot.error_model;
+    campaign.joint_repeatability = robot.joint_repeatability;
     const SensorSection sensor = read_sensor(map.require("sensor"));
     campaign.sensor = sensor.sensor;
     campaign.nominal.sensor = sensor.unknowns;
@@ -143,6 +145,9 @@ CampaignFile read_campaign(const std::string& path) {
     if (const auto seed = map.find("seed")) file.seed = seed->natural_number();
     if (const auto measurements = map.find("measurements")) {
         file.mat = read_mat_mapping(*measurements, sensor.sensor->target_count());
+    }
+    if (const auto cell = map.find("cell")) {
+        file.cell = read_cell(*cell, campaign.robot, sensor.sensor->target_count());
     }
     return file;
 }

@@ -12,6 +12,7 @@ namespace posewise::io {
 struct RobotSection {
     Chain declared;
     ErrorModel error_model = ErrorModel::Stated;
+    VectorXd joint_repeatability;  ///< rad or m; empty if not stated
 };
 RobotSection read_robot(const YamlValue& robot);
 
@@ -22,7 +23,15 @@ struct SensorSection {
 };
 SensorSection read_sensor(const YamlValue& sensor);
 
+/// `robot` gives the joints' names and limits.
+Cell read_cell(const YamlValue& cell, const Chain& robot, Index target_count);
+
 /// A measure that must be positive, or with `zero_allowed` not negative; m or rad.
 double read_positive(const YamlMeasure& measure, bool zero_allowed = false);
+
+enum class Sign { Positive, Any };
+
+/// A number and its unit in the value itself, `0.5 mrad`; m or rad.
+double read_amount(const YamlValue& value, Quantity quantity, Sign sign);
 
 }  // namespace posewise::io

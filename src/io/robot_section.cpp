@@ -20,24 +20,43 @@ std::vector<std::string> joint_names(const std::vector<YamlEntry>& entries) {
     return names;
 }
 
+const std::vector<std::string> joint_keys{"limits_<angle>", "limits_<length>",
+                                          "repeatability_<angle>", "repeatability_<length>"};
+
+/// Throws InputError if the measure's unit is not of what the joint moves in.
+void check_quantity(const YamlMeasure& measure, Motion motion) {
+    if (measure.unit->quantity == quantity_of(motion)) return;
+    throw measure.value.error("is in '" + std::string(measure.unit->name) +
+                              "', but the joint drives a " +
+                              (motion == Motion::Rotation ? "rotation" : "translation") +
+                              "; must be in " + list_words(unit_names(quantity_of(motion))));
+}
+
 Joint read_joint(const YamlEntry& entry, std::optional<Motion> motion) {
     if (!motion) {
         throw input_error_at(entry.key_location,
                              "joint '" + entry.key + "' drives no element; must occur in one");
     }
-    const YamlMap map(entry.value, {"limits_<angle>", "limits_<length>"});
-    const YamlMeasure limits = map.require_measure("limits");
-    if (limits.unit->quantity != quantity_of(*motion)) {
-        throw limits.value.error("is in '" + std::string(limits.unit->name) +
-                                 "', but the joint drives a " +
-                                 (*motion == Motion::Rotation ? "rotation" : "translation") +
-                                 "; must be in " + list_words(unit_names(quantity_of(*motion))));
-    }
+    const YamlMeasure limits = YamlMap(entry.value, joint_keys).require_measure("limits");
+    check_quantity(limits, *motion);
     const std::vector<double> values = limits.value.numbers(2);
     if (values[0] >= values[1]) {
         throw limits.value.error("is not in order; the lower limit must come first");
     }
     return {entry.key, limits.unit->to_si(values[0]), limits.unit->to_si(values[1])};
+}
+
+/// Of all joints, 0 where it is not stated; empty if it is stated for none.
+VectorXd read_repeatability(const std::vector<YamlEntry>& entries, const Chain& robot) {
+    VectorXd repeatability = VectorXd::Zero(robot.joint_count());
+    for (Index j = 0; j < robot.joint_count(); ++j) {
+        const YamlMap map(entries[static_cast<std::size_t>(j)].value, joint_keys);
+        const auto measure = map.find_measure("repeatability");
+        if (!measure) continue;
+        check_quantity(*measure, robot.joint_motion(j));
+        repeatability[j] = read_positive(*measure, true);
+    }
+    return repeatability.isZero(0) ? VectorXd() : repeatability;
 }
 
 ErrorModel read_error_model(const YamlMap& robot, const std::vector<Element>& elements) {
@@ -71,6 +90,7 @@ RobotSection read_robot(const YamlValue& value) {
     RobotSection section;
     section.error_model = read_error_model(robot, elements);
     section.declared = Chain(std::move(joints), std::move(elements));
+    section.joint_repeatability = read_repeatability(entries, section.declared);
     return section;
 }
 

@@ -35,15 +35,37 @@ std::vector<Vector3d> stated_targets(const YamlMeasure& positions) {
     return targets;
 }
 
+/// `sigma_mm`, one number or one for each axis, or `noise`, a laser tracker's.
+PointNoise read_noise(const YamlValue& value, const YamlMap& sensor) {
+    const auto noise = sensor.find("noise");
+    const auto sigma = sensor.find_measure("sigma");
+    if (noise.has_value() == sigma.has_value()) {
+        throw value.error("must have either sigma_mm or noise");
+    }
+    if (noise) {
+        const YamlMap tracker(*noise, {"range_<length>", "angle_<angle>"});
+        return LaserTrackerNoise{read_positive(tracker.require_measure("range")),
+                                 read_positive(tracker.require_measure("angle"))};
+    }
+    if (!sigma->value.is_list()) return IsotropicNoise{read_positive(*sigma)};
+    PerAxisNoise axes;
+    const std::vector<YamlValue> items = sigma->value.list();
+    if (items.size() != 3) throw sigma->value.error("must be one number, or three for x, y and z");
+    for (std::size_t k = 0; k < 3; ++k) {
+        axes.sigma[static_cast<Index>(k)] = read_positive({items[k], sigma->unit});
+    }
+    return axes;
+}
+
 }  // namespace
 
 SensorSection read_sensor(const YamlValue& value) {
-    const YamlMap sensor(value, {"kind", "sigma_<length>", "targets"});
+    const YamlMap sensor(value, {"kind", "sigma_<length>", "noise", "targets"});
     const YamlValue kind = sensor.require("kind");
     if (kind.text() != "points") {
         throw kind.error("is '" + kind.text() + "'; " + suggest(kind.text(), {"points"}));
     }
-    const double sigma = read_positive(sensor.require_measure("sigma"));
+    const PointNoise noise = read_noise(value, sensor);
     const YamlValue targets_value = sensor.require("targets");
     const YamlMap targets(targets_value, {"count", "position_<length>", "known"});
     const auto positions = targets.find_measure("position");
@@ -61,11 +83,11 @@ SensorSection read_sensor(const YamlValue& value) {
     section.has_positions = positions.has_value();
     if (are_known) {
         section.sensor = std::make_shared<PointSensor>(
-            std::vector<std::optional<Vector3d>>(nominal.begin(), nominal.end()), sigma);
+            std::vector<std::optional<Vector3d>>(nominal.begin(), nominal.end()), noise);
         return section;
     }
     section.sensor =
-        std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(nominal.size()), sigma);
+        std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(nominal.size()), noise);
     section.unknowns.resize(3 * static_cast<Index>(nominal.size()));
     for (std::size_t j = 0; j < nominal.size(); ++j) {
         section.unknowns.segment<3>(3 * static_cast<Index>(j)) = nominal[j];

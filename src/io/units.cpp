@@ -6,13 +6,14 @@
 namespace posewise::io {
 namespace {
 
-constexpr std::array<Unit, 6> units{{
+constexpr std::array<Unit, 7> units{{
     {"mm", Quantity::Length, 1, 1e3},
     {"m", Quantity::Length, 1, 1},
     {"um", Quantity::Length, 1, 1e6},
     {"deg", Quantity::Angle, std::numbers::pi, 180},
     {"rad", Quantity::Angle, 1, 1},
     {"mrad", Quantity::Angle, 1, 1e3},
+    {"urad", Quantity::Angle, 1, 1e6},
 }};
 
 }  // namespace

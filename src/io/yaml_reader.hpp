@@ -34,6 +34,7 @@ class YamlValue {
     double number() const;
     std::uint64_t natural_number() const;
     bool boolean() const;
+    bool is_list() const { return node_.IsSequence(); }
     /// Items of a list.
     std::vector<YamlValue> list() const;
     /// A list of exactly `count` numbers.

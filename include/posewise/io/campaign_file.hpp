@@ -6,6 +6,7 @@
 
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/model/cell.hpp"
 
 namespace posewise::io {
 
@@ -34,6 +35,7 @@ struct CampaignFile {
     Criterion criterion = Criterion::D;
     std::uint64_t seed = 1;
     MatMapping mat;
+    Cell cell;  ///< empty if the file does not describe one
 };
 
 /// Reads a campaign from YAML. Throws InputError with path:line:column for anything missing,
@@ -43,6 +45,10 @@ struct CampaignFile {
 /// the amount a sum of lengths or angles with their unit and of joints, each with an optional
 /// coefficient, the bracket names its error parameter and may be missing:
 /// `Rz q1`, `Tx 312 mm [Tx1]`, `Ry q2 + 0.5 deg [dq2]`, `Ry -q3 + 0.98*q2`, `Ty 0 [Ty1]`.
+///
+/// The sensor's noise is `sigma_mm` (one number, or three for x, y and z) or that of a laser
+/// tracker, `noise: {range_um: 10, angle_urad: 15}`. The section `cell` states the constraints of
+/// poses; designs/cell_demo/campaign.yaml has each of its keys.
 CampaignFile read_campaign(const std::string& path);
 
 }  // namespace posewise::io
