@@ -53,8 +53,9 @@ TEST(KnownDesigns, QuadraticInTwoFactors) {
 }
 
 TEST(KnownDesigns, LargestDeterminantsOfSignMatrices) {
-    const std::array<double, 9> largest = {4, 16, 48, 160, 576, 4096, 14336, 73728, 327680};
-    for (Index n = 3; n <= 11; ++n) {
+    const std::array<double, 10> largest = {4,    16,    48,    160,    576,
+                                            4096, 14336, 73728, 327680, 2985984};
+    for (Index n = 3; n <= 12; ++n) {
         const Index count = Index{1} << (n - 1);  // the sign of a row does not matter
         RowMatrixXd rows = RowMatrixXd::Ones(count, n);
         for (Index i = 0; i < count; ++i) {

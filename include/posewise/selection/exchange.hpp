@@ -22,7 +22,7 @@ struct SelectOptions {
     Index pose_count = 0;  ///< K, must be stated
     /// Test poses of G and V; the caller keeps them alive. Null: the candidates themselves.
     const Blocks* test_poses = nullptr;
-    /// Columns estimated along but of no interest (D becomes Ds). Not with G and V.
+    /// Columns estimated along but of no interest (D becomes Ds). Not with G, V, O2 and O4.
     std::vector<Index> nuisance;
     /// Information there is before measuring: a prior (identity in scaled units), poses already
     /// measured, or their sum. Empty: none.
@@ -35,9 +35,11 @@ struct SelectOptions {
     RowMatrixXd positions;        ///< candidates x joints; empty unless least_distance is used
     double least_distance = 0;    ///< Euclidean, between any two different poses chosen
 
-    Index starts = 20;         ///< independent searches
-    Index kicks = 20;          ///< perturbations of each start's plan without success until it ends
-    Index shortlist = 800;     ///< candidates searched; all are looked at in the last sweeps
+    Index starts = 20;  ///< independent searches
+    Index kicks = 20;   ///< perturbations of each start's plan without success until it ends
+    /// Candidates searched; all are looked at in the last sweeps. 0: from 800 for large blocks to
+    /// 5000 for small ones.
+    Index shortlist = 0;
     Index enumeration = 5000;  ///< most choices left open by the bound that are all tried; 0: none
     double gap = 1e-5;       ///< relative gap of the information function to end the relaxation at
     std::uint64_t seed = 1;  ///< start i draws from stream (seed, i)
