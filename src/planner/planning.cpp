@@ -75,7 +75,8 @@ std::vector<Refinement> refine_starts(const Problem& problem, const RowMatrixXd&
     PlanProgress progress;
     progress.starts = starts;
     RefineOptions refine;
-    refine.kink_rounds = 0;
+    refine.kink_rounds = 0;  // the best start alone is finished
+    refine.tolerance = 1e-6;
     refine.stop = problem.stop;
 #pragma omp parallel for schedule(dynamic)
     for (Index start = 0; start < starts; ++start) {
@@ -154,7 +155,7 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
                           [](const auto& a, const auto& b) { return a.value < b.value; });
     RefineOptions finish;
     finish.stop = problem.stop;
-    finish.round_limit = 2;
+    finish.sharpness = {256};
     best = refine_poses(space, problem.objective, options.held, best.configurations, finish);
     report(problem, results, std::move(best), planned);
 
