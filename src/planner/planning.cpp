@@ -35,8 +35,11 @@ SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
     select.held_pose_count = options.held_pose_count;
     select.seed = options.seed;
     select.interrupted = options.interrupted;
-    select.starts = 4;
-    select.kicks = 4;
+    // Refinement mends what a short selection leaves; exchange by the worst of many test poses is
+    // dear.
+    const bool is_dear = options.criterion == Criterion::G;
+    select.starts = is_dear ? 1 : 4;
+    select.kicks = is_dear ? 0 : 4;
     select.gap = 1e-3;
     if (space.least_joint_distance > 0) {
         // Selection measures by Euclid: at distance d sqrt(n) one joint differs by d at least.
@@ -53,6 +56,21 @@ SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
     return select;
 }
 
+/// A smooth criterion that is quick to select by and leads near the optimum of one with kinks.
+Criterion smooth_relative(Criterion criterion) {
+    switch (criterion) {
+        case Criterion::G:
+            return Criterion::V;
+        case Criterion::E:
+        case Criterion::O2:
+        case Criterion::O3:
+        case Criterion::O4:
+            return Criterion::A;
+        default:
+            return criterion;
+    }
+}
+
 /// A choice from a random part of the pool, so that starts differ.
 RowMatrixXd choose_from_part(const Problem& problem, Index start) {
     const PlanOptions& options = problem.options;
@@ -61,6 +79,7 @@ RowMatrixXd choose_from_part(const Problem& problem, Index start) {
     const std::vector<Index> part = random.subset(problem.pool.rows(), size);
     const RowMatrixXd candidates = problem.pool(part, Eigen::all);
     SelectOptions select = select_options(problem.space, candidates, options);
+    select.criterion = smooth_relative(options.criterion);
     select.starts = 1;
     select.kicks = 0;
     if (select.test_poses == nullptr) select.test_poses = problem.objective.test_poses;
@@ -105,15 +124,9 @@ std::vector<Refinement> refine_starts(const Problem& problem, const RowMatrixXd&
     return results;
 }
 
-/// Value, information and bound of the best refinement.
-void report(const Problem& problem, const std::vector<Refinement>& results, Refinement best,
-            PlannedPoses& planned) {
+/// The best refinement's plan and information.
+void report(const Problem& problem, Refinement best, PlannedPoses& planned) {
     const DesignSpace& space = problem.space;
-    for (const Refinement& result : results) {
-        planned.endings.push_back(result.ending);
-        const double behind = best.value - result.value;
-        if (behind <= 1e-6 * std::max(1.0, std::abs(best.value))) ++planned.starts_at_best;
-    }
     planned.value = best.value;
     planned.configurations = std::move(best.configurations);
     planned.information = problem.options.held.information;
@@ -153,11 +166,16 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     Refinement best =
         *std::max_element(results.begin(), results.end(),
                           [](const auto& a, const auto& b) { return a.value < b.value; });
+    for (const Refinement& result : results) {
+        planned.endings.push_back(result.ending);
+        const double behind = best.value - result.value;
+        if (behind <= 1e-6 * std::abs(best.value)) ++planned.starts_at_best;
+    }
     RefineOptions finish;
     finish.stop = problem.stop;
     finish.sharpness = {256};
     best = refine_poses(space, problem.objective, options.held, best.configurations, finish);
-    report(problem, results, std::move(best), planned);
+    report(problem, std::move(best), planned);
 
     const MatrixXd& relaxed = planned.pool_plan.certificate.M;
     planned.searched_bound =
