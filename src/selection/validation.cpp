@@ -61,12 +61,13 @@ void validate_held(const SelectOptions& options, Index L) {
     }
 }
 
-/// The columns that make up a direction, e.g. "columns 3 and 7" (counted from 1).
-std::string columns_of(const VectorXd& direction) {
+/// The columns that make up a direction, e.g. "3 + 7" (counted from 1) or "Tx1 + base.x".
+std::string columns_of(const VectorXd& direction, const std::vector<std::string>& names) {
     std::string text;
     for (Index i = 0; i < direction.size(); ++i) {
         if (std::abs(direction[i]) < 0.1 * direction.cwiseAbs().maxCoeff()) continue;
-        text += (text.empty() ? "" : " + ") + std::to_string(i + 1);
+        text += (text.empty() ? "" : " + ") +
+                (names.empty() ? std::to_string(i + 1) : names[static_cast<std::size_t>(i)]);
     }
     return text;
 }
@@ -81,13 +82,14 @@ void validate_rank(const Blocks& candidates, const SelectOptions& options) {
     if (missing == 0) return;
     std::string columns;
     for (Index k = 0; k < std::min<Index>(missing, 3); ++k) {
-        columns += (k > 0 ? "; " : "") + columns_of(eigen.eigenvectors().col(k));
+        columns +=
+            (k > 0 ? "; " : "") + columns_of(eigen.eigenvectors().col(k), options.column_names);
     }
-    throw InputError("all " + std::to_string(candidates.count()) + " candidates together leave " +
-                     std::to_string(missing) + " of " + std::to_string(L) +
-                     " parameter directions unseen (columns " + columns +
-                     (missing > 3 ? "; ..." : "") +
-                     "); drop redundant parameters, add poses or state a prior");
+    throw InputError(
+        "all " + std::to_string(candidates.count()) + " candidates together leave " +
+        std::to_string(missing) + " of " + std::to_string(L) + " parameter directions unseen (" +
+        (options.column_names.empty() ? "columns " : "parameters ") + columns +
+        (missing > 3 ? "; ..." : "") + "); drop redundant parameters, add poses or state a prior");
 }
 
 }  // namespace
@@ -96,6 +98,12 @@ void validate(const Blocks& candidates, const SelectOptions& options) {
     if (candidates.parameter_count() == 0) throw InputError("candidates have no columns");
     if (!candidates.matrix.allFinite()) {
         throw InputError("candidates have a value that is not a finite number");
+    }
+    if (!options.column_names.empty() &&
+        static_cast<Index>(options.column_names.size()) != candidates.parameter_count()) {
+        throw InputError("column names are " + std::to_string(options.column_names.size()) +
+                         ", must be one for each of " +
+                         std::to_string(candidates.parameter_count()) + " columns");
     }
     require_at_least("starts", options.starts, 1);
     require_at_least("kicks", options.kicks, 0);

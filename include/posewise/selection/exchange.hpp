@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include "posewise/selection/plan.hpp"
 
@@ -34,6 +35,7 @@ struct SelectOptions {
     Index group_limit = 0;        ///< most poses out of one group; 0: any number
     RowMatrixXd positions;        ///< candidates x joints; empty unless least_distance is used
     double least_distance = 0;    ///< Euclidean, between any two different poses chosen
+    std::vector<std::string> column_names;  ///< for messages; empty: columns are numbered from 1
 
     Index starts = 20;  ///< independent searches
     Index kicks = 20;   ///< perturbations of each start's plan without success until it ends
