@@ -22,7 +22,7 @@ TEST(MakePool, KeepsOnlyPosesThatASeparateDenseCheckAccepts) {
     const Pool pool = make_pool(Constraints(campaign, cell), 15000, 1);
     EXPECT_GT(pool.configurations.rows(), 1000);
     CellRecheck recheck(campaign, cell);
-    for (Index i = 0; i < std::min<Index>(pool.configurations.rows(), 150); ++i) {
+    for (Index i = 0; i < std::min<Index>(pool.configurations.rows(), 100); ++i) {
         const auto violations = recheck.violations(pool.configurations.row(i).transpose());
         EXPECT_TRUE(violations.empty()) << "pose " << i << ": " << violations.front();
         for (std::size_t j = 0; j < 3; ++j) {
@@ -37,7 +37,7 @@ TEST(MakePool, RejectsOnlyWhatBreaksAConstraint) {
     cell.safety_distance = 0;
     const Constraints constraints(campaign, cell);
     CellRecheck recheck(campaign, cell, -0.03);  // sampling sees what is within 30 mm
-    const RowMatrixXd candidates = halton_configurations(constraints.robot(), 300);
+    const RowMatrixXd candidates = halton_configurations(constraints.robot(), 120);
     Index infeasible = 0;
     for (Index i = 0; i < candidates.rows(); ++i) {
         const VectorXd q = candidates.row(i).transpose();
@@ -45,7 +45,7 @@ TEST(MakePool, RejectsOnlyWhatBreaksAConstraint) {
         ++infeasible;
         EXPECT_FALSE(recheck.violations(q).empty()) << "pose " << i;
     }
-    EXPECT_GT(infeasible, 100);
+    EXPECT_GT(infeasible, 60);
 }
 
 TEST(MakePool, CountsWhatEachConstraintRemoved) {
@@ -67,7 +67,7 @@ TEST(MakePool, IsTheSameForAnyNumberOfThreads) {
     const Pool two = make_pool(constraints, 3000, 7);
     EXPECT_EQ(one.configurations, two.configurations);
     EXPECT_EQ(one.is_visible, two.is_visible);
-    EXPECT_NE(make_pool(constraints, 3000, 8).configurations, one.configurations);
+    EXPECT_NE(make_pool(constraints, 3000, 8).configurations.row(0), one.configurations.row(0));
 }
 
 TEST(MakePool, HoldsFixedJoints) {
