@@ -177,10 +177,13 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     best = refine_poses(space, problem.objective, options.held, best.configurations, finish);
     report(problem, std::move(best), planned);
 
-    const MatrixXd& relaxed = planned.pool_plan.certificate.M;
+    // The relaxed optimum over the pool, with the smoothing it was found by, bounds best.
+    const Certificate& certificate = planned.pool_plan.certificate;
+    Objective relaxed = problem.objective;
+    relaxed.sharpness = certificate.sharpness;
     planned.searched_bound =
-        search_bound(space, problem.objective, options.held, options.pose_count,
-                     relaxed.size() > 0 ? relaxed : planned.information, pool,
+        search_bound(space, relaxed, options.held, options.pose_count,
+                     certificate.M.size() > 0 ? certificate.M : planned.information, pool,
                      options.bound_iterations, problem.stop);
     planned.efficiency =
         efficiency(options.criterion, planned.value, planned.searched_bound,
