@@ -2,6 +2,7 @@
 // values), the same by central differences as the reference, and one whole refinement.
 #include <benchmark/benchmark.h>
 
+#include "posewise/jacobian/identification.hpp"
 #include "support/fanuc_planning.hpp"
 
 namespace posewise {
@@ -77,6 +78,32 @@ void BM_refinement(benchmark::State& state) {
     state.counters["log_det"] = value;
 }
 BENCHMARK(BM_refinement)->Unit(benchmark::kMillisecond);
+
+/// The whole: 24 poses from a pool of 20 000, 16 starts (target: under 30 s on 2 cores).
+void BM_plan_of_the_fanuc(benchmark::State& state) {
+    const auto criterion = static_cast<Criterion>(state.range(0));
+    const Scene scene;
+    const RowMatrixXd pool = testing::fanuc_pool(20000);
+    const Blocks blocks = make_blocks(scene.campaign, scene.campaign.nominal, pool);
+    const Blocks workspace = make_prediction_blocks(scene.campaign, scene.campaign.nominal,
+                                                    testing::fanuc_workspace(), 0);
+    PlanOptions options;
+    options.criterion = criterion;
+    options.pose_count = 24;
+    if (criterion == Criterion::G || criterion == Criterion::V) options.test_poses = &workspace;
+    PlannedPoses plan;
+    for (auto _ : state) plan = plan_poses(scene.space, pool, blocks, options);
+    state.SetLabel(std::string(criterion_name(criterion)));
+    state.counters["value"] = plan.value;
+    state.counters["pool_value"] = plan.pool_plan.value;
+    state.counters["efficiency"] = plan.efficiency;
+    state.counters["rms_um"] = 1e6 * predict_accuracy(workspace, plan.information).rms;
+}
+BENCHMARK(BM_plan_of_the_fanuc)
+    ->DenseRange(0, 9)
+    ->Iterations(1)
+    ->UseRealTime()
+    ->Unit(benchmark::kSecond);
 
 }  // namespace
 }  // namespace posewise
