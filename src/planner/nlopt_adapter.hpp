@@ -32,7 +32,7 @@ struct MaximiseOptions {
     double step_tolerance = 1e-9;    ///< change of every coordinate to stop at
     double first_step = 0;           ///< of derivative-free methods; 0: theirs
     int evaluation_limit = 1000;
-    StopSignal stop;
+    StopSignal stop{};
 };
 
 /// The best feasible point evaluated; the start if there is none better.

@@ -40,7 +40,8 @@ inline RowMatrixXd fanuc_workspace(Index count = 500) {
 }
 
 inline RowMatrixXd fanuc_pool(Index count) {
-    return halton_configurations(fanuc_in_workspace(), count, {{2, 3, 5, 7, 11, 13}});
+    return halton_configurations(fanuc_in_workspace(), count,
+                                 {{2, 3, 5, 7, 11, 13}, 1, std::nullopt});
 }
 
 }  // namespace posewise::testing

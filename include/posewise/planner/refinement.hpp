@@ -21,7 +21,7 @@ struct RefineOptions {
     Index kink_rounds = 2;  ///< sweeps without derivatives, for criteria with kinks
     double tolerance = 1e-10;     ///< relative gain of a round to stop at
     int evaluation_limit = 2000;  ///< of one run of an optimiser
-    StopSignal stop;
+    StopSignal stop{};
 };
 
 struct Refinement {
