@@ -114,8 +114,9 @@ double read_amount(const YamlValue& value, Quantity quantity, Sign sign) {
 }
 
 CampaignFile read_campaign(const std::string& path) {
-    const YamlMap map(read_yaml(path), {"name", "robot", "sensor", "model_error_<length>", "base",
-                                        "spread", "criterion", "seed", "measurements", "cell"});
+    const YamlMap map(read_yaml(path),
+                      {"name", "robot", "sensor", "model_error_<length>", "base", "spread", "prior",
+                       "criterion", "seed", "measurements", "cell"});
     CampaignFile file;
     file.path = path;
     Campaign& campaign = file.campaign;
@@ -141,6 +142,7 @@ CampaignFile read_campaign(const std::string& path) {
         campaign.model_error = read_positive(*error, true);
     }
     if (const auto spread = map.find("spread")) campaign.spread = read_spread(*spread, campaign);
+    if (const auto prior = map.find("prior")) file.prior = prior->boolean();
     if (const auto criterion = map.find("criterion")) file.criterion = read_criterion(*criterion);
     if (const auto seed = map.find("seed")) file.seed = seed->natural_number();
     if (const auto measurements = map.find("measurements")) {

@@ -89,7 +89,13 @@ MatReader::MatReader(const std::string& path) : path_(path), file_(nullptr, Mat_
     }
 }
 
-MatrixXd MatReader::read(const std::string& name, Index columns) const {
+MatrixXd MatReader::read_first() const {
+    const std::vector<std::string> names = variable_names(file_.get());
+    if (names.empty()) throw input_error_at({path_}, "has no variables; must have a matrix");
+    return read(names.front());
+}
+
+MatrixXd MatReader::read(const std::string& name, std::optional<Index> columns) const {
     damage_count = 0;
     const Variable variable(Mat_VarReadInfo(file_.get(), name.c_str()), Mat_VarFree);
     if (variable == nullptr) {
@@ -104,19 +110,21 @@ MatrixXd MatReader::read(const std::string& name, Index columns) const {
     }
     const std::size_t rows = variable->dims[0];
     const std::size_t width = variable->dims[1];
-    if (rows == 0 || width != static_cast<std::size_t>(columns)) {
+    const bool is_width_right = !columns || width == static_cast<std::size_t>(*columns);
+    if (rows == 0 || width == 0 || width > INT_MAX || !is_width_right) {
         throw variable_error(path_, name,
                              "is " + std::to_string(rows) + " x " + std::to_string(width) +
-                                 "; must be samples x " + std::to_string(columns));
+                                 (columns ? "; must be samples x " + std::to_string(*columns)
+                                          : "; must have rows and columns"));
     }
     // Compression gains at most a factor of about 1030, so a larger size is damage.
     const bool is_plausible = rows <= std::min<std::size_t>(2000 * byte_count_ / width, INT_MAX);
     if (!is_plausible) throw variable_error(path_, name, damaged);
     // What a damaged file lacks stays NaN: the library leaves it alone and does not tell.
-    MatrixXd values = MatrixXd::Constant(static_cast<Index>(rows), columns, NAN);
+    MatrixXd values = MatrixXd::Constant(static_cast<Index>(rows), static_cast<Index>(width), NAN);
     int start[2] = {0, 0};
     int stride[2] = {1, 1};
-    int count[2] = {static_cast<int>(rows), static_cast<int>(columns)};
+    int count[2] = {static_cast<int>(rows), static_cast<int>(width)};
     if (Mat_VarReadData(file_.get(), variable.get(), values.data(), start, stride, count) != 0 ||
         damage_count > 0) {
         throw variable_error(path_, name, damaged);

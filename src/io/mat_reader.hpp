@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,11 @@ class MatReader {
   public:
     explicit MatReader(const std::string& path);
 
-    /// A variable of `columns` columns and at least one row, all finite.
-    MatrixXd read(const std::string& name, Index columns) const;
+    /// A variable of `columns` columns (nothing: any number) and at least one row, all finite.
+    MatrixXd read(const std::string& name, std::optional<Index> columns = std::nullopt) const;
+
+    /// The first variable of the file.
+    MatrixXd read_first() const;
 
   private:
     std::string path_;

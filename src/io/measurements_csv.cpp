@@ -45,11 +45,17 @@ std::vector<WantedColumn> wanted_columns(const Campaign& campaign) {
     return wanted;
 }
 
+/// What of a row is read: without observations their columns may be missing or hold anything.
+enum class Content { JointsAndObservations, JointsOnly };
+
 /// The columns of the header. `q1_rad` is looked up by its stem and its unit checked.
 class HeaderReader {
   public:
-    HeaderReader(const CsvReader& csv, const Campaign& campaign)
-        : csv_(csv), wanted_(wanted_columns(campaign)), examples_{"config", "sample"} {
+    HeaderReader(const CsvReader& csv, const Campaign& campaign, Content content)
+        : csv_(csv),
+          content_(content),
+          wanted_(wanted_columns(campaign)),
+          examples_{"config", "sample"} {
         for (const WantedColumn& column : wanted_) examples_.push_back(column.example());
     }
 
@@ -101,6 +107,7 @@ class HeaderReader {
         std::vector<std::string> missing;
         if (!has(Role::Configuration, 0)) missing.emplace_back("config");
         for (const WantedColumn& column : wanted_) {
+            if (column.role == Role::Observation && content_ == Content::JointsOnly) continue;
             if (!has(column.role, column.index)) missing.push_back(column.example());
         }
         if (missing.empty()) return;
@@ -111,6 +118,7 @@ class HeaderReader {
     }
 
     const CsvReader& csv_;
+    Content content_;
     std::vector<WantedColumn> wanted_;
     std::vector<std::string> examples_;
 };
@@ -118,9 +126,11 @@ class HeaderReader {
 /// One row's values, in SI.
 class RowReader {
   public:
-    RowReader(const CsvReader& csv, const Campaign& campaign, std::vector<Column> columns)
+    RowReader(const CsvReader& csv, const Campaign& campaign, Content content,
+              std::vector<Column> columns)
         : csv_(csv),
           campaign_(campaign),
+          content_(content),
           columns_(std::move(columns)),
           field_of_joint_(campaign.robot.joints().size()) {
         for (std::size_t field = 0; field < columns_.size(); ++field) {
@@ -130,7 +140,7 @@ class RowReader {
             }
         }
         joints_.resize(campaign.robot.joint_count());
-        observation_.resize(campaign.sensor->row_count());
+        observation_.setZero(content == Content::JointsOnly ? 0 : campaign.sensor->row_count());
     }
 
     void add_to(SampleCollector& samples) {
@@ -173,6 +183,7 @@ class RowReader {
                 }
                 return;
             case Role::Observation:
+                if (content_ == Content::JointsOnly) return;
                 observation_[column.index] = read_number(field);
                 return;
         }
@@ -200,6 +211,7 @@ class RowReader {
 
     const CsvReader& csv_;
     const Campaign& campaign_;
+    Content content_;
     std::vector<Column> columns_;
     std::vector<std::size_t> field_of_joint_;
     std::unordered_set<std::string> seen_;
@@ -209,19 +221,29 @@ class RowReader {
     VectorXd observation_;
 };
 
-}  // namespace
-
-Measurements read_measurements_csv(const std::string& path, const Campaign& campaign) {
+Measurements read_csv(const std::string& path, const Campaign& campaign, Content content) {
     CsvReader csv(path);
     if (!csv.next_row()) {
         throw input_error_at({path},
                              "is empty; must begin with a header like "
                              "config,sample,q1_rad,...,p1_x_mm,...");
     }
-    RowReader row(csv, campaign, HeaderReader(csv, campaign).read());
-    SampleCollector samples(campaign);
+    RowReader row(csv, campaign, content, HeaderReader(csv, campaign, content).read());
+    SampleCollector samples(campaign,
+                            content == Content::JointsOnly ? 0 : campaign.sensor->row_count());
     while (csv.next_row()) row.add_to(samples);
     return samples.finish(path);
+}
+
+}  // namespace
+
+Measurements read_measurements_csv(const std::string& path, const Campaign& campaign) {
+    return read_csv(path, campaign, Content::JointsAndObservations);
+}
+
+Configurations read_configurations_csv(const std::string& path, const Campaign& campaign) {
+    Measurements read = read_csv(path, campaign, Content::JointsOnly);
+    return {std::move(read.ids), std::move(read.configurations)};
 }
 
 void write_measurements_csv(const std::string& path, const Campaign& campaign,

@@ -1,11 +1,21 @@
 #include "posewise/io/measurements_file.hpp"
 
 namespace posewise::io {
+namespace {
+
+bool is_matlab(const std::string& path) { return path.ends_with(".mat") || path.ends_with(".MAT"); }
+
+}  // namespace
 
 Measurements read_measurements(const std::string& path, const CampaignFile& file) {
-    return path.ends_with(".mat") || path.ends_with(".MAT")
-               ? read_measurements_mat(path, file.campaign, file.mat)
-               : read_measurements_csv(path, file.campaign);
+    return is_matlab(path) ? read_measurements_mat(path, file.campaign, file.mat)
+                           : read_measurements_csv(path, file.campaign);
+}
+
+Configurations read_configurations(const std::string& path, const CampaignFile& file) {
+    if (!is_matlab(path)) return read_configurations_csv(path, file.campaign);
+    Measurements read = read_measurements_mat(path, file.campaign, file.mat);
+    return {std::move(read.ids), std::move(read.configurations)};
 }
 
 }  // namespace posewise::io

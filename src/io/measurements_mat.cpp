@@ -49,7 +49,7 @@ Measurements read_measurements_mat(const std::string& path, const Campaign& camp
         }
         observations.middleCols(3 * static_cast<Index>(k), 3) = mapping.length_unit * points;
     }
-    SampleCollector samples(campaign);
+    SampleCollector samples(campaign, rows);
     std::map<std::vector<double>, std::string> ids;
     for (Index row = 0; row < joints.rows(); ++row) {
         const VectorXd q = joints.row(row);

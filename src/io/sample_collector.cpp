@@ -19,7 +19,8 @@ std::string in_line(const FileLocation& location) {
 
 }  // namespace
 
-SampleCollector::SampleCollector(const Campaign& campaign) : campaign_(campaign) {}
+SampleCollector::SampleCollector(const Campaign& campaign, Index observation_size)
+    : campaign_(campaign), observation_size_(observation_size) {}
 
 void SampleCollector::add(const std::string& id, const VectorXd& joints,
                           const VectorXd& observation, const LocateJoint& locate) {
@@ -88,10 +89,9 @@ Measurements SampleCollector::finish(const std::string& path) const {
     std::partial_sum(first.begin(), first.end(), first.begin());
 
     std::vector<Index> next = first;
-    const Index rows = campaign_.sensor->row_count();
     const Eigen::Map<const RowMatrixXd> observations(
-        observations_.data(), static_cast<Index>(configuration_.size()), rows);
-    measurements.observations.resize(observations.rows(), rows);
+        observations_.data(), static_cast<Index>(configuration_.size()), observation_size_);
+    measurements.observations.resize(observations.rows(), observation_size_);
     for (Index sample = 0; sample < observations.rows(); ++sample) {
         const Index i = configuration_[static_cast<std::size_t>(sample)];
         measurements.observations.row(next[static_cast<std::size_t>(i)]++) =

@@ -17,7 +17,8 @@ class SampleCollector {
     /// Where joint j of the row at hand stands in the file.
     using LocateJoint = std::function<FileLocation(Index joint)>;
 
-    explicit SampleCollector(const Campaign& campaign);
+    /// `observation_size`: numbers each sample brings; 0 if only configurations are collected.
+    SampleCollector(const Campaign& campaign, Index observation_size);
 
     /// One more sample of configuration `id`: joints in rad or m, observation in m. Throws
     /// InputError if its joint values differ by over 1e-6 from the configuration's first sample.
@@ -34,6 +35,7 @@ class SampleCollector {
     void check_all_different() const;
 
     const Campaign& campaign_;
+    Index observation_size_;
     std::unordered_map<std::string, Index> configuration_of_id_;
     std::vector<std::string> ids_;
     std::vector<VectorXd> configurations_;

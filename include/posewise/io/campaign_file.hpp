@@ -34,6 +34,8 @@ struct CampaignFile {
     ErrorModel error_model = ErrorModel::Stated;
     Criterion criterion = Criterion::D;
     std::uint64_t seed = 1;
+    /// Whether the spread of the robot's errors is also their prior standard deviation.
+    bool prior = false;
     MatMapping mat;
     Cell cell;  ///< empty if the file does not describe one
 };

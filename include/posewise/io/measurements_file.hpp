@@ -14,6 +14,17 @@ namespace posewise::io {
 /// (degrees by the look of them), a configuration whose samples differ in a joint by over 1e-6.
 Measurements read_measurements(const std::string& path, const CampaignFile& file);
 
+/// Named configurations, none of them measured (or not of interest whether).
+struct Configurations {
+    std::vector<std::string> ids;
+    RowMatrixXd joints;  ///< configurations x joints, rad or m
+};
+
+/// Reads configurations as read_measurements() does; a CSV need not have the sensor's columns, and
+/// what stands in them does not matter.
+Configurations read_configurations(const std::string& path, const CampaignFile& file);
+Configurations read_configurations_csv(const std::string& path, const Campaign& campaign);
+
 /// CSV with a header that carries the units: config, <joint>_rad or _deg (_m or _mm if it slides),
 /// the sensor's columns with _m or _mm, and optionally sample; in any order. Separated by commas,
 /// semicolons or tabs; lines behind # are comments. Rows of one config may stand anywhere.
