@@ -1,5 +1,7 @@
 #include "json.hpp"
 
+#include <algorithm>
+
 #include "posewise/core/errors.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/io/atomic_file.hpp"
@@ -18,6 +20,27 @@ FileLocation locate(const std::string& path, const std::string& content, std::si
     return {path, static_cast<long>(line), static_cast<long>(column) + 1};
 }
 
+/// Indented, but a list of plain values on one line: a matrix reads as one.
+void append_json(const Json& value, const std::string& indent, std::string& text) {
+    const bool is_plain_list =
+        value.is_array() && std::none_of(value.begin(), value.end(),
+                                         [](const Json& item) { return item.is_structured(); });
+    if (!value.is_structured() || value.empty() || is_plain_list) {
+        text += value.dump();
+        return;
+    }
+    const std::string deeper = indent + "  ";
+    text += value.is_object() ? '{' : '[';
+    const char* separator = "\n";
+    for (const auto& [key, item] : value.items()) {
+        text += separator + deeper;
+        if (value.is_object()) text += Json(key).dump() + ": ";
+        append_json(item, deeper, text);
+        separator = ",\n";
+    }
+    text += '\n' + indent + (value.is_object() ? '}' : ']');
+}
+
 }  // namespace
 
 Json make_document(const std::string& kind) {
@@ -29,7 +52,9 @@ Json make_document(const std::string& kind) {
 
 void write_json(const std::string& path, const Json& document) {
     try {
-        write_file(path, document.dump(2) + "\n");
+        std::string text;
+        append_json(document, "", text);
+        write_file(path, text + "\n");
     } catch (const Json::type_error&) {  // the only one dump() has
         throw input_error_at({path},
                              "cannot be written, since a name or id is not UTF-8 text; "

@@ -1,38 +1,89 @@
 #include "posewise/io/plan_file.hpp"
 
-#include <map>
+#include <algorithm>
+#include <filesystem>
 
 #include "json.hpp"
-#include "posewise/core/errors.hpp"
+#include "plan_names.hpp"
 
 namespace posewise::io {
 namespace {
 
-Json pose_to_json(const Campaign& campaign, const Measurements& candidates, Index pose) {
-    Json entry;
-    entry["id"] = candidates.ids[static_cast<std::size_t>(pose)];
-    Json& joints = entry["joints"];
-    for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
-        const bool turns = campaign.robot.joint_motion(j) == Motion::Rotation;
-        joints[campaign.robot.joints()[static_cast<std::size_t>(j)].name + si_suffix(turns)] =
-            candidates.configurations(pose, j);
-    }
-    return entry;
+/// A relative path as seen from the folder of the plan; null if there is none.
+Json path_to_json(const std::string& path, const std::string& plan_path) {
+    if (path.empty()) return nullptr;
+    if (std::filesystem::path(path).is_absolute()) return path;
+    std::error_code failed;
+    const auto folder = std::filesystem::absolute(plan_path, failed).parent_path();
+    const auto from_folder = std::filesystem::proximate(path, folder, failed);
+    return failed ? path : from_folder.generic_string();
 }
 
-/// `path: poses[2].id: problem`, counted from 0 as in JSON.
-InputError error_at(const std::string& path, const std::string& place, const std::string& problem) {
-    return input_error_at({path}, place + ": " + problem);
+Json source_to_json(const PlanFile& file, const std::string& plan_path) {
+    using Kind = CandidateSource::Kind;
+    const CandidateSource& source = file.request.source;
+    Json json;
+    json["kind"] = std::find_if(source_kinds.begin(), source_kinds.end(), [&](const auto& entry) {
+                       return entry.first == source.kind;
+                   })->second;
+    json["campaign_file"] = path_to_json(source.campaign, plan_path);
+    json["source"] = path_to_json(source.path, plan_path);
+    if (source.kind == Kind::Random) json["seed"] = source.seed;
+    if (source.kind == Kind::Blocks) {
+        json["rows_per_block"] = source.rows_per_block;
+        json["variable"] = source.variable;
+    }
+    json["count"] = file.candidate_count;
+    json["checksum"] = file.checksum;
+    json["repeats"] = source.repeats;
+    return json;
+}
+
+Json problem_to_json(const SelectionRequest& request, const std::string& plan_path) {
+    return {{"pose_count", request.pose_count},
+            {"prior", request.has_prior},
+            {"focus", request.is_focused_on_robot ? "robot" : "all"},
+            {"augment", path_to_json(request.augment, plan_path)},
+            {"test_poses", path_to_json(request.test_poses, plan_path)},
+            {"groups", path_to_json(request.groups, plan_path)},
+            {"group_limit", request.group_limit},
+            {"excluded", request.excluded},
+            {"repeat_limit", request.repeat_limit},
+            {"least_distance_rad", request.least_distance}};
+}
+
+/// The lower triangle: M is symmetric.
+Json certificate_to_json(const Certificate& certificate) {
+    Json rows = Json::array();
+    for (Index i = 0; i < certificate.M.rows(); ++i) {
+        Json row = Json::array();
+        for (Index j = 0; j <= i; ++j) row.push_back(certificate.M(i, j));
+        rows.push_back(std::move(row));
+    }
+    return {{"sharpness", certificate.sharpness}, {"M_lower", std::move(rows)}};
+}
+
+Json pose_to_json(const PlannedPose& pose, const Campaign* campaign) {
+    Json json = {{"id", pose.id}, {"times", pose.times}};
+    if (campaign == nullptr) return json;
+    Json& joints = json["joints"];
+    for (Index j = 0; j < pose.joints.size(); ++j) {
+        const bool turns = campaign->robot.joint_motion(j) == Motion::Rotation;
+        joints[campaign->robot.joints()[static_cast<std::size_t>(j)].name + si_suffix(turns)] =
+            pose.joints[j];
+    }
+    return json;
 }
 
 }  // namespace
 
-void write_plan(const std::string& path, const Plan& plan, const Campaign& campaign,
-                const Measurements& candidates, const std::string& source) {
+void write_plan(const std::string& path, const PlanFile& file, const Campaign* campaign) {
+    const Plan& plan = file.plan;
     Json document = make_document("plan");
-    document["campaign"] = campaign.name;
-    document["candidates"] = {{"source", source}, {"count", candidates.configuration_count()}};
-    document["criterion"] = criterion_name(plan.criterion);
+    document["campaign"] = campaign != nullptr ? Json(campaign->name) : Json(nullptr);
+    document["candidates"] = source_to_json(file, path);
+    document["problem"] = problem_to_json(file.request, path);
+    document["criterion"] = criterion_name(file.request.criterion);
     document["value"] = plan.value;
     document["bound"] = plan.bound;
     document["efficiency"] = plan.efficiency;
@@ -40,37 +91,11 @@ void write_plan(const std::string& path, const Plan& plan, const Campaign& campa
                           {"starts", plan.starts},
                           {"starts_at_best", plan.starts_at_best},
                           {"stop_reason", stop_reason_name(plan.stop_reason)}};
-    document["assumes"] = assumptions_to_json(campaign);
+    if (campaign != nullptr) document["assumes"] = assumptions_to_json(*campaign);
     Json& poses = document["poses"] = Json::array();
-    for (const Index pose : plan.poses) poses.push_back(pose_to_json(campaign, candidates, pose));
+    for (const PlannedPose& pose : file.poses) poses.push_back(pose_to_json(pose, campaign));
+    document["certificate"] = certificate_to_json(plan.certificate);
     write_json(path, document);
-}
-
-std::vector<std::string> read_plan_ids(const std::string& path) {
-    const Json document = read_document(path, "plan");
-    const auto poses = document.find("poses");
-    if (poses == document.end() || !poses->is_array() || poses->empty()) {
-        throw error_at(path, "poses", "must be a list of at least one pose");
-    }
-    std::vector<std::string> ids;
-    std::map<std::string, std::string> places;
-    for (const Json& pose : *poses) {
-        const std::string place = "poses[" + std::to_string(ids.size()) + "]";
-        if (!pose.is_object()) throw error_at(path, place, "must be an object with an id");
-        const auto id = pose.find("id");
-        if (id == pose.end()) throw error_at(path, place + ".id", "is missing; must be text");
-        if (!id->is_string()) {
-            throw error_at(path, place + ".id",
-                           std::string("is of type ") + id->type_name() + "; must be text");
-        }
-        ids.push_back(id->get<std::string>());
-        const auto [first, is_new] = places.emplace(ids.back(), place);
-        if (!is_new) {
-            throw error_at(path, place + ".id",
-                           "'" + ids.back() + "' occurs before in " + first->second + "; keep one");
-        }
-    }
-    return ids;
 }
 
 }  // namespace posewise::io

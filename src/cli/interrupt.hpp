@@ -1,0 +1,18 @@
+#pragma once
+
+#include <atomic>
+
+namespace posewise::cli {
+
+/// While it lives, the first Ctrl-C (SIGINT) only sets the flag; the second ends the program.
+class InterruptFlag {
+  public:
+    InterruptFlag();
+    ~InterruptFlag();
+    InterruptFlag(const InterruptFlag&) = delete;
+    InterruptFlag& operator=(const InterruptFlag&) = delete;
+
+    const std::atomic<bool>* get() const;
+};
+
+}  // namespace posewise::cli

@@ -1,0 +1,237 @@
+#include "selection_problem.hpp"
+
+#include <numeric>
+
+#include "common.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/io/checksum.hpp"
+#include "posewise/io/groups_file.hpp"
+#include "posewise/io/matrix_file.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/model/halton.hpp"
+
+namespace posewise::cli {
+namespace {
+
+using Kind = io::CandidateSource::Kind;
+
+constexpr double same_joints = 1e-6;  // rad or m
+
+std::vector<std::string> number_ids(Index count) {
+    std::vector<std::string> ids;
+    for (Index i = 0; i < count; ++i) ids.push_back(std::to_string(i));
+    return ids;
+}
+
+/// Held information there is none of yet.
+MatrixXd& held(SelectionProblem& problem) {
+    const Index L = problem.blocks.parameter_count();
+    if (problem.options.held.size() == 0) problem.options.held = MatrixXd::Zero(L, L);
+    return problem.options.held;
+}
+
+// ---- Plain blocks ----
+
+Blocks read_blocks(const io::CandidateSource& source, const std::string& path) {
+    const RowMatrixXd matrix = io::read_matrix(path, source.variable);
+    try {
+        return make_equal_blocks(matrix, source.rows_per_block);
+    } catch (const InputError& error) {
+        throw input_error_at({path}, error.what());
+    }
+}
+
+void hold_plain_blocks(SelectionProblem& problem) {
+    const std::string& path = problem.request.augment;
+    const Blocks measured = read_blocks(problem.request.source, path);
+    if (measured.parameter_count() != problem.blocks.parameter_count()) {
+        throw input_error_at(
+            {path}, "has " + std::to_string(measured.parameter_count()) + " columns, must have " +
+                        std::to_string(problem.blocks.parameter_count()) + " as the candidates");
+    }
+    held(problem) += information(measured);
+    problem.options.held_pose_count = measured.count();
+    for (Index i = 0; i < problem.blocks.count(); ++i) {
+        for (Index k = 0; k < measured.count(); ++k) {
+            if (problem.blocks[i] == measured[k]) problem.options.excluded.push_back(i);
+        }
+    }
+}
+
+void state_plain(SelectionProblem& problem) {
+    const io::SelectionRequest& request = problem.request;
+    problem.blocks = read_blocks(request.source, request.source.path);
+    problem.ids = number_ids(problem.blocks.count());
+    io::Checksum checksum;
+    checksum.add(problem.blocks.matrix);
+    problem.checksum = checksum.text();
+    if (request.has_prior) held(problem).diagonal().array() += 1;
+    if (!request.augment.empty()) hold_plain_blocks(problem);
+    if (!request.test_poses.empty()) {
+        problem.test_poses =
+            std::make_unique<Blocks>(read_blocks(request.source, request.test_poses));
+    }
+}
+
+// ---- A robot ----
+
+/// Candidates as the request says where; the measured ones are given back whole.
+std::optional<Measurements> read_candidates(SelectionProblem& problem) {
+    const io::CandidateSource& source = problem.request.source;
+    io::Checksum checksum;
+    std::optional<Measurements> measured;
+    if (source.kind == Kind::Random) {
+        HaltonOptions halton;
+        halton.scramble_seed = source.seed;
+        problem.configurations =
+            halton_configurations(problem.campaign->campaign.robot, source.count, halton);
+        problem.ids = number_ids(source.count);
+    } else if (source.kind == Kind::Configurations) {
+        auto [ids, joints] = io::read_configurations(source.path, *problem.campaign);
+        problem.ids = std::move(ids);
+        problem.configurations = std::move(joints);
+    } else {
+        measured = io::read_measurements(source.path, *problem.campaign);
+        problem.ids = measured->ids;
+        problem.configurations = measured->configurations;
+        checksum.add(measured->observations);
+    }
+    for (const std::string& id : problem.ids) checksum.add(id);
+    checksum.add(problem.configurations);
+    problem.checksum = checksum.text();
+    return measured;
+}
+
+/// Base and targets: registered from the candidates' measurements, else as the campaign states
+/// them, else registered from the poses measured already.
+Parameters find_parameters(const Campaign& campaign, const std::optional<Measurements>& candidates,
+                           const std::optional<Measurements>& augment) {
+    if (candidates) return register_base_and_targets(campaign, *candidates);
+    if (campaign.has_nominal_base && campaign.has_nominal_targets) return campaign.nominal;
+    if (augment) return register_base_and_targets(campaign, *augment);
+    throw InputError(campaign.name + ": the campaign file states no " +
+                     (campaign.has_nominal_base ? "target positions" : "base") +
+                     ", and nothing was measured to find them from; state base and "
+                     "sensor.targets.position_mm there, or use --measurements");
+}
+
+void hold_measured(SelectionProblem& problem, const Parameters& parameters,
+                   const Measurements& measured) {
+    held(problem) += information(make_blocks(problem.campaign->campaign, parameters,
+                                             measured.configurations, mean_repeats(measured)));
+    problem.options.held_pose_count = measured.configuration_count();
+    for (Index i = 0; i < problem.configurations.rows(); ++i) {
+        const auto distance =
+            (measured.configurations.rowwise() - problem.configurations.row(i)).cwiseAbs();
+        if (distance.rowwise().maxCoeff().minCoeff() <= same_joints) {
+            problem.options.excluded.push_back(i);
+        }
+    }
+}
+
+void focus_on_robot(SelectionProblem& problem) {
+    const Index robot_end = 6 + problem.campaign->campaign.robot.parameter_count();
+    for (Index k = 0; k < problem.blocks.parameter_count(); ++k) {
+        if (k < 6 || k >= robot_end) problem.options.nuisance.push_back(k);
+    }
+}
+
+/// Angles of the joints that turn: what distances between poses are taken of.
+RowMatrixXd turning_joints(const Chain& robot, const RowMatrixXd& configurations) {
+    std::vector<Index> turning;
+    for (Index j = 0; j < robot.joint_count(); ++j) {
+        if (robot.joint_motion(j) == Motion::Rotation) turning.push_back(j);
+    }
+    return configurations(Eigen::all, turning);
+}
+
+void state_with_robot(SelectionProblem& problem) {
+    io::SelectionRequest& request = problem.request;
+    problem.campaign = io::read_campaign(request.source.campaign);
+    const Campaign& campaign = problem.campaign->campaign;
+    const auto measured = read_candidates(problem);
+    if (request.source.repeats == 0) {
+        request.source.repeats = measured ? mean_repeats(*measured) : 1;
+    }
+    std::optional<Measurements> augment;
+    if (!request.augment.empty()) {
+        augment = io::read_measurements(request.augment, *problem.campaign);
+    }
+    const Parameters parameters = find_parameters(campaign, measured, augment);
+    const auto blocks_of = [&](const RowMatrixXd& configurations) {
+        return make_blocks(campaign, parameters, configurations, request.source.repeats);
+    };
+    problem.blocks = blocks_of(problem.configurations);
+    problem.options.column_names = parameter_names(campaign);
+    if (request.has_prior) {
+        held(problem).diagonal().segment(6, campaign.robot.parameter_count()).array() += 1;
+    }
+    if (augment) hold_measured(problem, parameters, *augment);
+    if (request.is_focused_on_robot) focus_on_robot(problem);
+    if (request.least_distance > 0) {
+        problem.options.positions = turning_joints(campaign.robot, problem.configurations);
+    }
+    if (!request.test_poses.empty()) {
+        problem.test_poses = std::make_unique<Blocks>(
+            blocks_of(io::read_configurations(request.test_poses, *problem.campaign).joints));
+    }
+}
+
+// ---- Both ----
+
+void state_limits(SelectionProblem& problem) {
+    const io::SelectionRequest& request = problem.request;
+    SelectOptions& options = problem.options;
+    options.criterion = request.criterion;
+    options.pose_count = request.pose_count;
+    options.test_poses = problem.test_poses.get();
+    options.repeat_limit = request.repeat_limit;
+    options.least_distance = request.least_distance;
+    options.group_limit = request.group_limit;
+    if (!request.groups.empty()) options.groups = io::read_groups(request.groups, problem.ids);
+    const CandidateIndex index(problem.ids);
+    for (const std::string& id : request.excluded) {
+        options.excluded.push_back(index.find(id, "excluded candidate"));
+    }
+}
+
+void check_test_poses(const io::SelectionRequest& request) {
+    if (request.test_poses.empty() || request.criterion == Criterion::G ||
+        request.criterion == Criterion::V) {
+        return;
+    }
+    throw InputError("test poses are " + request.test_poses + ", but criterion " +
+                     std::string(criterion_name(request.criterion)) +
+                     " does not look at them; must be g or v");
+}
+
+}  // namespace
+
+CandidateIndex::CandidateIndex(const std::vector<std::string>& ids) {
+    for (std::size_t i = 0; i < ids.size(); ++i) index_.emplace(ids[i], static_cast<Index>(i));
+}
+
+Index CandidateIndex::find(const std::string& id, const std::string& what) const {
+    const auto found = index_.find(id);
+    if (found == index_.end()) {
+        throw InputError(what + " '" + id + "' is not among the candidates");
+    }
+    return found->second;
+}
+
+SelectionProblem read_problem(io::SelectionRequest request) {
+    check_test_poses(request);
+    SelectionProblem problem;
+    problem.request = std::move(request);
+    if (problem.request.source.kind == Kind::Blocks) {
+        if (problem.request.source.repeats == 0) problem.request.source.repeats = 1;
+        state_plain(problem);
+    } else {
+        state_with_robot(problem);
+    }
+    state_limits(problem);
+    return problem;
+}
+
+}  // namespace posewise::cli

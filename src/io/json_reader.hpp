@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "json.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise::io {
+
+/// A value of a JSON document that knows its place, `poses[2].id`, counted from 0 as JSON does.
+/// Every reader throws InputError for a value of another kind. Refers to the document.
+class JsonValue {
+  public:
+    JsonValue(const Json& value, std::string path, std::string place = "");
+
+    /// `path: place: problem`.
+    InputError error(const std::string& problem) const;
+
+    bool has(const std::string& key) const;
+    /// The value of a key, which must be there.
+    JsonValue operator[](const std::string& key) const;
+    std::vector<JsonValue> list() const;
+    /// Values of an object in the order of the file.
+    std::vector<JsonValue> values() const;
+
+    bool is_null() const { return value_->is_null(); }
+    std::string text() const;
+    bool boolean() const;
+    double number() const;
+    /// Null is `unknown`, which JSON cannot write.
+    double number_or(double unknown) const;
+    Index count(Index least) const;
+    std::uint64_t natural_number() const;
+
+  private:
+    InputError wrong_type(const std::string& wanted) const;
+
+    const Json* value_;
+    std::string path_;
+    std::string place_;
+};
+
+}  // namespace posewise::io
