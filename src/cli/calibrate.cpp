@@ -103,7 +103,7 @@ std::string describe_ending(const Arguments& arguments, const Estimate& estimate
                       format_short(estimate.variance_factor, 4), estimate.degrees_of_freedom);
 }
 
-void print_accuracy(const io::CalibrationReport& report, const std::optional<Metrics>& left_out) {
+void print_accuracy(const io::CalibrationReport& report) {
     std::vector<std::pair<std::string, Metrics>> columns{{"nominal", report.nominal},
                                                          {"calibrated", report.estimate.fit},
                                                          {"means", report.estimate.fit_means}};
@@ -111,7 +111,7 @@ void print_accuracy(const io::CalibrationReport& report, const std::optional<Met
         columns.emplace_back("held out", report.held_out->samples);
         columns.emplace_back("held-out means", report.held_out->means);
     }
-    if (left_out) columns.emplace_back("not in plan", *left_out);
+    if (report.left_out) columns.emplace_back("not in plan", *report.left_out);
     if (report.validation) columns.emplace_back("validation", *report.validation);
     print_section("Accuracy", metrics_table(columns));
     print("\n");
@@ -139,19 +139,18 @@ void calibrate(const Arguments& arguments) {
     report.nominal = fit_nominal(campaign, used);
     report.repeatability = repeatability(used);
     report.held_out = hold_out(arguments, campaign, used, start);
+    if (others) report.left_out = metrics_of(*others, report.estimate);
     if (!arguments.validate.empty()) {
         report.validation =
             metrics_of(io::read_measurements(arguments.validate, file), report.estimate);
     }
     if (!arguments.out.empty()) io::write_estimate(arguments.out, campaign, report);
 
-    std::optional<Metrics> left_out;
-    if (others) left_out = metrics_of(*others, report.estimate);
     print(fmt::format("{}: {} configurations, {} samples, {} parameters\n", campaign.name,
                       used.configuration_count(), used.observations.rows(),
                       parameter_count(campaign)));
     print(describe_ending(arguments, report.estimate));
-    print_accuracy(report, left_out);
+    print_accuracy(report);
     print_section("Parameters (errors of the robot, base, targets in the flange frame)",
                   parameter_table(campaign, report.estimate));
     print_section("Strongest correlations", correlation_table(report.estimate, correlations_shown));

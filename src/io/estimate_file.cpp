@@ -100,6 +100,7 @@ Json accuracy_to_json(const CalibrationReport& report) {
                      {"fit_means", metrics_to_json(report.estimate.fit_means)}};
     if (report.repeatability) accuracy["repeatability_mm"] = mm * *report.repeatability;
     if (report.held_out) accuracy["held_out"] = held_out_to_json(*report.held_out);
+    if (report.left_out) accuracy["left_out"] = metrics_to_json(*report.left_out);
     if (report.validation) accuracy["validation"] = metrics_to_json(*report.validation);
     return accuracy;
 }

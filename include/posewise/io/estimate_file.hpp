@@ -15,6 +15,7 @@ struct CalibrationReport {
     Metrics nominal;                      ///< base and targets fitted only, all samples
     std::optional<double> repeatability;  ///< m
     std::optional<CrossValidation> held_out;
+    std::optional<Metrics> left_out;    ///< on the measured configurations not in the plan
     std::optional<Metrics> validation;  ///< on a separate file
 };
 
