@@ -15,10 +15,10 @@ struct HeldPoses {
 };
 
 struct RefineOptions {
-    Index round_limit = 30;       ///< rounds of sweep and joint step, for each sharpness
+    Index round_limit = 30;  ///< rounds of sweep and joint step, for each sharpness
     /// Degrees of smoothing of criteria with kinks, rising; see Objective::sharpness.
     std::vector<double> sharpness{4, 16, 64, 256};
-    Index kink_rounds = 2;  ///< sweeps without derivatives, for criteria with kinks
+    Index kink_rounds = 2;        ///< sweeps without derivatives, for criteria with kinks
     double tolerance = 1e-10;     ///< relative gain of a round to stop at
     int evaluation_limit = 2000;  ///< of one run of an optimiser
     StopSignal stop{};
