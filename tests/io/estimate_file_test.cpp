@@ -88,13 +88,16 @@ TEST_F(EstimateFile, GivesAccuracyInMillimetres) {
 TEST_F(EstimateFile, LeavesOutWhatWasNotComputed) {
     EXPECT_FALSE(written().at("accuracy").contains("held_out"));
     EXPECT_FALSE(written().at("accuracy").contains("repeatability_mm"));
+    EXPECT_FALSE(written().at("accuracy").contains("left_out"));
     report_.repeatability = 5e-5;
     report_.held_out = CrossValidation{};
     report_.held_out->failures = {"fold 3: too few", "fold 4: too few"};
+    report_.left_out = Metrics{};
     report_.validation = Metrics{};
     const Json accuracy = written().at("accuracy");
     EXPECT_DOUBLE_EQ(accuracy.at("repeatability_mm").get<double>(), 0.05);
     EXPECT_EQ(accuracy.at("held_out").at("failures").size(), 2U);
+    EXPECT_TRUE(accuracy.contains("left_out"));
     EXPECT_TRUE(accuracy.contains("validation"));
 }
 

@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include "campaign_text.hpp"
+#include "posewise/io/measurements_file.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace posewise::io {
+namespace {
+
+class ReadConfigurations : public ::testing::Test {
+  protected:
+    Configurations read(const std::string& text) const {
+        return read_configurations(folder_.write("q.csv", text), campaign_);
+    }
+
+    testing::TemporaryFolder folder_;
+    CampaignFile campaign_ = read_campaign(folder_.write("c.yaml", testing::campaign_text));
+};
+
+TEST_F(ReadConfigurations, NeedsNoColumnsOfTheSensor) {
+    const Configurations read_back =
+        read("config,q1_rad,q2_rad,lift_mm\nlow,0.5,0.25,125\nhigh,1,0.5,250\n");
+    EXPECT_EQ(read_back.ids, (std::vector<std::string>{"low", "high"}));
+    EXPECT_EQ(read_back.joints, (RowMatrixXd{{0.5, 0.25, 0.125}, {1, 0.5, 0.25}}));
+}
+
+TEST_F(ReadConfigurations, DoesNotLookAtWhatWasMeasured) {
+    const Configurations read_back =
+        read("config,q1_rad,q2_rad,lift_mm,p1_x_mm\nlow,0.5,0.25,125,lost\n");
+    EXPECT_EQ(read_back.joints, (RowMatrixXd{{0.5, 0.25, 0.125}}));
+}
+
+TEST_F(ReadConfigurations, StillNeedsEveryJoint) {
+    const std::string error =
+        testing::input_error_of([&] { read("config,q1_rad,lift_mm\nlow,0.5,125\n"); });
+    EXPECT_EQ(error.rfind("q.csv:1:22: missing column q2_rad", 0), 0U) << error;
+}
+
+TEST_F(ReadConfigurations, ACampaignMayStateAPrior) {
+    EXPECT_FALSE(campaign_.prior);
+    const auto with_prior =
+        folder_.write("p.yaml", std::string(testing::campaign_text) + "prior: true\n");
+    EXPECT_TRUE(read_campaign(with_prior).prior);
+    const auto with_word =
+        folder_.write("p.yaml", std::string(testing::campaign_text) + "prior: maybe\n");
+    EXPECT_NE(testing::input_error_of([&] { read_campaign(with_word); }).find("true or false"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace posewise::io

@@ -1,0 +1,68 @@
+#include "posewise/io/matrix_file.hpp"
+
+#include <gtest/gtest.h>
+#include <matio.h>
+
+#include <vector>
+
+#include "support/temporary_folder.hpp"
+
+namespace posewise::io {
+namespace {
+
+using testing::input_error_of;
+
+class ReadMatrix : public ::testing::Test {
+  protected:
+    std::string error_of(const std::string& text) const {
+        return input_error_of([&] { read_matrix(folder_.write("b.csv", text)); });
+    }
+    /// Two variables, `first` 3 x 2 and `second` 1 x 1.
+    std::string write_mat() const {
+        const std::string path = folder_.path("b.mat");
+        mat_t* const file = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
+        add(file, "first", 3, 2, {1, 3, 5, 2, 4, 6});
+        add(file, "second", 1, 1, {7});
+        Mat_Close(file);
+        return path;
+    }
+    static void add(mat_t* file, const char* name, std::size_t rows, std::size_t columns,
+                    std::vector<double> values) {
+        std::size_t dims[2] = {rows, columns};
+        matvar_t* const variable =
+            Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, values.data(), 0);
+        Mat_VarWrite(file, variable, MAT_COMPRESSION_NONE);
+        Mat_VarFree(variable);
+    }
+
+    testing::TemporaryFolder folder_;
+    const RowMatrixXd expected_{{1, 2}, {3, 4}, {5, 6}};
+};
+
+TEST_F(ReadMatrix, TakesNumbersWithAndWithoutHeader) {
+    EXPECT_EQ(read_matrix(folder_.write("b.csv", "1,2\n3,4\n5,6\n")), expected_);
+    EXPECT_EQ(read_matrix(folder_.write("b.csv", "x;y\n1;2\n# more\n3;4\n\n5;6")), expected_);
+}
+
+TEST_F(ReadMatrix, TakesTheFirstOrANamedVariableOfAMatlabFile) {
+    EXPECT_EQ(read_matrix(write_mat()), expected_);
+    EXPECT_EQ(read_matrix(write_mat(), "second"), (RowMatrixXd{{7}}));
+    EXPECT_NE(input_error_of([&] { read_matrix(write_mat(), "secnd"); }).find("'second'?"),
+              std::string::npos);
+}
+
+TEST_F(ReadMatrix, SaysWhereAFileIsWrong) {
+    const std::string rule = "; must be a finite number with a decimal point";
+    EXPECT_EQ(error_of("a,b\n1,2\n3,four\n"), "b.csv:3:3: 'four' is not a number" + rule);
+    EXPECT_EQ(error_of("a,2\n1,2\n"), "b.csv:1:1: 'a' is not a number" + rule);
+    EXPECT_EQ(error_of("1,nan\n"), "b.csv:1:3: 'nan' is not finite" + rule);
+    EXPECT_EQ(error_of("nan,nan\n"), "b.csv:1:1: 'nan' is not finite" + rule);
+    EXPECT_EQ(error_of("1,2\n3\n"), "b.csv:2:2: row has 1 fields; must have 2 as the first row");
+    EXPECT_EQ(error_of("a,b\n1,2,3\n"),
+              "b.csv:2:5: row has 3 fields; must have 2 as the first row");
+    EXPECT_EQ(error_of(""), "b.csv: has no numbers; must have at least one row");
+    EXPECT_EQ(error_of("a,b\n"), "b.csv: has no numbers; must have at least one row");
+}
+
+}  // namespace
+}  // namespace posewise::io
