@@ -235,9 +235,12 @@ void add_problem(CLI::App& command, Arguments& arguments) {
         ->check(criterion_check());
     command.add_option("--test-poses", request.test_poses,
                        "g and v: predict these (as --candidates; default: the candidates)");
-    command.add_flag("--prior,!--no-prior", arguments.prior,
-                     "The scale of each robot error is also its prior standard deviation; --poses "
-                     "may then be below what identifies (default: the campaign's)");
+    command.add_flag_callback(
+        "--prior", [&arguments] { arguments.prior = true; },
+        "The scale of each robot error is also its prior standard deviation; --poses may then be "
+        "below what identifies (default: the campaign's)");
+    command.add_flag_callback(
+        "--no-prior", [&arguments] { arguments.prior = false; }, "Whatever the campaign says");
     command
         .add_option("--focus", arguments.focus,
                     "all, or robot: base and targets are estimated along, but do not count")

@@ -41,7 +41,7 @@ struct Arguments {
 class Findings {
   public:
     void note(const std::string& name, bool is_right, const std::string& text) {
-        print(fmt::format("{:<12}{}\n", name + ':', text));
+        print(fmt::format("{:<11} {}\n", name + ':', text));
         const bool is_new = std::find(wrong_.begin(), wrong_.end(), name) == wrong_.end();
         if (!is_right && is_new) wrong_.push_back(name);
     }

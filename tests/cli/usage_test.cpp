@@ -7,7 +7,8 @@ namespace {
 
 class Usage : public Program {};
 
-const std::string commands[] = {"inspect", "indices", "select", "calibrate", "study", "simulate"};
+const std::string commands[] = {"inspect",   "indices", "select",  "verify",
+                                "calibrate", "study",   "simulate"};
 
 TEST_F(Usage, VersionIsThatOfTheProject) {
     EXPECT_EQ(run_well("--version"), std::string("posewise ") + POSEWISE_VERSION + '\n');
@@ -29,12 +30,33 @@ TEST_F(Usage, HelpOfEveryCommandHasAnExample) {
 
 TEST_F(Usage, WrongUsageExitsWithTwo) {
     for (const std::string arguments :
-         {"", "calibrated", "inspect", "inspect a.yaml --nonsense", "select a.yaml -m b.csv",
-          "select a.yaml -m b.csv -k 6 --criterion o6", "select a.yaml -m b.csv -k -1",
-          "select a.yaml -m b.csv -k six", "calibrate a.yaml -m b.csv --method newton",
-          "calibrate a.yaml -m b.csv --alpha 0", "study a.yaml -m b.csv --poses 5-9",
-          "study a.yaml -m b.csv --poses 9:5", "study a.yaml -m b.csv --poses ,",
-          "study a.yaml -m b.csv --criteria d,q", "simulate a.yaml -k 5",
+         {"",
+          "calibrated",
+          "inspect",
+          "inspect a.yaml --nonsense",
+          "select a.yaml -m b.csv",
+          "select a.yaml -m b.csv -k 6 --criterion o6",
+          "select a.yaml -m b.csv -k -1",
+          "select a.yaml -m b.csv -k six",
+          "select a.yaml -k 6",
+          "select -m b.csv -k 6",
+          "select a.yaml -m b.csv --random 9 -k 6",
+          "select --blocks b.csv -k 6",
+          "select a.yaml --blocks b.csv --rows 3 -k 6",
+          "select a.yaml -m b.csv --rows 3 -k 6",
+          "select --blocks b.csv --rows 3 -k 6 --focus robot",
+          "select --blocks b.csv --rows 3 -k 6 --least-distance-deg 4",
+          "select a.yaml -m b.csv -k 6 --groups g.csv",
+          "select a.yaml -m b.csv -k 6 --per-group 2",
+          "select a.yaml -m b.csv -k 6 --time 0",
+          "verify",
+          "calibrate a.yaml -m b.csv --method newton",
+          "calibrate a.yaml -m b.csv --alpha 0",
+          "study a.yaml -m b.csv --poses 5-9",
+          "study a.yaml -m b.csv --poses 9:5",
+          "study a.yaml -m b.csv --poses ,",
+          "study a.yaml -m b.csv --criteria d,q",
+          "simulate a.yaml -k 5",
           "simulate a.yaml -k 5 --seed -1 --out a.csv"}) {
         const Outcome outcome = run(arguments);
         EXPECT_EQ(outcome.code, 2) << arguments;

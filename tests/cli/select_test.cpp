@@ -1,0 +1,197 @@
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+/// `select` from every kind of candidates, with every limit, and what it refuses.
+namespace posewise::testing {
+namespace {
+
+class Select : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        run_well("simulate " + fanuc_design + " --truth 7 --seed 3 --poses 24 -o s.csv");
+        write_blocks("b.csv", 20);
+    }
+
+    /// `count` candidates of 2 rows and 3 columns, of full rank and all different.
+    void write_blocks(const std::string& name, int count, const std::string& last_row = "") const {
+        std::string text = "x,y,z\n";
+        for (int row = 0; row < 2 * count; ++row) {
+            text += std::to_string(row * 37 % 41 - 20) + ',' + std::to_string(row * 17 % 43 - 21) +
+                    ',' + std::to_string(row * 29 % 47 - 23) + '\n';
+        }
+        write_text(name, text + last_row);
+    }
+
+    nlohmann::json plan(const std::string& name) const {
+        return nlohmann::json::parse(text_of(name));
+    }
+    std::vector<std::string> ids_of(const std::string& name) const {
+        std::vector<std::string> ids;
+        const auto document = plan(name);
+        for (const auto& pose : document.at("poses")) ids.push_back(pose.at("id"));
+        return ids;
+    }
+
+    const std::string input_ = fanuc_design + " -m s.csv ";
+    const std::string plain_ = "--blocks b.csv --rows 2 ";
+};
+
+TEST_F(Select, ChoosesFromConfigurationsThatWereNotMeasured) {
+    write_text("q.csv",
+               "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n"
+               "a,10,20,-30,40,50,60\nb,-20,5,10,80,-60,10\nc,40,-40,-60,-80,90,120\n"
+               "d,-70,30,40,-10,30,-200\ne,60,-15,-5,150,-90,20\nf,0,50,-70,-120,70,-100\n");
+    run_well("select " + fanuc_design + " --candidates q.csv -k 5");
+    EXPECT_EQ(ids_of("q.plan.json").size(), 5U);
+    run_well("verify q.plan.json");
+}
+
+TEST_F(Select, ChoosesFromRandomConfigurationsTheSameEveryTime) {
+    const std::string arguments = "select " + fanuc_design + " --random 200 -k 6 --starts 4 ";
+    run_well(arguments + "-o one.json", "OMP_NUM_THREADS=1");
+    run_well(arguments + "-o two.json", "OMP_NUM_THREADS=2");
+    EXPECT_EQ(text_of("one.json"), text_of("two.json"));
+    run_well(arguments + "--seed 5 -o other.json");
+    EXPECT_NE(ids_of("one.json"), ids_of("other.json"));
+    run_well("verify other.json");
+}
+
+TEST_F(Select, NeedsToKnowWhereTheBaseIs) {
+    const std::string design =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    std::string text = design;
+    text.erase(text.find("base: {"), text.find('\n', text.find("base: {")) - text.find("base: {"));
+    write_text("c.yaml", text);
+    expect_input_error("select c.yaml --random 50 -k 8", "states no base");
+    run_well("select c.yaml --random 50 -k 8 --augment s.csv");  // registered from these
+}
+
+TEST_F(Select, ChoosesFromPlainBlocksWithoutARobot) {
+    const std::string text = run_well("select " + plain_ + "-k 4 --criterion a");
+    EXPECT_EQ(plan("b.plan.json").at("poses").size(), 4U);
+    EXPECT_TRUE(plan("b.plan.json").at("campaign").is_null());
+    EXPECT_NE(text.find("proof:      optimal"), std::string::npos) << text;
+    EXPECT_EQ(number_behind(text, "efficiency:"), 1);
+}
+
+TEST_F(Select, SaysThatTheBoundIsLooseAtFewPoses) {
+    const std::string text = run_well("select " + input_ + "-k 5");
+    EXPECT_LT(number_behind(text, "efficiency:"), 0.9);
+    EXPECT_NE(text.find("the bound is loose at so few poses: "), std::string::npos) << text;
+    EXPECT_NE(text.find("of 20 independent starts ended at this value"), std::string::npos);
+}
+
+TEST_F(Select, APriorAllowsFewerPosesThanParametersNeed) {
+    expect_input_error("select " + input_ + "-k 3 -o p.json", "state a prior");
+    run_well("select " + input_ + "-k 3 --prior -o p.json");
+    EXPECT_EQ(ids_of("p.json").size(), 3U);
+    write_text("c.yaml", read_text(std::string(POSEWISE_SOURCE_DIR) +
+                                   "/designs/fanuc_r2000ic_165f/campaign.yaml") +
+                             "\nprior: true\n");
+    run_well("select c.yaml -m s.csv -k 3 -o q.json");
+    EXPECT_EQ(ids_of("q.json"), ids_of("p.json"));
+    expect_input_error("select c.yaml -m s.csv -k 3 --no-prior -o r.json", "state a prior");
+    run_well("verify q.json");
+}
+
+TEST_F(Select, FocusOnTheRobotLeavesBaseAndTargetsOut) {
+    const std::string all = run_well("select " + input_ + "-k 8");
+    const std::string robot = run_well("select " + input_ + "-k 8 --focus robot");
+    EXPECT_LT(number_behind(robot, "value:"), number_behind(all, "value:"));
+    run_well("verify s.plan.json");
+    expect_input_error("select " + input_ + "-k 8 --focus robot -c g -o no.json", "uisance");
+}
+
+TEST_F(Select, MeasuredPosesAreHeldAndNotChosenAgain) {
+    const std::string without = run_well("select " + plain_ + "-k 3");
+    const auto taken = ids_of("b.plan.json");
+    std::string rows;
+    for (const std::string& id : taken) {
+        std::istringstream lines(text_of("b.csv"));
+        std::string line;
+        std::getline(lines, line);
+        for (int row = 0; std::getline(lines, line); ++row) {
+            if (row / 2 == std::stoi(id)) rows += line + '\n';
+        }
+    }
+    write_text("measured.csv", rows);
+    const std::string with = run_well("select " + plain_ + "-k 3 --augment measured.csv -o c.json");
+    EXPECT_GT(number_behind(with, "value:"), number_behind(without, "value:"));
+    for (const std::string& id : ids_of("c.json")) {
+        EXPECT_EQ(std::count(taken.begin(), taken.end(), id), 0) << id;
+    }
+    run_well("verify c.json");
+}
+
+TEST_F(Select, KeepsToExclusionsGroupsRepeatsAndDistances) {
+    run_well("select " + plain_ + "-k 4");
+    const std::string first = ids_of("b.plan.json").front();
+    run_well("select " + plain_ + "-k 4 -o e.json --exclude " + first);
+    const auto ids = ids_of("e.json");
+    EXPECT_EQ(std::count(ids.begin(), ids.end(), first), 0);
+    expect_input_error("select " + plain_ + "-k 4 --exclude 0,99 -o no.json", "'99'");
+
+    std::string groups = "config,group\n";
+    for (int i = 0; i < 20; ++i) groups += std::to_string(i) + ',' + (i < 12 ? "A" : "B") + '\n';
+    write_text("g.csv", groups);
+    run_well("select " + plain_ + "-k 6 --groups g.csv --per-group 3 -o g.json");
+    const auto grouped = ids_of("g.json");
+    EXPECT_EQ(std::count_if(grouped.begin(), grouped.end(),
+                            [](const std::string& id) { return std::stoi(id) < 12; }),
+              3);
+    run_well("select " + plain_ + "-k 12 --repeat-limit 4 -o r.json");
+    int total = 0;
+    const auto repeated = plan("r.json");
+    for (const auto& pose : repeated.at("poses")) total += pose.at("times").get<int>();
+    EXPECT_EQ(total, 12);
+    EXPECT_LT(repeated.at("poses").size(), 12U);
+    run_well("select " + input_ + "-k 6 --least-distance-deg 60 -o d.json");
+    for (const std::string name : {"e.json", "g.json", "r.json", "d.json"}) {
+        run_well("verify " + name);
+    }
+}
+
+TEST_F(Select, PredictsTestPosesWithGAndV) {
+    run_well("select " + input_ + "-k 8 -c i --test-poses s.csv -o v.json");
+    EXPECT_EQ(plan("v.json").at("criterion"), "v");
+    run_well("verify v.json");
+    expect_input_error("select " + input_ + "-k 8 -c d --test-poses s.csv -o no.json",
+                       "must be g or v");
+}
+
+TEST_F(Select, ReturnsTheBestSoFarWhenTimeIsUpOrCtrlCComes) {
+    const std::string much = "select " + fanuc_design + " --random 1000 -k 20 --starts 1000000 ";
+    const std::string text = run_well(much + "--time 1 -o t.json");
+    EXPECT_NE(text.find("time limit"), std::string::npos) << text;
+    run_well("verify t.json");
+    const Outcome outcome = run(much + "-o c.json", "timeout -s INT 3");
+    EXPECT_NE(outcome.out.find("interrupted"), std::string::npos) << outcome.out;
+    EXPECT_EQ(outcome.err, "posewise: interrupted; the plan is the best so far\n");
+    EXPECT_EQ(plan("c.json").at("search").at("stop_reason"), "interrupted");
+    run_well("verify c.json");
+}
+
+TEST_F(Select, NamesTheDirectionThatNoCandidateSees) {
+    expect_input_error("select " + seed_design + " -m s.csv -k 12", "parameters dq2 + Tx2 + dq3");
+    write_text("flat.csv", "1,2,2\n3,5,5\n-1,4,4\n2,2,2\n");
+    expect_input_error("select --blocks flat.csv --rows 1 -k 3", "columns 2 + 3");
+}
+
+TEST_F(Select, RefusesUnusableBlocks) {
+    write_blocks("odd.csv", 5, "1,2,3\n");
+    expect_input_error("select --blocks odd.csv --rows 2 -k 3",
+                       "odd.csv: matrix has 11 rows, not a multiple of 2");
+    write_blocks("nan.csv", 5, "1,nan,3\n1,2,3\n");
+    expect_input_error("select --blocks nan.csv --rows 2 -k 3", "nan.csv:12:3: 'nan'");
+    write_blocks("text.csv", 5, "1,2,three\n1,2,3\n");
+    expect_input_error("select --blocks text.csv --rows 2 -k 3", "text.csv:12:5: 'three'");
+    expect_input_error("select " + plain_ + "-k 21", "must be from 1 to 20");
+    expect_input_error("select " + plain_ + "-k 1", "state a prior");
+    expect_input_error("select --blocks absent.csv --rows 2 -k 1", "absent.csv");
+}
+
+}  // namespace
+}  // namespace posewise::testing

@@ -1,0 +1,134 @@
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+/// `verify` on sound plans, and on plans edited by hand.
+namespace posewise::testing {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class Verify : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        run_well("simulate " + fanuc_design + " --truth 7 --seed 3 --poses 40 -o s.csv");
+        run_well("select " + fanuc_design + " -m s.csv -k 10 --starts 3 --exclude 0,1 -o p.json");
+    }
+
+    /// Verifies the plan changed by `edit` and expects it found wrong, with `words` on standard
+    /// output and `name` among the numbers that are not as stated.
+    void expect_found(const std::function<void(Json&)>& edit, const std::string& words,
+                      const std::string& name) const {
+        Json plan = Json::parse(text_of("p.json"));
+        edit(plan);
+        write_text("edited.json", plan.dump());
+        const Outcome outcome = run("verify edited.json");
+        EXPECT_EQ(outcome.code, 1) << words;
+        EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
+        const auto list = outcome.err.find("not as stated: ");
+        ASSERT_NE(list, std::string::npos) << outcome.err;
+        EXPECT_NE(outcome.err.find(name, list), std::string::npos) << outcome.err;
+    }
+};
+
+TEST_F(Verify, FindsASoundPlanAsStated) {
+    const std::string text = run_well("verify p.json");
+    for (const std::string name :
+         {"candidates: ", "value:      ", "bound:      ", "efficiency: "}) {
+        EXPECT_NE(text.find(name + "as stated, "), std::string::npos) << text;
+    }
+    EXPECT_NE(text.find("poses:      10, within the limits"), std::string::npos);
+}
+
+TEST_F(Verify, FindsEveryPlanOfEveryCriterion) {
+    for (const std::string criterion : {"o1", "o2", "o3", "o4", "o5", "a", "e", "g", "v"}) {
+        run_well("select " + fanuc_design + " -m s.csv -k 8 --starts 1 -o c.json -c " + criterion);
+        const std::string text = run_well("verify c.json");
+        EXPECT_NE(text.find("bound:      as stated"), std::string::npos) << criterion << text;
+    }
+}
+
+TEST_F(Verify, SaysWhichNumberWasEdited) {
+    const auto shift = [](const std::string& key) {
+        return [key](Json& plan) { plan[key] = plan[key].get<double>() + 1e-3; };
+    };
+    expect_found(shift("value"), "value:      stated", "value");
+    expect_found(shift("bound"), "bound:      stated", "bound");
+    expect_found(shift("efficiency"), "efficiency: stated", "efficiency");
+    expect_found([](Json& plan) { plan["certificate"]["M_lower"][0][0] = 1e6; }, "bound:      st",
+                 "bound");
+    expect_found([](Json& plan) { plan["certificate"]["M_lower"] = Json::parse("[[1]]"); },
+                 "certificate: is 1 x 1, must be 33 x 33", "certificate");
+    expect_found([](Json& plan) { plan["criterion"] = "a"; }, "value:      stated", "value");
+    expect_found(
+        [](Json& plan) {
+            plan["bound"] = plan["value"];
+            plan["efficiency"] = 1;
+            plan["search"]["stop_reason"] = "optimal";
+        },
+        "bound:      stated", "efficiency");
+}
+
+TEST_F(Verify, NoticesEditedPoses) {
+    expect_found([](Json& plan) { plan["poses"][0]["joints"]["q1_rad"] = 0.5; },
+                 "are not the candidate's", "poses");
+    expect_found([](Json& plan) { plan["poses"][0]["times"] = 2; },
+                 "is taken 2 times, at most 1 are allowed", "poses");
+    expect_found([](Json& plan) { plan["poses"].erase(7); }, "stated 10, are 9", "poses");
+    expect_found([](Json& plan) { plan["poses"][0]["id"] = "0"; },
+                 "'0' is excluded or measured already", "poses");
+    expect_found([](Json& plan) { plan["poses"][0]["times"] = 1000000000000; }, "is taken",
+                 "poses");
+    Json plan = Json::parse(text_of("p.json"));
+    plan["poses"][2]["id"] = "ghost";
+    write_text("e.json", plan.dump());
+    expect_input_error("verify e.json", "poses[2].id: 'ghost' is not among the candidates");
+    plan["poses"][2] = plan["poses"][1];
+    write_text("e.json", plan.dump());
+    expect_input_error("verify e.json", "occurs before in poses[1]");
+}
+
+TEST_F(Verify, NoticesAChangedCandidateFile) {
+    run_well("simulate " + fanuc_design + " --truth 8 --seed 3 --poses 40 -o s.csv");
+    const Outcome outcome = run("verify p.json");
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.out.find("changed since the plan was made"), std::string::npos);
+    run_well("simulate " + fanuc_design + " --truth 7 --seed 3 --poses 41 -o s.csv");
+    EXPECT_NE(run("verify p.json").out.find("candidates: stated 40, are 41"), std::string::npos);
+}
+
+TEST_F(Verify, TakesFilesThatMoved) {
+    std::filesystem::rename(folder_ / "s.csv", folder_ / "moved.csv");
+    expect_input_error("verify p.json", "s.csv");
+    run_well("verify p.json -m moved.csv");
+    run_well("verify p.json --campaign " + fanuc_design + " --measurements moved.csv");
+}
+
+TEST_F(Verify, FindsAnOptimumAgain) {
+    run_well("simulate " + fanuc_design + " --truth 7 --seed 3 --poses 16 -o few.csv");
+    run_well("select " + fanuc_design + " -m few.csv -k 8 --starts 3 --exclude 0,1 -o o.json");
+    EXPECT_NE(run_well("verify o.json").find("optimum:    found again"), std::string::npos);
+}
+
+TEST_F(Verify, RefusesWhatIsNoPlan) {
+    write_text("no.json", "{\"kind\": \"posewise plan\"}");
+    expect_input_error("verify no.json", "no.json: poses");
+    expect_input_error("verify s.csv", "s.csv");
+    expect_input_error("verify absent.json", "absent.json");
+}
+
+TEST_F(Verify, EveryPlanOfTheRepositoryIsAsStated) {
+    int count = 0;
+    const std::filesystem::path designs = std::string(POSEWISE_SOURCE_DIR) + "/designs";
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(designs)) {
+        if (!entry.path().string().ends_with(".plan.json")) continue;
+        run_well("verify '" + entry.path().string() + "'");
+        ++count;
+    }
+    EXPECT_GT(count, 0);
+}
+
+}  // namespace
+}  // namespace posewise::testing
