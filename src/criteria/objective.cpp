@@ -78,12 +78,14 @@ double evaluate(const Objective& objective, const MatrixXd& M) {
 }
 
 MatrixXd gradient(const Objective& objective, const MatrixXd& M) {
-    if (!std::isfinite(evaluate(objective, M))) return MatrixXd::Zero(M.rows(), M.cols());
+    const MatrixXd none = MatrixXd::Zero(M.rows(), M.cols());
     if (!objective.nuisance.empty()) {
         const Reduction reduced = eliminate(M, objective.nuisance);
+        if (reduced.M.size() == 0) return none;
         return reduced.N * gradient(without_nuisance(objective), reduced.M) * reduced.N.transpose();
     }
     const Eigen::LLT<MatrixXd> cholesky(M);
+    if (!is_regular(cholesky, M)) return none;
     switch (objective.criterion) {
         case Criterion::D:
             return inverse(cholesky);
@@ -103,6 +105,7 @@ MatrixXd gradient(const Objective& objective, const MatrixXd& M) {
         }
         default: {
             const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(M);
+            if (!(eigen.eigenvalues()[0] > 0)) return none;
             const Sloped value = spectral_criterion(objective, eigen.eigenvalues());
             return eigen.eigenvectors() * value.slope.asDiagonal() *
                    eigen.eigenvectors().transpose();

@@ -16,12 +16,19 @@ Sloped worst_variance(const Objective& objective, const Eigen::LLT<MatrixXd>& ch
 }
 
 MatrixXd weighted_information(const Blocks& blocks, const VectorXd& weights) {
-    RowMatrixXd scaled = blocks.matrix;
+    const double negligible = 1e-18 * weights.maxCoeff();  // most of them for a sharp objective
+    RowMatrixXd scaled(blocks.matrix.rows(), blocks.parameter_count());
+    Index rows = 0;
     for (Index i = 0; i < blocks.count(); ++i) {
-        scaled.middleRows(blocks.first_row[static_cast<std::size_t>(i)], blocks[i].rows()) *=
-            std::sqrt(weights[i]);
+        if (!(weights[i] > negligible)) continue;
+        const auto block = blocks[i];
+        scaled.middleRows(rows, block.rows()) = std::sqrt(weights[i]) * block;
+        rows += block.rows();
     }
-    return scaled.transpose() * scaled;
+    MatrixXd M = MatrixXd::Zero(blocks.parameter_count(), blocks.parameter_count());
+    M.selfadjointView<Eigen::Lower>().rankUpdate(scaled.topRows(rows).transpose());
+    M.triangularView<Eigen::StrictlyUpper>() = M.transpose();
+    return M;
 }
 
 }  // namespace posewise

@@ -12,7 +12,8 @@ class LocalSearch {
     LocalSearch(const SearchProblem& problem, const Shortlist& shortlist)
         : problem_(problem),
           shortlist_(shortlist),
-          neighbourhood_(make_neighbourhood(problem.objective, problem.candidates, shortlist)),
+          neighbourhood_(make_neighbourhood(problem.objective, problem.candidates, shortlist,
+                                            problem.must_stop)),
           occupancy_(problem.candidates.count(), problem.options) {}
 
     const Choice& choice() const { return choice_; }
@@ -108,6 +109,13 @@ class LocalSearch {
     MatrixXd M_;  // regularised
 };
 
+/// Kicks without success to give up after: ten times as many where few candidates make them cheap,
+/// since plans that hardly identify their parameters have many local optima.
+Index patience(const SearchProblem& problem, const Shortlist& shortlist) {
+    const bool is_cheap = shortlist.lanes.rows > 0 && shortlist.members.size() <= 64;
+    return problem.options.kicks * (is_cheap ? 10 : 1);
+}
+
 }  // namespace
 
 bool is_better(const Score& a, const Score& b) {
@@ -142,7 +150,8 @@ Choice improve_with_kicks(const SearchProblem& problem, const Shortlist& shortli
     search.start_at(choice);
     search.improve();
     Choice best = search.choice();
-    for (Index failures = 0; failures < problem.options.kicks && !problem.must_stop();) {
+    const Index most_failures = patience(problem, shortlist);
+    for (Index failures = 0; failures < most_failures && !problem.must_stop();) {
         search.start_near(best, random);
         search.improve();
         if (is_better(search.choice().score, best.score)) {

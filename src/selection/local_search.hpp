@@ -38,7 +38,8 @@ struct Choice {
 Choice improve(const SearchProblem& problem, const Shortlist& shortlist, const Choice& choice);
 
 /// Iterated local search: some poses of the best choice are replaced at random and the result
-/// improved, until `options.kicks` kicks in a row bring nothing.
+/// improved, until `options.kicks` kicks in a row bring nothing (ten times as many on a small
+/// shortlist).
 Choice improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
                           const Choice& choice, RandomStream& random);
 

@@ -23,11 +23,12 @@ Shortlist make_shortlist(const Objective& objective, const Blocks& candidates,
 
 std::unique_ptr<Neighbourhood> make_neighbourhood(const Objective& objective,
                                                   const Blocks& candidates,
-                                                  const Shortlist& shortlist) {
+                                                  const Shortlist& shortlist,
+                                                  const std::function<bool()>& must_stop) {
     if (shortlist.lanes.rows > 0) {
         return std::make_unique<BlockUpdates>(objective, candidates, shortlist);
     }
-    return std::make_unique<Screening>(objective, candidates, shortlist);
+    return std::make_unique<Screening>(objective, candidates, shortlist, must_stop);
 }
 
 }  // namespace posewise

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "lanes.hpp"
@@ -29,9 +30,10 @@ class Neighbourhood {
     virtual Index best_replacement(Index removed, double value, const Occupancy& occupancy) = 0;
 };
 
-/// BlockUpdates where there is a kernel for it, else Screening.
+/// BlockUpdates where there is a kernel for it, else Screening, which ends early if `must_stop`.
 std::unique_ptr<Neighbourhood> make_neighbourhood(const Objective& objective,
                                                   const Blocks& candidates,
-                                                  const Shortlist& shortlist);
+                                                  const Shortlist& shortlist,
+                                                  const std::function<bool()>& must_stop);
 
 }  // namespace posewise
