@@ -9,6 +9,7 @@ namespace posewise::cli {
 void add_inspect(CLI::App& program);
 void add_indices(CLI::App& program);
 void add_select(CLI::App& program);
+void add_plan(CLI::App& program);
 void add_verify(CLI::App& program);
 void add_calibrate(CLI::App& program);
 void add_study(CLI::App& program);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
 #include "posewise/core/errors.hpp"
 #include "posewise/io/plan_file.hpp"
@@ -62,20 +63,60 @@ void print_section(const std::string& title, const Table& table) {
     print('\n' + title + "\n\n" + format_table(table));
 }
 
+namespace {
+
+std::string describe_noise(const IsotropicNoise& noise) {
+    return fmt::format("sigma {} mm", format_short(mm_per_m * noise.sigma));
+}
+
+std::string describe_noise(const PerAxisNoise& noise) {
+    return fmt::format(
+        "sigma {}, {} and {} mm along x, y and z", format_short(mm_per_m * noise.sigma.x()),
+        format_short(mm_per_m * noise.sigma.y()), format_short(mm_per_m * noise.sigma.z()));
+}
+
+std::string describe_noise(const LaserTrackerNoise& noise) {
+    return fmt::format("laser tracker with sigma {} um in range and {} urad in angle",
+                       format_short(1e6 * noise.range_sigma),
+                       format_short(1e6 * noise.angle_sigma));
+}
+
+/// ", joints repeat to 0.01 mrad"; nothing if they repeat exactly. Several values as a range.
+std::string describe_repeatability(const Campaign& campaign) {
+    std::string text;
+    for (const Motion motion : {Motion::Rotation, Motion::Translation}) {
+        double least = std::numeric_limits<double>::infinity();
+        double largest = 0;
+        for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {
+            if (campaign.robot.joint_motion(j) != motion) continue;
+            least = std::min(least, campaign.joint_repeatability[j]);
+            largest = std::max(largest, campaign.joint_repeatability[j]);
+        }
+        if (largest == 0) continue;
+        text += ", joints repeat to ";
+        if (least < largest) text += format_short(mm_per_m * least) + " to ";
+        text += format_error(largest, motion == Motion::Rotation);
+    }
+    return text;
+}
+
+}  // namespace
+
 std::string describe(const Sensor& sensor) {
     const auto* points = dynamic_cast<const PointSensor*>(&sensor);
     if (points == nullptr) return fmt::format("{} numbers a pose", sensor.row_count());
     Index known = 0;
     for (Index j = 0; j < points->target_count(); ++j) known += points->is_known(j) ? 1 : 0;
-    return fmt::format("points of {} targets ({} known, {} to be identified), sigma {} mm",
-                       points->target_count(), known, points->target_count() - known,
-                       format_short(mm_per_m * points->sigma()));
+    return fmt::format(
+        "points of {} targets ({} known, {} to be identified), {}", points->target_count(), known,
+        points->target_count() - known,
+        std::visit([](const auto& noise) { return describe_noise(noise); }, points->noise()));
 }
 
 std::string describe_scaling(const Campaign& campaign, double repeats) {
     std::string text = fmt::format(
-        "noise: {}, mean of {} samples, model error {} mm\nscale: {} mm and {} mrad a parameter",
-        describe(*campaign.sensor), format_short(repeats),
+        "noise: {}, mean of {} samples{}, model error {} mm\nscale: {} mm and {} mrad a parameter",
+        describe(*campaign.sensor), format_short(repeats), describe_repeatability(campaign),
         format_short(mm_per_m * campaign.model_error),
         format_short(mm_per_m * campaign.spread.length),
         format_short(mrad_per_rad * campaign.spread.angle));
@@ -90,12 +131,14 @@ std::string format_error(double si_value, bool is_angle) {
 Progress::Progress(std::string label, bool asked_for)
     : label_(std::move(label)), shown_(asked_for || isatty(STDERR_FILENO) == 1) {}
 
-void Progress::operator()(Index done, Index total) {
+void Progress::operator()(Index done, Index total, const std::string& note) {
     const Index percent = 100 * done / total;
     if (!shown_ || percent == last_percent_) return;
     last_percent_ = percent;
-    std::fprintf(stderr, "\r%s %3ld %%%s", label_.c_str(), static_cast<long>(percent),
-                 done == total ? "\n" : "");
+    // A note may be shorter than the one it overwrites.
+    const std::string padded = note.empty() ? note : fmt::format("  {:<64}", note);
+    std::fprintf(stderr, "\r%s %3ld %%%s%s", label_.c_str(), static_cast<long>(percent),
+                 padded.c_str(), done == total ? "\n" : "");
 }
 
 }  // namespace posewise::cli

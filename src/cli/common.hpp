@@ -43,7 +43,8 @@ std::string format_error(double si_value, bool is_angle);
 class Progress {
   public:
     Progress(std::string label, bool asked_for);
-    void operator()(Index done, Index total);
+    /// `note` is shown behind the percentage.
+    void operator()(Index done, Index total, const std::string& note = "");
 
   private:
     std::string label_;

@@ -18,6 +18,7 @@ Start with:
   posewise inspect campaign.yaml                       what can be identified at all
   posewise study campaign.yaml -m measurements.csv     how many poses are enough
   posewise select campaign.yaml -m measurements.csv -k 12    which ones
+  posewise plan campaign.yaml --poses 24               which to measure, from nothing
   posewise verify measurements.plan.json                     whether a plan is as good as it says
   posewise calibrate campaign.yaml -m measurements.csv       what came out, how sure
 
@@ -36,8 +37,8 @@ void add_commands(CLI::App& program) {
     program.require_subcommand(1);
     program.set_version_flag("--version", std::string("posewise ") + posewise::version);
     program.footer(footer);
-    for (const auto add : {add_inspect, add_indices, add_select, add_verify, add_calibrate,
-                           add_study, add_simulate}) {
+    for (const auto add : {add_inspect, add_indices, add_select, add_plan, add_verify,
+                           add_calibrate, add_study, add_simulate}) {
         add(program);
     }
 }

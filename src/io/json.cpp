@@ -41,6 +41,20 @@ void append_json(const Json& value, const std::string& indent, std::string& text
     text += '\n' + indent + (value.is_object() ? '}' : ']');
 }
 
+void add_noise(Json& assumptions, const IsotropicNoise& noise) {
+    assumptions["sigma_m"] = noise.sigma;
+}
+
+void add_noise(Json& assumptions, const PerAxisNoise& noise) {
+    assumptions["sigma_m"] = vector_to_json(noise.sigma);
+}
+
+void add_noise(Json& assumptions, const LaserTrackerNoise& noise) {
+    assumptions["range_sigma_m"] = noise.range_sigma;
+    assumptions["angle_sigma_rad"] = noise.angle_sigma;
+    assumptions["tracker_position_m"] = vector_to_json(noise.position);
+}
+
 }  // namespace
 
 Json make_document(const std::string& kind) {
@@ -88,9 +102,15 @@ Json vector_to_json(const Vector3d& vector) { return {vector.x(), vector.y(), ve
 Json assumptions_to_json(const Campaign& campaign) {
     Json assumptions;
     if (const auto* const points = dynamic_cast<const PointSensor*>(campaign.sensor.get())) {
-        assumptions["sigma_m"] = points->sigma();
+        std::visit([&](const auto& noise) { add_noise(assumptions, noise); }, points->noise());
     }
     assumptions["model_error_m"] = campaign.model_error;
+    for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {
+        const bool turns = campaign.robot.joint_motion(j) == Motion::Rotation;
+        assumptions["joint_repeatability"]
+                   [campaign.robot.joints()[static_cast<std::size_t>(j)].name + si_suffix(turns)] =
+                       campaign.joint_repeatability[j];
+    }
     const VectorXd scale = parameter_scale(campaign);
     const std::vector<bool> is_angle = parameter_is_angle(campaign);
     Json& expected = assumptions["expected_error"];

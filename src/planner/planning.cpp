@@ -13,6 +13,8 @@
 namespace posewise {
 namespace {
 
+constexpr Index test_pose_limit = 500;
+
 /// What the starts share.
 struct Problem {
     const DesignSpace& space;
@@ -22,6 +24,18 @@ struct Problem {
     StopSignal stop;
     Objective objective;
 };
+
+/// Parameters that count.
+Index interesting_count(const Problem& problem) {
+    return problem.space.parameter_count - static_cast<Index>(problem.options.nuisance.size());
+}
+
+/// The first poses of a pool spread over it as all of them do, being of a low-discrepancy sequence.
+Blocks default_test_poses(const Blocks& blocks) {
+    std::vector<Index> poses(static_cast<std::size_t>(std::min(blocks.count(), test_pose_limit)));
+    std::iota(poses.begin(), poses.end(), Index{0});
+    return take(blocks, poses);
+}
 
 /// Selection of K from the pool, as far as its time goes.
 SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
@@ -82,12 +96,12 @@ RowMatrixXd choose_from_part(const Problem& problem, Index start) {
     select.criterion = smooth_relative(options.criterion);
     select.starts = 1;
     select.kicks = 0;
-    if (select.test_poses == nullptr) select.test_poses = problem.objective.test_poses;
     return candidates(select_poses(take(problem.blocks, part), select).poses, Eigen::all);
 }
 
 /// Refinements of all starts; those whose part of the pool identifies too little are left empty.
-std::vector<Refinement> refine_starts(const Problem& problem, const RowMatrixXd& first) {
+std::vector<Refinement> refine_starts(const Problem& problem, const Plan& pool_plan) {
+    const RowMatrixXd first = problem.pool(pool_plan.poses, Eigen::all);
     const Index starts = problem.options.starts;
     std::vector<Refinement> results(static_cast<std::size_t>(starts));
     std::vector<std::exception_ptr> errors(results.size());
@@ -115,6 +129,8 @@ std::vector<Refinement> refine_starts(const Problem& problem, const RowMatrixXd&
         {
             ++progress.starts_done;
             progress.value = std::max(progress.value, results[s].value);
+            progress.efficiency = efficiency(problem.options.criterion, progress.value,
+                                             pool_plan.bound, interesting_count(problem));
             problem.options.progress(progress);
         }
     }
@@ -141,10 +157,17 @@ void report(const Problem& problem, Refinement best, PlannedPoses& planned) {
 }  // namespace
 
 PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const Blocks& blocks,
-                        const PlanOptions& options) {
+                        const PlanOptions& asked_for) {
     if (pool.rows() != blocks.count()) {
         throw InputError("the pool has " + std::to_string(pool.rows()) + " poses, its blocks " +
                          std::to_string(blocks.count()));
+    }
+    PlanOptions options = asked_for;
+    const bool has_tests = options.criterion == Criterion::G || options.criterion == Criterion::V;
+    Blocks test_poses;
+    if (has_tests && options.test_poses == nullptr) {
+        test_poses = default_test_poses(blocks);
+        options.test_poses = &test_poses;
     }
     if (options.starts < 1) {
         throw InputError("starts is " + std::to_string(options.starts) + ", must be at least 1");
@@ -162,7 +185,7 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     planned.seed = options.seed;
     planned.pool_plan = select_poses(blocks, select);
 
-    const auto results = refine_starts(problem, pool(planned.pool_plan.poses, Eigen::all));
+    const auto results = refine_starts(problem, planned.pool_plan);
     Refinement best =
         *std::max_element(results.begin(), results.end(),
                           [](const auto& a, const auto& b) { return a.value < b.value; });
@@ -185,9 +208,8 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
         search_bound(space, relaxed, options.held, options.pose_count,
                      certificate.M.size() > 0 ? certificate.M : planned.information, pool,
                      options.bound_iterations, problem.stop);
-    planned.efficiency =
-        efficiency(options.criterion, planned.value, planned.searched_bound,
-                   space.parameter_count - static_cast<Index>(options.nuisance.size()));
+    planned.efficiency = efficiency(options.criterion, planned.value, planned.searched_bound,
+                                    interesting_count(problem));
     planned.is_interrupted = problem.stop.is_set();
     return planned;
 }

@@ -53,16 +53,26 @@ TEST(PlanPoses, PredictsTheFanucWithin33MicrometresOverItsWorkspace) {
 }
 
 TEST(PlanPoses, BeatsTheBestExchangePlanOfThePoolOnEveryCriterion) {
-    const Scene scene(300, 30);
+    const Scene scene(200, 12);
     for (const char* const name : {"o1", "o2", "o3", "o4", "o5", "a", "d", "e", "g", "v"}) {
         const Criterion criterion = parse_criterion(name);
-        PlanOptions options = scene.options(criterion, 12, 2);
+        PlanOptions options = scene.options(criterion, 9, 1);
         options.bound_iterations = 1;
         const PlannedPoses plan = plan_poses(scene.space, scene.pool, scene.blocks, options);
         EXPECT_GT(plan.value, plan.pool_plan.value) << name;
         EXPECT_GE(plan.searched_bound, plan.value) << name;
-        EXPECT_EQ(plan.endings.size(), 2U);
     }
+}
+
+TEST(PlanPoses, TestsGAndVOnPartOfThePoolUnlessToldOtherwise) {
+    const Scene scene(700, 1);
+    const Blocks first = make_blocks(scene.campaign, scene.campaign.nominal, fanuc_pool(500));
+    PlanOptions options = scene.options(Criterion::V, 9, 2);
+    options.bound_iterations = 0;
+    options.test_poses = nullptr;
+    const PlannedPoses plan = plan_poses(scene.space, scene.pool, scene.blocks, options);
+    EXPECT_NEAR(plan.value / evaluate(Criterion::V, plan.information, 9, &first), 1, 1e-9);
+    EXPECT_EQ(plan.endings.size(), 2U);
 }
 
 TEST(PlanPoses, IsTheSameForAnyNumberOfThreads) {

@@ -14,12 +14,14 @@ struct PlanProgress {
     Index starts_done = 0;
     Index starts = 0;
     double value = -std::numeric_limits<double>::infinity();  ///< best so far
+    double efficiency = 0;  ///< of it against the bound over the pool; 1 if it passes that
 };
 
 struct PlanOptions {
     Criterion criterion = Criterion::V;
-    Index pose_count = 0;                ///< K, must be stated; held poses not counted
-    const Blocks* test_poses = nullptr;  ///< of G and V; the caller keeps them alive
+    Index pose_count = 0;  ///< K, must be stated; held poses not counted
+    /// Of G and V; the caller keeps them alive. Null: the first 500 poses of the pool.
+    const Blocks* test_poses = nullptr;
     /// Parameters estimated along but of no interest (see nuisance_of_robot()); not with G and V.
     std::vector<Index> nuisance;
     HeldPoses held;             ///< a prior, poses measured, or both

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewise/criteria/criterion.hpp"
+#include "posewise/measurement/campaign.hpp"
+
+namespace posewise::io {
+
+/// One pose of a plan over continuous configurations.
+struct ContinuousPose {
+    std::string id;
+    VectorXd joints;                   ///< rad or m
+    std::vector<Index> visible;        ///< targets it shows, from 0
+    std::optional<VectorXd> via = {};  ///< configuration to pass on the way there, rad or m
+    bool is_blocked = false;           ///< no free way there was found
+    bool is_kept = false;              ///< of the plan that was repaired
+};
+
+/// What was asked for.
+struct PosePlanRequest {
+    std::string campaign;  ///< path
+    Criterion criterion = Criterion::V;
+    bool has_prior = false;
+    bool is_focused_on_robot = false;
+    std::string augment;               ///< path of poses measured already; empty: none
+    std::string repaired;              ///< path of the plan that was repaired; empty: none
+    std::vector<std::string> dropped;  ///< ids of its poses that could not be reached
+    std::string workspace;             ///< path; empty: drawn
+    Index workspace_count = 0;
+    Index pool_count = 0;  ///< candidates drawn
+    Index starts = 0;
+    double repeats = 1;
+    double time_limit = 0;  ///< s; 0: none
+    std::uint64_t seed = 1;
+};
+
+/// What a file of continuous poses holds: the poses in visiting order, how good they are.
+struct PosePlanFile {
+    PosePlanRequest request;
+    std::vector<ContinuousPose> poses;
+    double value = 0;
+    Index feasible_count = 0;  ///< of the pool
+    double pool_value = 0;     ///< of the best choice found in the pool
+    double pool_bound = std::numeric_limits<double>::infinity();  ///< proven, over the pool
+    double pool_efficiency = 0;
+    double searched_bound = std::numeric_limits<double>::infinity();  ///< by a search, no proof
+    double searched_efficiency = 0;
+    Index starts_at_best = 0;
+    bool is_interrupted = false;   ///< stopped by the user or by time: the best so far
+    double predicted_rms = 0;      ///< of the position error over the workspace, m
+    double predicted_p95 = 0;      ///< m
+    VectorXd standard_deviations;  ///< of all parameters, m or rad
+    double visiting_time = 0;      ///< s
+};
+
+/// Writes the plan as JSON: joint values in rad (m) exactly and in degrees (mm) for people.
+void write_pose_plan(const std::string& path, const PosePlanFile& file, const Campaign& campaign);
+
+/// Ids, joint values and visible targets of the poses, in visiting order. Throws InputError with
+/// the place for a file that is no such plan or one of another robot.
+std::vector<ContinuousPose> read_planned_poses(const std::string& path, const Campaign& campaign);
+
+/// The configurations as CSV: config, then each joint in degrees or mm, digits enough to read the
+/// numbers back exactly. `select --candidates` reads it.
+void write_configurations_csv(const std::string& path, const Campaign& campaign,
+                              const std::vector<ContinuousPose>& poses);
+
+}  // namespace posewise::io

@@ -1,0 +1,282 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "commands.hpp"
+#include "common.hpp"
+#include "interrupt.hpp"
+#include "plan_report.hpp"
+#include "planning_problem.hpp"
+#include "posewise/report/units.hpp"
+#include "posewise/selection/bound.hpp"
+
+namespace posewise::cli {
+namespace {
+
+constexpr const char* footer = R"(
+Example:
+  posewise plan campaign.yaml --poses 24 --out plan.json --csv poses.csv
+  posewise plan campaign.yaml --poses 12 --augment measured.csv --criterion d
+  posewise plan campaign.yaml --plan plan.json --drop p7,p12 --out repaired.json
+
+Proposes configurations to measure: draws a pool within the joint limits, keeps what the campaign's
+cell allows, chooses from it, moves each pose continuously to where it tells most, and puts the
+poses in an order that is quick to visit. Nothing needs to be measured before; base and targets must
+be stated in the campaign file, if only roughly. Prints
+  pool         which constraint rejected how many candidates
+  predicted    position error of the calibrated robot over the workspace, by the covariance alone
+  pool bound   proven: no choice from the pool has a larger value
+  searched     no plan at all has a larger value, if the search met the best poses; not a proof
+  order        time at the joints' speeds, from the cell's home; a via point where the straight
+               way is not free, BLOCKED where none was found
+and tables of the poses, of the accuracy for other numbers of poses, and of how sure each parameter
+will be. The workspace is drawn within the limits and the cell's target boxes, collisions excluded,
+sight not asked for; --workspace or --workspace-box-mm state another.
+
+--augment counts what was measured already. --plan with --drop keeps the other poses of a plan as
+they are and finds new ones, at least 5 deg in some joint from those that could not be reached.
+Ctrl-C or --time end the search with the best plan so far, marked as interrupted; exit code 0.
+The same seed gives the same plan, on any number of threads, unless time ended it.)";
+
+struct Arguments {
+    PlanningArguments problem;
+    std::string focus = "all";
+    std::string out;
+    std::string csv;
+    bool progress = false;
+};
+
+/// "best 12.3, efficiency 0.95, about 7 s left".
+class ProgressNote {
+  public:
+    std::string operator()(const PlanProgress& state) const {
+        using Seconds = std::chrono::duration<double>;
+        const double elapsed = Seconds(std::chrono::steady_clock::now() - begin_).count();
+        const double left = elapsed * static_cast<double>(state.starts - state.starts_done) /
+                            static_cast<double>(state.starts_done);
+        return fmt::format("best {}, efficiency {} over the pool, about {:.0f} s left",
+                           format_short(state.value), format_fixed(state.efficiency, 3), left);
+    }
+
+  private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+PlannedPoses search(PlanningProblem& problem, const std::atomic<bool>* interrupted,
+                    bool shows_progress) {
+    PlanOptions options = problem.options;
+    if (options.criterion == Criterion::G || options.criterion == Criterion::V) {
+        options.test_poses = &problem.prediction;
+    }
+    options.interrupted = interrupted;
+    Progress progress("planning", shows_progress);
+    const ProgressNote note;
+    progress(0, options.starts, "choosing from the pool");
+    options.progress = [&](const PlanProgress& state) {
+        progress(state.starts_done, state.starts, note(state));
+    };
+    return plan_poses(problem.campaign, problem.constraints, problem.pool, problem.request.repeats,
+                      options);
+}
+
+/// p1, p2, ... but for those that poses kept have.
+class NewIds {
+  public:
+    explicit NewIds(const PlanningProblem& problem)
+        : taken_(problem.request.dropped.begin(), problem.request.dropped.end()) {
+        for (const io::ContinuousPose& pose : problem.kept) taken_.insert(pose.id);
+    }
+    std::string next() {
+        std::string id;
+        do id = fmt::format("p{}", ++last_);
+        while (taken_.count(id) > 0);
+        return id;
+    }
+
+  private:
+    std::set<std::string> taken_;
+    int last_ = 0;
+};
+
+/// All poses, kept and new, in the order of the tour; new ones are named in it.
+std::vector<io::ContinuousPose> arrange(const PlanningProblem& problem, const RowMatrixXd& poses,
+                                        const Tour& tour) {
+    NewIds ids(problem);
+    std::vector<io::ContinuousPose> arranged;
+    const auto kept = static_cast<Index>(problem.kept.size());
+    for (const Visit& visit : tour.visits) {
+        io::ContinuousPose pose;
+        if (visit.pose < kept) {
+            pose = problem.kept[static_cast<std::size_t>(visit.pose)];
+        } else {
+            pose.id = ids.next();
+            pose.joints = poses.row(visit.pose).transpose();
+            pose.visible = visible_targets(problem, pose.joints);
+        }
+        pose.via = visit.via;
+        pose.is_blocked = visit.is_blocked;
+        arranged.push_back(std::move(pose));
+    }
+    return arranged;
+}
+
+RowMatrixXd all_poses(const PlanningProblem& problem, const RowMatrixXd& planned) {
+    const auto kept = static_cast<Index>(problem.kept.size());
+    RowMatrixXd poses(kept + planned.rows(), planned.cols());
+    for (Index i = 0; i < kept; ++i) {
+        poses.row(i) = problem.kept[static_cast<std::size_t>(i)].joints.transpose();
+    }
+    poses.bottomRows(planned.rows()) = planned;
+    return poses;
+}
+
+io::PosePlanFile make_file(const PlanningProblem& problem, const PlannedPoses& planned,
+                           const PredictedAccuracy& accuracy, const Tour& tour) {
+    io::PosePlanFile file;
+    file.request = problem.request;
+    file.request.workspace_count = problem.workspace_count;
+    file.poses = arrange(problem, all_poses(problem, planned.configurations), tour);
+    file.value = planned.value;
+    file.feasible_count = problem.pool.configurations.rows();
+    file.pool_value = planned.pool_plan.value;
+    file.pool_bound = planned.pool_plan.bound;
+    file.pool_efficiency = planned.pool_plan.efficiency;
+    file.searched_bound = planned.searched_bound;
+    file.searched_efficiency = planned.efficiency;
+    file.starts_at_best = planned.starts_at_best;
+    file.is_interrupted = planned.is_interrupted;
+    file.predicted_rms = accuracy.rms;
+    file.predicted_p95 = accuracy.percentile95;
+    file.standard_deviations = standard_deviations(problem.campaign, planned.information);
+    file.visiting_time = tour.time;
+    return file;
+}
+
+std::string default_out(const std::string& campaign) {
+    return std::filesystem::path(campaign).stem().string() + ".poses.json";
+}
+
+void plan(Arguments arguments) {
+    PlanningArguments& asked = arguments.problem;
+    asked.request.is_focused_on_robot = arguments.focus == "robot";
+    if (asked.request.repaired.empty() && !asked.request.dropped.empty()) {
+        throw CLI::ValidationError("--drop", "needs the plan to drop from, --plan");
+    }
+    if (asked.request.repaired.empty() && asked.pose_count == 0)
+        throw CLI::RequiredError("--poses");
+    const InterruptFlag interrupted;
+    PlanningProblem problem = read_planning_problem(asked);
+    const PlannedPoses planned = search(problem, interrupted.get(), arguments.progress);
+    const PredictedAccuracy accuracy = predict_accuracy(problem.prediction, planned.information);
+    TourOptions tour_options;
+    tour_options.order.seed = problem.request.seed;
+    const Tour tour =
+        plan_tour(problem.constraints, all_poses(problem, planned.configurations), tour_options);
+    const io::PosePlanFile file = make_file(problem, planned, accuracy, tour);
+    const std::string out =
+        arguments.out.empty() ? default_out(asked.request.campaign) : arguments.out;
+    io::write_pose_plan(out, file, problem.campaign);
+    if (!arguments.csv.empty()) {
+        io::write_configurations_csv(arguments.csv, problem.campaign, file.poses);
+    }
+    print_pose_plan(problem, file, tour);
+    if (!file.is_interrupted) print_other_counts(problem, accuracy);
+    print_deviations(problem.campaign, file.standard_deviations);
+    print(fmt::format("\n{}plan:        {}\n",
+                      describe_scaling(problem.campaign, problem.request.repeats), out));
+    if (file.is_interrupted) {
+        std::fputs("posewise: stopped early; the plan is the best so far\n", stderr);
+    }
+}
+
+// ---- The command line ----
+
+void add_problem(CLI::App& command, PlanningArguments& problem, std::string& focus) {
+    io::PosePlanRequest& request = problem.request;
+    command.add_option("CAMPAIGN", request.campaign, "Campaign file (YAML): robot, sensor, cell")
+        ->required();
+    command
+        .add_option("-k,--poses", problem.pose_count,
+                    "How many configurations (with --plan: all together; default: as it has)")
+        ->check(CLI::Range(Index{1}, Index{10000}));
+    command
+        .add_option("-c,--criterion", problem.criterion,
+                    "o1, o2, o3, o4, o5, a, d, e, g or v; g and v: worst and mean position error "
+                    "over the workspace (default: v, with --focus robot d)")
+        ->check(criterion_check());
+    command
+        .add_option("--focus", focus,
+                    "all, or robot: base and targets are estimated along, but do not count")
+        ->check(CLI::IsMember({"all", "robot"}))
+        ->capture_default_str();
+    command.add_option("--augment", request.augment, "Poses measured already (CSV or .mat): held");
+    command.add_option("--plan", request.repaired, "Plan to repair: its poses are held");
+    command.add_option("--drop", request.dropped, "Ids of its poses to replace, by commas")
+        ->delimiter(',');
+    command.add_flag("--prior,!--no-prior", problem.prior,
+                     "The scale of each robot error is also its prior standard deviation; --poses "
+                     "may then be below what identifies (default: the campaign's)");
+    command.add_option("--repeats", request.repeats, "Samples of each configuration")
+        ->check(CLI::Range(1.0, 1e9))
+        ->capture_default_str();
+}
+
+void add_workspace(CLI::App& command, PlanningArguments& problem) {
+    io::PosePlanRequest& request = problem.request;
+    command.add_option("--workspace", request.workspace,
+                       "Configurations (CSV) where the robot shall be accurate (default: drawn)");
+    command
+        .add_option("--workspace-poses", request.workspace_count,
+                    "How many are drawn for it otherwise")
+        ->check(CLI::Range(Index{1}, Index{20000}))
+        ->default_val(Index{500});
+    command
+        .add_option("--workspace-box-mm", problem.workspace_box_mm,
+                    "Box of the base frame that targets are in then: least x,y,z,largest x,y,z "
+                    "(default: the cell's target boxes)")
+        ->delimiter(',')
+        ->expected(6);
+    command
+        .add_option("--workspace-target", problem.target,
+                    "Target whose position counts, from 1 (0: all of them)")
+        ->check(CLI::Range(Index{0}, Index{10000}))
+        ->capture_default_str();
+}
+
+void add_search(CLI::App& command, Arguments& arguments) {
+    io::PosePlanRequest& request = arguments.problem.request;
+    command.add_option("--pool", request.pool_count, "Candidates to draw")
+        ->check(CLI::Range(Index{1}, Index{10000000}))
+        ->default_val(Index{20000});
+    command.add_option("--starts", request.starts, "Plans that are refined")
+        ->check(CLI::Range(Index{1}, Index{100000}))
+        ->default_val(Index{16});
+    command.add_option("--seed", arguments.problem.seed, "Of all draws (default: the campaign's)")
+        ->check(CLI::NonNegativeNumber);
+    command.add_option("--time", request.time_limit, "Seconds after which to stop")
+        ->check(CLI::PositiveNumber);
+    command.add_option("-o,--out", arguments.out,
+                       "Plan file (default: <campaign>.poses.json in this folder)");
+    command.add_option("--csv", arguments.csv, "Write the configurations as CSV, too");
+    command.add_flag("--progress", arguments.progress,
+                     "Show progress on standard error even if it is no terminal");
+}
+
+}  // namespace
+
+void add_plan(CLI::App& program) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App* command =
+        program.add_subcommand("plan", "Propose configurations to measure, from nothing");
+    add_problem(*command, arguments->problem, arguments->focus);
+    add_workspace(*command, arguments->problem);
+    add_search(*command, *arguments);
+    command->footer(footer);
+    command->callback([arguments] { plan(*arguments); });
+}
+
+}  // namespace posewise::cli

@@ -1,0 +1,250 @@
+#include "planning_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "common.hpp"
+#include "posewise/calibrator/estimate.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/planner/tour.hpp"
+#include "posewise/report/units.hpp"
+
+namespace posewise::cli {
+namespace {
+
+constexpr Index draws_per_workspace_pose = 20;
+/// New poses keep so far from those that could not be reached (some joint, rad).
+constexpr double distance_from_dropped = 5 * std::numbers::pi / 180;
+/// Another robot's measurements are off by more than so many expected errors.
+constexpr double credible_errors = 10;
+
+// ---- Poses measured already ----
+
+/// The nominal robot explains its own measurements to about the expected error, another's not.
+void check_is_of_robot(const Campaign& campaign, const Measurements& measured,
+                       const std::string& path) {
+    Parameters fitted;
+    try {
+        fitted = register_base_and_targets(campaign, measured);
+    } catch (const InputError&) {
+        return;  // too few to tell
+    }
+    const double error = make_metrics(mean_residuals(campaign, fitted, measured)).distance_rms;
+    const Blocks blocks = make_prediction_blocks(campaign, fitted, measured.configurations);
+    const auto points = static_cast<double>(blocks.matrix.rows()) / 3;
+    const double expected =
+        std::sqrt(blocks.matrix.middleCols(6, campaign.robot.parameter_count()).squaredNorm() /
+                  points) +
+        campaign.model_error;
+    if (error <= credible_errors * expected) return;
+    throw input_error_at(
+        {path}, fmt::format("are these of another robot? The nominal robot misses them by {} mm "
+                            "RMS; must be about {} mm, as the spread of {} says",
+                            format_short(mm_per_m * error, 3), format_short(mm_per_m * expected, 3),
+                            campaign.name));
+}
+
+void settle_base(Campaign& campaign, const std::optional<Measurements>& measured) {
+    if (campaign.has_nominal_base && campaign.has_nominal_targets) return;
+    if (!measured) {
+        throw InputError(campaign.name + ": the campaign file states no " +
+                         (campaign.has_nominal_base ? "target positions" : "base") +
+                         "; must state base and sensor.targets.position_mm to plan, or measured "
+                         "poses (--augment) must tell them");
+    }
+    campaign.nominal = register_base_and_targets(campaign, *measured);
+    campaign.nominal.robot.setZero();
+    campaign.has_nominal_base = campaign.has_nominal_targets = true;
+}
+
+// ---- Information held ----
+
+void hold(PlanningProblem& problem, const MatrixXd& information, const RowMatrixXd& poses) {
+    HeldPoses& held = problem.options.held;
+    const Index L = parameter_count(problem.campaign);
+    if (held.information.size() == 0) held.information.setZero(L, L);
+    held.information += information;
+    RowMatrixXd all(held.configurations.rows() + poses.rows(),
+                    problem.campaign.robot.joint_count());
+    if (held.configurations.rows() > 0)
+        all.topRows(held.configurations.rows()) = held.configurations;
+    if (poses.rows() > 0) all.bottomRows(poses.rows()) = poses;
+    held.configurations = std::move(all);
+}
+
+void hold_prior(PlanningProblem& problem) {
+    VectorXd prior = VectorXd::Zero(parameter_count(problem.campaign));
+    prior.segment(6, problem.campaign.robot.parameter_count()).setOnes();
+    hold(problem, prior.asDiagonal(), {});
+}
+
+void hold_measured(PlanningProblem& problem, const Measurements& measured) {
+    hold(problem,
+         information(make_blocks(problem.campaign, problem.campaign.nominal,
+                                 measured.configurations, mean_repeats(measured))),
+         measured.configurations);
+    problem.measured_count = measured.configuration_count();
+    problem.options.held_pose_count += problem.measured_count;
+}
+
+RowMatrixXd configurations_of(const std::vector<io::ContinuousPose>& poses, Index joint_count) {
+    RowMatrixXd configurations(static_cast<Index>(poses.size()), joint_count);
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        configurations.row(i) = poses[static_cast<std::size_t>(i)].joints.transpose();
+    }
+    return configurations;
+}
+
+/// Keeps the poses of a plan but those dropped, which new poses only must stay away from.
+void hold_kept(PlanningProblem& problem, std::vector<io::ContinuousPose> poses) {
+    const Campaign& campaign = problem.campaign;
+    const Index joints = campaign.robot.joint_count();
+    const auto& ids = problem.request.dropped;
+    for (const std::string& id : ids) {
+        const auto has_id = [&](const auto& pose) { return pose.id == id; };
+        if (std::none_of(poses.begin(), poses.end(), has_id)) {
+            throw InputError(
+                fmt::format("--drop {}: {} has no such pose", id, problem.request.repaired));
+        }
+    }
+    const auto dropped = std::stable_partition(poses.begin(), poses.end(), [&](const auto& pose) {
+        return std::find(ids.begin(), ids.end(), pose.id) == ids.end();
+    });
+    const std::vector<io::ContinuousPose> away(dropped, poses.end());
+    poses.erase(dropped, poses.end());
+    const Index L = parameter_count(campaign);
+    hold(problem, MatrixXd::Zero(L, L), configurations_of(away, joints));
+    std::vector<std::vector<bool>> is_visible;
+    for (io::ContinuousPose& pose : poses) {
+        pose.is_kept = true;
+        is_visible.emplace_back(static_cast<std::size_t>(campaign.sensor->row_count() / 3));
+        for (const Index target : pose.visible) {
+            is_visible.back()[static_cast<std::size_t>(target)] = true;
+        }
+    }
+    problem.kept = std::move(poses);
+    if (problem.kept.empty()) return;
+    const RowMatrixXd configurations = configurations_of(problem.kept, joints);
+    hold(problem,
+         information(make_visible_blocks(campaign, campaign.nominal, configurations, is_visible,
+                                         problem.request.repeats)),
+         configurations);
+    problem.options.held_pose_count += configurations.rows();
+}
+
+// ---- How many, and where it matters ----
+
+void count_new_poses(PlanningProblem& problem, Index asked_for) {
+    const auto kept = static_cast<Index>(problem.kept.size());
+    const Index count =
+        asked_for > 0 ? asked_for : kept + static_cast<Index>(problem.request.dropped.size());
+    if (count <= kept) {
+        throw InputError(fmt::format("--poses is {}, must be above {}, as many as are kept of {}",
+                                     count, kept, problem.request.repaired));
+    }
+    problem.options.pose_count = count - kept;
+    if (problem.options.held.information.size() > 0) return;  // selection says if it is too few
+    const Index least = least_pose_count(problem.campaign);
+    if (count < least) {
+        throw InputError(
+            fmt::format("--poses is {}, must be at least {}: fewer do not identify {} "
+                        "parameters; or let --prior tell the rest",
+                        count, least, parameter_count(problem.campaign)));
+    }
+}
+
+RowMatrixXd find_workspace(const PlanningArguments& arguments, const io::CampaignFile& file,
+                           const Campaign& campaign, std::uint64_t seed) {
+    const io::PosePlanRequest& request = arguments.request;
+    if (!request.workspace.empty()) return io::read_configurations(request.workspace, file).joints;
+    Cell cell = file.cell;
+    cell.sight.reset();  // the robot works where the tracker sees nothing, too
+    if (const auto& box = arguments.workspace_box_mm; !box.empty()) {
+        cell.target_boxes = {{Vector3d(box[0], box[1], box[2]) / mm_per_m,
+                              Vector3d(box[3], box[4], box[5]) / mm_per_m}};
+    }
+    const Index count = request.workspace_count;
+    try {
+        const Pool pool = make_pool(Constraints(campaign, std::move(cell)),
+                                    draws_per_workspace_pose * count, seed + 1);
+        return pool.configurations.topRows(std::min(count, pool.configurations.rows()));
+    } catch (const InputError& error) {
+        throw InputError(std::string("workspace: ") + error.what());
+    }
+}
+
+io::PosePlanRequest complete_request(const PlanningArguments& arguments,
+                                     const io::CampaignFile& file) {
+    io::PosePlanRequest request = arguments.request;
+    request.seed = arguments.seed.value_or(file.seed);
+    request.has_prior = arguments.prior.value_or(file.prior);
+    request.criterion = !arguments.criterion.empty()  ? parse_criterion(arguments.criterion)
+                        : request.is_focused_on_robot ? Criterion::D
+                                                      : Criterion::V;
+    return request;
+}
+
+void apply_options(PlanningProblem& problem) {
+    PlanOptions& options = problem.options;
+    options.criterion = problem.request.criterion;
+    options.starts = problem.request.starts;
+    options.seed = problem.request.seed;
+    options.time_limit = problem.request.time_limit;
+    if (problem.request.is_focused_on_robot) {
+        options.nuisance = nuisance_of_robot(problem.campaign);
+    }
+}
+
+}  // namespace
+
+PlanningProblem read_planning_problem(const PlanningArguments& arguments) {
+    io::CampaignFile file = io::read_campaign(arguments.request.campaign);
+    const io::PosePlanRequest request = complete_request(arguments, file);
+    std::optional<Measurements> measured;
+    if (!request.augment.empty()) {
+        measured = io::read_measurements(request.augment, file);
+        check_is_of_robot(file.campaign, *measured, request.augment);
+    }
+    settle_base(file.campaign, measured);
+    std::vector<io::ContinuousPose> repaired;
+    if (!request.repaired.empty()) {
+        repaired = io::read_planned_poses(request.repaired, file.campaign);
+        double& distance = file.cell.least_joint_distance;
+        distance = std::max(distance, distance_from_dropped);
+    }
+    const Campaign& campaign = file.campaign;
+    PlanningProblem problem{request, campaign, Constraints(campaign, file.cell), {}, {}, 0, 0,
+                            {},      {}};
+    apply_options(problem);
+    if (request.has_prior) hold_prior(problem);
+    if (measured) hold_measured(problem, *measured);
+    if (!request.repaired.empty()) hold_kept(problem, std::move(repaired));
+    count_new_poses(problem, arguments.pose_count);
+    problem.pool = make_pool(problem.constraints, request.pool_count, request.seed);
+    plan_tour(problem.constraints, problem.pool.configurations.topRows(1));  // throws early if home
+    const RowMatrixXd workspace = find_workspace(arguments, file, campaign, request.seed);
+    problem.workspace_count = workspace.rows();
+    problem.prediction =
+        make_prediction_blocks(campaign, campaign.nominal, workspace, arguments.target - 1);
+    return problem;
+}
+
+std::vector<Index> visible_targets(const PlanningProblem& problem, const VectorXd& q) {
+    const std::vector<bool> is_visible = problem.constraints.check(q).is_visible;
+    std::vector<Index> visible;
+    for (Index target = 0; target < problem.campaign.sensor->row_count() / 3; ++target) {
+        if (is_visible.empty() || is_visible[static_cast<std::size_t>(target)]) {
+            visible.push_back(target);
+        }
+    }
+    return visible;
+}
+
+}  // namespace posewise::cli

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewise/io/campaign_file.hpp"
+#include "posewise/io/pose_plan_file.hpp"
+#include "posewise/planner/planning.hpp"
+#include "posewise/planner/prediction.hpp"
+
+namespace posewise::cli {
+
+/// What the command line of `plan` says.
+struct PlanningArguments {
+    io::PosePlanRequest request;
+    Index pose_count = 0;  ///< all together; 0: as many as the plan to repair has
+    std::string criterion;
+    std::optional<bool> prior;
+    std::optional<std::uint64_t> seed;
+    std::vector<double> workspace_box_mm;  ///< least x, y, z, then largest; empty: the cell's boxes
+    Index target = 0;                      ///< to predict for, from 1; 0: all
+};
+
+/// A planning problem with all its files read, ready to be solved.
+struct PlanningProblem {
+    io::PosePlanRequest request;  ///< complete, defaults of the campaign filled in
+    Campaign campaign;            ///< base and targets registered if only --augment tells them
+    Constraints constraints;
+    Pool pool;
+    std::vector<io::ContinuousPose> kept;  ///< of the plan to repair
+    Index measured_count = 0;              ///< poses of --augment
+    Index workspace_count = 0;
+    Blocks prediction;    ///< target positions over the workspace
+    PlanOptions options;  ///< without test poses, which are `prediction` for G and V
+};
+
+/// Reads what the arguments name, draws pool and workspace. Throws InputError for files that cannot
+/// be used, or not together, and for a cell without a feasible pose.
+PlanningProblem read_planning_problem(const PlanningArguments& arguments);
+
+/// Targets a pose shows, from 0; all if the cell does not speak of sight.
+std::vector<Index> visible_targets(const PlanningProblem& problem, const VectorXd& q);
+
+}  // namespace posewise::cli

@@ -1,0 +1,167 @@
+#include "posewise/io/pose_plan_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "csv_reader.hpp"
+#include "json_reader.hpp"
+#include "posewise/io/atomic_file.hpp"
+
+namespace posewise::io {
+namespace {
+
+constexpr const char* kind = "pose plan";
+
+bool turns(const Campaign& campaign, Index joint) {
+    return campaign.robot.joint_motion(joint) == Motion::Rotation;
+}
+
+const std::string& joint_name(const Campaign& campaign, Index joint) {
+    return campaign.robot.joints()[static_cast<std::size_t>(joint)].name;
+}
+
+/// Degrees or millimetres.
+double for_people(const Campaign& campaign, Index joint, double value) {
+    return turns(campaign, joint) ? value * 180 / std::numbers::pi : 1e3 * value;
+}
+
+Json optional_text(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+Json joints_to_json(const Campaign& campaign, const VectorXd& q) {
+    Json json;
+    for (Index j = 0; j < q.size(); ++j) {
+        json[joint_name(campaign, j) + si_suffix(turns(campaign, j))] = q[j];
+    }
+    return json;
+}
+
+Json pose_to_json(const Campaign& campaign, const ContinuousPose& pose) {
+    Json json = {{"id", pose.id}, {"joints", joints_to_json(campaign, pose.joints)}};
+    for (Index j = 0; j < pose.joints.size(); ++j) {
+        const char* const unit = turns(campaign, j) ? "_deg" : "_mm";
+        json["readable"][joint_name(campaign, j) + unit] =
+            std::round(1e4 * for_people(campaign, j, pose.joints[j])) / 1e4;
+    }
+    json["visible_targets"] = Json::array();
+    for (const Index target : pose.visible) json["visible_targets"].push_back(target + 1);
+    json["via"] = pose.via ? joints_to_json(campaign, *pose.via) : Json(nullptr);
+    json["way_is_blocked"] = pose.is_blocked;
+    json["kept"] = pose.is_kept;
+    return json;
+}
+
+Json request_to_json(const PosePlanRequest& request) {
+    return {{"campaign_file", request.campaign},
+            {"prior", request.has_prior},
+            {"focus", request.is_focused_on_robot ? "robot" : "all"},
+            {"augment", optional_text(request.augment)},
+            {"repaired_plan", optional_text(request.repaired)},
+            {"dropped", request.dropped},
+            {"workspace", optional_text(request.workspace)},
+            {"workspace_poses", request.workspace_count},
+            {"pool", request.pool_count},
+            {"starts", request.starts},
+            {"repeats", request.repeats},
+            {"time_limit_s", request.time_limit},
+            {"seed", request.seed}};
+}
+
+Json bounds_to_json(const PosePlanFile& file) {
+    return {{"pool",
+             {{"feasible", file.feasible_count},
+              {"value", file.pool_value},
+              {"bound", file.pool_bound},
+              {"efficiency", file.pool_efficiency},
+              {"is_proven", true}}},
+            {"continuous",
+             {{"bound", file.searched_bound},
+              {"efficiency", file.searched_efficiency},
+              {"is_proven", false}}}};
+}
+
+Json deviations_to_json(const Campaign& campaign, const VectorXd& deviations) {
+    const auto names = parameter_names(campaign);
+    const auto is_angle = parameter_is_angle(campaign);
+    Json json;
+    for (Index k = 0; k < deviations.size(); ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        json[names[i] + si_suffix(is_angle[i])] = deviations[k];
+    }
+    return json;
+}
+
+ContinuousPose read_pose(const JsonValue& json, const Campaign& campaign) {
+    ContinuousPose pose;
+    pose.id = json["id"].text();
+    pose.joints.resize(campaign.robot.joint_count());
+    const JsonValue joints = json["joints"];
+    for (Index j = 0; j < pose.joints.size(); ++j) {
+        pose.joints[j] = joints[joint_name(campaign, j) + si_suffix(turns(campaign, j))].number();
+    }
+    if (static_cast<Index>(joints.values().size()) != pose.joints.size()) {
+        throw joints.error(fmt::format("has {} joints, the campaign's robot has {}",
+                                       joints.values().size(), pose.joints.size()));
+    }
+    const Index targets = campaign.sensor->row_count() / 3;
+    for (const JsonValue& target : json["visible_targets"].list()) {
+        const Index number = target.count(1);
+        if (number > targets) {
+            throw target.error(fmt::format("is {}, the campaign has {} targets", number, targets));
+        }
+        pose.visible.push_back(number - 1);
+    }
+    return pose;
+}
+
+}  // namespace
+
+void write_pose_plan(const std::string& path, const PosePlanFile& file, const Campaign& campaign) {
+    Json document = make_document(kind);
+    document["campaign"] = campaign.name;
+    document["asked_for"] = request_to_json(file.request);
+    document["criterion"] = criterion_name(file.request.criterion);
+    document["value"] = file.value;
+    document["bounds"] = bounds_to_json(file);
+    document["starts_at_best"] = file.starts_at_best;
+    document["is_interrupted"] = file.is_interrupted;
+    document["predicted"] = {
+        {"position_error_rms_m", file.predicted_rms},
+        {"position_error_p95_m", file.predicted_p95},
+        {"standard_deviation", deviations_to_json(campaign, file.standard_deviations)}};
+    document["visiting_time_s"] = file.visiting_time;
+    document["assumes"] = assumptions_to_json(campaign);
+    Json& poses = document["poses"] = Json::array();
+    for (const ContinuousPose& pose : file.poses) poses.push_back(pose_to_json(campaign, pose));
+    write_json(path, document);
+}
+
+std::vector<ContinuousPose> read_planned_poses(const std::string& path, const Campaign& campaign) {
+    const Json document = read_document(path, kind);
+    std::vector<ContinuousPose> poses;
+    for (const JsonValue& json : JsonValue(document, path)["poses"].list()) {
+        poses.push_back(read_pose(json, campaign));
+    }
+    return poses;
+}
+
+void write_configurations_csv(const std::string& path, const Campaign& campaign,
+                              const std::vector<ContinuousPose>& poses) {
+    std::string text = "config";
+    const auto out = std::back_inserter(text);
+    for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
+        fmt::format_to(out, ",{}{}", joint_name(campaign, j), turns(campaign, j) ? "_deg" : "_mm");
+    }
+    text += '\n';
+    for (const ContinuousPose& pose : poses) {
+        text += csv_field(pose.id);
+        for (Index j = 0; j < pose.joints.size(); ++j) {
+            fmt::format_to(out, ",{}", for_people(campaign, j, pose.joints[j]));
+        }
+        text += '\n';
+    }
+    write_file(path, text);
+}
+
+}  // namespace posewise::io
