@@ -44,32 +44,41 @@ class FileDescriptor {
 
     bool sync() const { return ::fsync(fd_) == 0; }
 
-    bool read(std::string& content) const {
+    /// Reads to the end, or until there is more than `most`.
+    bool read(std::string& content, std::size_t most) const {
         char buffer[1 << 16];
-        for (;;) {
+        while (content.size() <= most) {
             const ssize_t count = ::read(fd_, buffer, sizeof buffer);
             if (count == 0) return true;
             if (count < 0 && errno != EINTR) return false;
             if (count > 0) content.append(buffer, static_cast<std::size_t>(count));
         }
+        return true;
     }
 
   private:
     int fd_;
 };
 
-/// A name beside the file that no other writer uses.
+/// A name beside the file that no other writer uses; short, since the file's own may be as long as
+/// names can be.
 std::string temporary_name(const std::string& path) {
     static std::atomic<unsigned> count{0};
-    return path + "." + std::to_string(::getpid()) + "." + std::to_string(count++) + ".tmp";
+    const std::string name =
+        ".posewise." + std::to_string(::getpid()) + "." + std::to_string(count++) + ".tmp";
+    return (fs::path(path).parent_path() / name).string();
 }
 
 /// Where a path leads: a link is followed, so that the file it names is replaced, not the link.
 std::string follow_link(const std::string& path) {
     std::error_code error;
     if (!fs::is_symlink(path, error)) return path;
-    const fs::path target = fs::weakly_canonical(path, error);
-    return error ? path : target.string();
+    const fs::file_status status = fs::status(path, error);
+    if (fs::exists(status)) return fs::canonical(path).string();
+    if (status.type() != fs::file_type::not_found) {
+        throw input_error_at({path}, "is a link that leads nowhere: " + error.message());
+    }
+    return follow_link((fs::path(path).parent_path() / fs::read_symlink(path)).string());
 }
 
 }  // namespace
@@ -103,14 +112,18 @@ void write_file(const std::string& path, const std::string& content) {
     }
 }
 
-std::string read_file(const std::string& path) {
+std::string read_file(const std::string& path, std::size_t most) {
     std::error_code error;
     if (fs::is_directory(path, error)) {
         throw input_error_at({path}, "is a directory; must be a file");
     }
     const FileDescriptor file(path, O_RDONLY | O_CLOEXEC);
     std::string content;
-    if (!file.is_open() || !file.read(content)) throw failure(path, "cannot be read");
+    if (!file.is_open() || !file.read(content, most)) throw failure(path, "cannot be read");
+    if (content.size() > most) {
+        throw input_error_at(
+            {path}, "is larger than " + std::to_string(most >> 20) + " MiB; must be smaller");
+    }
     return content;
 }
 

@@ -32,8 +32,8 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign) {
     for (const YamlEntry& entry : parameters->entries()) {
         const auto found = std::find(names.begin(), names.end(), entry.key);
         if (found == names.end()) {
-            throw input_error_at(entry.key_location, "'" + entry.key +
-                                                         "' is no parameter of this campaign; " +
+            throw input_error_at(entry.key_location, quote(entry.key) +
+                                                         " is no parameter of this campaign; " +
                                                          suggest(entry.key, names));
         }
         const auto index = static_cast<std::size_t>(found - names.begin());
@@ -48,7 +48,7 @@ double read_unit(const YamlMap& map, std::string_view key, Quantity quantity) {
     if (!value) return 1;
     const Unit* const unit = find_unit(value->text());
     if (unit == nullptr || unit->quantity != quantity) {
-        throw value->error("is '" + value->text() + "'; must be " +
+        throw value->error("is " + quote(value->text()) + "; must be " +
                            list_words(unit_names(quantity)));
     }
     return unit->to_si(1);
@@ -88,13 +88,30 @@ Campaign make_complete(const Campaign& campaign, const YamlValue& robot) {
     }
 }
 
+constexpr const char* plausible_amount = "from 1e-12 to 1000 (m or rad)";
+
+bool is_plausible_amount(double si) { return si >= 1e-12 && si <= 1e3; }
+
+/// One line of text: it becomes the title of plots and a comment of other files.
+std::string read_name(const YamlValue& value) {
+    const std::string name = value.text();
+    if (escape_controls(name) != name) {
+        throw value.error("is " + quote(name) + "; must be one line without control characters");
+    }
+    return name;
+}
+
 }  // namespace
 
 double read_positive(const YamlMeasure& measure, bool zero_allowed) {
     const double value = measure.to_si();
+    const std::string stated = "is " + quote(measure.value.text());
     if (value < 0 || (value == 0 && !zero_allowed)) {
-        throw measure.value.error("is " + measure.value.text() + "; must be " +
+        throw measure.value.error(stated + "; must be " +
                                   (zero_allowed ? "zero or positive" : "positive"));
+    }
+    if (value != 0 && !is_plausible_amount(value)) {
+        throw measure.value.error(stated + "; must be " + plausible_amount);
     }
     return value;
 }
@@ -106,11 +123,18 @@ double read_amount(const YamlValue& value, Quantity quantity, Sign sign) {
     const Unit* const unit = find_unit(trim(std::string_view(text).substr(blank)));
     const bool is_sign_right = sign == Sign::Any || number.value > 0;
     if (!number.ok() || unit == nullptr || unit->quantity != quantity || !is_sign_right) {
-        throw value.error("is '" + text + "'; must be a " +
+        throw value.error("is " + quote(text) + "; must be a " +
                           (sign == Sign::Positive ? "positive " : "") + "number and a unit, " +
                           list_words(unit_names(quantity)));
     }
-    return unit->to_si(number.value);
+    const double si = unit->to_si(number.value);
+    if (sign == Sign::Positive && !is_plausible_amount(si)) {
+        throw value.error("is " + quote(text) + "; must be " + plausible_amount);
+    }
+    if (!is_plausible(si, quantity)) {
+        throw value.error("is " + quote(text) + "; must be " + plausible(quantity));
+    }
+    return si;
 }
 
 CampaignFile read_campaign(const std::string& path) {
@@ -120,7 +144,7 @@ CampaignFile read_campaign(const std::string& path) {
     CampaignFile file;
     file.path = path;
     Campaign& campaign = file.campaign;
-    campaign.name = map.require("name").text();
+    campaign.name = read_name(map.require("name"));
 
     const RobotSection robot = read_robot(map.require("robot"));
     file.declared_robot = robot.declared;

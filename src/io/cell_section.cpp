@@ -80,7 +80,7 @@ Index find_joint(const Chain& robot, const std::string& name, const FileLocation
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
         throw input_error_at(location,
-                             "'" + name + "' is no joint of this robot; " + suggest(name, names));
+                             quote(name) + " is no joint of this robot; " + suggest(name, names));
     }
     return found - names.begin();
 }
@@ -91,7 +91,7 @@ Index read_frame(const YamlValue& after, const Chain& robot) {
     std::vector<std::string> known{"base", "flange"};
     for (const std::string& name : names_of_joints(robot)) known.push_back(name);
     if (std::find(known.begin(), known.end(), after.text()) == known.end()) {
-        throw after.error("is '" + after.text() + "', which is no frame of this robot; " +
+        throw after.error("is " + quote(after.text()) + ", which is no frame of this robot; " +
                           suggest(after.text(), known));
     }
     return find_joint(robot, after.text(), after.location()) + 1;
@@ -108,11 +108,11 @@ Link read_link(const YamlValue& value, const Chain& robot) {
 }
 
 Interval read_interval(const YamlMeasure& measure) {
-    const std::vector<double> ends = measure.value.numbers(2);
+    const VectorXd ends = measure.list_to_si(2);
     if (ends[0] >= ends[1]) {
         throw measure.value.error("is not in order; the lower end must come first");
     }
-    return {measure.unit->to_si(ends[0]), measure.unit->to_si(ends[1])};
+    return {ends[0], ends[1]};
 }
 
 void read_tracker(const YamlValue& value, Sight& sight) {
@@ -164,9 +164,7 @@ void read_reflectors(const YamlValue& value, Index target_count, Sight& sight) {
 
 /// One value a joint, all of which must turn.
 VectorXd read_joint_angles(const YamlMeasure& measure, const Chain& robot) {
-    const std::vector<double> numbers =
-        measure.value.numbers(static_cast<std::size_t>(robot.joint_count()));
-    VectorXd angles(robot.joint_count());
+    VectorXd angles = measure.list_to_si(static_cast<std::size_t>(robot.joint_count()));
     for (Index j = 0; j < angles.size(); ++j) {
         if (robot.joint_motion(j) != Motion::Rotation) {
             throw measure.value.error("is in '" + std::string(measure.unit->name) +
@@ -174,7 +172,6 @@ VectorXd read_joint_angles(const YamlMeasure& measure, const Chain& robot) {
                                       robot.joints()[static_cast<std::size_t>(j)].name +
                                       "' slides; only for robots whose joints all turn");
         }
-        angles[j] = measure.unit->to_si(numbers[static_cast<std::size_t>(j)]);
     }
     return angles;
 }
@@ -186,8 +183,8 @@ void read_fixed(const YamlValue& value, const Chain& robot, Cell& cell) {
             read_amount(entry.value, quantity_of(robot.joint_motion(index)), Sign::Any);
         const Joint& joint = robot.joints()[static_cast<std::size_t>(index)];
         if (amount < joint.lower || amount > joint.upper) {
-            throw entry.value.error("is '" + entry.value.text() +
-                                    "'; must lie within the joint's limits");
+            throw entry.value.error("is " + quote(entry.value.text()) +
+                                    "; must lie within the joint's limits");
         }
         cell.fixed_joints[index] = amount;
     }

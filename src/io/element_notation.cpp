@@ -35,6 +35,12 @@ class ElementParser::Cursor {
         return position_ < text_.size() ? text_[position_] : '\0';
     }
 
+    /// The whole UTF-8 character at the position, which is not the end.
+    std::string_view character() const {
+        const std::string_view rest = text_.substr(position_);
+        return rest.substr(0, character_length(rest));
+    }
+
     bool accept(char wanted) {
         if (peek() != wanted) return false;
         ++position_;
@@ -95,8 +101,8 @@ Element ElementParser::parse(std::string_view text, const FileLocation& start) {
     const std::size_t kind_position = cursor.position();
     const std::string kind = cursor.read_word();
     if (!is_kind(kind)) {
-        throw cursor.error(kind_position, "an element begins with Tx, Ty, Tz, Rx, Ry or Rz, not '" +
-                                              kind + "'; " + example);
+        throw cursor.error(kind_position, "an element begins with Tx, Ty, Tz, Rx, Ry or Rz, not " +
+                                              quote(kind) + "; " + example);
     }
     Element element;
     element.motion = kind[0] == 'R' ? Motion::Rotation : Motion::Translation;
@@ -104,8 +110,8 @@ Element ElementParser::parse(std::string_view text, const FileLocation& start) {
     parse_sum(cursor, element);
     if (cursor.peek() == '[') parse_parameter(cursor, element);
     if (cursor.peek() != '\0') {
-        throw cursor.error(cursor.position(), std::string("'") + cursor.peek() +
-                                                  "' is not expected here; an element " + example);
+        throw cursor.error(cursor.position(), quote(cursor.character()) +
+                                                  " is not expected here; an element " + example);
     }
     for (const JointTerm& term : element.joints) {
         driven_[static_cast<std::size_t>(term.joint)] = element.motion;
@@ -143,6 +149,8 @@ void ElementParser::parse_term(Cursor& cursor, double sign, Element& element) co
         add_nominal(cursor, number, start, element);
     } else if (number == 0) {
         throw cursor.error(start, "a joint's coefficient is 0; must not be, leave the joint out");
+    } else if (!(std::abs(number) >= 1e-6 && std::abs(number) <= 1e6)) {
+        throw cursor.error(start, "a joint's coefficient must be from 1e-6 to 1e6 in magnitude");
     } else {
         add_joint(cursor, number, element);
     }
@@ -161,16 +169,16 @@ void ElementParser::add_nominal(Cursor& cursor, double number, std::size_t start
     }
     const Unit* const unit = find_unit(name);
     if (std::find(joint_names_.begin(), joint_names_.end(), name) != joint_names_.end()) {
-        throw cursor.error(unit_position, "a '*' is missing before joint '" + name +
-                                              "'; must be like -1.5*" + name);
+        throw cursor.error(unit_position, "a '*' is missing before joint " + quote(name) +
+                                              "; must be like -1.5*" + name);
     }
     if (unit == nullptr || unit->quantity != quantity) {
-        throw cursor.error(unit_position, describe(element) + ", its amount cannot be in '" + name +
-                                              "'; must be in " + units);
+        throw cursor.error(unit_position, describe(element) + ", its amount cannot be in " +
+                                              quote(name) + "; must be in " + units);
     }
     element.value += unit->to_si(number);
-    if (!std::isfinite(element.value)) {
-        throw cursor.error(start, "the amount is not finite; must be a finite number");
+    if (!is_plausible(element.value, quantity)) {
+        throw cursor.error(start, "the amount is too large; must be " + plausible(quantity));
     }
 }
 
@@ -181,20 +189,20 @@ void ElementParser::add_joint(Cursor& cursor, double coefficient, Element& eleme
     const auto found = std::find(joint_names_.begin(), joint_names_.end(), name);
     if (found == joint_names_.end()) {
         throw cursor.error(
-            position, "'" + name + "' is no joint of the robot; " + suggest(name, joint_names_));
+            position, quote(name) + " is no joint of the robot; " + suggest(name, joint_names_));
     }
     const Index joint = found - joint_names_.begin();
     const auto same = [joint](const JointTerm& term) { return term.joint == joint; };
     if (std::any_of(element.joints.begin(), element.joints.end(), same)) {
-        throw cursor.error(position, "joint '" + name +
-                                         "' occurs twice in one element; write it "
+        throw cursor.error(position, "joint " + quote(name) +
+                                         " occurs twice in one element; write it "
                                          "once with a coefficient, like 2*" +
                                          name);
     }
     const auto driven = joint_motion(joint);
     if (driven && *driven != element.motion) {
-        throw cursor.error(position, describe(element) + " but joint '" + name +
-                                         "' drives the other kind before; must drive one kind, "
+        throw cursor.error(position, describe(element) + " but joint " + quote(name) +
+                                         " drives the other kind before; must drive one kind, "
                                          "since its unit is either rad or m");
     }
     element.joints.push_back({joint, coefficient});
@@ -211,17 +219,17 @@ void ElementParser::parse_parameter(Cursor& cursor, Element& element) {
                            "letters, digits and underscores, like [Tx1]");
     }
     if (!cursor.accept(']')) {
-        throw cursor.error(cursor.position(), "a ']' must stand behind parameter '" + name + "'");
+        throw cursor.error(cursor.position(), "a ']' must stand behind parameter " + quote(name));
     }
     if (std::find(joint_names_.begin(), joint_names_.end(), name) != joint_names_.end()) {
-        throw cursor.error(position, "parameter '" + name +
-                                         "' has the name of a joint; must have "
+        throw cursor.error(position, "parameter " + quote(name) +
+                                         " has the name of a joint; must have "
                                          "one of its own, like d" +
                                          name);
     }
     const auto [first, is_new] = parameter_lines_.emplace(name, cursor.line());
     if (!is_new) {
-        throw cursor.error(position, "parameter '" + name + "' occurs twice, first in line " +
+        throw cursor.error(position, "parameter " + quote(name) + " occurs twice, first in line " +
                                          std::to_string(first->second) +
                                          "; must have a name of its own");
     }

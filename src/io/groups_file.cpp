@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "csv_reader.hpp"
+#include "posewise/core/text.hpp"
 
 namespace posewise::io {
 namespace {
@@ -33,11 +34,11 @@ std::vector<Index> read_groups(const std::string& path, const std::vector<std::s
         const std::string id(csv.fields()[config]);
         const auto found = places.find(id);
         if (found == places.end()) {
-            throw input_error_at(csv.locate(config), "'" + id + "' is not among the candidates");
+            throw input_error_at(csv.locate(config), quote(id) + " is not among the candidates");
         }
         Index& group = groups[found->second];
         if (group != no_group) {
-            throw input_error_at(csv.locate(config), "'" + id + "' occurs twice; keep one");
+            throw input_error_at(csv.locate(config), quote(id) + " occurs twice; keep one");
         }
         group =
             labels.emplace(std::string(csv.fields()[1 - config]), static_cast<Index>(labels.size()))

@@ -86,6 +86,9 @@ Json read_document(const std::string& path, const std::string& kind) {
             content.empty() ? FileLocation{path} : locate(path, content, problem.byte);
         throw input_error_at(location,
                              "is not JSON here; must be a " + kind + " as posewise writes it");
+    } catch (const Json::exception&) {  // a number that overflows; it has no place
+        throw input_error_at({path}, "has a number beyond the range of numbers; must be a " + kind +
+                                         " as posewise writes it");
     }
     const auto found = document.is_object() ? document.find("kind") : document.end();
     if (found == document.end() || *found != "posewise " + kind) {

@@ -29,9 +29,9 @@ void append_row(const CsvReader& csv, std::size_t width, std::vector<double>& va
         const ParsedNumber number = parse_number(csv.fields()[field]);
         if (!number.ok()) {
             throw input_error_at(csv.locate(field),
-                                 fmt::format("'{}' {}; must be a finite number with a decimal "
+                                 fmt::format("{} {}; must be a finite number with a decimal "
                                              "point",
-                                             csv.fields()[field], number.problem));
+                                             quote(csv.fields()[field]), number.problem));
         }
         values.push_back(number.value);
     }

@@ -77,7 +77,7 @@ class HeaderReader {
   private:
     InputError error(std::size_t field, const std::string& problem) const {
         return input_error_at(csv_.locate(field),
-                              "column '" + std::string(csv_.fields()[field]) + "' " + problem);
+                              "column " + quote(csv_.fields()[field]) + " " + problem);
     }
 
     Column read_column(std::size_t field) const {
@@ -194,9 +194,9 @@ class RowReader {
         const ParsedNumber number = parse_number(text);
         if (!number.ok()) {
             throw input_error_at(csv_.locate(field),
-                                 fmt::format("'{}' {}; must be a finite number with a decimal "
+                                 fmt::format("{} {}; must be a finite number with a decimal "
                                              "point",
-                                             text, number.problem));
+                                             quote(text), number.problem));
         }
         return columns_[field].unit->to_si(number.value);
     }
@@ -204,9 +204,9 @@ class RowReader {
     /// The same sample of the same configuration twice is a file joined with itself.
     void check_new_sample() {
         if (sample_.empty() || seen_.insert(id_ + '\n' + sample_).second) return;
-        throw input_error_at(
-            csv_.locate(0),
-            fmt::format("sample '{}' of configuration '{}' occurs twice; keep one", sample_, id_));
+        throw input_error_at(csv_.locate(0),
+                             fmt::format("sample {} of configuration {} occurs twice; keep one",
+                                         quote(sample_), quote(id_)));
     }
 
     const CsvReader& csv_;
@@ -249,9 +249,16 @@ Configurations read_configurations_csv(const std::string& path, const Campaign& 
 void write_measurements_csv(const std::string& path, const Campaign& campaign,
                             const Measurements& measurements,
                             const std::vector<std::string>& comment_lines) {
+    if (!measurements.configurations.allFinite() || !measurements.observations.allFinite()) {
+        throw input_error_at({path},
+                             "is not written, since a measurement is not a finite number; the "
+                             "campaign's amounts must be smaller");
+    }
     std::string text;
     const auto out = std::back_inserter(text);
-    for (const std::string& line : comment_lines) fmt::format_to(out, "# {}\n", line);
+    for (const std::string& line : comment_lines) {
+        fmt::format_to(out, "# {}\n", escape_controls(line));
+    }
     text += "config,sample";
     std::vector<double> joint_factors;  // to the unit written
     for (const WantedColumn& column : wanted_columns(campaign)) {

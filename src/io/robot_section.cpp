@@ -7,12 +7,16 @@
 namespace posewise::io {
 namespace {
 
+// Far above any robot: what is more is no robot, and would only take memory and time.
+constexpr std::size_t most_joints = 100;
+constexpr std::size_t most_elements = 1000;
+
 std::vector<std::string> joint_names(const std::vector<YamlEntry>& entries) {
     std::vector<std::string> names;
     for (const auto& [name, location, value] : entries) {
         if (!is_identifier(name) || find_unit(name) != nullptr) {
-            throw input_error_at(location, "'" + name +
-                                               "' cannot name a joint; must be letters, "
+            throw input_error_at(location, quote(name) +
+                                               " cannot name a joint; must be letters, "
                                                "digits and underscores, not a unit");
         }
         names.push_back(name);
@@ -35,15 +39,15 @@ void check_quantity(const YamlMeasure& measure, Motion motion) {
 Joint read_joint(const YamlEntry& entry, std::optional<Motion> motion) {
     if (!motion) {
         throw input_error_at(entry.key_location,
-                             "joint '" + entry.key + "' drives no element; must occur in one");
+                             "joint " + quote(entry.key) + " drives no element; must occur in one");
     }
     const YamlMeasure limits = YamlMap(entry.value, joint_keys).require_measure("limits");
     check_quantity(limits, *motion);
-    const std::vector<double> values = limits.value.numbers(2);
+    const VectorXd values = limits.list_to_si(2);
     if (values[0] >= values[1]) {
         throw limits.value.error("is not in order; the lower limit must come first");
     }
-    return {entry.key, limits.unit->to_si(values[0]), limits.unit->to_si(values[1])};
+    return {entry.key, values[0], values[1]};
 }
 
 /// Of all joints, 0 where it is not stated; empty if it is stated for none.
@@ -64,7 +68,7 @@ ErrorModel read_error_model(const YamlMap& robot, const std::vector<Element>& el
         const std::string word = errors->text();
         if (word == "stated") return ErrorModel::Stated;
         if (word == "complete") return ErrorModel::Complete;
-        throw errors->error("is '" + word + "'; " + suggest(word, {"stated", "complete"}));
+        throw errors->error("is " + quote(word) + "; " + suggest(word, {"stated", "complete"}));
     }
     const auto is_stated = [](const Element& element) { return !element.parameter.empty(); };
     return std::any_of(elements.begin(), elements.end(), is_stated) ? ErrorModel::Stated
@@ -77,10 +81,19 @@ RobotSection read_robot(const YamlValue& value) {
     const YamlMap robot(value, {"joints", "elements", "errors"});
     const std::vector<YamlEntry> entries = robot.require("joints").entries();
     if (entries.empty()) throw robot.require("joints").error("is empty; must state the joints");
+    if (entries.size() > most_joints) {
+        throw robot.require("joints").error("states " + std::to_string(entries.size()) +
+                                            " joints; must be at most 100");
+    }
 
     ElementParser parser(joint_names(entries));
+    const std::vector<YamlValue> lines = robot.require("elements").list();
+    if (lines.size() > most_elements) {
+        throw robot.require("elements")
+            .error("lists " + std::to_string(lines.size()) + " elements; must be at most 1000");
+    }
     std::vector<Element> elements;
-    for (const YamlValue& line : robot.require("elements").list()) {
+    for (const YamlValue& line : lines) {
         elements.push_back(parser.parse(line.text(), line.text_location()));
     }
     std::vector<Joint> joints;

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "posewise/core/text.hpp"
+
 namespace posewise::io {
 namespace {
 
@@ -45,9 +47,9 @@ void SampleCollector::check_same_joints(Index configuration, const VectorXd& joi
         if (std::abs(joints[j] - first) <= joint_tolerance) continue;
         throw input_error_at(
             locate(j),
-            fmt::format("configuration '{}' has {} = {:g} here and {:g} before{}; samples of one "
+            fmt::format("configuration {} has {} = {:g} here and {:g} before{}; samples of one "
                         "configuration must agree within 1e-6 (rad or m)",
-                        ids_[i], campaign_.robot.joints()[static_cast<std::size_t>(j)].name,
+                        quote(ids_[i]), campaign_.robot.joints()[static_cast<std::size_t>(j)].name,
                         joints[j], first, in_line(first_places_[i])));
     }
 }
@@ -65,9 +67,9 @@ void SampleCollector::check_all_different() const {
         if (q[first] != q[second]) continue;
         throw input_error_at(
             first_places_[second],
-            fmt::format("configuration '{}' has the same joint values as '{}'{}; samples of one "
+            fmt::format("configuration {} has the same joint values as {}{}; samples of one "
                         "configuration must have the same id",
-                        ids_[second], ids_[first], in_line(first_places_[first])));
+                        quote(ids_[second]), quote(ids_[first]), in_line(first_places_[first])));
     }
 }
 

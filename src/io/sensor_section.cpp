@@ -63,7 +63,7 @@ SensorSection read_sensor(const YamlValue& value) {
     const YamlMap sensor(value, {"kind", "sigma_<length>", "noise", "targets"});
     const YamlValue kind = sensor.require("kind");
     if (kind.text() != "points") {
-        throw kind.error("is '" + kind.text() + "'; " + suggest(kind.text(), {"points"}));
+        throw kind.error("is " + quote(kind.text()) + "; " + suggest(kind.text(), {"points"}));
     }
     const PointNoise noise = read_noise(value, sensor);
     const YamlValue targets_value = sensor.require("targets");

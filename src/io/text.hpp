@@ -2,7 +2,8 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "posewise/core/text.hpp"
 
 namespace posewise::io {
 
@@ -11,13 +12,6 @@ std::string_view trim(std::string_view text);
 
 /// Letters, digits and underscores, not starting with a digit.
 bool is_identifier(std::string_view text);
-
-/// "a, b or c".
-std::string list_words(const std::vector<std::string>& words);
-
-/// The advice after an unknown name: "did you mean 'x'?" if one of the known is near, else
-/// "known are a, b and c".
-std::string suggest(std::string_view unknown, const std::vector<std::string>& known);
 
 /// A number read from text, or what is wrong with it.
 struct ParsedNumber {

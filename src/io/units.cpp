@@ -1,6 +1,9 @@
 #include "units.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <cmath>
 #include <numbers>
 
 namespace posewise::io {
@@ -15,6 +18,8 @@ constexpr std::array<Unit, 7> units{{
     {"mrad", Quantity::Angle, 1, 1e3},
     {"urad", Quantity::Angle, 1, 1e6},
 }};
+
+double largest_plausible(Quantity quantity) { return quantity == Quantity::Length ? 1e6 : 1e4; }
 
 }  // namespace
 
@@ -31,6 +36,15 @@ std::vector<std::string> unit_names(Quantity quantity) {
         if (unit.quantity == quantity) names.emplace_back(unit.name);
     }
     return names;
+}
+
+bool is_plausible(double si, Quantity quantity) {
+    return std::abs(si) <= largest_plausible(quantity);
+}
+
+std::string plausible(Quantity quantity) {
+    return fmt::format("at most {:g} {} in magnitude", largest_plausible(quantity),
+                       quantity == Quantity::Length ? "m" : "rad");
 }
 
 NameWithUnit split_unit(std::string_view name) {

@@ -32,6 +32,11 @@ const Unit* find_unit(std::string_view name);
 /// Names of the units of a quantity, the usual one first.
 std::vector<std::string> unit_names(Quantity quantity);
 
+/// Whether m or rad are of a size that occurs: a larger one is a slip, and would overflow later.
+bool is_plausible(double si, Quantity quantity);
+/// That rule in words, "at most 1e+06 m in magnitude".
+std::string plausible(Quantity quantity);
+
 /// A name that carries its unit as a suffix: `q1_rad`, `p1_x_mm`.
 struct NameWithUnit {
     std::string_view stem;

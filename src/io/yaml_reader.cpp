@@ -20,7 +20,7 @@ FileLocation locate(const std::string& path, const YAML::Mark& mark) {
 std::string describe(const YAML::Node& node) {
     if (node.IsMap()) return "is a map";
     if (node.IsSequence()) return "is a list";
-    if (node.IsScalar()) return "is '" + node.Scalar() + "'";
+    if (node.IsScalar()) return "is " + quote(node.Scalar());
     return "has no value";
 }
 
@@ -120,8 +120,8 @@ std::vector<YamlEntry> YamlValue::entries() const {
         if (!key.IsScalar()) throw input_error_at(location, "a key must be text");
         const auto [first, is_new] = lines.emplace(key.Scalar(), location.line);
         if (!is_new) {
-            throw input_error_at(location, "key '" + key.Scalar() +
-                                               "' occurs twice, first in line " +
+            throw input_error_at(location, "key " + quote(key.Scalar()) +
+                                               " occurs twice, first in line " +
                                                std::to_string(first->second) + "; keep one");
         }
         const bool is_placed = !value.IsNull() && !value.Mark().is_null();
@@ -133,17 +133,30 @@ std::vector<YamlEntry> YamlValue::entries() const {
     return entries;
 }
 
-Vector3d YamlMeasure::vector_to_si() const {
-    const std::vector<double> values = value.numbers(3);
-    return {unit->to_si(values[0]), unit->to_si(values[1]), unit->to_si(values[2])};
+double YamlMeasure::to_si() const {
+    const double si = unit->to_si(value.number());
+    if (!is_plausible(si, unit->quantity)) {
+        throw value.error("is " + quote(value.text()) + "; must be " + plausible(unit->quantity));
+    }
+    return si;
 }
+
+VectorXd YamlMeasure::list_to_si(std::size_t count) const {
+    value.numbers(count);
+    VectorXd si(static_cast<Index>(count));
+    Index k = 0;
+    for (const YamlValue& item : value.list()) si[k++] = YamlMeasure{item, unit}.to_si();
+    return si;
+}
+
+Vector3d YamlMeasure::vector_to_si() const { return list_to_si(3); }
 
 YamlMap::YamlMap(const YamlValue& value, const std::vector<std::string>& keys)
     : value_(value), entries_(value.entries()), keys_(spell_out_units(keys)) {
     for (const YamlEntry& entry : entries_) {
         if (std::find(keys_.begin(), keys_.end(), entry.key) == keys_.end()) {
             const std::string where = value.name().empty() ? "" : " in " + value.name();
-            throw input_error_at(entry.key_location, "unknown key '" + entry.key + "'" + where +
+            throw input_error_at(entry.key_location, "unknown key " + quote(entry.key) + where +
                                                          "; " + suggest(entry.key, keys_));
         }
     }
@@ -191,12 +204,7 @@ InputError YamlMap::missing(const std::vector<std::string>& alternatives) const 
 }
 
 YamlValue read_yaml(const std::string& path) {
-    const std::string content = read_file(path);
-    constexpr std::size_t size_limit = 1 << 20;
-    if (content.size() > size_limit) {
-        throw input_error_at({path}, "has " + std::to_string(content.size()) +
-                                         " bytes; a campaign file has at most 1 MiB");
-    }
+    const std::string content = read_file(path, 1 << 20);
     std::vector<YAML::Node> documents;
     try {
         documents = YAML::LoadAll(content);

@@ -46,10 +46,41 @@ TEST(WriteFile, RefusesAFolderThatDoesNotExist) {
               "a/b.txt: cannot be written: No such file or directory");
 }
 
+TEST(WriteFile, RefusesALinkThatLeadsNowhere) {
+    const TemporaryFolder folder;
+    std::filesystem::create_symlink("b", folder.path("a"));
+    std::filesystem::create_symlink("a", folder.path("b"));
+    const std::string message = input_error_of([&] { write_file(folder.path("a"), "text"); });
+    EXPECT_EQ(message.rfind("a: is a link that leads nowhere", 0), 0U) << message;
+    EXPECT_TRUE(std::filesystem::is_symlink(folder.path("a")));
+    EXPECT_EQ(folder.file_count(), 2U);
+}
+
+TEST(WriteFile, MakesTheFileBehindALink) {
+    const TemporaryFolder folder;
+    std::filesystem::create_symlink("b", folder.path("a"));
+    write_file(folder.path("a"), "text");
+    EXPECT_EQ(read_file(folder.path("b")), "text");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder.path("a")));
+}
+
+TEST(WriteFile, TakesTheLongestNames) {
+    const TemporaryFolder folder;
+    write_file(folder.path(std::string(255, 'n')), "text");
+    EXPECT_EQ(folder.file_count(), 1U);
+}
+
 TEST(WriteFile, SaysThatTheDiskIsFull) {
     if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "needs the device /dev/full";
     EXPECT_EQ(input_error_of([] { write_file("/dev/full", "text"); }),
               "/dev/full: cannot be written: No space left on device");
+}
+
+TEST(ReadFile, StopsAtTheLargestSize) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(read_file(folder.write("a", "four"), 4), "four");
+    EXPECT_EQ(input_error_of([] { read_file("/dev/zero", 1 << 20); }),
+              "/dev/zero: is larger than 1 MiB; must be smaller");
 }
 
 TEST(ReadFile, KeepsEveryByte) {

@@ -68,7 +68,7 @@ TEST(BadCampaign, HostileNesting) {
 
 TEST(BadCampaign, HugeFile) {
     EXPECT_EQ(error_of(std::string(2 << 20, 'a')),
-              "campaign.yaml: has 2097152 bytes; a campaign file has at most 1 MiB");
+              "campaign.yaml: is larger than 1 MiB; must be smaller");
 }
 
 TEST(BadCampaign, NoBytesOfTextAtAll) {
@@ -173,14 +173,14 @@ TEST(BadCampaign, TextWhereANumberBelongs) {
 
 TEST(BadCampaign, SigmaThatIsNotPositive) {
     EXPECT_EQ(error_with("sigma_mm: 0.05", "sigma_mm: -0.05"),
-              "campaign.yaml:16:13: sensor.sigma_mm is -0.05; must be positive");
+              "campaign.yaml:16:13: sensor.sigma_mm is '-0.05'; must be positive");
     EXPECT_EQ(error_with("sigma_mm: 0.05", "sigma_mm: 0"),
-              "campaign.yaml:16:13: sensor.sigma_mm is 0; must be positive");
+              "campaign.yaml:16:13: sensor.sigma_mm is '0'; must be positive");
 }
 
 TEST(BadCampaign, NegativeModelError) {
     EXPECT_EQ(error_with("model_error_mm: 0.2", "model_error_mm: -1"),
-              "campaign.yaml:18:17: model_error_mm is -1; must be zero or positive");
+              "campaign.yaml:18:17: model_error_mm is '-1'; must be zero or positive");
 }
 
 TEST(BadCampaign, UnknownSensorKind) {
@@ -229,7 +229,7 @@ TEST(BadCampaign, SpreadInTheWrongUnit) {
 
 TEST(BadCampaign, SpreadThatIsNotPositive) {
     EXPECT_EQ(error_with("length_mm: 2", "length_mm: 0"),
-              "campaign.yaml:20:21: spread.length_mm is 0; must be positive");
+              "campaign.yaml:20:21: spread.length_mm is '0'; must be positive");
 }
 
 TEST(BadCampaign, UnknownCriterion) {
@@ -242,6 +242,67 @@ TEST(BadCampaign, NegativeSeed) {
     EXPECT_EQ(error_with("seed: 7", "seed: -7"),
               "campaign.yaml:22:7: seed is '-7'; must be a whole number from 0 to "
               "18446744073709551615");
+}
+
+struct Slip {
+    std::string part;
+    std::string by;
+    std::string error;  ///< from the line's number on
+};
+
+TEST(BadCampaign, MagnitudesThatNoCellHas) {
+    for (const Slip& slip : std::vector<Slip>{
+             {"Tx 312 mm", "Tx 1e200 m",
+              "10:10: the amount is too large; must be at most 1e+06 m in magnitude"},
+             {"0.5*q1", "1e-300*q1",
+              "11:16: a joint's coefficient must be from 1e-6 to 1e6 in magnitude"},
+             {"90 deg", "1e9 deg",
+              "11:25: the amount is too large; must be at most 10000 rad in magnitude"},
+             {"[0, 500]", "[0, 1e300]",
+              "6:27: robot.joints.lift.limits_mm[2] is '1e300'; must be at most 1e+06 m in "
+              "magnitude"},
+             {"[100, 0, 0]", "[1e99, 0, 0]",
+              "17:28: sensor.targets.position_mm[1][1] is '1e99'; must be at most 1e+06 m in "
+              "magnitude"},
+             {"sigma_mm: 0.05", "sigma_mm: 1e-300",
+              "16:13: sensor.sigma_mm is '1e-300'; must be from 1e-12 to 1000 (m or rad)"},
+             {"model_error_mm: 0.2", "model_error_mm: 2e6",
+              "18:17: model_error_mm is '2e6'; must be from 1e-12 to 1000 (m or rad)"},
+             {"dq2: 0.5 mrad", "dq2: 1e-200 rad",
+              "20:57: spread.parameters.dq2 is '1e-200 rad'; must be from 1e-12 to 1000 (m or "
+              "rad)"}}) {
+        EXPECT_EQ(error_with(slip.part, slip.by), "campaign.yaml:" + slip.error);
+    }
+}
+
+TEST(BadCampaign, ModelErrorMayBeZero) {
+    EXPECT_EQ(error_with("model_error_mm: 0.2", "model_error_mm: 0"), "no error");
+}
+
+TEST(BadCampaign, NameOfTwoLines) {
+    EXPECT_EQ(error_with("name: crane", "name: \"a\\nq1_rad,\\e[31m\""),
+              "campaign.yaml:1:7: name is 'a\\x0aq1_rad,\\x1b[31m'; must be one line without "
+              "control characters");
+}
+
+TEST(BadCampaign, TooManyJointsOrElements) {
+    std::string elements;
+    for (int i = 0; i < 1001; ++i) elements += "    - Tx 1 mm\n";
+    EXPECT_EQ(error_with("    - Tz lift\n", "    - Tz lift\n" + elements),
+              "campaign.yaml:8:5: robot.elements lists 1007 elements; must be at most 1000");
+    std::string joints;
+    for (int i = 0; i < 100; ++i)
+        joints += "    a" + std::to_string(i) + ": {limits_deg: [0, 1]}\n";
+    EXPECT_EQ(error_with("    lift:", joints + "    lift:"),
+              "campaign.yaml:4:5: robot.joints states 103 joints; must be at most 100");
+}
+
+TEST(BadCampaign, ALongTextIsCutInTheMessage) {
+    std::string omegas;
+    for (int i = 0; i < 5000; ++i) omegas += "\u03a9";
+    const std::string message = error_with("kind: points", "kind: " + omegas);
+    EXPECT_LT(message.size(), 150U);
+    EXPECT_NE(message.find("\u03a9...'; must be points"), std::string::npos) << message;
 }
 
 TEST(BadCampaign, UnknownErrorModel) {

@@ -78,7 +78,7 @@ TEST(BadElement, JointThatTurnsAndSlides) {
 TEST(BadElement, NumberBeyondRange) {
     EXPECT_EQ(error_of("Tx 1e999 mm"), "4: number beyond the range of numbers");
     EXPECT_EQ(error_of("Tx 1e308 m + 1e308 m"),
-              "14: the amount is not finite; must be a finite number");
+              "4: the amount is too large; must be at most 1e+06 m in magnitude");
 }
 
 TEST(BadElement, BracketsThatHoldNoName) {
@@ -96,6 +96,7 @@ TEST(BadElement, BracketThatIsNotClosed) {
 
 TEST(BadElement, TextBehindTheElement) {
     EXPECT_EQ(error_of("Tx 3 mm [Tx1] +").substr(0, 28), "15: '+' is not expected here");
+    EXPECT_EQ(error_of("Tx 3 mm \u00b5").substr(0, 29), "9: '\u00b5' is not expected here;");
     EXPECT_EQ(error_of("Tx 3 mm 4").substr(0, 28), "9: '4' is not expected here;");
 }
 

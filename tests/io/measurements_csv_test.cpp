@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <limits>
 #include <numbers>
 
 #include "campaign_text.hpp"
@@ -120,6 +121,22 @@ TEST(WriteMeasurementsCsv, IsReadBackExactly) {
     EXPECT_EQ(again.first_sample, measurements.first_sample);
     EXPECT_EQ(again.configurations.leftCols(2), measurements.configurations.leftCols(2));
     EXPECT_LT((again.observations - measurements.observations).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST(WriteMeasurementsCsv, KeepsACommentInItsLine) {
+    const TemporaryFolder folder;
+    write_measurements_csv(folder.path("m.csv"), crane(), read(good), {"two\nlines"});
+    EXPECT_EQ(read_measurements_csv(folder.path("m.csv"), crane()).ids, read(good).ids);
+}
+
+TEST(WriteMeasurementsCsv, RefusesNumbersThatAreNotFinite) {
+    Measurements measurements = read(good);
+    measurements.observations(0, 0) = std::numeric_limits<double>::infinity();
+    const TemporaryFolder folder;
+    const std::string message = input_error_of(
+        [&] { write_measurements_csv(folder.path("m.csv"), crane(), measurements); });
+    EXPECT_EQ(message.rfind("m.csv: is not written", 0), 0U) << message;
+    EXPECT_EQ(folder.file_count(), 0U);
 }
 
 TEST(BadMeasurementsCsv, EmptyFile) {

@@ -1,0 +1,94 @@
+#include "posewise/core/text.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace posewise {
+namespace {
+
+/// Levenshtein's distance: insertions, deletions and replacements that turn one into the other.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
+
+/// The longest beginning of at most `most` bytes that ends with a whole character.
+std::string_view cut(std::string_view text, std::size_t most) {
+    if (text.size() <= most) return text;
+    std::size_t end = most;
+    while (end > 0 && most - end < 4 && is_continuation(text[end])) --end;
+    return text.substr(0, is_continuation(text[end]) ? most : end);
+}
+
+}  // namespace
+
+std::string escape_controls(std::string_view text) {
+    constexpr const char* digits = "0123456789abcdef";
+    std::string escaped;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte >= 0x20 && byte != 0x7f) {
+            escaped += c;
+        } else {
+            escaped += {'\\', 'x', digits[byte / 16], digits[byte % 16]};
+        }
+    }
+    return escaped;
+}
+
+std::string quote(std::string_view text) {
+    constexpr std::size_t most = 60;
+    const std::string_view shown = cut(text, most);
+    return '\'' + escape_controls(shown) + (shown.size() < text.size() ? "...'" : "'");
+}
+
+std::size_t character_length(std::string_view text) {
+    const auto first = static_cast<unsigned char>(text[0]);
+    const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : first >= 0xC0 ? 2 : 1;
+    if (length > text.size()) return 1;
+    return std::all_of(text.begin() + 1, text.begin() + static_cast<std::ptrdiff_t>(length),
+                       is_continuation)
+               ? length
+               : 1;
+}
+
+std::string list_words(const std::vector<std::string>& words) {
+    constexpr std::size_t most = 30;
+    const std::size_t shown = std::min(words.size(), most);
+    std::string list;
+    for (std::size_t i = 0; i < shown; ++i) {
+        if (i > 0) list += i + 1 == words.size() ? " or " : ", ";
+        list += words[i];
+    }
+    return shown < words.size() ? list + ", ..." : list;
+}
+
+std::string suggest(std::string_view unknown, const std::vector<std::string>& known) {
+    const std::string_view compared = unknown.substr(0, 100);
+    std::size_t least = std::max<std::size_t>(2, compared.size() / 3) + 1;
+    const std::string* nearest = nullptr;
+    for (const std::string& name : known) {
+        const std::size_t distance = edit_distance(compared, name);
+        if (distance < least && distance < name.size()) {
+            least = distance;
+            nearest = &name;
+        }
+    }
+    if (nearest != nullptr) return "did you mean " + quote(*nearest) + "?";
+    if (known.empty()) return "none is known here";
+    return "must be " + list_words(known);
+}
+
+}  // namespace posewise

@@ -1,0 +1,38 @@
+#include "posewise/core/text.hpp"
+
+#include <gtest/gtest.h>
+
+namespace posewise {
+namespace {
+
+TEST(EscapeControls, LeavesOneHarmlessLine) {
+    EXPECT_EQ(escape_controls("a\nb\x1b[31m\x7f"), "a\\x0ab\\x1b[31m\\x7f");
+    EXPECT_EQ(escape_controls("\u00b5m"), "\u00b5m");
+    EXPECT_EQ(escape_controls(std::string_view("\0", 1)), "\\x00");
+}
+
+TEST(Quote, CutsLongTextsBehindAWholeCharacter) {
+    EXPECT_EQ(quote("q1"), "'q1'");
+    EXPECT_EQ(quote(std::string(60, 'a')), "'" + std::string(60, 'a') + "'");
+    EXPECT_EQ(quote(std::string(61, 'a')), "'" + std::string(60, 'a') + "...'");
+    EXPECT_EQ(quote(std::string(59, 'a') + "\u03a9\u03a9"), "'" + std::string(59, 'a') + "...'");
+    EXPECT_EQ(quote(std::string(100, '\x80')).size(), 65U);  // no UTF-8 at all
+}
+
+TEST(CharacterLength, IsThatOfTheFirstCharacter) {
+    EXPECT_EQ(character_length("ab"), 1U);
+    EXPECT_EQ(character_length("\u00b5m"), 2U);
+    EXPECT_EQ(character_length("\u2207"), 3U);
+    EXPECT_EQ(character_length("\U0001F916"), 4U);
+    EXPECT_EQ(character_length("\xC3"), 1U);
+    EXPECT_EQ(character_length("\xC3("), 1U);
+}
+
+TEST(Suggest, NamesTheNearestOrAll) {
+    EXPECT_EQ(suggest("calibrated", {"calibrate", "study"}), "did you mean 'calibrate'?");
+    EXPECT_EQ(suggest("xyz", {"calibrate", "study"}), "must be calibrate or study");
+    EXPECT_EQ(suggest("xyz", {}), "none is known here");
+}
+
+}  // namespace
+}  // namespace posewise
