@@ -1,13 +1,17 @@
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "files.hpp"
+#include "options.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/text.hpp"
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/report/calibration_tables.hpp"
 #include "posewise/report/units.hpp"
@@ -124,14 +128,16 @@ void print_accuracy(const io::CalibrationReport& report) {
                                : "noise floor: unknown, no configuration was repeated\n");
 }
 
-void calibrate(const Arguments& arguments) {
-    const auto file = io::read_campaign(arguments.paths.campaign);
-    const Campaign& campaign = file.campaign;
-    const auto [used, others] = read_split(arguments, file);
+Metrics metrics_of(const Campaign& campaign, const Measurements& measurements,
+                   const Estimate& estimate) {
+    return make_metrics(residuals(campaign, estimate.parameters, measurements));
+}
+
+/// All but what needs another file.
+io::CalibrationReport make_report(const Arguments& arguments, const Campaign& campaign,
+                                  const Split& split) {
+    const Measurements& used = split.used;
     const Parameters start = register_base_and_targets(campaign, used);
-    const auto metrics_of = [&](const Measurements& measurements, const Estimate& estimate) {
-        return make_metrics(residuals(campaign, estimate.parameters, measurements));
-    };
     io::CalibrationReport report;
     report.method = arguments.method;
     report.measurements = arguments.paths.measurements;
@@ -139,13 +145,25 @@ void calibrate(const Arguments& arguments) {
     report.nominal = fit_nominal(campaign, used);
     report.repeatability = repeatability(used);
     report.held_out = hold_out(arguments, campaign, used, start);
-    if (others) report.left_out = metrics_of(*others, report.estimate);
-    if (!arguments.validate.empty()) {
-        report.validation =
-            metrics_of(io::read_measurements(arguments.validate, file), report.estimate);
+    if (split.left_out) {
+        report.left_out = metrics_of(campaign, *split.left_out, report.estimate);
     }
-    if (!arguments.out.empty()) io::write_estimate(arguments.out, campaign, report);
+    return report;
+}
 
+/// A robot's maker is rarely wrong by 10 cm, a column's unit easily by a factor of 1000.
+void warn_about_units(const std::string& path, const Metrics& nominal) {
+    constexpr double suspicious = 0.1;  // m
+    if (nominal.distance_rms <= suspicious) return;
+    const std::string warning = fmt::format(
+        "posewise: warning: {}: the nominal robot misses the points by {} m (RMS); are the units "
+        "of the columns right?\n",
+        escape_controls(path), format_short(nominal.distance_rms, 3));
+    std::fwrite(warning.data(), 1, warning.size(), stderr);
+}
+
+void print_report(const Arguments& arguments, const Campaign& campaign, const Measurements& used,
+                  const io::CalibrationReport& report) {
     print(fmt::format("{}: {} configurations, {} samples, {} parameters\n", campaign.name,
                       used.configuration_count(), used.observations.rows(),
                       parameter_count(campaign)));
@@ -156,25 +174,47 @@ void calibrate(const Arguments& arguments) {
     print_section("Strongest correlations", correlation_table(report.estimate, correlations_shown));
 }
 
+void calibrate(const Arguments& arguments) {
+    const InputPaths& paths = arguments.paths;
+    check_outputs({paths.campaign, paths.measurements, arguments.plan, arguments.validate},
+                  {arguments.out});
+    const auto file = io::read_campaign(paths.campaign);
+    const Split split = read_split(arguments, file);
+    io::CalibrationReport report = compute_from(
+        paths.measurements, [&] { return make_report(arguments, file.campaign, split); });
+    if (!arguments.validate.empty()) {
+        report.validation = metrics_of(
+            file.campaign, io::read_measurements(arguments.validate, file), report.estimate);
+    }
+    if (!arguments.out.empty()) io::write_estimate(arguments.out, file.campaign, report);
+    warn_about_units(paths.measurements, report.nominal);
+    print_report(arguments, file.campaign, split.used, report);
+}
 void add_options(CLI::App& command, Arguments& arguments) {
-    command.add_option("--plan", arguments.plan, "Use only the configurations of this plan file");
+    command.add_option("--plan", arguments.plan, "Use only the configurations of this plan file")
+        ->check(file_name());
     command.add_option("--method", arguments.method, "lm or two-step")
         ->check(CLI::IsMember({"lm", "two-step"}))
         ->capture_default_str();
     command
         .add_option("--alpha", arguments.two_step.alpha, "two-step: part of each robot step taken")
-        ->check(CLI::Range(1e-6, 1.0))
+        ->check(real_number(1e-6, 1.0))
         ->capture_default_str();
     command
         .add_option("--max-iterations", arguments.iteration_limit,
                     "Most iterations (default: lm 100, two-step 200)")
-        ->check(CLI::Range(Index{1}, Index{1000000}));
-    command.add_option("--validate", arguments.validate,
-                       "Second measurement file, to judge the result on");
-    command.add_option("--folds", arguments.folds,
-                       "Groups to hold out in turn; 0: none (default: every configuration by "
-                       "itself up to 100 of them, else 10)");
-    command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file");
+        ->check(whole_number(1, 1000000));
+    command
+        .add_option("--validate", arguments.validate,
+                    "Second measurement file, to judge the result on")
+        ->check(file_name());
+    command
+        .add_option("--folds", arguments.folds,
+                    "Groups to hold out in turn; 0: none (default: every configuration by "
+                    "itself up to 100 of them, else 10)")
+        ->check(whole_number(0, 1000000));
+    command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
+        ->check(file_name());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "options.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/io/plan_file.hpp"
 #include "posewise/measurement/point_sensor.hpp"
@@ -16,14 +17,16 @@ namespace posewise::cli {
 
 void add_campaign_argument(CLI::App& command, InputPaths& paths) {
     command.add_option("CAMPAIGN", paths.campaign, "Campaign file (YAML): robot, sensor, spread")
-        ->required();
+        ->required()
+        ->check(file_name());
 }
 
 void add_measurements_option(CLI::App& command, InputPaths& paths) {
     command
         .add_option("-m,--measurements", paths.measurements,
                     "Measured configurations (CSV, or MATLAB .mat)")
-        ->required();
+        ->required()
+        ->check(file_name());
 }
 
 CLI::Validator criterion_check() {

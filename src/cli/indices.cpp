@@ -8,6 +8,8 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "files.hpp"
+#include "options.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
@@ -90,14 +92,16 @@ void print_indices(const Arguments& arguments) {
     const auto file = io::read_campaign(arguments.paths.campaign);
     const Campaign& campaign = file.campaign;
     const Measurements measurements = read_input(arguments, file);
-    const Parameters registered = register_base_and_targets(campaign, measurements);
+    const Parameters registered = compute_from(arguments.paths.measurements, [&] {
+        return register_base_and_targets(campaign, measurements);
+    });
     const double repeats = mean_repeats(measurements);
     const Blocks scaled = make_blocks(campaign, registered, measurements.configurations, repeats);
     // m per m and m per rad are mm per mm and mm per mrad: nothing to convert.
     const Blocks plain = make_plain_blocks(campaign, registered, measurements.configurations);
     print(fmt::format("{} configurations, {} parameters\n{}", scaled.count(),
                       scaled.parameter_count(), describe_scaling(campaign, repeats)));
-    print_section("Indices (-inf: the parameters are not identifiable)",
+    print_section("Indices (-inf, condition inf: the parameters are not identifiable)",
                   index_table(scaled, plain));
     print("\nWeakest directions, known to\n\n");
     for (const auto& direction : weakest_directions(scaled.matrix, arguments.directions)) {
@@ -113,9 +117,10 @@ void add_indices(CLI::App& program) {
         program.add_subcommand("indices", "Rate measured configurations by every index");
     add_campaign_argument(*command, arguments->paths);
     add_measurements_option(*command, arguments->paths);
-    command->add_option("--plan", arguments->plan, "Only the configurations of this plan file");
+    command->add_option("--plan", arguments->plan, "Only the configurations of this plan file")
+        ->check(file_name());
     command->add_option("--directions", arguments->directions, "How many weak directions to name")
-        ->check(CLI::Range(Index{0}, Index{1000}))
+        ->check(whole_number(0, 1000))
         ->capture_default_str();
     command->footer(footer);
     command->callback([arguments] { print_indices(*arguments); });

@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/text.hpp"
 #include "posewise/core/version.hpp"
 
 namespace {
@@ -26,10 +29,36 @@ posewise COMMAND --help explains each with an example.
 Exit code: 0 good, 1 unusable input (one line on standard error), 2 wrong usage.)";
 
 /// A message is one line, whatever it quotes.
-int fail(std::string message, int code) {
-    std::replace(message.begin(), message.end(), '\n', ' ');
-    std::fprintf(stderr, "posewise: %s\n", message.c_str());
+int fail(const std::string& message, int code) {
+    const std::string line = "posewise: " + posewise::escape_controls(message) + '\n';
+    std::fwrite(line.data(), 1, line.size(), stderr);
     return code;
+}
+
+/// The exit code of good work, if all of its output went out.
+int finish() {
+    if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+        return fail("standard output cannot be written; must be writable", input_error);
+    }
+    return 0;
+}
+
+int fail_usage(const CLI::App& program, const std::string& problem) {
+    const auto chosen = program.get_subcommands();
+    const std::string command = chosen.empty() ? "" : ' ' + chosen.front()->get_name();
+    return fail(problem + "; see posewise" + command + " --help", usage_error);
+}
+
+/// What is wrong with the first argument if it should be a command and is none; else empty.
+std::string find_unknown_command(const CLI::App& program, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') return "";
+    std::vector<std::string> names;
+    for (const CLI::App* command : program.get_subcommands(nullptr)) {
+        names.push_back(command->get_name());
+    }
+    const std::string first = argv[1];
+    if (std::find(names.begin(), names.end(), first) != names.end()) return "";
+    return posewise::quote(first) + " is no command; " + posewise::suggest(first, names);
 }
 
 void add_commands(CLI::App& program) {
@@ -50,14 +79,17 @@ int main(int argc, char** argv) {
                      "posewise"};
     try {
         add_commands(program);
+        const std::string unknown = find_unknown_command(program, argc, argv);
+        if (!unknown.empty()) return fail_usage(program, unknown);
         program.parse(argc, argv);
+    } catch (const CLI::Success& request) {  // --help or --version
+        program.exit(request);
     } catch (const CLI::ParseError& error) {
-        return program.exit(error) == 0 ? 0 : usage_error;
+        return fail_usage(program, error.what());
     } catch (const posewise::InputError& error) {
         return fail(error.what(), input_error);
     } catch (const std::exception& error) {
         return fail(std::string("internal error: ") + error.what(), internal_error);
     }
-    if (std::fflush(stdout) != 0) return fail("standard output cannot be written", input_error);
-    return 0;
+    return finish();
 }

@@ -5,6 +5,8 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "files.hpp"
+#include "options.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/report/units.hpp"
@@ -52,6 +54,7 @@ Table truth_table(const Campaign& campaign, const Parameters& truth) {
 }
 
 void run_simulation(Arguments arguments) {
+    check_outputs({arguments.paths.campaign}, {arguments.out});
     const auto file = io::read_campaign(arguments.paths.campaign);
     arguments.options.seed = arguments.seed.value_or(file.seed);
     const Simulation simulation = simulate(file.campaign, arguments.options);
@@ -64,21 +67,23 @@ void run_simulation(Arguments arguments) {
 }
 
 void add_options(CLI::App& command, Arguments& arguments) {
-    const auto count = CLI::Range(Index{1}, Index{100000});
+    const auto count = whole_number(1, 100000);
     command.add_option("--truth", arguments.options.truth_seed, "Seed of the true parameters")
-        ->check(CLI::NonNegativeNumber)
+        ->check(whole_number(0, largest_seed))
         ->capture_default_str();
     command
         .add_option("--seed", arguments.seed,
                     "Seed of configurations and noise (default: the campaign's)")
-        ->check(CLI::NonNegativeNumber);
+        ->check(whole_number(0, largest_seed));
     command.add_option("-k,--poses", arguments.options.pose_count, "Number of configurations")
         ->required()
         ->check(count);
     command.add_option("--repeats", arguments.options.repeats, "Samples of each configuration")
         ->check(count)
         ->capture_default_str();
-    command.add_option("-o,--out", arguments.out, "Measurement file to write (CSV)")->required();
+    command.add_option("-o,--out", arguments.out, "Measurement file to write (CSV)")
+        ->required()
+        ->check(file_name());
 }
 
 }  // namespace

@@ -1,19 +1,25 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "files.hpp"
+#include "options.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/text.hpp"
 #include "posewise/io/atomic_file.hpp"
 #include "posewise/report/plot.hpp"
 #include "posewise/report/study_report.hpp"
 
 namespace posewise::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr const char* footer = R"(
 Example:
@@ -31,7 +37,7 @@ is read: six configurations chosen by D leave 0.29 mm, half of all random sixes 
 
 struct Arguments {
     InputPaths paths;
-    std::vector<std::string> criteria;
+    std::vector<Criterion> criteria;
     std::optional<std::uint64_t> seed;
     std::string csv;
     std::string plot;
@@ -44,7 +50,7 @@ Index parse_count(std::string_view text) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
     if (error != std::errc() || end != text.data() + text.size() || count < 1 || count > 1000000) {
         throw CLI::ValidationError(
-            "--poses", fmt::format("'{}' is not a pose count; say 5:24 or 6,9,12", text));
+            "--poses", quote(text) + " is not a pose count; must be like 5:24 or 6,9,12");
     }
     return count;
 }
@@ -56,58 +62,113 @@ std::vector<Index> parse_counts(const std::string& text) {
         const auto colon = part.find(':');
         const Index first = parse_count(part.substr(0, colon));
         const Index last = colon == std::string::npos ? first : parse_count(part.substr(colon + 1));
+        if (first > last) {
+            throw CLI::ValidationError(
+                "--poses", "is " + quote(part) + "; the first must not be above the last");
+        }
         for (Index count = first; count <= last; ++count) counts.push_back(count);
     }
     if (counts.empty()) throw CLI::ValidationError("--poses", "'" + text + "' holds no pose count");
     return counts;
 }
 
-/// Draws by a script beside the image, which stays there only if it could not be run.
-void draw_plot(const std::string& script, const std::string& image_path) {
-    const std::string script_path = image_path + ".gnuplot";
-    io::write_file(script_path, script);
+std::vector<Criterion> parse_criteria(const std::string& text) {
+    std::vector<Criterion> criteria;
     try {
-        run_gnuplot(script_path);
-    } catch (const InputError&) {
-        std::error_code ignored;
-        std::filesystem::remove(image_path, ignored);  // at most half drawn
-        throw;
+        for (const std::string& name : CLI::detail::split(text, ',')) {
+            criteria.push_back(parse_criterion(name));
+        }
+    } catch (const InputError& error) {
+        throw CLI::ValidationError("--criteria", error.what());
     }
-    std::filesystem::remove(script_path);
+    if (criteria.empty()) throw CLI::ValidationError("--criteria", "is empty; must be like d,a");
+    return criteria;
+}
+
+/// A folder of its own among the temporary ones, gone with all it holds at the end.
+class ScratchFolder {
+  public:
+    ScratchFolder() {
+        std::error_code error;
+        std::string pattern = (fs::temp_directory_path(error) / "posewise.XXXXXX").string();
+        if (error || ::mkdtemp(pattern.data()) == nullptr) {
+            throw InputError("no temporary folder can be made; TMPDIR must name one");
+        }
+        path_ = pattern;
+    }
+    ~ScratchFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+    std::string path_of(const std::string& name) const { return (path_ / name).string(); }
+
+  private:
+    fs::path path_;
+};
+
+/// Leaves the script for the user, unless a file has its name already. What to do with it.
+std::string leave_script(const std::string& script, const std::string& image_path) {
+    const std::string path = image_path + ".gnuplot";
+    if (fs::exists(fs::symlink_status(path))) return "";
+    io::write_file(path, script);
+    return "; its script is left, try: gnuplot " + path;
+}
+
+/// Draws elsewhere, so that the image is replaced by a whole one or not at all. `script_for` gives
+/// the script for an image's path.
+template <class ScriptFor>
+void draw_plot(const std::string& image_path, ScriptFor&& script_for) {
+    const ScratchFolder folder;
+    const std::string image = folder.path_of("image" + fs::path(image_path).extension().string());
+    const std::string script = folder.path_of("script.gnuplot");
+    io::write_file(script, script_for(image));
+    try {
+        run_gnuplot(script);
+    } catch (const InputError& error) {
+        throw input_error_at({image_path}, std::string("the plot was not drawn, ") + error.what() +
+                                               leave_script(script_for(image_path), image_path));
+    }
+    io::write_file(image_path, io::read_file(image));
 }
 
 void study(const Arguments& arguments) {
     if (!arguments.plot.empty()) check_image_path(arguments.plot);
+    check_outputs({arguments.paths.campaign, arguments.paths.measurements},
+                  {arguments.csv, arguments.plot});
     const auto file = io::read_campaign(arguments.paths.campaign);
     const auto measurements = io::read_measurements(arguments.paths.measurements, file);
     StudyOptions options = arguments.options;
     options.seed = arguments.seed.value_or(file.seed);
-    options.criteria.clear();
-    for (const auto& name : arguments.criteria) options.criteria.push_back(parse_criterion(name));
+    options.criteria = arguments.criteria;
     if (options.criteria.empty()) options.criteria = {file.criterion};
 
     Progress progress("calibrating", arguments.progress);
-    const auto rows = study_pose_counts(file.campaign, measurements, options,
-                                        [&](Index done, Index total) { progress(done, total); });
+    const auto rows = compute_from(arguments.paths.measurements, [&] {
+        return study_pose_counts(file.campaign, measurements, options,
+                                 [&](Index done, Index total) { progress(done, total); });
+    });
     print(format_table(study_table(options.criteria, rows)));
     if (!arguments.csv.empty()) {
         io::write_file(arguments.csv, study_csv(options.criteria, rows, measurements.ids));
     }
     if (!arguments.plot.empty()) {
-        draw_plot(study_plot_script(options.criteria, rows, file.campaign.name, arguments.plot),
-                  arguments.plot);
+        draw_plot(arguments.plot, [&](const std::string& image) {
+            return study_plot_script(options.criteria, rows, file.campaign.name, image);
+        });
     }
 }
 
 void add_options(CLI::App& command, Arguments& arguments) {
-    command
-        .add_option("-c,--criteria", arguments.criteria,
-                    "Criteria to choose by, such as d,a,o1 (default: the campaign's)")
-        ->delimiter(',')
-        ->check(criterion_check());
+    command.add_option_function<std::string>(
+        "-c,--criteria",
+        [&arguments](const std::string& text) { arguments.criteria = parse_criteria(text); },
+        "Criteria to choose by, such as d,a,o1 (default: the campaign's)");
     command
         .add_option("--random", arguments.options.random_subsets, "Random subsets per pose count")
-        ->check(CLI::Range(Index{0}, Index{1000000}))
+        ->check(whole_number(0, 1000000))
         ->capture_default_str();
     command.add_option_function<std::string>(
         "-k,--poses",
@@ -116,12 +177,14 @@ void add_options(CLI::App& command, Arguments& arguments) {
         },
         "Pose counts, 5:24 or 6,9,12 (default: from the least that identifies to all but one)");
     command.add_option("--starts", arguments.options.starts, "Starts of each exchange")
-        ->check(CLI::Range(Index{1}, Index{1000000}))
+        ->check(whole_number(1, 1000000))
         ->capture_default_str();
     command.add_option("--seed", arguments.seed, "Of all random choices (default: the campaign's)")
-        ->check(CLI::NonNegativeNumber);
-    command.add_option("--csv", arguments.csv, "Write every subset's result to this file");
-    command.add_option("--plot", arguments.plot, "Draw error against pose count: .svg or .png");
+        ->check(whole_number(0, largest_seed));
+    command.add_option("--csv", arguments.csv, "Write every subset's result to this file")
+        ->check(file_name());
+    command.add_option("--plot", arguments.plot, "Draw error against pose count: .svg or .png")
+        ->check(file_name());
     command.add_flag("--progress", arguments.progress,
                      "Show progress on standard error even if it is no terminal");
 }

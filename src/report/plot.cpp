@@ -65,6 +65,16 @@ struct ErrorAxis {
 
 constexpr std::array band_quantiles{0.1, 0.5, 0.9};
 
+/// One count alone makes no range of its own.
+std::string count_axis(const std::vector<StudyRow>& rows) {
+    const auto by_count = [](const StudyRow& a, const StudyRow& b) {
+        return a.pose_count < b.pose_count;
+    };
+    const auto [least, most] = std::minmax_element(rows.begin(), rows.end(), by_count);
+    if (rows.empty() || least->pose_count < most->pose_count) return "";
+    return fmt::format("set xrange [{}:{}]\n", least->pose_count - 1, least->pose_count + 1);
+}
+
 std::string format_plotted(const std::optional<double>& metres, const std::string& if_absent) {
     return metres ? format_short(mm_per_m * *metres, 9) : if_absent;
 }
@@ -165,13 +175,14 @@ std::string study_plot_script(const std::vector<Criterion>& criteria,
         "set terminal {}\nset output {}\nset title {} noenhanced\n"
         "set xlabel 'poses used for calibration'\n"
         "set ylabel 'held-out distance RMS (mm)'\n"
-        "set logscale y\nset yrange [{}:{}]\nset format y '%g'\n"
+        "{}set logscale y\nset yrange [{}:{}]\nset format y '%g'\n"
         "set xtics out nomirror\nset ytics out nomirror ({})\n"
         "set border 3 lc rgb '#5f6b77'\nset grid ytics lc rgb '#dfe3e8'\n"
         "set offsets graph 0.02, graph 0.02\nset key top right reverse Left\n"
         "{}{}\nset output\n",
-        terminal(image_path), quote(image_path), quote(title), format_short(axis.lower),
-        format_short(axis.upper), axis.format_ticks(), drawing.data, drawing.clauses);
+        terminal(image_path), quote(image_path), quote(title), count_axis(rows),
+        format_short(axis.lower), format_short(axis.upper), axis.format_ticks(), drawing.data,
+        drawing.clauses);
 }
 
 }  // namespace posewise

@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <string>
 
 #include "posewise/core/errors.hpp"
 #include "posewise/report/plot.hpp"
@@ -12,11 +13,6 @@ extern char** environ;
 
 namespace posewise {
 namespace {
-
-InputError plot_error(const std::string& reason, const std::string& script_path) {
-    return InputError("the plot was not drawn, " + reason + "; its script is left, try: gnuplot " +
-                      script_path);
-}
 
 /// The exit code of a child; -1 if it was killed by a signal.
 int wait_for(pid_t child) {
@@ -37,14 +33,13 @@ void run_gnuplot(const std::string& script_path) {
     pid_t child = 0;
     const int error =
         posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments.data(), environ);
-    if (error == ENOENT) throw plot_error("gnuplot is not installed", script_path);
+    if (error == ENOENT) throw InputError("gnuplot is not installed");
     if (error != 0) {
-        throw plot_error(std::string("gnuplot cannot be started: ") + std::strerror(error),
-                         script_path);
+        throw InputError(std::string("gnuplot cannot be started: ") + std::strerror(error));
     }
     const int code = wait_for(child);
-    if (code == 127) throw plot_error("gnuplot is not installed", script_path);
-    if (code != 0) throw plot_error("gnuplot failed", script_path);
+    if (code == 127) throw InputError("gnuplot is not installed");
+    if (code != 0) throw InputError("gnuplot failed");
 }
 
 }  // namespace posewise

@@ -109,13 +109,18 @@ TEST_F(RunGnuplot, DrawsIntoFilesWithAwkwardNames) {
     }
 }
 
-TEST_F(RunGnuplot, NamesTheScriptWhenItFails) {
+TEST(StudyPlotScript, GivesASinglePoseCountARange) {
+    const auto script = study_plot_script(criteria, {example_rows()[0]}, "robot", "out.svg");
+    EXPECT_NE(script.find("set xrange [1:3]\n"), std::string::npos) << script;
+}
+
+TEST_F(RunGnuplot, SaysThatItFailed) {
     const auto script = write_script("bad.gnuplot", "exit status 3\n");
     try {
         run_gnuplot(script);
         FAIL() << "no error";
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find(script), std::string::npos);
+        EXPECT_EQ(std::string(error.what()), "gnuplot failed");
     }
 }
 

@@ -20,8 +20,8 @@ std::string study_plot_script(const std::vector<Criterion>& criteria,
                               const std::vector<StudyRow>& rows, const std::string& title,
                               const std::string& image_path);
 
-/// Runs gnuplot on a script file, not through a shell. Throws InputError, naming the script that
-/// can be run later, if gnuplot is absent or fails.
+/// Runs gnuplot on a script file, not through a shell. Throws InputError if gnuplot is absent or
+/// fails.
 void run_gnuplot(const std::string& script_path);
 
 }  // namespace posewise

@@ -1,0 +1,61 @@
+#include "files.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+namespace posewise::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A device, pipe or folder: nothing that is replaced.
+bool is_special(const std::string& path) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    return fs::exists(status) && !fs::is_regular_file(status);
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+    std::error_code error;
+    if (fs::equivalent(a, b, error) && !error) return true;
+    const fs::path whole_a = fs::weakly_canonical(fs::absolute(a, error), error);
+    if (error) return a == b;
+    const fs::path whole_b = fs::weakly_canonical(fs::absolute(b, error), error);
+    return error ? a == b : whole_a == whole_b;
+}
+
+void check_folder(const std::string& path) {
+    std::error_code error;
+    const fs::path whole = fs::weakly_canonical(path, error);  // where a link leads
+    fs::path folder = (error ? fs::path(path) : whole).parent_path();
+    if (folder.empty()) folder = ".";
+    if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+        throw input_error_at({path}, std::string("cannot be written: ") + std::strerror(errno));
+    }
+}
+
+}  // namespace
+
+void check_outputs(const std::vector<std::string>& inputs,
+                   const std::vector<std::string>& outputs) {
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        const std::string& path = outputs[i];
+        if (path.empty() || is_special(path)) continue;
+        for (const std::string& input : inputs) {
+            if (!input.empty() && is_same_file(path, input)) {
+                throw input_error_at({path}, "is read and shall be written; must be another file");
+            }
+        }
+        for (std::size_t k = 0; k < i; ++k) {
+            if (!outputs[k].empty() && is_same_file(path, outputs[k])) {
+                throw input_error_at({path}, "shall be written twice; must be two files");
+            }
+        }
+        check_folder(path);
+    }
+}
+
+}  // namespace posewise::cli

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "posewise/core/errors.hpp"
+
+/// What commands check about their files.
+namespace posewise::cli {
+
+/// Before anything is computed: throws InputError if an output is an input or another output (by
+/// whatever path or link), or if no file can be written there. Empty paths do not count.
+void check_outputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
+
+/// What `compute` returns; its InputErrors, which are about the content of the file, name it.
+template <class Compute>
+auto compute_from(const std::string& path, Compute&& compute) {
+    try {
+        return std::forward<Compute>(compute)();
+    } catch (const InputError& error) {
+        throw input_error_at({path}, error.what());
+    }
+}
+
+}  // namespace posewise::cli

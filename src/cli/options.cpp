@@ -1,0 +1,56 @@
+#include "options.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "posewise/core/text.hpp"
+
+namespace posewise::cli {
+namespace {
+
+/// Whether the whole text is a number of that type, which std::from_chars reads.
+template <class Number>
+bool parse(const std::string& text, Number& number) {
+    const char* const end = text.data() + text.size();
+    const auto result = std::from_chars(text.data(), end, number);
+    return result.ec == std::errc() && result.ptr == end;
+}
+
+}  // namespace
+
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
+    const std::string range = fmt::format("{} to {}", least, most);
+    return CLI::Validator(
+        [=](const std::string& text) {
+            std::uint64_t number = 0;
+            const bool has_leading_zero = text.size() > 1 && text[0] == '0';
+            if (parse(text, number) && !has_leading_zero && number >= least && number <= most) {
+                return std::string();
+            }
+            return fmt::format("is {}; must be a whole number from {}", quote(text), range);
+        },
+        range);
+}
+
+CLI::Validator real_number(double least, double most) {
+    const std::string range = fmt::format("{:g} to {:g}", least, most);
+    return CLI::Validator(
+        [=](const std::string& text) {
+            double number = 0;
+            if (parse(text, number) && number >= least && number <= most) return std::string();
+            return fmt::format("is {}; must be a number from {}", quote(text), range);
+        },
+        range);
+}
+
+CLI::Validator file_name() {
+    return CLI::Validator(
+        [](const std::string& name) {
+            return std::string(name.empty() ? "is empty; must be the name of a file" : "");
+        },
+        "");
+}
+
+}  // namespace posewise::cli

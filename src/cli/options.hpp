@@ -1,0 +1,22 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+/// Checks of what an option may hold; anything else is a usage error.
+namespace posewise::cli {
+
+inline constexpr std::uint64_t largest_seed = std::numeric_limits<std::uint64_t>::max();
+
+/// Decimal digits and nothing else (no sign, no blank, no 0x, no leading zero), within the range.
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
+
+/// A finite decimal number within the range.
+CLI::Validator real_number(double least, double most);
+
+/// Not empty.
+CLI::Validator file_name();
+
+}  // namespace posewise::cli
