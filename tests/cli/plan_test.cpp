@@ -1,0 +1,143 @@
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+/// `plan` as a user runs it: on the FANUC, and in the demonstration cell.
+namespace posewise::testing {
+namespace {
+
+const std::string cell_design =
+    std::string("'") + POSEWISE_SOURCE_DIR + "/designs/cell_demo/campaign.yaml'";
+const std::string quick = " --pool 500 --starts 2 --workspace-poses 50 ";
+
+class PlanCommand : public Program {
+  protected:
+    nlohmann::json json_of(const std::string& name) const {
+        return nlohmann::json::parse(text_of(name));
+    }
+    /// The demonstration cell with one line changed.
+    void write_changed(const std::string& from, const std::string& to) const {
+        std::string text =
+            read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/cell_demo/campaign.yaml");
+        const auto place = text.find(from);
+        ASSERT_NE(place, std::string::npos) << from;
+        write_text("changed.yaml", text.replace(place, from.size(), to));
+    }
+};
+
+TEST_F(PlanCommand, WritesPosesAndTellsWhatTheyAchieve) {
+    const std::string text =
+        run_well("plan " + fanuc_design + " -k 12" + quick + "-o p.json --csv p.csv");
+    const auto plan = json_of("p.json");
+    ASSERT_EQ(plan.at("poses").size(), 12u);
+    EXPECT_EQ(plan.at("criterion"), "v");
+    EXPECT_EQ(plan.at("is_interrupted"), false);
+    EXPECT_EQ(plan.at("poses")[0].at("visible_targets").size(), 3u);
+    EXPECT_EQ(plan.at("assumes").at("sigma_m"), 5.2e-5);
+    EXPECT_GT(plan.at("value"), plan.at("bounds").at("pool").at("value"));
+    EXPECT_GE(plan.at("bounds").at("continuous").at("bound"), plan.at("value"));
+    EXPECT_NE(text.find("a search, not a proof"), std::string::npos) << text;
+    EXPECT_NE(text.find("planned"), std::string::npos);
+    EXPECT_NE(text.find("target3.z"), std::string::npos);
+    // What a person measures by: select reads it, and its digits are those of the plan.
+    run_well("select " + fanuc_design + " --candidates p.csv -k 8 -o s.json");
+    EXPECT_EQ(json_of("s.json").at("poses").size(), 8u);
+}
+
+TEST_F(PlanCommand, IsTheSameForOneThreadAndTwo) {
+    const std::string arguments = "plan " + cell_design + " -k 12 --pool 3000 --starts 2 -o p.json";
+    const std::string one = run_well(arguments, "OMP_NUM_THREADS=1");
+    const std::string file_one = text_of("p.json");
+    EXPECT_EQ(run_well(arguments, "OMP_NUM_THREADS=2"), one);
+    EXPECT_EQ(text_of("p.json"), file_one);
+    EXPECT_NE(one.find("keep_out: "), std::string::npos);
+    EXPECT_NE(one.find("laser tracker with sigma 10 um in range and 15 urad in angle"),
+              std::string::npos);
+    EXPECT_EQ(json_of("p.json").at("assumes").at("angle_sigma_rad"), 1.5e-5);
+}
+
+TEST_F(PlanCommand, RepairsAPlanWithoutMovingTheOthers) {
+    run_well("plan " + fanuc_design + " -k 10" + quick + "-o p.json");
+    const std::string text =
+        run_well("plan " + fanuc_design + quick + "--plan p.json --drop p2,p5 -o r.json");
+    EXPECT_NE(text.find("2 new, 8 kept"), std::string::npos) << text;
+    const auto before = json_of("p.json").at("poses");
+    const auto after = json_of("r.json").at("poses");
+    ASSERT_EQ(after.size(), 10u);
+    int kept = 0;
+    for (const auto& pose : after) {
+        if (!pose.at("kept")) continue;
+        ++kept;
+        for (const auto& old : before) {
+            if (old.at("id") == pose.at("id")) {
+                EXPECT_EQ(old.at("joints"), pose.at("joints"));
+            }
+        }
+    }
+    EXPECT_EQ(kept, 8);
+    expect_input_error("plan " + fanuc_design + quick + "--plan p.json --drop p77 -o x.json",
+                       "--drop p77: p.json has no such pose");
+}
+
+TEST_F(PlanCommand, CountsWhatWasMeasuredAlready) {
+    run_well("simulate " + fanuc_design + " -k 8 --repeats 2 -o m.csv");
+    const std::string text =
+        run_well("plan " + fanuc_design + " -k 2 --augment m.csv --criterion d" + quick +
+                 "--focus robot -o p.json");
+    EXPECT_NE(text.find("2 new, 8 measured already"), std::string::npos) << text;
+    EXPECT_EQ(json_of("p.json").at("asked_for").at("focus"), "robot");
+}
+
+TEST_F(PlanCommand, AnInterruptedPlanIsWrittenAndMarked) {
+    const std::string arguments =
+        "plan " + fanuc_design + " -k 16 --pool 2000 --starts 2000 --workspace-poses 50 -o p.json";
+    const Outcome outcome = run(arguments, "timeout --signal=INT 4");
+    EXPECT_NE(outcome.err.find("the plan is the best so far"), std::string::npos) << outcome.err;
+    EXPECT_EQ(json_of("p.json").at("is_interrupted"), true);
+    EXPECT_EQ(json_of("p.json").at("poses").size(), 16u);
+    const Outcome timed = run(arguments + " --time 2");
+    EXPECT_EQ(timed.code, 0);
+    EXPECT_EQ(json_of("p.json").at("is_interrupted"), true);
+}
+
+TEST_F(PlanCommand, RefusesContradictoryLimits) {
+    write_changed("range_mm: [1500, 8000]", "range_mm: [8000, 1500]");
+    expect_input_error("plan changed.yaml -k 12" + quick, "range");
+    write_changed("q1: {limits_deg: [-90, 90]}", "q1: {limits_deg: [90, -90]}");
+    expect_input_error("plan changed.yaml -k 12" + quick, "q1");
+}
+
+TEST_F(PlanCommand, RefusesARangeSigmaOfZero) {
+    write_changed("range_um: 10", "range_um: 0");
+    expect_input_error("plan changed.yaml -k 12" + quick, "range_um");
+}
+
+TEST_F(PlanCommand, RefusesABoxOutOfReach) {
+    write_changed("max: [3000, 1800, 2400]", "max: [9000, 1800, 2400]");
+    write_changed("{min: [300, -2200, -400], max: [3000, 1800, 2400]}",
+                  "{min: [7000, 7000, 7000], max: [8000, 8000, 8000]}");
+    expect_input_error("plan changed.yaml -k 12" + quick, "target_boxes alone leaves nothing");
+    expect_input_error("plan " + fanuc_design + " -k 12" + quick +
+                           "--workspace-box-mm 7000,7000,7000,8000,8000,8000",
+                       "workspace: none of");
+}
+
+TEST_F(PlanCommand, RefusesFewerPosesThanIdentify) {
+    expect_input_error("plan " + fanuc_design + " -k 3" + quick, "must be at least 5");
+    run_well("plan " + fanuc_design + " -k 5 --prior" + quick + "-o p.json");
+}
+
+TEST_F(PlanCommand, RefusesMeasurementsOfAnotherRobot) {
+    std::string other =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    const std::string length = "Tz 1075 mm";
+    write_text("other.yaml", other.replace(other.find(length), length.size(), "Tz 600 mm"));
+    run_well("simulate other.yaml -k 12 -o other.csv");
+    expect_input_error("plan " + fanuc_design + " -k 4 --augment other.csv" + quick,
+                       "another robot");
+    expect_input_error("plan " + fanuc_design + " -k 4 --plan other.csv --drop p1" + quick,
+                       "other.csv");
+}
+
+}  // namespace
+}  // namespace posewise::testing
