@@ -47,15 +47,35 @@ double mean_repeats(const Measurements& measurements) {
            static_cast<double>(measurements.configuration_count());
 }
 
+namespace {
+
+/// A plan of another robot or campaign may well have the same ids.
+void check_same_pose(const Measurements& measurements, Index i, const io::PlannedPose& pose,
+                     const std::string& plan_path) {
+    constexpr double tolerance = 2e-3;  // rad or m: what was read back may differ from the plan
+    if (pose.joints.size() == 0) return;
+    const VectorXd measured = measurements.configurations.row(i).transpose();
+    if (pose.joints.size() == measured.size() &&
+        (pose.joints - measured).cwiseAbs().maxCoeff() <= tolerance) {
+        return;
+    }
+    throw InputError(plan_path + ": configuration '" + pose.id +
+                     "' of the plan has other joint values than the measured one; the plan must "
+                     "be of this robot and campaign");
+}
+
+}  // namespace
+
 std::vector<Index> find_planned(const Measurements& measurements, const std::string& plan_path) {
     std::vector<Index> planned;
-    for (const std::string& id : io::read_plan_ids(plan_path)) {
-        const auto found = std::find(measurements.ids.begin(), measurements.ids.end(), id);
+    for (const io::PlannedPose& pose : io::read_plan_poses(plan_path)) {
+        const auto found = std::find(measurements.ids.begin(), measurements.ids.end(), pose.id);
         if (found == measurements.ids.end()) {
-            throw InputError(plan_path + ": configuration '" + id +
+            throw InputError(plan_path + ": configuration '" + pose.id +
                              "' of the plan is not among the measured ones");
         }
         planned.push_back(found - measurements.ids.begin());
+        check_same_pose(measurements, planned.back(), pose, plan_path);
     }
     return planned;
 }

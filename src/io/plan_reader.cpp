@@ -154,12 +154,8 @@ PlanFile read_plan(const std::string& path) {
     return file;
 }
 
-std::vector<std::string> read_plan_ids(const std::string& path) {
-    std::vector<std::string> ids;
-    for (PlannedPose& pose : read_poses(read_document(path, "plan"), path)) {
-        ids.push_back(std::move(pose.id));
-    }
-    return ids;
+std::vector<PlannedPose> read_plan_poses(const std::string& path) {
+    return read_poses(read_document(path, "plan"), path);
 }
 
 }  // namespace posewise::io

@@ -71,6 +71,14 @@ TEST_F(Commands, SelectWritesAPlanThatCalibrateTakes) {
     EXPECT_NE(calibrated.find("not in plan"), std::string::npos);
 }
 
+TEST_F(Commands, CalibrateRefusesAPlanOfAnotherCampaign) {
+    run_well("select " + input_ + "-k 8");
+    run_well("simulate " + fanuc_design + " --seed 99 --poses 60 -o other.csv");
+    const Outcome refused = run("calibrate " + fanuc_design + " -m other.csv --plan s.plan.json");
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_NE(refused.err.find("has other joint values than the measured one"), std::string::npos);
+}
+
 TEST_F(Commands, CalibrateFindsTheTruthAndWritesIt) {
     const std::string text = run_well("calibrate " + input_ + "--out e.json");
     EXPECT_NE(text.find("converged"), std::string::npos);

@@ -9,7 +9,7 @@ namespace {
 TEST(ReadJson, RefusesANumberThatOverflows) {
     const testing::TemporaryFolder folder;
     const std::string path = folder.write("p.json", R"({"kind": "posewise plan", "seed": 1e999})");
-    EXPECT_EQ(testing::input_error_of([&] { read_plan_ids(path); }),
+    EXPECT_EQ(testing::input_error_of([&] { read_plan_poses(path); }),
               "p.json: has a number beyond the range of numbers; must be a plan as posewise writes "
               "it");
 }

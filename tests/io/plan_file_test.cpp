@@ -53,7 +53,7 @@ class PlanFileTest : public ::testing::Test {
     }
 
     std::string error_of(const std::string& text) const {
-        return input_error_of([&] { read_plan_ids(folder_.write("p.json", text)); });
+        return input_error_of([&] { read_plan_poses(folder_.write("p.json", text)); });
     }
 
     std::string error_with_poses(const std::string& poses) const {
@@ -142,8 +142,9 @@ TEST_F(PlanFileTest, LeadsToItsFilesFromItsOwnFolder) {
 
 TEST_F(PlanFileTest, KeepsTheIdsInTheirOrder) {
     written();
-    EXPECT_EQ(read_plan_ids(path_),
-              (std::vector<std::string>{"2, \"the\" second", "dritte Stück"}));
+    std::vector<std::string> ids;
+    for (const PlannedPose& pose : read_plan_poses(path_)) ids.push_back(pose.id);
+    EXPECT_EQ(ids, (std::vector<std::string>{"2, \"the\" second", "dritte Stück"}));
 }
 
 TEST_F(PlanFileTest, SaysWhatThePlanIsAndAssumes) {
@@ -171,7 +172,7 @@ TEST_F(PlanFileTest, IsNotWrittenWithAnIdThatIsNotText) {
 }
 
 TEST_F(PlanFileTest, IsRefusedIfMissing) {
-    EXPECT_EQ(input_error_of([&] { read_plan_ids(path_); }),
+    EXPECT_EQ(input_error_of([&] { read_plan_poses(path_); }),
               "plan.json: cannot be read: No such file or directory");
 }
 

@@ -70,7 +70,7 @@ void write_plan(const std::string& path, const PlanFile& file, const Campaign* c
 /// InputError with the place for whatever is missing, of another type or out of range.
 PlanFile read_plan(const std::string& path);
 
-/// The ids of the poses of a plan file, in order. Throws InputError for a file that is not a plan.
-std::vector<std::string> read_plan_ids(const std::string& path);
+/// Only the poses of a plan file, in order. Throws InputError for a file that is not a plan.
+std::vector<PlannedPose> read_plan_poses(const std::string& path);
 
 }  // namespace posewise::io
