@@ -73,8 +73,9 @@ MatMapping read_mat_mapping(const YamlValue& measurements, Index target_count) {
 }
 
 Criterion read_criterion(const YamlValue& value) {
+    const std::string name = value.text();
     try {
-        return parse_criterion(value.text());
+        return parse_criterion(name);
     } catch (const InputError& problem) {
         throw value.error(std::string("is not usable: ") + problem.what());
     }

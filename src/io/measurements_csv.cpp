@@ -198,7 +198,14 @@ class RowReader {
                                              "point",
                                              quote(text), number.problem));
         }
-        return columns_[field].unit->to_si(number.value);
+        const Unit& unit = *columns_[field].unit;
+        const double si = unit.to_si(number.value);
+        if (!is_plausible(si, unit.quantity)) {
+            throw input_error_at(csv_.locate(field),
+                                 fmt::format("{} is out of any cell; must be {}", quote(text),
+                                             plausible(unit.quantity)));
+        }
+        return si;
     }
 
     /// The same sample of the same configuration twice is a file joined with itself.

@@ -216,6 +216,13 @@ TEST(BadMeasurementsCsv, AnglesThatLookLikeDegrees) {
               "1.5708 rad) and looks like degrees; state degrees as such");
 }
 
+TEST(BadMeasurementsCsv, MagnitudesThatNoCellHas) {
+    const std::string message = error_with("0.25", "1e300");
+    EXPECT_NE(message.find("'1e300' is out of any cell; must be at most 10000 rad"),
+              std::string::npos)
+        << message;
+}
+
 TEST(BadMeasurementsCsv, DuplicateConfigurations) {
     EXPECT_EQ(error_with("0.25", "0.2"),
               "m.csv:4:5: configuration 'b' has the same joint values as 'a' (line 2); samples of "
