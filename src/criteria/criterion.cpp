@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/core/text.hpp"
 #include "posewise/criteria/objective.hpp"
 
 namespace posewise {
@@ -47,7 +48,7 @@ Criterion parse_criterion(std::string_view name) {
         if (entry.name == lower) return entry.criterion;
         all += (all.empty() ? "" : ", ") + std::string(entry.name);
     }
-    throw InputError("criterion is '" + std::string(name) + "', must be one of " + all +
+    throw InputError("criterion is " + quote(name) + ", must be one of " + all +
                      " (or i, the same as v)");
 }
 
