@@ -165,8 +165,9 @@ TEST_F(Commands, RefuseWhatCannotBeDone) {
     run_well("simulate " + fanuc_design + " -k 4 -o few.csv");
     expect_input_error("calibrate " + fanuc_design + " -m few.csv -o e.json", "");
     expect_input_error("study " + fanuc_design + " -m few.csv --csv r.csv", "");
-    run_well("simulate " + fanuc_design + " -k 30 -o more.csv");
-    run_well("select " + fanuc_design + " -m more.csv -k 20 -o more.json");
+    // The same seed: the first 16 of 30 are those of s.csv.
+    run_well("simulate " + fanuc_design + " --truth 7 --seed 3 -k 30 -o more.csv");
+    run_well("select " + fanuc_design + " -m more.csv -k 20 --starts 1 -o more.json");
     expect_input_error("calibrate " + input_ + "--plan more.json", "not among the measured");
 }
 
