@@ -8,7 +8,9 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "files.hpp"
 #include "interrupt.hpp"
+#include "options.hpp"
 #include "plan_report.hpp"
 #include "planning_problem.hpp"
 #include "posewise/report/units.hpp"
@@ -168,6 +170,10 @@ void plan(Arguments arguments) {
     }
     if (asked.request.repaired.empty() && asked.pose_count == 0)
         throw CLI::RequiredError("--poses");
+    const io::PosePlanRequest& request = asked.request;
+    const std::string out = arguments.out.empty() ? default_out(request.campaign) : arguments.out;
+    check_outputs({request.campaign, request.augment, request.repaired, request.workspace},
+                  {out, arguments.csv});
     const InterruptFlag interrupted;
     PlanningProblem problem = read_planning_problem(asked);
     const PlannedPoses planned = search(problem, interrupted.get(), arguments.progress);
@@ -177,8 +183,6 @@ void plan(Arguments arguments) {
     const Tour tour =
         plan_tour(problem.constraints, all_poses(problem, planned.configurations), tour_options);
     const io::PosePlanFile file = make_file(problem, planned, accuracy, tour);
-    const std::string out =
-        arguments.out.empty() ? default_out(asked.request.campaign) : arguments.out;
     io::write_pose_plan(out, file, problem.campaign);
     if (!arguments.csv.empty()) {
         io::write_configurations_csv(arguments.csv, problem.campaign, file.poses);
@@ -202,7 +206,7 @@ void add_problem(CLI::App& command, PlanningArguments& problem, std::string& foc
     command
         .add_option("-k,--poses", problem.pose_count,
                     "How many configurations (with --plan: all together; default: as it has)")
-        ->check(CLI::Range(Index{1}, Index{10000}));
+        ->check(whole_number(1, 10000));
     command
         .add_option("-c,--criterion", problem.criterion,
                     "o1, o2, o3, o4, o5, a, d, e, g or v; g and v: worst and mean position error "
@@ -221,7 +225,7 @@ void add_problem(CLI::App& command, PlanningArguments& problem, std::string& foc
                      "The scale of each robot error is also its prior standard deviation; --poses "
                      "may then be below what identifies (default: the campaign's)");
     command.add_option("--repeats", request.repeats, "Samples of each configuration")
-        ->check(CLI::Range(1.0, 1e9))
+        ->check(real_number(1, 1e9))
         ->capture_default_str();
 }
 
@@ -232,7 +236,7 @@ void add_workspace(CLI::App& command, PlanningArguments& problem) {
     command
         .add_option("--workspace-poses", request.workspace_count,
                     "How many are drawn for it otherwise")
-        ->check(CLI::Range(Index{1}, Index{20000}))
+        ->check(whole_number(1, 20000))
         ->default_val(Index{500});
     command
         .add_option("--workspace-box-mm", problem.workspace_box_mm,
@@ -243,22 +247,22 @@ void add_workspace(CLI::App& command, PlanningArguments& problem) {
     command
         .add_option("--workspace-target", problem.target,
                     "Target whose position counts, from 1 (0: all of them)")
-        ->check(CLI::Range(Index{0}, Index{10000}))
+        ->check(whole_number(0, 10000))
         ->capture_default_str();
 }
 
 void add_search(CLI::App& command, Arguments& arguments) {
     io::PosePlanRequest& request = arguments.problem.request;
     command.add_option("--pool", request.pool_count, "Candidates to draw")
-        ->check(CLI::Range(Index{1}, Index{10000000}))
+        ->check(whole_number(1, 10000000))
         ->default_val(Index{20000});
     command.add_option("--starts", request.starts, "Plans that are refined")
-        ->check(CLI::Range(Index{1}, Index{100000}))
+        ->check(whole_number(1, 100000))
         ->default_val(Index{16});
     command.add_option("--seed", arguments.problem.seed, "Of all draws (default: the campaign's)")
-        ->check(CLI::NonNegativeNumber);
+        ->check(whole_number(0, largest_seed));
     command.add_option("--time", request.time_limit, "Seconds after which to stop")
-        ->check(CLI::PositiveNumber);
+        ->check(real_number(1e-3, 1e9));
     command.add_option("-o,--out", arguments.out,
                        "Plan file (default: <campaign>.poses.json in this folder)");
     command.add_option("--csv", arguments.csv, "Write the configurations as CSV, too");

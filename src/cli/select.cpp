@@ -8,7 +8,9 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "files.hpp"
 #include "interrupt.hpp"
+#include "options.hpp"
 #include "posewise/report/units.hpp"
 #include "selection_problem.hpp"
 
@@ -180,11 +182,14 @@ Plan search(SelectionProblem& problem, const Arguments& arguments) {
 }
 
 void select(Arguments arguments) {
-    SelectionProblem problem = read_problem(make_request(arguments));
+    const io::SelectionRequest request = make_request(arguments);
+    const std::string out = arguments.out.empty() ? default_out(request.source) : arguments.out;
+    check_outputs({request.source.campaign, request.source.path, request.augment,
+                   request.test_poses, request.groups},
+                  {out});
+    SelectionProblem problem = read_problem(request);
     const io::PlanFile file = make_plan_file(problem, search(problem, arguments));
     const io::CampaignFile* campaign = problem.campaign ? &*problem.campaign : nullptr;
-    const std::string out =
-        arguments.out.empty() ? default_out(problem.request.source) : arguments.out;
     io::write_plan(out, file, campaign != nullptr ? &campaign->campaign : nullptr);
     print_plan(file);
     if (campaign != nullptr) {
@@ -210,22 +215,22 @@ void add_sources(CLI::App& command, Arguments& arguments) {
     group.add_option("--candidates", arguments.candidates, "Configurations to choose from (CSV)");
     group
         .add_option("--random", arguments.random, "As many configurations within the joint limits")
-        ->check(CLI::Range(Index{1}, Index{10000000}));
+        ->check(whole_number(1, 10000000));
     group.add_option("--blocks", arguments.blocks, "A plain matrix, CSV or MATLAB .mat; no robot");
     group.require_option(1);
     command.add_option("--rows", source.rows_per_block, "--blocks: rows of one candidate")
-        ->check(CLI::Range(Index{1}, Index{1000000}));
+        ->check(whole_number(1, 1000000));
     command.add_option("--variable", source.variable,
                        "--blocks: variable of the MATLAB file (default: the first)");
     command
         .add_option("--repeats", source.repeats,
                     "Samples of each chosen configuration (default: as in the file, else 1)")
-        ->check(CLI::Range(1.0, 1e9));
+        ->check(real_number(1, 1e9));
 }
 
 void add_problem(CLI::App& command, Arguments& arguments) {
     io::SelectionRequest& request = arguments.request;
-    const auto count = CLI::Range(Index{1}, Index{1000000});
+    const auto count = whole_number(1, 1000000);
     command.add_option("-k,--poses", request.pose_count, "How many to choose")
         ->required()
         ->check(count);
@@ -260,19 +265,19 @@ void add_problem(CLI::App& command, Arguments& arguments) {
     command
         .add_option("--least-distance-deg", arguments.least_distance_deg,
                     "Least distance in joint space (Euclidean) of any two chosen")
-        ->check(CLI::Range(0.0, 1e4));
+        ->check(real_number(0, 1e4));
 }
 
 void add_search(CLI::App& command, Arguments& arguments) {
     command.add_option("--starts", arguments.search.starts, "Independent searches")
-        ->check(CLI::Range(Index{1}, Index{1000000}))
+        ->check(whole_number(1, 1000000))
         ->capture_default_str();
     command
         .add_option("--seed", arguments.seed,
                     "Of the random starts and of --random (default: the campaign's, else 1)")
-        ->check(CLI::NonNegativeNumber);
+        ->check(whole_number(0, largest_seed));
     command.add_option("--time", arguments.search.time_limit, "Seconds after which to stop")
-        ->check(CLI::PositiveNumber);
+        ->check(real_number(1e-3, 1e9));
     command.add_option("-o,--out", arguments.out,
                        "Plan file (default: <candidates>.plan.json in this folder)");
     command.add_flag("--progress", arguments.progress,

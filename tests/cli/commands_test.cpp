@@ -155,6 +155,7 @@ TEST_F(Commands, PrintOnlyResultsToAPipe) {
 TEST_F(Commands, RefuseWhatCannotBeDone) {
     expect_input_error("select " + input_ + "-k 17", "17");
     expect_input_error("select " + input_ + "-k 8 -o absent/plan.json", "absent/plan.json");
+    expect_input_error("select " + input_ + "-k 8 -o s.csv", "must be another file");
     expect_input_error("calibrate " + input_ + "--folds 17", "--folds");
     expect_input_error("calibrate " + input_ + "--folds 1", "--folds");
     expect_input_error("calibrate " + input_ + "--plan s.csv", "s.csv");
