@@ -113,6 +113,7 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
     const auto join = [&](const std::vector<RowMatrixXd>& parts) {
         RowMatrixXd all(0, measurements.observations.cols());
         for (const RowMatrixXd& part : parts) {
+            if (part.rows() == 0) continue;  // a fold that failed
             all.conservativeResize(all.rows() + part.rows(), all.cols());
             all.bottomRows(part.rows()) = part;
         }
