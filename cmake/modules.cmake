@@ -4,9 +4,6 @@
 # the module and those it may use.
 function(posewise_module name)
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp")
-  if(NOT sources)
-    return()
-  endif()
   add_library(posewise_${name} OBJECT ${sources})
   target_include_directories(posewise_${name} PUBLIC
     "${PROJECT_SOURCE_DIR}/include" "${PROJECT_BINARY_DIR}/include")

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include "posewise/calibrator/estimate.hpp"
 
 namespace posewise {
