@@ -113,10 +113,31 @@ Element ElementParser::parse(std::string_view text, const FileLocation& start) {
         throw cursor.error(cursor.position(), quote(cursor.character()) +
                                                   " is not expected here; an element " + example);
     }
+    note_driven(element);
+    return element;
+}
+
+std::vector<JointTerm> ElementParser::parse_drive(std::string_view text, const FileLocation& start,
+                                                  Motion motion) {
+    Cursor cursor(text, start);
+    Element element;
+    element.motion = motion;
+    element.axis = Axis::Z;
+    cursor.skip_blanks();
+    const std::size_t first = cursor.position();
+    parse_sum(cursor, element);
+    if (cursor.peek() != '\0' || element.value != 0 || element.joints.empty()) {
+        throw cursor.error(first,
+                           quote(text) + " is no sum of joints; must be like '-q3 + 0.5*q2'");
+    }
+    note_driven(element);
+    return std::move(element.joints);
+}
+
+void ElementParser::note_driven(const Element& element) {
     for (const JointTerm& term : element.joints) {
         driven_[static_cast<std::size_t>(term.joint)] = element.motion;
     }
-    return element;
 }
 
 void ElementParser::parse_sum(Cursor& cursor, Element& element) const {

@@ -21,6 +21,11 @@ class ElementParser {
     /// points at the character where the notation, a unit, a joint or a name goes wrong.
     Element parse(std::string_view text, const FileLocation& start);
 
+    /// The sum of joints in `text` that drives an element of that motion: `q3`, `-q3 + 0.5*q2`.
+    /// Throws InputError as parse() does, and if there is an amount among them.
+    std::vector<JointTerm> parse_drive(std::string_view text, const FileLocation& start,
+                                       Motion motion);
+
     /// What a joint drives in the elements so far; nothing if none.
     std::optional<Motion> joint_motion(Index joint) const {
         return driven_[static_cast<std::size_t>(joint)];
@@ -34,6 +39,7 @@ class ElementParser {
     void add_nominal(Cursor& cursor, double number, std::size_t start, Element& element) const;
     void add_joint(Cursor& cursor, double coefficient, Element& element) const;
     void parse_parameter(Cursor& cursor, Element& element);
+    void note_driven(const Element& element);
 
     std::vector<std::string> joint_names_;
     std::vector<std::optional<Motion>> driven_;

@@ -1,31 +1,32 @@
 #include <algorithm>
 
-#include "campaign_sections.hpp"
 #include "element_notation.hpp"
+#include "robot_parts.hpp"
 #include "text.hpp"
 
 namespace posewise::io {
-namespace {
 
-// Far above any robot: what is more is no robot, and would only take memory and time.
-constexpr std::size_t most_joints = 100;
-constexpr std::size_t most_elements = 1000;
+const std::vector<std::string> joint_keys{"limits_<angle>", "limits_<length>",
+                                          "repeatability_<angle>", "repeatability_<length>"};
+
+void check_joint_name(const std::string& name, const FileLocation& location) {
+    if (!is_identifier(name) || find_unit(name) != nullptr) {
+        throw input_error_at(location, quote(name) +
+                                           " cannot name a joint; must be letters, "
+                                           "digits and underscores, not a unit");
+    }
+}
+
+namespace {
 
 std::vector<std::string> joint_names(const std::vector<YamlEntry>& entries) {
     std::vector<std::string> names;
     for (const auto& [name, location, value] : entries) {
-        if (!is_identifier(name) || find_unit(name) != nullptr) {
-            throw input_error_at(location, quote(name) +
-                                               " cannot name a joint; must be letters, "
-                                               "digits and underscores, not a unit");
-        }
+        check_joint_name(name, location);
         names.push_back(name);
     }
     return names;
 }
-
-const std::vector<std::string> joint_keys{"limits_<angle>", "limits_<length>",
-                                          "repeatability_<angle>", "repeatability_<length>"};
 
 /// Throws InputError if the measure's unit is not of what the joint moves in.
 void check_quantity(const YamlMeasure& measure, Motion motion) {
@@ -36,31 +37,13 @@ void check_quantity(const YamlMeasure& measure, Motion motion) {
                               "; must be in " + list_words(unit_names(quantity_of(motion))));
 }
 
-Joint read_joint(const YamlEntry& entry, std::optional<Motion> motion) {
-    if (!motion) {
-        throw input_error_at(entry.key_location,
-                             "joint " + quote(entry.key) + " drives no element; must occur in one");
-    }
-    const YamlMeasure limits = YamlMap(entry.value, joint_keys).require_measure("limits");
-    check_quantity(limits, *motion);
+Joint to_joint(const YamlMeasure& limits, const std::string& name, Motion motion) {
+    check_quantity(limits, motion);
     const VectorXd values = limits.list_to_si(2);
     if (values[0] >= values[1]) {
         throw limits.value.error("is not in order; the lower limit must come first");
     }
-    return {entry.key, values[0], values[1]};
-}
-
-/// Of all joints, 0 where it is not stated; empty if it is stated for none.
-VectorXd read_repeatability(const std::vector<YamlEntry>& entries, const Chain& robot) {
-    VectorXd repeatability = VectorXd::Zero(robot.joint_count());
-    for (Index j = 0; j < robot.joint_count(); ++j) {
-        const YamlMap map(entries[static_cast<std::size_t>(j)].value, joint_keys);
-        const auto measure = map.find_measure("repeatability");
-        if (!measure) continue;
-        check_quantity(*measure, robot.joint_motion(j));
-        repeatability[j] = read_positive(*measure, true);
-    }
-    return repeatability.isZero(0) ? VectorXd() : repeatability;
+    return {name, values[0], values[1]};
 }
 
 ErrorModel read_error_model(const YamlMap& robot, const std::vector<Element>& elements) {
@@ -77,15 +60,30 @@ ErrorModel read_error_model(const YamlMap& robot, const std::vector<Element>& el
 
 }  // namespace
 
-RobotSection read_robot(const YamlValue& value) {
-    const YamlMap robot(value, {"joints", "elements", "errors"});
+std::optional<Joint> find_limited_joint(const YamlMap& map, const std::string& name,
+                                        Motion motion) {
+    const auto limits = map.find_measure("limits");
+    return limits ? std::optional(to_joint(*limits, name, motion)) : std::nullopt;
+}
+
+Joint read_limited_joint(const YamlMap& map, const std::string& name, Motion motion) {
+    return to_joint(map.require_measure("limits"), name, motion);
+}
+
+double read_repeatability(const YamlMap& map, Motion motion) {
+    const auto measure = map.find_measure("repeatability");
+    if (!measure) return 0;
+    check_quantity(*measure, motion);
+    return read_positive(*measure, true);
+}
+
+RobotSection read_elements(const YamlMap& robot) {
     const std::vector<YamlEntry> entries = robot.require("joints").entries();
     if (entries.empty()) throw robot.require("joints").error("is empty; must state the joints");
     if (entries.size() > most_joints) {
         throw robot.require("joints").error("states " + std::to_string(entries.size()) +
                                             " joints; must be at most 100");
     }
-
     ElementParser parser(joint_names(entries));
     const std::vector<YamlValue> lines = robot.require("elements").list();
     if (lines.size() > most_elements) {
@@ -96,14 +94,39 @@ RobotSection read_robot(const YamlValue& value) {
     for (const YamlValue& line : lines) {
         elements.push_back(parser.parse(line.text(), line.text_location()));
     }
+    RobotSection section;
+    section.joint_repeatability.resize(static_cast<Index>(entries.size()));
     std::vector<Joint> joints;
     for (const YamlEntry& entry : entries) {
-        joints.push_back(read_joint(entry, parser.joint_motion(static_cast<Index>(joints.size()))));
+        const auto j = static_cast<Index>(joints.size());
+        const auto motion = parser.joint_motion(j);
+        if (!motion) {
+            throw input_error_at(entry.key_location, "joint " + quote(entry.key) +
+                                                         " drives no element; must occur in one");
+        }
+        const YamlMap map(entry.value, joint_keys);
+        joints.push_back(read_limited_joint(map, entry.key, *motion));
+        section.joint_repeatability[j] = read_repeatability(map, *motion);
     }
-    RobotSection section;
-    section.error_model = read_error_model(robot, elements);
     section.declared = Chain(std::move(joints), std::move(elements));
-    section.joint_repeatability = read_repeatability(entries, section.declared);
+    return section;
+}
+
+RobotSection read_robot(const YamlValue& value) {
+    const YamlMap robot(value, {"joints", "elements", "dh", "errors"});
+    const auto dh = robot.find("dh");
+    if (dh && robot.find("elements")) {
+        throw dh->error("is stated beside elements; must be one of them");
+    }
+    if (!dh && !robot.find("elements")) {
+        throw value.error("has no key elements or dh; one of them must be stated");
+    }
+    if (const auto joints = robot.find("joints"); dh && joints) {
+        throw joints->error("is stated beside dh; limits must stand in the rows of the table");
+    }
+    RobotSection section = dh ? read_dh(*dh) : read_elements(robot);
+    section.error_model = read_error_model(robot, section.declared.elements());
+    if (section.joint_repeatability.isZero(0)) section.joint_repeatability.resize(0);
     return section;
 }
 

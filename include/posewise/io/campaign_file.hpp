@@ -48,6 +48,12 @@ struct CampaignFile {
 /// coefficient, the bracket names its error parameter and may be missing:
 /// `Rz q1`, `Tx 312 mm [Tx1]`, `Ry q2 + 0.5 deg [dq2]`, `Ry -q3 + 0.98*q2`, `Ty 0 [Ty1]`.
 ///
+/// Instead of elements and joints the robot may have a Denavit-Hartenberg table, `dh`, with its
+/// `convention` (standard or modified) and `rows` from base to flange:
+/// `{joint: q1, a_mm: 0, alpha_deg: 90, d_mm: 127.3, theta_deg: 0, limits_deg: [-360, 360]}`.
+/// All four amounts must be stated, of the driven one the joint's offset. A row may have
+/// `kind: prismatic` (the joint drives d), `drive: -q3 + q2` (reversed, coupled), and no joint.
+///
 /// The sensor's noise is `sigma_mm` (one number, or three for x, y and z) or that of a laser
 /// tracker, `noise: {range_um: 10, angle_urad: 15}`. The section `cell` states the constraints of
 /// poses; designs/cell_demo/campaign.yaml has each of its keys.

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "posewise/model/chain.hpp"
+
+namespace posewise {
+
+/// One row of a Denavit-Hartenberg table: lengths in m, angles in rad. Of the quantity that the
+/// joints drive the nominal value is the joint's offset.
+struct DhRow {
+    double a = 0;
+    double alpha = 0;
+    double d = 0;
+    double theta = 0;
+    Motion motion = Motion::Rotation;  ///< a rotation drives theta, a translation d
+    std::vector<JointTerm> joints;     ///< empty: a fixed row (of a pedestal or a tool)
+};
+
+/// The row as elements, those that do nothing left out. Standard convention: a and alpha are those
+/// of the link behind the joint; RotZ(theta) TransZ(d) TransX(a) RotX(alpha)
+/// [Denavit & Hartenberg 1955].
+std::vector<Element> dh_elements(const DhRow& row);
+
+/// Modified convention: a and alpha are those of the link before the joint;
+/// RotX(alpha) TransX(a) RotZ(theta) TransZ(d) [Craig 1986, eq. 3.6].
+std::vector<Element> mdh_elements(const DhRow& row);
+
+}  // namespace posewise

@@ -1,0 +1,186 @@
+#include <gtest/gtest.h>
+
+#include "campaign_text.hpp"
+#include "posewise/io/campaign_file.hpp"
+#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/model/complete_model.hpp"
+#include "support/robots.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace posewise::io {
+namespace {
+
+using testing::degree;
+using testing::input_error_of;
+using testing::replaced;
+using testing::TemporaryFolder;
+
+const std::string rows_of_a_rail =
+    R"(    - {joint: rail, kind: prismatic, a_mm: 0, alpha_deg: -90, d_mm: 50, theta_deg: 0, limits_mm: [0, 900]}
+    - {joint: q1, a_mm: 300, alpha_deg: 0, d_mm: 0, theta_deg: 30, limits_deg: [-90, 90], repeatability_mrad: 0.1}
+    - joint: q2
+      drive: -q2 + 0.5*q1
+      a_mm: 200
+      alpha_deg: 90
+      d_mm: 0
+      theta_deg: 0
+      limits_rad: [-1, 1]
+    - {a_mm: 0, alpha_deg: 0, d_mm: 100, theta_deg: 0}
+)";
+
+std::string campaign_of(const std::string& rows, const std::string& convention = "standard") {
+    return "name: table\nrobot:\n  dh:\n    convention: " + convention + "\n    rows:\n" + rows +
+           "sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n";
+}
+
+CampaignFile read(const std::string& text) {
+    const TemporaryFolder folder;
+    return read_campaign(folder.write("campaign.yaml", text));
+}
+
+std::string error_with(const std::string& part, const std::string& by) {
+    return input_error_of([&] { read(replaced(campaign_of(rows_of_a_rail), part, by)); });
+}
+
+TEST(DhSection, IsReadWithOffsetsSignsCouplingsAndFixedRows) {
+    const CampaignFile file = read(campaign_of(rows_of_a_rail));
+    const Chain& robot = file.declared_robot;
+    ASSERT_EQ(robot.joint_count(), 3);
+    EXPECT_EQ(robot.joints()[0].name, "rail");
+    EXPECT_DOUBLE_EQ(robot.joints()[0].upper, 0.9);
+    EXPECT_DOUBLE_EQ(robot.joints()[1].lower, -90 * degree);
+    EXPECT_EQ(robot.joint_motion(0), Motion::Translation);
+    EXPECT_NEAR(file.campaign.joint_repeatability[1], 1e-4, 1e-18);
+    EXPECT_EQ(file.error_model, ErrorModel::Complete);
+
+    using Eigen::AngleAxisd;
+    using Eigen::Translation3d;
+    const Vector3d X = Vector3d::UnitX(), Z = Vector3d::UnitZ();
+    const Vector3d q(0.4, 0.7, -0.2);
+    const Isometry3d expected = Translation3d(0, 0, 0.05 + q[0]) * AngleAxisd(-90 * degree, X) *
+                                AngleAxisd(30 * degree + q[1], Z) * Translation3d(0.3, 0, 0) *
+                                AngleAxisd(-q[2] + 0.5 * q[1], Z) * Translation3d(0.2, 0, 0) *
+                                AngleAxisd(90 * degree, X) * Translation3d(0, 0, 0.1);
+    EXPECT_TRUE(robot.base_from_flange(q, VectorXd()).isApprox(expected, 1e-14));
+}
+
+/// The first three rows of the PUMA 560 in both conventions [Craig 1986, fig. 3.21].
+TEST(DhSection, ConventionsAgreeOnOneRobot) {
+    const std::string limits = ", limits_deg: [-100, 100]}\n";
+    const Chain standard =
+        read(campaign_of(
+                 "    - {joint: q1, a_m: 0, alpha_deg: -90, d_m: 0, theta_deg: 0" + limits +
+                 "    - {joint: q2, a_m: 0.4318, alpha_deg: 0, d_m: 0.2435, theta_deg: 0" + limits +
+                 "    - {joint: q3, a_m: -0.0203, alpha_deg: 90, d_m: -0.0934, theta_deg: 0" +
+                 limits))
+            .declared_robot;
+    const Chain modified =
+        read(campaign_of(
+                 "    - {joint: q1, a_m: 0, alpha_deg: 0, d_m: 0, theta_deg: 0" + limits +
+                     "    - {joint: q2, a_m: 0, alpha_deg: -90, d_m: 0.2435, theta_deg: 0" +
+                     limits +
+                     "    - {joint: q3, a_m: 0.4318, alpha_deg: 0, d_m: -0.0934, theta_deg: 0" +
+                     limits + "    - {a_m: -0.0203, alpha_deg: 90, d_m: 0, theta_deg: 0}\n",
+                 "modified"))
+            .declared_robot;
+    for (const Vector3d& q : {Vector3d(0, 0, 0), Vector3d(0.5, -1.2, 0.9)}) {
+        EXPECT_TRUE(standard.base_from_flange(q, VectorXd())
+                        .isApprox(modified.base_from_flange(q, VectorXd()), 1e-14));
+    }
+}
+
+TEST(DhSection, MissingValue) {
+    EXPECT_EQ(
+        error_with("a_mm: 300, ", ""),
+        "campaign.yaml:7:7: robot.dh.rows[2] has no key a_mm, a_m or a_um; it must be stated");
+    EXPECT_EQ(error_with("alpha_deg: 0, d_mm: 100", "alpha_deg: , d_mm: 100"),
+              "campaign.yaml:15:17: robot.dh.rows[4].alpha_deg has no value; must be a number");
+    EXPECT_EQ(error_with(", limits_deg: [-90, 90]", ""),
+              "campaign.yaml:7:7: robot.dh.rows[2] has no key limits_deg, limits_rad, limits_mrad, "
+              "limits_urad, limits_mm, limits_m or limits_um; it must be stated");
+}
+
+TEST(DhSection, MixedUnits) {
+    EXPECT_EQ(error_with("a_mm: 300", "a_m: 0.3"),
+              "campaign.yaml:7:24: robot.dh.rows[2].a_m is in 'm', but others of the table are in "
+              "'mm'; must be one unit");
+    EXPECT_EQ(error_with("a_mm: 300", "a_mm: 300, a_m: 0.3"),
+              "campaign.yaml:7:30: 'a' is stated in two units; keep one");
+    EXPECT_EQ(error_with("theta_deg: 30", "theta_rad: 0.5"),
+              "campaign.yaml:7:64: robot.dh.rows[2].theta_rad is in 'rad', but others of the table "
+              "are in 'deg'; must be one unit");
+}
+
+TEST(DhSection, UnknownKeysAndWords) {
+    EXPECT_EQ(error_with("a_mm: 300", "a_mn: 300"),
+              "campaign.yaml:7:19: unknown key 'a_mn' in robot.dh.rows[2]; did you mean 'a_mm'?");
+    EXPECT_EQ(error_with("convention: standard", "convention: craig"),
+              "campaign.yaml:4:17: robot.dh.convention is 'craig'; must be standard or modified");
+    EXPECT_EQ(
+        error_with("kind: prismatic", "kind: slide"),
+        "campaign.yaml:6:27: robot.dh.rows[1].kind is 'slide'; must be revolute or prismatic");
+}
+
+TEST(DhSection, NumbersThatAreNone) {
+    EXPECT_EQ(error_with("a_mm: 300", "a_mm: .nan"),
+              "campaign.yaml:7:25: robot.dh.rows[2].a_mm is '.nan', which is not a number; must be "
+              "a finite number without unit");
+    EXPECT_EQ(error_with("a_mm: 300", "a_mm: 300 mm"),
+              "campaign.yaml:7:25: robot.dh.rows[2].a_mm is '300 mm', which is not a number; must "
+              "be a finite number without unit");
+}
+
+TEST(DhSection, JointsThatDoNotFit) {
+    EXPECT_EQ(error_with("kind: prismatic, ", ""),
+              "campaign.yaml:6:81: robot.dh.rows[1].limits_mm is in 'mm', but the joint drives a "
+              "rotation; must be in deg, rad, mrad or urad");
+    EXPECT_EQ(error_with("joint: q1", "joint: rail"),
+              "campaign.yaml:7:15: robot.dh.rows[2].joint is 'rail' as in a row before; must be "
+              "another");
+    EXPECT_EQ(error_with("joint: q1", "joint: mm"),
+              "campaign.yaml:7:15: 'mm' cannot name a joint; must be letters, digits and "
+              "underscores, not a unit");
+    EXPECT_EQ(error_with("{a_mm: 0, alpha_deg: 0, d_mm: 100",
+                         "{kind: prismatic, a_mm: 0, alpha_deg: 0, d_mm: 100"),
+              "campaign.yaml:15:14: robot.dh.rows[4].kind is stated, but its row has no joint");
+    EXPECT_EQ(
+        error_with("{a_mm: 0, alpha_deg: 0, d_mm: 100",
+                   "{limits_mm: [0, 1], a_mm: 0, alpha_deg: 0, d_mm: 100"),
+        "campaign.yaml:15:19: robot.dh.rows[4].limits_mm is stated, but its row has no joint");
+}
+
+TEST(DhSection, DrivesThatDoNotFit) {
+    EXPECT_EQ(error_with("-q2 + 0.5*q1", "-q2 + 0.5*rail"),
+              "campaign.yaml:9:24: Rz is a rotation but joint 'rail' drives the other kind before; "
+              "must drive one kind, since its unit is either rad or m");
+    EXPECT_EQ(
+        error_with("-q2 + 0.5*q1", "0.5*q1"),
+        "campaign.yaml:9:14: robot.dh.rows[3].drive is '0.5*q1'; must contain 'q2', the joint "
+        "of its row");
+    EXPECT_EQ(error_with("-q2 + 0.5*q1", "q2 + 5 deg"),
+              "campaign.yaml:9:14: 'q2 + 5 deg' is no sum of joints; must be like '-q3 + 0.5*q2'");
+    EXPECT_EQ(error_with("-q2 + 0.5*q1", "q2 q1"),
+              "campaign.yaml:9:14: 'q2 q1' is no sum of joints; must be like '-q3 + 0.5*q2'");
+}
+
+TEST(DhSection, StandsAlone) {
+    EXPECT_EQ(input_error_of([&] {
+                  read(replaced(campaign_of(rows_of_a_rail), "  dh:", "  elements: []\n  dh:"));
+              }),
+              "campaign.yaml:5:5: robot.dh is stated beside elements; must be one of them");
+    EXPECT_EQ(input_error_of([&] {
+                  read(replaced(campaign_of(rows_of_a_rail), "  dh:", "  joints: {}\n  dh:"));
+              }),
+              "campaign.yaml:3:11: robot.joints is stated beside dh; limits must stand in the rows "
+              "of the table");
+    EXPECT_EQ(input_error_of([&] { read(campaign_of("    []\n")); }),
+              "campaign.yaml:6:5: robot.dh.rows names no joint; a row must be of a joint");
+    EXPECT_EQ(input_error_of([&] {
+                  read(replaced(campaign_of(""), "  dh:\n    convention: standard\n    rows:\n",
+                                "  errors: stated\n"));
+              }),
+              "campaign.yaml:3:3: robot has no key elements or dh; one of them must be stated");
+}
+
+}  // namespace
+}  // namespace posewise::io

@@ -1,0 +1,98 @@
+#include "posewise/model/dh.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/robots.hpp"
+#include "support/sweep.hpp"
+
+namespace posewise {
+namespace {
+
+using namespace testing;
+using Eigen::Matrix4d;
+
+/// The matrix textbooks print for the standard convention.
+Matrix4d textbook_standard(double a, double alpha, double d, double theta) {
+    const double ct = std::cos(theta), st = std::sin(theta);
+    const double ca = std::cos(alpha), sa = std::sin(alpha);
+    Matrix4d T;
+    T << ct, -st * ca, st * sa, a * ct,  //
+        st, ct * ca, -ct * sa, a * st,   //
+        0, sa, ca, d,                    //
+        0, 0, 0, 1;
+    return T;
+}
+
+/// The same for the modified convention [Craig 1986, eq. 3.6].
+Matrix4d textbook_modified(double a, double alpha, double d, double theta) {
+    const double ct = std::cos(theta), st = std::sin(theta);
+    const double ca = std::cos(alpha), sa = std::sin(alpha);
+    Matrix4d T;
+    T << ct, -st, 0, a,                  //
+        st * ca, ct * ca, -sa, -sa * d,  //
+        st * sa, ct * sa, ca, ca * d,    //
+        0, 0, 0, 1;
+    return T;
+}
+
+DhRow random_row(RandomStream& stream, Motion motion) {
+    const VectorXd x = random_vector(stream, 4, 2);
+    return {x[0], x[1], x[2], x[3], motion, {{0, 1.0}}};
+}
+
+Matrix4d pose_of(const std::vector<Element>& elements, double q) {
+    const Chain chain({{"q1", -4, 4}}, elements);
+    return chain.base_from_flange(VectorXd::Constant(1, q), VectorXd()).matrix();
+}
+
+TEST(DhElements, AreTheTextbooksMatrices) {
+    RandomStream stream(5);
+    for (int i = 0; i < 20; ++i) {
+        const double q = stream.uniform(-3, 3);
+        const DhRow turning = random_row(stream, Motion::Rotation);
+        EXPECT_TRUE(
+            pose_of(dh_elements(turning), q)
+                .isApprox(textbook_standard(turning.a, turning.alpha, turning.d, turning.theta + q),
+                          1e-14));
+        const DhRow sliding = random_row(stream, Motion::Translation);
+        EXPECT_TRUE(
+            pose_of(dh_elements(sliding), q)
+                .isApprox(textbook_standard(sliding.a, sliding.alpha, sliding.d + q, sliding.theta),
+                          1e-14));
+    }
+}
+
+TEST(MdhElements, AreTheTextbooksMatrices) {
+    RandomStream stream(6);
+    for (int i = 0; i < 20; ++i) {
+        const double q = stream.uniform(-3, 3);
+        const DhRow turning = random_row(stream, Motion::Rotation);
+        EXPECT_TRUE(
+            pose_of(mdh_elements(turning), q)
+                .isApprox(textbook_modified(turning.a, turning.alpha, turning.d, turning.theta + q),
+                          1e-14));
+        const DhRow sliding = random_row(stream, Motion::Translation);
+        EXPECT_TRUE(
+            pose_of(mdh_elements(sliding), q)
+                .isApprox(textbook_modified(sliding.a, sliding.alpha, sliding.d + q, sliding.theta),
+                          1e-14));
+    }
+}
+
+TEST(DhElements, LeaveOutWhatDoesNothing) {
+    const DhRow row{0, 90 * degree, 0, 0, Motion::Rotation, {{0, -1.0}}};
+    const auto elements = dh_elements(row);
+    ASSERT_EQ(elements.size(), 2U);
+    EXPECT_EQ(elements[0].joints[0].coefficient, -1) << "a reversed joint";
+    EXPECT_EQ(elements[1].value, 90 * degree);
+    EXPECT_EQ(mdh_elements(row)[1].joints.size(), 1U);
+}
+
+TEST(DhElements, OfAFixedRowHaveNoJoint) {
+    const DhRow row{0.1, 0.2, 0.3, 0.4, Motion::Rotation, {}};
+    for (const Element& element : dh_elements(row)) EXPECT_TRUE(element.joints.empty());
+    EXPECT_EQ(dh_elements(row).size(), 4U);
+}
+
+}  // namespace
+}  // namespace posewise
