@@ -17,6 +17,8 @@ Reduction eliminate(const MatrixXd& M, const std::vector<Index>& nuisance) {
     reduction.N(interest, Eigen::all) = MatrixXd::Identity(count, count);
     reduction.N(nuisance, Eigen::all) = -cholesky.solve(M(nuisance, interest));
     reduction.M = reduction.N.transpose() * M * reduction.N;
+    // Of a column that the nuisance explains, rounding is left: compare with the whole column.
+    if (!is_regular(Eigen::LLT<MatrixXd>(reduction.M), M(interest, interest))) return {};
     return reduction;
 }
 

@@ -19,7 +19,7 @@ inline MatrixXd inverse(const Eigen::LLT<MatrixXd>& cholesky) {
 }
 
 /// What an information matrix says about the parameters of interest: the Schur complement of the
-/// nuisance block, N^T M N with N = [I; -M22^-1 M21]. Both are empty if that block is singular.
+/// nuisance block, N^T M N with N = [I; -M22^-1 M21]. Both are empty if M is singular.
 struct Reduction {
     MatrixXd N;
     MatrixXd M;

@@ -94,6 +94,20 @@ std::optional<Choice> make_random_start(const SearchProblem& problem, const Rela
     return make_choice(problem, std::move(poses));
 }
 
+/// A choice that does not identify the parameters, exchanged by their determinant until it does:
+/// among such choices most criteria are flat, so their own exchange would not find the way out.
+Choice make_identifying(const SearchProblem& problem, const Shortlist& shortlist,
+                        const Choice& choice, RandomStream& random) {
+    if (choice.score.identifies || problem.objective.criterion == Criterion::D) return choice;
+    const Objective determinant;
+    SearchProblem by_determinant{problem.candidates, problem.options, determinant,
+                                 problem.held,       problem.ridge,   problem.must_stop};
+    const Choice changed = improve_with_kicks(
+        by_determinant, make_shortlist(determinant, problem.candidates, shortlist.members),
+        make_choice(by_determinant, choice.poses), random);
+    return make_choice(problem, changed.poses);
+}
+
 Index shortlist_size(const Blocks& candidates, const SelectOptions& options) {
     if (options.shortlist > 0) return options.shortlist;
     const Index numbers_each =
@@ -149,6 +163,7 @@ std::vector<Choice> run_starts(const SearchProblem& problem, const Relaxation& r
         RandomStream random(options.seed, static_cast<std::uint64_t>(start));
         Choice& choice = choices[static_cast<std::size_t>(start)];
         if (start > 0) choice = make_random_start(problem, relaxation, random).value_or(first);
+        choice = make_identifying(problem, shortlist, choice, random);
         choice = improve_with_kicks(problem, shortlist, choice, random);
         reporter.report(choice);
     }

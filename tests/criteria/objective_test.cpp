@@ -52,6 +52,16 @@ TEST(Objective, SensitivitiesOfTheDeterminantAddUpToTheParameterCount) {
     }
 }
 
+TEST(Objective, OfInterestIsSingularWhereTheNuisanceExplainsAllButRounding) {
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        const Blocks one_row = test::random_blocks(1, 1, 3, seed);
+        Objective objective = make_objective(Criterion::D, 1);
+        objective.nuisance = {1};
+        EXPECT_EQ(evaluate(objective, information(one_row, {0, 0})),
+                  -std::numeric_limits<double>::infinity());
+    }
+}
+
 TEST(Objective, RefusesUnusableInput) {
     const Blocks none;
     EXPECT_THROW(make_objective(Criterion::D, 0), InputError);

@@ -59,6 +59,34 @@ void expect_best(const Blocks& candidates, const SelectOptions& options) {
     EXPECT_GE(plan.starts_at_best, 1);
 }
 
+/// Rows of the reduced incidence matrix of random edges: K = parameters rows identify them if and
+/// only if they are a spanning tree.
+Blocks random_edges(Index nodes, Index count, std::uint64_t seed) {
+    RandomStream random(seed);
+    RowMatrixXd rows = RowMatrixXd::Zero(count, nodes - 1);
+    for (Index i = 0; i < count; ++i) {
+        const Index from = random.index(nodes);
+        const Index to = (from + 1 + random.index(nodes - 1)) % nodes;
+        if (from < nodes - 1) rows(i, from) = 1;
+        if (to < nodes - 1) rows(i, to) = -1;
+    }
+    return make_equal_blocks(rows, 1);
+}
+
+TEST(SelectPoses, FindsAnIdentifyingChoiceWhereFewAreWhateverTheCriterion) {
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        const Blocks edges = random_edges(8, 40, seed);
+        for (const Criterion criterion : all) {
+            SelectOptions options = make_options(criterion, 7);
+            options.starts = 1;
+            options.kicks = 0;
+            for (Index i = 0; i < edges.count(); ++i) options.groups.push_back(i % 6);
+            options.group_limit = 2;
+            EXPECT_EQ(message_of(edges, options), "") << criterion_name(criterion) << ' ' << seed;
+        }
+    }
+}
+
 TEST(SelectByExchange, FindsTheBestSubsetOfASmallSet) {
     const std::array<std::array<Index, 2>, 6> shapes = {
         {{1, 4}, {2, 5}, {3, 7}, {6, 9}, {9, 20}, {13, 20}}};
