@@ -87,38 +87,17 @@ TEST(KnownDesigns, LargestDeterminantsOfSignMatrices) {
     const std::array<double, 10> largest = {4,    16,    48,    160,    576,
                                             4096, 14336, 73728, 327680, 2985984};
     for (Index n = 3; n <= 12; ++n) {
-        const Index count = Index{1} << (n - 1);  // the sign of a row does not matter
-        RowMatrixXd rows = RowMatrixXd::Ones(count, n);
-        for (Index i = 0; i < count; ++i) {
-            for (Index bit = 0; bit < n - 1; ++bit) {
-                if ((i >> bit & 1) != 0) rows(i, bit + 1) = -1;
-            }
-        }
         const double expected = largest[static_cast<std::size_t>(n - 3)];
-        EXPECT_NEAR(std::sqrt(best_determinant(make_equal_blocks(rows, 1), n, n)), expected,
+        EXPECT_NEAR(std::sqrt(best_determinant(test::sign_rows(n), n, n)), expected,
                     1e-6 * expected)
             << n;
     }
 }
 
-/// All edges of the complete graph; det M of a choice counts its spanning trees.
-Blocks complete_graph(Index vertices) {
-    RowMatrixXd incidence(vertices * (vertices - 1) / 2, vertices);
-    incidence.setZero();
-    Index edge = 0;
-    for (Index a = 0; a < vertices; ++a) {
-        for (Index b = a + 1; b < vertices; ++b, ++edge) {
-            incidence(edge, a) = 1;
-            incidence(edge, b) = -1;
-        }
-    }
-    return make_equal_blocks(incidence.leftCols(vertices - 1), 1);
-}
-
 TEST(KnownDesigns, GraphsWithTheMostSpanningTrees) {
-    EXPECT_NEAR(best_determinant(complete_graph(6), 9), 81, 1e-6);      // K33
-    EXPECT_NEAR(best_determinant(complete_graph(8), 16), 4096, 1e-6);   // K44
-    EXPECT_NEAR(best_determinant(complete_graph(10), 15), 2000, 1e-6);  // Petersen
+    EXPECT_NEAR(best_determinant(test::complete_graph(6), 9), 81, 1e-6);      // K33
+    EXPECT_NEAR(best_determinant(test::complete_graph(8), 16), 4096, 1e-6);   // K44
+    EXPECT_NEAR(best_determinant(test::complete_graph(10), 15), 2000, 1e-6);  // Petersen
 }
 
 }  // namespace

@@ -48,6 +48,31 @@ inline RowMatrixXd optimal_planar_angles(Index joints, Index poses) {
     return angles;
 }
 
+/// All rows of n signs, the first +1: the sign of a whole row does not matter.
+inline Blocks sign_rows(Index n) {
+    RowMatrixXd rows = RowMatrixXd::Ones(Index{1} << (n - 1), n);
+    for (Index i = 0; i < rows.rows(); ++i) {
+        for (Index bit = 0; bit < n - 1; ++bit) {
+            if ((i >> bit & 1) != 0) rows(i, bit + 1) = -1;
+        }
+    }
+    return make_equal_blocks(rows, 1);
+}
+
+/// All edges of the complete graph; det M of a choice counts its spanning trees.
+inline Blocks complete_graph(Index vertices) {
+    RowMatrixXd incidence(vertices * (vertices - 1) / 2, vertices);
+    incidence.setZero();
+    Index edge = 0;
+    for (Index a = 0; a < vertices; ++a) {
+        for (Index b = a + 1; b < vertices; ++b, ++edge) {
+            incidence(edge, a) = 1;
+            incidence(edge, b) = -1;
+        }
+    }
+    return make_equal_blocks(incidence.leftCols(vertices - 1), 1);
+}
+
 /// All choices of K out of `count` candidates that repeats, exclusions, groups and distances allow,
 /// by brute force and written independently of the library.
 template <typename Options, typename Visit>
