@@ -6,8 +6,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # The only list of what posewise needs, as Debian and Ubuntu name it.
 packages=(
   g++ cmake ninja-build ccache python3
-  libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libmatio-dev libnlopt-dev libcli11-dev
-  libgtest-dev gnuplot-nox
+  libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libmatio-dev libnlopt-dev
+  libtinyxml2-dev libcli11-dev libgtest-dev gnuplot-nox
 )
 
 is_installed() {

@@ -3,6 +3,7 @@
 #include "campaign_sections.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/model/complete_model.hpp"
+#include "posewise/model/transforms.hpp"
 #include "text.hpp"
 
 namespace posewise::io {
@@ -13,10 +14,7 @@ Isometry3d read_base(const YamlValue& value) {
     const Vector3d rpy = base.require_measure("rpy").vector_to_si();
     Isometry3d world_from_base = Isometry3d::Identity();
     world_from_base.translation() = base.require_measure("position").vector_to_si();
-    world_from_base.linear() = (Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) *
-                                Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
-                                Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX()))
-                                   .toRotationMatrix();
+    world_from_base.linear() = rotation_from_rpy(rpy);
     return world_from_base;
 }
 
@@ -150,6 +148,7 @@ CampaignFile read_campaign(const std::string& path) {
     const RobotSection robot = read_robot(map.require("robot"));
     file.declared_robot = robot.declared;
     file.error_model = robot.error_model;
+    file.urdf = robot.urdf;
     campaign.joint_repeatability = robot.joint_repeatability;
     const SensorSection sensor = read_sensor(map.require("sensor"));
     campaign.sensor = sensor.sensor;
@@ -176,6 +175,7 @@ CampaignFile read_campaign(const std::string& path) {
     if (const auto cell = map.find("cell")) {
         file.cell = read_cell(*cell, campaign.robot, sensor.sensor->target_count());
     }
+    if (file.cell.speed.size() == 0) file.cell.speed = robot.speed;
     return file;
 }
 

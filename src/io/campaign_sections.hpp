@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/measurement/point_sensor.hpp"
@@ -12,7 +13,9 @@ namespace posewise::io {
 struct RobotSection {
     Chain declared;
     ErrorModel error_model = ErrorModel::Stated;
-    VectorXd joint_repeatability;  ///< rad or m; empty if not stated
+    VectorXd joint_repeatability;    ///< rad or m; empty if not stated
+    std::optional<UrdfSource> urdf;  ///< where the robot comes from
+    VectorXd speed;                  ///< of the joints, rad/s or m/s; empty if not stated
 };
 RobotSection read_robot(const YamlValue& robot);
 

@@ -4,6 +4,7 @@
 
 #include "json.hpp"
 #include "posewise/measurement/point_sensor.hpp"
+#include "posewise/model/transforms.hpp"
 
 namespace posewise::io {
 namespace {
@@ -23,21 +24,13 @@ Json metrics_to_json(const Metrics& metrics) {
             {"coordinate_max_mm", millimetres(metrics.coordinate_max)}};
 }
 
-/// Roll, pitch, yaw about the fixed x, y and z axes, degrees; pitch within +-90.
-Vector3d rpy_deg(const Matrix3d& R) {
-    const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
-    const bool is_upright = std::hypot(R(0, 0), R(1, 0)) < 1e-12;  // only yaw - roll is defined
-    const double roll = is_upright ? 0 : std::atan2(R(2, 1), R(2, 2));
-    const double yaw = is_upright ? std::atan2(-R(0, 1), R(1, 1)) : std::atan2(R(1, 0), R(0, 0));
-    return Vector3d(roll, pitch, yaw) * (180 / std::numbers::pi);
-}
-
 Json base_to_json(const Isometry3d& world_from_base) {
     Eigen::Quaterniond q(world_from_base.linear());
     if (q.w() < 0) q.coeffs() *= -1;
     return {{"position_m", vector_to_json(Vector3d(world_from_base.translation()))},
             {"quaternion_wxyz", {q.w(), q.x(), q.y(), q.z()}},
-            {"rpy_deg", vector_to_json(rpy_deg(world_from_base.linear()))}};
+            {"rpy_deg", vector_to_json(rpy_from_rotation(world_from_base.linear()) *
+                                       (180 / std::numbers::pi))}};
 }
 
 Json targets_to_json(const PointSensor& sensor, const VectorXd& unknowns) {

@@ -32,5 +32,7 @@ double read_repeatability(const YamlMap& map, Motion motion);
 RobotSection read_elements(const YamlMap& robot);
 /// `dh`.
 RobotSection read_dh(const YamlValue& dh);
+/// `urdf`, `base_link`, `tip_link` and perhaps `joints`.
+RobotSection read_urdf_robot(const YamlMap& robot);
 
 }  // namespace posewise::io

@@ -112,19 +112,46 @@ RobotSection read_elements(const YamlMap& robot) {
     return section;
 }
 
+namespace {
+
+/// What the robot is stated by: elements, dh or urdf. Throws InputError unless it is one of them.
+YamlValue find_description(const YamlValue& value, const YamlMap& robot) {
+    std::vector<YamlValue> stated;
+    for (const char* const key : {"elements", "dh", "urdf"}) {
+        if (const auto found = robot.find(key)) stated.push_back(*found);
+    }
+    if (stated.empty()) {
+        throw value.error("has no key elements, dh or urdf; one of them must be stated");
+    }
+    if (stated.size() > 1) {
+        throw stated[1].error("is stated beside " + stated[0].name() + "; must be one of them");
+    }
+    return stated.front();
+}
+
+void refuse(const YamlMap& robot, std::string_view key, const YamlValue& beside,
+            const char* advice) {
+    if (const auto found = robot.find(key)) {
+        throw found->error("is stated beside " + beside.name() + "; " + advice);
+    }
+}
+
+RobotSection read_described(const YamlMap& robot, const YamlValue& description) {
+    if (description.name() == "robot.urdf") return read_urdf_robot(robot);
+    for (const char* const link : {"base_link", "tip_link"}) {
+        refuse(robot, link, description, "only a URDF has links");
+    }
+    if (description.name() == "robot.elements") return read_elements(robot);
+    refuse(robot, "joints", description, "limits must stand in the rows of the table");
+    return read_dh(description);
+}
+
+}  // namespace
+
 RobotSection read_robot(const YamlValue& value) {
-    const YamlMap robot(value, {"joints", "elements", "dh", "errors"});
-    const auto dh = robot.find("dh");
-    if (dh && robot.find("elements")) {
-        throw dh->error("is stated beside elements; must be one of them");
-    }
-    if (!dh && !robot.find("elements")) {
-        throw value.error("has no key elements or dh; one of them must be stated");
-    }
-    if (const auto joints = robot.find("joints"); dh && joints) {
-        throw joints->error("is stated beside dh; limits must stand in the rows of the table");
-    }
-    RobotSection section = dh ? read_dh(*dh) : read_elements(robot);
+    const YamlMap robot(value,
+                        {"joints", "elements", "dh", "urdf", "base_link", "tip_link", "errors"});
+    RobotSection section = read_described(robot, find_description(value, robot));
     section.error_model = read_error_model(robot, section.declared.elements());
     if (section.joint_repeatability.isZero(0)) section.joint_repeatability.resize(0);
     return section;

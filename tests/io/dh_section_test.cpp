@@ -167,19 +167,20 @@ TEST(DhSection, StandsAlone) {
     EXPECT_EQ(input_error_of([&] {
                   read(replaced(campaign_of(rows_of_a_rail), "  dh:", "  elements: []\n  dh:"));
               }),
-              "campaign.yaml:5:5: robot.dh is stated beside elements; must be one of them");
-    EXPECT_EQ(input_error_of([&] {
-                  read(replaced(campaign_of(rows_of_a_rail), "  dh:", "  joints: {}\n  dh:"));
-              }),
-              "campaign.yaml:3:11: robot.joints is stated beside dh; limits must stand in the rows "
-              "of the table");
+              "campaign.yaml:5:5: robot.dh is stated beside robot.elements; must be one of them");
+    EXPECT_EQ(
+        input_error_of(
+            [&] { read(replaced(campaign_of(rows_of_a_rail), "  dh:", "  joints: {}\n  dh:")); }),
+        "campaign.yaml:3:11: robot.joints is stated beside robot.dh; limits must stand in the rows "
+        "of the table");
     EXPECT_EQ(input_error_of([&] { read(campaign_of("    []\n")); }),
               "campaign.yaml:6:5: robot.dh.rows names no joint; a row must be of a joint");
-    EXPECT_EQ(input_error_of([&] {
-                  read(replaced(campaign_of(""), "  dh:\n    convention: standard\n    rows:\n",
-                                "  errors: stated\n"));
-              }),
-              "campaign.yaml:3:3: robot has no key elements or dh; one of them must be stated");
+    EXPECT_EQ(
+        input_error_of([&] {
+            read(replaced(campaign_of(""), "  dh:\n    convention: standard\n    rows:\n",
+                          "  errors: stated\n"));
+        }),
+        "campaign.yaml:3:3: robot has no key elements, dh or urdf; one of them must be stated");
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "posewise/criteria/criterion.hpp"
+#include "posewise/io/urdf_file.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/model/cell.hpp"
 
@@ -32,6 +34,7 @@ struct CampaignFile {
     /// the irreducible form of its complete model, else the same.
     Chain declared_robot;
     ErrorModel error_model = ErrorModel::Stated;
+    std::optional<UrdfSource> urdf;  ///< where the robot comes from, if from a URDF
     Criterion criterion = Criterion::D;
     std::uint64_t seed = 1;
     /// Whether the spread of the robot's errors is also their prior standard deviation.
@@ -53,6 +56,10 @@ struct CampaignFile {
 /// `{joint: q1, a_mm: 0, alpha_deg: 90, d_mm: 127.3, theta_deg: 0, limits_deg: [-360, 360]}`.
 /// All four amounts must be stated, of the driven one the joint's offset. A row may have
 /// `kind: prismatic` (the joint drives d), `drive: -q3 + q2` (reversed, coupled), and no joint.
+///
+/// Or it may come from a URDF: `urdf` (a path from the campaign file's folder), `base_link` and
+/// `tip_link`; `joints` may then replace limits and add repeatabilities. The speeds of the URDF are
+/// those of the cell unless that states its own.
 ///
 /// The sensor's noise is `sigma_mm` (one number, or three for x, y and z) or that of a laser
 /// tracker, `noise: {range_um: 10, angle_urad: 15}`. The section `cell` states the constraints of

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/model/cell.hpp"
+#include "posewise/model/chain.hpp"
+
+namespace posewise::io {
+
+/// The serial robot between two links of a URDF file.
+struct UrdfSource {
+    std::string path;
+    std::string base_link;  ///< empty: the root of the tree
+    std::string tip_link;   ///< empty: the only leaf below the base
+};
+
+enum class UrdfJointKind { Fixed, Revolute, Continuous, Prismatic };
+
+/// A joint of a URDF file: parent_from_child(q) = origin(xyz, rpy) * motion about or along the
+/// axis.
+struct UrdfJoint {
+    std::string name;
+    UrdfJointKind kind = UrdfJointKind::Fixed;
+    Vector3d xyz = Vector3d::Zero();    ///< m
+    Vector3d rpy = Vector3d::Zero();    ///< see rotation_from_rpy()
+    Vector3d axis = Vector3d::UnitX();  ///< unit vector
+    /// rad or m; a continuous joint's are half a turn both ways. Nothing: the file states none, or
+    /// both the same.
+    std::optional<Interval> limits;
+    double speed = 0;  ///< largest, rad/s or m/s; 0: the file states none
+    FileLocation location;
+};
+
+struct UrdfRobot {
+    UrdfSource source;  ///< no link's name is empty
+    std::string name;
+    std::vector<UrdfJoint> joints;  ///< from base to tip, fixed ones too
+};
+
+/// Reads the joints from base link to tip link. Throws InputError with path:line:column if the file
+/// is no URDF, the links are not joined, or a joint on the way cannot be part of a serial chain:
+/// floating or planar, a mimic, with a zero axis, with limits that are missing or out of order.
+UrdfRobot read_urdf(const UrdfSource& source);
+
+/// What a joint that is not fixed does.
+Motion joint_motion(const UrdfJoint& joint);
+
+/// What a joint is called in the chain, in columns and parameters: its name in the file, with '_'
+/// for whatever is not a letter, digit or underscore.
+std::string chain_joint_name(const std::string& urdf_name);
+
+/// The chain from base link to tip link without error parameters; its flange is the tip link.
+/// Throws InputError if a joint has no limits or two have one name.
+Chain make_chain(const UrdfRobot& robot);
+
+/// Largest speed of each joint of the chain, rad/s or m/s; empty unless the file states all.
+VectorXd joint_speeds(const UrdfRobot& robot);
+
+}  // namespace posewise::io

@@ -1,0 +1,67 @@
+#include <algorithm>
+#include <filesystem>
+
+#include "robot_parts.hpp"
+#include "text.hpp"
+
+namespace posewise::io {
+namespace {
+
+/// A path of the campaign file is one from its folder.
+std::string resolve(const YamlValue& path) {
+    if (path.text().empty()) throw path.error("is empty; must be the path of a URDF file");
+    return (std::filesystem::path(path.location().path).parent_path() / path.text()).string();
+}
+
+std::string read_link_name(const YamlMap& robot, const char* key) {
+    const YamlValue link = robot.require(key);
+    if (link.text().empty()) throw link.error("is empty; must be the name of a link");
+    return link.text();
+}
+
+/// The joints that move, by the names the campaign calls them.
+std::vector<UrdfJoint*> moving_joints(UrdfRobot& robot) {
+    std::vector<UrdfJoint*> joints;
+    for (UrdfJoint& joint : robot.joints) {
+        if (joint.kind != UrdfJointKind::Fixed) joints.push_back(&joint);
+    }
+    return joints;
+}
+
+std::size_t find_joint(const std::vector<UrdfJoint*>& joints, const YamlEntry& entry) {
+    std::vector<std::string> names;
+    for (const UrdfJoint* joint : joints) names.push_back(chain_joint_name(joint->name));
+    const auto found = std::find(names.begin(), names.end(), entry.key);
+    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    throw input_error_at(
+        entry.key_location,
+        quote(entry.key) + " is no moving joint of the URDF; " + suggest(entry.key, names));
+}
+
+}  // namespace
+
+RobotSection read_urdf_robot(const YamlMap& map) {
+    UrdfRobot robot = read_urdf({resolve(map.require("urdf")), read_link_name(map, "base_link"),
+                                 read_link_name(map, "tip_link")});
+    const std::vector<UrdfJoint*> joints = moving_joints(robot);
+    RobotSection section;
+    section.joint_repeatability = VectorXd::Zero(static_cast<Index>(joints.size()));
+    if (const auto stated = map.find("joints")) {
+        for (const YamlEntry& entry : stated->entries()) {
+            const std::size_t j = find_joint(joints, entry);
+            const YamlMap settings(entry.value, joint_keys);
+            const Motion motion = joint_motion(*joints[j]);
+            if (const auto joint = find_limited_joint(settings, entry.key, motion)) {
+                joints[j]->limits = Interval{joint->lower, joint->upper};
+            }
+            section.joint_repeatability[static_cast<Index>(j)] =
+                read_repeatability(settings, motion);
+        }
+    }
+    section.declared = make_chain(robot);
+    section.urdf = robot.source;
+    section.speed = joint_speeds(robot);
+    return section;
+}
+
+}  // namespace posewise::io

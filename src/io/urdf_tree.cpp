@@ -1,0 +1,190 @@
+#include "urdf_tree.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "text.hpp"
+
+namespace posewise::io {
+namespace {
+
+using tinyxml2::XMLElement;
+
+std::string require_attribute(const XmlDocument& document, const XMLElement& element,
+                              const char* name) {
+    const char* const value = element.Attribute(name);
+    if (value != nullptr && *value != '\0') return value;
+    throw document.error(
+        element, "a <" + std::string(element.Name()) + "> has no " + name + "; it must be stated");
+}
+
+/// All links, and the joint above each.
+class Tree {
+  public:
+    explicit Tree(const XmlDocument& document) : document_(document) {
+        const XMLElement& robot = document.root();
+        if (std::string_view(robot.Name()) != "robot") {
+            throw document.error(robot, "is no URDF: its root element is <" +
+                                            escape_controls(robot.Name()) + ">; must be <robot>");
+        }
+        for (auto* link = robot.FirstChildElement("link"); link != nullptr;
+             link = link->NextSiblingElement("link")) {
+            add_unique(links_, *link, "link");
+        }
+        for (auto* joint = robot.FirstChildElement("joint"); joint != nullptr;
+             joint = joint->NextSiblingElement("joint")) {
+            add_unique(joints_, *joint, "joint");
+            join(*joint);
+        }
+        if (links_.empty()) throw document.error(robot, "has no <link>; a robot must have links");
+    }
+
+    std::string find_root() const {
+        for (const auto& [name, link] : links_) {
+            if (above_.count(name) == 0) return name;
+        }
+        throw input_error_at({document_.path()}, "has no root link: its joints form a cycle");
+    }
+
+    std::string find_leaf_below(const std::string& base) const {
+        std::vector<std::string> leaves;
+        std::vector<std::string> open{base};
+        for (std::size_t steps = 0; !open.empty() && steps <= links_.size(); ++steps) {
+            const std::string link = open.back();
+            open.pop_back();
+            const auto [first, last] = children_.equal_range(link);
+            if (first == last && link != base) leaves.push_back(link);
+            for (auto child = first; child != last; ++child) open.push_back(child->second);
+        }
+        if (leaves.size() == 1) return leaves.front();
+        std::sort(leaves.begin(), leaves.end());
+        throw input_error_at({document_.path()},
+                             leaves.empty()
+                                 ? "has no tip link below base link " + quote(base)
+                                 : "the tip link must be named, it could be " + list_words(leaves));
+    }
+
+    void check_link(const std::string& name) const {
+        if (links_.count(name) != 0) return;
+        throw input_error_at({document_.path()},
+                             "has no link " + quote(name) + "; " + suggest(name, link_names()));
+    }
+
+    std::vector<const XMLElement*> path(const std::string& base, const std::string& tip) const {
+        std::vector<const XMLElement*> joints;
+        std::string link = tip;
+        while (link != base) {
+            const auto above = above_.find(link);
+            if (above == above_.end()) {
+                throw input_error_at({document_.path()},
+                                     "tip link " + quote(tip) + " is not below base link " +
+                                         quote(base) + " but below " + quote(link) +
+                                         " only; must be below it");
+            }
+            if (joints.size() > joints_.size()) {
+                throw document_.error(*above->second.joint,
+                                      "joint " + quote(above->second.joint->Attribute("name")) +
+                                          " closes a cycle; links must form a tree");
+            }
+            joints.push_back(above->second.joint);
+            link = above->second.parent;
+        }
+        std::reverse(joints.begin(), joints.end());
+        return joints;
+    }
+
+  private:
+    using Elements = std::map<std::string, const XMLElement*>;
+    struct Above {
+        const XMLElement* joint;
+        std::string parent;
+    };
+
+    void add_unique(Elements& elements, const XMLElement& element, const char* what) const {
+        const std::string name = require_attribute(document_, element, "name");
+        const auto [first, is_new] = elements.emplace(name, &element);
+        if (is_new) return;
+        const long line = first->second->GetLineNum();
+        throw document_.error(element, std::string(what) + ' ' + quote(name) +
+                                           " occurs twice, first in line " + std::to_string(line) +
+                                           "; must have a name of its own");
+    }
+
+    std::string end_of(const XMLElement& joint, const char* end) const {
+        const XMLElement* const element = find_child(document_, joint, end);
+        if (element == nullptr) {
+            throw document_.error(joint, "joint " + quote(joint.Attribute("name")) + " has no <" +
+                                             end + ">; it must be stated");
+        }
+        const std::string link = require_attribute(document_, *element, "link");
+        if (links_.count(link) == 0) {
+            throw document_.error(*element, "joint " + quote(joint.Attribute("name")) + " has " +
+                                                end + ' ' + quote(link) +
+                                                ", which is no link of this robot; " +
+                                                suggest(link, link_names()));
+        }
+        return link;
+    }
+
+    void join(const XMLElement& joint) {
+        const std::string child = end_of(joint, "child");
+        const std::string parent = end_of(joint, "parent");
+        const auto [first, is_new] = above_.emplace(child, Above{&joint, parent});
+        if (!is_new) {
+            throw document_.error(joint, "link " + quote(child) + " is the child of two joints, " +
+                                             quote(first->second.joint->Attribute("name")) +
+                                             " and " + quote(joint.Attribute("name")) +
+                                             "; links must form a tree");
+        }
+        children_.emplace(parent, child);
+    }
+
+    std::vector<std::string> link_names() const {
+        std::vector<std::string> names;
+        for (const auto& [name, link] : links_) names.push_back(name);
+        return names;
+    }
+
+    const XmlDocument& document_;
+    Elements links_;
+    Elements joints_;
+    std::map<std::string, Above> above_;  // by child link
+    std::multimap<std::string, std::string> children_;
+};
+
+void refuse_template(const XmlDocument& document) {
+    for (const StartTag& tag : document.tags()) {
+        if (!tag.name.starts_with("xacro:")) continue;
+        throw input_error_at(document.location(tag.begin),
+                             "is a template for xacro; must be what xacro makes of it");
+    }
+}
+
+}  // namespace
+
+UrdfPath find_path(const XmlDocument& document, const UrdfSource& source) {
+    refuse_template(document);
+    const Tree tree(document);
+    UrdfPath path{source, {}};
+    std::string& base = path.source.base_link;
+    std::string& tip = path.source.tip_link;
+    if (base.empty()) base = tree.find_root();
+    tree.check_link(base);
+    if (tip.empty()) tip = tree.find_leaf_below(base);
+    tree.check_link(tip);
+    path.joints = tree.path(base, tip);
+    return path;
+}
+
+const XMLElement* find_child(const XmlDocument& document, const XMLElement& parent,
+                             const char* name) {
+    const XMLElement* const child = parent.FirstChildElement(name);
+    if (child == nullptr) return nullptr;
+    if (const auto* second = child->NextSiblingElement(name)) {
+        throw document.error(*second, std::string("a second <") + name + "> in one <" +
+                                          parent.Name() + ">; must be one");
+    }
+    return child;
+}
+
+}  // namespace posewise::io

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "posewise/io/urdf_file.hpp"
+#include "xml_document.hpp"
+
+namespace posewise::io {
+
+/// The way from a base link to a tip link in the tree of a URDF document.
+struct UrdfPath {
+    UrdfSource source;  ///< links filled in
+    std::vector<const tinyxml2::XMLElement*> joints;
+};
+
+/// Throws InputError as read_urdf() does for what is wrong with the tree.
+UrdfPath find_path(const XmlDocument& document, const UrdfSource& source);
+
+/// The only child of that name; nullptr if there is none. Throws InputError if there are two.
+const tinyxml2::XMLElement* find_child(const XmlDocument& document,
+                                       const tinyxml2::XMLElement& parent, const char* name);
+
+/// The joint in an element <joint> on the way from base to tip.
+UrdfJoint read_urdf_joint(const XmlDocument& document, const tinyxml2::XMLElement& element);
+
+}  // namespace posewise::io

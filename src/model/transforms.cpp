@@ -1,0 +1,58 @@
+#include "posewise/model/transforms.hpp"
+
+#include <cmath>
+
+namespace posewise {
+namespace {
+
+void add_fixed(std::vector<Element>& elements, Motion motion, Index axis, double value) {
+    if (value != 0) elements.push_back({motion, static_cast<Axis>(axis), value, {}, ""});
+}
+
+}  // namespace
+
+Matrix3d rotation_from_rpy(const Vector3d& rpy) {
+    return (Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) *
+            Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
+            Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX()))
+        .toRotationMatrix();
+}
+
+Vector3d rpy_from_rotation(const Matrix3d& R) {
+    const bool is_roll_defined = std::hypot(R(0, 0), R(1, 0)) > 1e-12;
+    const double roll = is_roll_defined ? std::atan2(R(2, 1), R(2, 2)) : 0;
+    // Whatever is wrong with the roll, yaw and pitch of the rest make up for.
+    const Matrix3d rest = R * Eigen::AngleAxisd(-roll, Vector3d::UnitX());
+    return {roll, std::atan2(-rest(2, 0), rest(2, 2)), std::atan2(-rest(0, 1), rest(1, 1))};
+}
+
+std::vector<Element> origin_elements(const Vector3d& xyz, const Vector3d& rpy) {
+    std::vector<Element> elements;
+    for (Index axis = 0; axis < 3; ++axis) {
+        add_fixed(elements, Motion::Translation, axis, xyz[axis]);
+    }
+    for (Index axis = 2; axis >= 0; --axis) {
+        add_fixed(elements, Motion::Rotation, axis, rpy[axis]);
+    }
+    return elements;
+}
+
+std::vector<Element> joint_elements(Motion motion, const Vector3d& axis, Index joint) {
+    Index k = 0;
+    axis.cwiseAbs().maxCoeff(&k);
+    const Index i = (k + 1) % 3;
+    const Index j = (k + 2) % 3;
+    const double sign = axis[k] < 0 ? -1 : 1;
+    // Ri(alpha) Rj(beta) e_k = sin(beta) e_i - sin(alpha) cos(beta) e_j + cos(alpha) cos(beta) e_k.
+    const double alpha = std::atan2(-sign * axis[j], sign * axis[k]);
+    const double beta = std::atan2(sign * axis[i], std::hypot(axis[j], axis[k]));
+    std::vector<Element> elements;
+    add_fixed(elements, Motion::Rotation, i, alpha);
+    add_fixed(elements, Motion::Rotation, j, beta);
+    elements.push_back({motion, static_cast<Axis>(k), 0, {{joint, sign}}, ""});
+    add_fixed(elements, Motion::Rotation, j, -beta);
+    add_fixed(elements, Motion::Rotation, i, -alpha);
+    return elements;
+}
+
+}  // namespace posewise
