@@ -19,11 +19,11 @@ Matrix3d rotation_from_rpy(const Vector3d& rpy) {
 }
 
 Vector3d rpy_from_rotation(const Matrix3d& R) {
-    const bool is_roll_defined = std::hypot(R(0, 0), R(1, 0)) > 1e-12;
-    const double roll = is_roll_defined ? std::atan2(R(2, 1), R(2, 2)) : 0;
-    // Whatever is wrong with the roll, yaw and pitch of the rest make up for.
+    const double cos_pitch = std::hypot(R(2, 1), R(2, 2));
+    const double roll = cos_pitch > 1e-15 ? std::atan2(R(2, 1), R(2, 2)) : 0;
+    // Near upright the roll is mostly rounding; a yaw of what is left makes up for it.
     const Matrix3d rest = R * Eigen::AngleAxisd(-roll, Vector3d::UnitX());
-    return {roll, std::atan2(-rest(2, 0), rest(2, 2)), std::atan2(-rest(0, 1), rest(1, 1))};
+    return {roll, std::atan2(-R(2, 0), cos_pitch), std::atan2(-rest(0, 1), rest(1, 1))};
 }
 
 std::vector<Element> origin_elements(const Vector3d& xyz, const Vector3d& rpy) {
