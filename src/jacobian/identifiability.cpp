@@ -69,22 +69,30 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
     Identifiability result;
     MatrixXd Q(J.rows(), std::min(J.rows(), J.cols()));
     Index rank = 0;
-    for (const Index k : priority) {
-        const double norm = J.col(k).norm();
-        double residual_norm = 0;
-        if (norm > 1e-12 * largest) {
-            const VectorXd residual = residual_outside(Q.leftCols(rank), J.col(k) / norm);
-            residual_norm = residual.norm();
-            if (residual_norm > tolerance && rank < Q.cols()) {
+    std::vector<Index> open = priority;
+    for (double least = std::max(1e-2, tolerance);; least = std::max(1e-2 * least, tolerance)) {
+        std::vector<Index> rest;
+        result.largest_dropped_residual = 0;
+        for (const Index k : open) {
+            const double norm = J.col(k).norm();
+            const VectorXd residual = norm > 1e-12 * largest
+                                          ? residual_outside(Q.leftCols(rank), J.col(k) / norm)
+                                          : VectorXd::Zero(J.rows());
+            const double residual_norm = residual.norm();
+            if (residual_norm > least && rank < Q.cols()) {
                 Q.col(rank++) = residual / residual_norm;
                 result.kept.push_back(k);
                 result.least_kept_residual = std::min(result.least_kept_residual, residual_norm);
-                continue;
+            } else {
+                rest.push_back(k);
+                result.largest_dropped_residual =
+                    std::max(result.largest_dropped_residual, residual_norm);
             }
         }
-        result.dropped.push_back({k, {}});
-        result.largest_dropped_residual = std::max(result.largest_dropped_residual, residual_norm);
+        open = std::move(rest);
+        if (least <= tolerance) break;
     }
+    for (const Index k : open) result.dropped.push_back({k, {}});
     std::sort(result.kept.begin(), result.kept.end());
     if (result.dropped.empty() || result.kept.empty()) return result;
 

@@ -102,6 +102,30 @@ TEST(FindIndependentColumns, KeepsWhatComesFirstInPriority) {
     EXPECT_EQ(find_independent_columns(J, {2, 1, 0}).kept, (std::vector<Index>{1, 2}));
 }
 
+TEST(FindIndependentColumns, PrefersWhatIsNotNearlyACombination) {
+    MatrixXd J = MatrixXd::Random(6, 4);
+    J.col(1) = J.col(0) + 1e-6 * J.col(3);
+    EXPECT_EQ(find_independent_columns(J, {0, 1, 2, 3}).kept, (std::vector<Index>{0, 2, 3}));
+    J.col(3).setRandom();
+    EXPECT_EQ(find_independent_columns(J, {0, 1, 2}).kept, (std::vector<Index>{0, 1, 2}))
+        << "it counts where nothing else says the same";
+}
+
+/// Angles in files are often rounded: 1.5708 for a quarter turn.
+TEST(IrreducibleModel, OfAxesThatAreParallelButForRoundingIsThatOfParallelAxes) {
+    std::vector<Element> elements = ur_type().elements();
+    const auto elbow = std::find_if(elements.begin(), elements.end(), [](const Element& element) {
+        return !element.joints.empty() && element.joints[0].joint == 2;
+    });
+    const auto forearm = elements.insert(elbow, rotation(Axis::X, 3.7e-6)) + 2;
+    elements.insert(forearm, rotation(Axis::Y, -3.3e-7));
+    const Campaign rounded = tracked_campaign(Chain(ur_type().joints(), elements));
+    EXPECT_EQ(irreducible_model(rounded).parameter_names(),
+              irreducible_model(tracked_campaign(ur_type())).parameter_names());
+    const Campaign complete = tracked_campaign(complete_model(rounded.robot));
+    EXPECT_GT(find_identifiable(complete).least_kept_residual, 1e-2);
+}
+
 TEST(IrreducibleModel, OfTheFanucIsTheEighteenOfTheRules) {
     const Chain irreducible = irreducible_model(tracked_campaign(testing::fanuc()));
     auto names = irreducible.parameter_names();

@@ -31,8 +31,10 @@ struct Identifiability {
 };
 
 /// Walks the columns of J in `priority` order (a permutation of them) and keeps one if its
-/// residual on the kept ones exceeds `tolerance` of its norm (twice orthogonalised Gram-Schmidt).
-/// A column below 1e-12 of the largest moves nothing.
+/// residual on the kept ones exceeds a part of its norm (twice orthogonalised Gram-Schmidt): 1e-2
+/// in the first walk, then 1e-4 and so on down to `tolerance`, so that a column which is nearly a
+/// combination of others (axes that are parallel but for the rounding of their angles) does not
+/// displace one that is not. A column below 1e-12 of the largest moves nothing.
 Identifiability find_independent_columns(const MatrixXd& J, const std::vector<Index>& priority,
                                          double tolerance = 1e-8);
 
