@@ -2,16 +2,13 @@
 
 #include <cmath>
 
+#include "posewise/core/sensitivities.hpp"
+#include "regular.hpp"
+
 namespace posewise {
 
 Sloped worst_variance(const Objective& objective, const Eigen::LLT<MatrixXd>& cholesky) {
-    const Blocks& test_poses = *objective.test_poses;
-    const MatrixXd whitened = cholesky.matrixL().solve(test_poses.matrix.transpose());
-    VectorXd variances(test_poses.count());
-    for (Index i = 0; i < test_poses.count(); ++i) {
-        const Index first = test_poses.first_row[static_cast<std::size_t>(i)];
-        variances[i] = whitened.middleCols(first, test_poses[i].rows()).squaredNorm();
-    }
+    const VectorXd variances = sensitivities(*objective.test_poses, inverse(cholesky));
     return soft_largest(variances, objective.sharpness);
 }
 

@@ -7,8 +7,8 @@
 #include "limits.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/sensitivities.hpp"
 #include "posewise/criteria/information_function.hpp"
-#include "sensitivity.hpp"
 
 namespace posewise {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "limits.hpp"
+#include "posewise/core/sensitivities.hpp"
 #include "posewise/criteria/information_function.hpp"
-#include "sensitivity.hpp"
 
 namespace posewise {
 namespace {

@@ -9,8 +9,8 @@
 #include "enumeration.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/sensitivities.hpp"
 #include "relaxation.hpp"
-#include "sensitivity.hpp"
 #include "validation.hpp"
 
 namespace posewise {
@@ -102,9 +102,9 @@ Choice make_identifying(const SearchProblem& problem, const Shortlist& shortlist
     const Objective determinant;
     SearchProblem by_determinant{problem.candidates, problem.options, determinant,
                                  problem.held,       problem.ridge,   problem.must_stop};
-    const Choice changed = improve_with_kicks(
-        by_determinant, make_shortlist(determinant, problem.candidates, shortlist.members),
-        make_choice(by_determinant, choice.poses), random);
+    const Choice changed =
+        improve_with_kicks(by_determinant, make_shortlist(problem.candidates, shortlist.members),
+                           make_choice(by_determinant, choice.poses), random);
     return make_choice(problem, changed.poses);
 }
 
@@ -124,7 +124,7 @@ Shortlist shortlist_by_sensitivity(const SearchProblem& problem, const Relaxatio
         if (static_cast<Index>(members.size()) == size) break;
         if (capacity[static_cast<std::size_t>(i)] > 0) members.push_back(i);
     }
-    return make_shortlist(problem.objective, problem.candidates, std::move(members));
+    return make_shortlist(problem.candidates, std::move(members));
 }
 
 /// Counts finished starts and tells the caller, one thread at a time.
@@ -186,8 +186,7 @@ Choice sweep_all(const SearchProblem& problem, Choice choice) {
             if (capacity[static_cast<std::size_t>(i)] > 0) members.push_back(i);
         }
         if (members.empty()) break;
-        const Shortlist shortlist =
-            make_shortlist(problem.objective, problem.candidates, std::move(members));
+        const Shortlist shortlist = make_shortlist(problem.candidates, std::move(members));
         const Choice improved = improve(problem, shortlist, choice);
         if (!is_better(improved.score, choice.score)) break;
         choice = improved;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "simd.hpp"
+#include "posewise/core/simd.hpp"
 
 namespace posewise {
 namespace {
@@ -226,7 +226,7 @@ Index lane_height(const Blocks& candidates) {
 
 LaneBlocks make_lane_blocks(const Blocks& candidates, std::span<const Index> chosen) {
     LaneBlocks blocks;
-    blocks.rows = lane_height(take(candidates, {chosen.begin(), chosen.end()}));
+    blocks.rows = lane_height(candidates);
     if (blocks.rows == 0) return blocks;
     blocks.parameters = candidates.parameter_count();
     const auto count = static_cast<Index>(chosen.size());

@@ -29,7 +29,7 @@ constexpr std::array<Index, 6> lane_heights{1, 2, 3, 6, 9, 12};
 /// The kernel height for blocks of these candidates; 0 if they are too high for any.
 Index lane_height(const Blocks& candidates);
 
-/// Nothing (rows 0) if they are too high for any kernel.
+/// As high as the highest of all candidates; nothing (rows 0) if that is too high for any kernel.
 LaneBlocks make_lane_blocks(const Blocks& candidates, std::span<const Index> chosen);
 
 /// Symmetric rows x rows matrices of each candidate, lower triangles in lanes.

@@ -6,14 +6,16 @@
 namespace posewise {
 namespace {
 
+constexpr Index quick_evaluations = 8;
+
 /// One choice being improved.
 class LocalSearch {
   public:
-    LocalSearch(const SearchProblem& problem, const Shortlist& shortlist)
+    LocalSearch(const SearchProblem& problem, const Shortlist& shortlist, Index most_evaluated)
         : problem_(problem),
           shortlist_(shortlist),
-          neighbourhood_(make_neighbourhood(problem.objective, problem.candidates, shortlist,
-                                            problem.must_stop)),
+          neighbourhood_(problem.objective, problem.candidates, shortlist, most_evaluated,
+                         problem.must_stop),
           occupancy_(problem.candidates.count(), problem.options) {}
 
     const Choice& choice() const { return choice_; }
@@ -78,14 +80,14 @@ class LocalSearch {
     void settle() {
         M_ = problem_.regularised_information(choice_.poses);
         choice_.score = problem_.score(M_);
-        neighbourhood_->move_to(M_);
+        neighbourhood_.move_to(M_);
     }
 
     bool exchange_at(std::size_t at) {
         const Index removed = choice_.poses[at];
         occupancy_.remove(removed);
         const Index found =
-            neighbourhood_->best_replacement(removed, choice_.score.value, occupancy_);
+            neighbourhood_.best_replacement(removed, choice_.score.value, occupancy_);
         if (found >= 0) {
             const Index candidate = shortlist_.members[static_cast<std::size_t>(found)];
             choice_.poses[at] = candidate;
@@ -103,7 +105,7 @@ class LocalSearch {
 
     const SearchProblem& problem_;
     const Shortlist& shortlist_;
-    std::unique_ptr<Neighbourhood> neighbourhood_;
+    Neighbourhood neighbourhood_;
     Occupancy occupancy_;
     Choice choice_;
     MatrixXd M_;  // regularised
@@ -112,8 +114,7 @@ class LocalSearch {
 /// Kicks without success to give up after: ten times as many where few candidates make them cheap,
 /// since plans that hardly identify their parameters have many local optima.
 Index patience(const SearchProblem& problem, const Shortlist& shortlist) {
-    const bool is_cheap = shortlist.lanes.rows > 0 && shortlist.members.size() <= 64;
-    return problem.options.kicks * (is_cheap ? 10 : 1);
+    return problem.options.kicks * (shortlist.members.size() <= 64 ? 10 : 1);
 }
 
 }  // namespace
@@ -138,7 +139,7 @@ Score SearchProblem::score(const MatrixXd& regularised) const {
 }
 
 Choice improve(const SearchProblem& problem, const Shortlist& shortlist, const Choice& choice) {
-    LocalSearch search(problem, shortlist);
+    LocalSearch search(problem, shortlist, std::numeric_limits<Index>::max());
     search.start_at(choice);
     search.improve();
     return search.choice();
@@ -146,7 +147,7 @@ Choice improve(const SearchProblem& problem, const Shortlist& shortlist, const C
 
 Choice improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
                           const Choice& choice, RandomStream& random) {
-    LocalSearch search(problem, shortlist);
+    LocalSearch search(problem, shortlist, quick_evaluations);
     search.start_at(choice);
     search.improve();
     Choice best = search.choice();

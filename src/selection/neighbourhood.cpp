@@ -1,34 +1,195 @@
 #include "neighbourhood.hpp"
 
-#include "block_updates.hpp"
-#include "screening.hpp"
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "posewise/core/sensitivities.hpp"
 
 namespace posewise {
 namespace {
 
-bool has_kernel(const Objective& objective) {
-    return objective.nuisance.empty() &&
-           (objective.criterion == Criterion::D || objective.criterion == Criterion::O1 ||
-            objective.criterion == Criterion::A || objective.criterion == Criterion::V);
+constexpr Index witness_count = 32;
+
+/// F with C = F F^T.
+MatrixXd root_of(const MatrixXd& C) {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(C);
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+/// The test poses predicted worst, the worst first.
+std::vector<RowMatrixXd> worst_predicted(const Blocks& test_poses, const MatrixXd& M) {
+    const VectorXd variances = sensitivities(test_poses, M.inverse());
+    std::vector<Index> order(static_cast<std::size_t>(variances.size()));
+    std::iota(order.begin(), order.end(), Index{0});
+    const Index count = std::min(witness_count, variances.size());
+    std::partial_sort(order.begin(), order.begin() + count, order.end(), [&](Index a, Index b) {
+        return variances[a] != variances[b] ? variances[a] > variances[b] : a < b;
+    });
+    std::vector<RowMatrixXd> worst;
+    for (Index k = 0; k < count; ++k) {
+        worst.emplace_back(test_poses[order[static_cast<std::size_t>(k)]]);
+    }
+    return worst;
 }
 
 }  // namespace
 
-Shortlist make_shortlist(const Objective& objective, const Blocks& candidates,
-                         std::vector<Index> members) {
-    Shortlist shortlist{std::move(members), {}};
-    if (has_kernel(objective)) shortlist.lanes = make_lane_blocks(candidates, shortlist.members);
-    return shortlist;
+Neighbourhood::Neighbourhood(const Objective& objective, const Blocks& candidates,
+                             const Shortlist& shortlist, Index most_evaluated,
+                             const std::function<bool()>& must_stop)
+    : objective_(objective),
+      candidates_(candidates),
+      shortlist_(shortlist),
+      most_evaluated_(most_evaluated),
+      must_stop_(must_stop),
+      ranking_(Ranking::Estimate),
+      gains_(candidates, shortlist) {
+    if (!objective.nuisance.empty()) return;
+    const Index L = candidates.parameter_count();
+    switch (objective.criterion) {
+        case Criterion::D:
+        case Criterion::O1:
+            ranking_ = Ranking::Exact;
+            break;
+        case Criterion::A:
+            ranking_ = Ranking::Exact;
+            C_root_ = MatrixXd::Identity(L, L);
+            break;
+        case Criterion::V:
+            ranking_ = Ranking::Exact;
+            C_root_ = root_of(objective.mean_test_information);
+            break;
+        case Criterion::G:
+            ranking_ = Ranking::Ceiling;
+            break;
+        case Criterion::O5:
+            break;
+        default:
+            ritz_.emplace(objective, candidates, shortlist.members);
+    }
 }
 
-std::unique_ptr<Neighbourhood> make_neighbourhood(const Objective& objective,
-                                                  const Blocks& candidates,
-                                                  const Shortlist& shortlist,
-                                                  const std::function<bool()>& must_stop) {
-    if (shortlist.lanes.rows > 0) {
-        return std::make_unique<BlockUpdates>(objective, candidates, shortlist);
+MatrixXd Neighbourhood::make_C_root(const MatrixXd& M) const {
+    if (ranking_ == Ranking::Exact) return C_root_;
+    if (ranking_ == Ranking::Ceiling) return witnesses_.front().transpose();
+    return M * root_of(gradient(objective_, M));
+}
+
+void Neighbourhood::move_to(const MatrixXd& M) {
+    M_ = M;
+    if (ritz_) return ritz_->move_to(M);
+    if (objective_.criterion == Criterion::G) {
+        witnesses_ = worst_predicted(*objective_.test_poses, M);
     }
-    return std::make_unique<Screening>(objective, candidates, shortlist, must_stop);
+    gains_.move_to(M, make_C_root(M));
+}
+
+bool Neighbourhood::is_allowed(Index position, Index removed, const Occupancy& occupancy) const {
+    const Index candidate = shortlist_.members[static_cast<std::size_t>(position)];
+    return candidate != removed && occupancy.allows(candidate);
+}
+
+std::vector<Index> Neighbourhood::promising(Index removed, const Occupancy& occupancy) const {
+    // The objective (or its ceiling, equal to it at M) is concave: it grows only towards what is
+    // more sensitive than what is removed.
+    const double least = gains_.sensitivity_of(candidates_[removed]);
+    std::vector<Index> positions;
+    const auto size = static_cast<Index>(shortlist_.members.size());
+    for (Index position = 0; position < size; ++position) {
+        if (gains_.sensitivity(position) > least && is_allowed(position, removed, occupancy)) {
+            positions.push_back(position);
+        }
+    }
+    return positions;
+}
+
+std::vector<Neighbourhood::Ranked> Neighbourhood::rank(const std::vector<Index>& positions) {
+    const VectorXd gains = gains_.compute(positions);
+    std::vector<Ranked> ranked;
+    for (Index k = 0; k < gains.size(); ++k) {
+        if (std::isfinite(gains[k])) {
+            ranked.push_back({positions[static_cast<std::size_t>(k)], gains[k]});
+        }
+    }
+    std::make_heap(ranked.begin(), ranked.end());
+    return ranked;
+}
+
+bool Neighbourhood::passes_witnesses(const MatrixXd& M, double value) {
+    const Eigen::LLT<MatrixXd> cholesky(M);
+    for (auto witness = witnesses_.begin(); witness != witnesses_.end(); ++witness) {
+        const double variance = cholesky.matrixL().solve(witness->transpose()).squaredNorm();
+        if (variance * value < 1) continue;
+        std::rotate(witnesses_.begin(), witness, witness + 1);  // likely to rule out the next, too
+        return false;
+    }
+    return true;
+}
+
+double Neighbourhood::worst_prediction(const MatrixXd& M, double value) {
+    if (!passes_witnesses(M, value)) return 0;
+    const VectorXd variances = sensitivities(*objective_.test_poses, M.inverse());
+    Index worst = 0;
+    const double largest = variances.maxCoeff(&worst);
+    witnesses_.insert(witnesses_.begin(), (*objective_.test_poses)[worst]);
+    return 1 / largest;
+}
+
+Index Neighbourhood::best_by_gains(Index removed, double value, const Occupancy& occupancy) {
+    const auto B = candidates_[removed];
+    const std::vector<Index> positions = promising(removed, occupancy);
+    if (positions.empty() || !gains_.remove(B)) return -1;
+    std::vector<Ranked> ranked = rank(positions);
+    if (ranked.empty()) return -1;
+    if (ranking_ == Ranking::Exact) return ranked.front().position;
+    // Where hardly anything is left without the removed pose, gains have lost their digits.
+    const bool is_ceiling =
+        ranking_ == Ranking::Ceiling && gains_.remaining_trace() < 1e6 * gains_.trace();
+    const MatrixXd remaining = M_ - B.transpose() * B;
+    Index best = -1;
+    double best_value = value;
+    Index evaluated = 0;
+    for (; !ranked.empty() && !must_stop_(); ranked.pop_back()) {
+        const auto [position, gain] = ranked.front();
+        if (is_ceiling && 1 / (gains_.remaining_trace() - gain) <= best_value) break;
+        if (ranking_ == Ranking::Estimate && evaluated++ == most_evaluated_) break;
+        std::pop_heap(ranked.begin(), ranked.end());
+        const auto added = candidates_[shortlist_.members[static_cast<std::size_t>(position)]];
+        const MatrixXd M = remaining + added.transpose() * added;
+        const double exchanged = ranking_ == Ranking::Ceiling ? worst_prediction(M, best_value)
+                                                              : evaluate(objective_, M);
+        if (!(exchanged > best_value)) continue;
+        best = position;
+        best_value = exchanged;
+    }
+    return best;
+}
+
+Index Neighbourhood::best_by_eigenvalues(Index removed, double value, const Occupancy& occupancy) {
+    const auto B = candidates_[removed];
+    const MatrixXd remaining = M_ - B.transpose() * B;
+    ritz_->remove(removed);
+    Index best = -1;
+    double best_value = value;
+    const auto size = static_cast<Index>(shortlist_.members.size());
+    for (Index position = 0; position < size && !must_stop_(); ++position) {
+        if (!ritz_->may_exceed(position, best_value)) continue;
+        if (!is_allowed(position, removed, occupancy)) continue;
+        const auto added = candidates_[shortlist_.members[static_cast<std::size_t>(position)]];
+        const double exchanged = evaluate(objective_, remaining + added.transpose() * added);
+        if (!(exchanged > best_value)) continue;
+        best = position;
+        best_value = exchanged;
+    }
+    return best;
+}
+
+Index Neighbourhood::best_replacement(Index removed, double value, const Occupancy& occupancy) {
+    return ritz_ ? best_by_eigenvalues(removed, value, occupancy)
+                 : best_by_gains(removed, value, occupancy);
 }
 
 }  // namespace posewise

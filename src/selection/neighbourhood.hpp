@@ -1,39 +1,68 @@
 #pragma once
 
 #include <functional>
-#include <memory>
+#include <optional>
 
-#include "lanes.hpp"
+#include "gains.hpp"
 #include "limits.hpp"
 #include "posewise/criteria/objective.hpp"
+#include "rayleigh_ritz.hpp"
 
 namespace posewise {
 
-/// Candidates to exchange with, prepared once and read by all starts.
-struct Shortlist {
-    std::vector<Index> members;
-    LaneBlocks lanes;  ///< empty (rows 0) where no kernel serves the objective or the blocks
-};
-Shortlist make_shortlist(const Objective& objective, const Blocks& candidates,
-                         std::vector<Index> members);
-
-/// Finds the best candidate to take a removed pose's place. One for each start: it keeps what
-/// depends on the current plan.
+/// Finds the best candidate to take a removed pose's place. One for each search: it keeps what
+/// depends on the current plan. What is cheap to know about an exchange depends on the criterion:
+/// the gains of block updates are exact for D, O1, A and V; for G, those of the test pose that is
+/// worst at present are a ceiling; for O5 and parameters of interest the objective's tangent in
+/// M^-1, an estimate; for E, O3, O2 and O4 Rayleigh and Ritz rule out most exchanges.
 class Neighbourhood {
   public:
-    virtual ~Neighbourhood() = default;
-    /// The plan's information matrix is now M (positive definite).
-    virtual void move_to(const MatrixXd& M) = 0;
-    /// Position in the shortlist of the allowed candidate that makes the objective of (M -
-    /// B^T B of `removed` + its own) largest, the first among equals; -1 if none can exceed
-    /// `value`, the objective of M.
-    virtual Index best_replacement(Index removed, double value, const Occupancy& occupancy) = 0;
-};
+    /// Where gains are estimates, at most `most_evaluated` exchanges are evaluated at a time.
+    Neighbourhood(const Objective& objective, const Blocks& candidates, const Shortlist& shortlist,
+                  Index most_evaluated, const std::function<bool()>& must_stop);
 
-/// BlockUpdates where there is a kernel for it, else Screening, which ends early if `must_stop`.
-std::unique_ptr<Neighbourhood> make_neighbourhood(const Objective& objective,
-                                                  const Blocks& candidates,
-                                                  const Shortlist& shortlist,
-                                                  const std::function<bool()>& must_stop);
+    /// The plan's information matrix is now M (positive definite).
+    void move_to(const MatrixXd& M);
+
+    /// Position in the shortlist of the allowed candidate that makes the objective of (M -
+    /// B^T B of `removed` + its own) largest; -1 if none is found that exceeds `value`, the
+    /// objective of M.
+    Index best_replacement(Index removed, double value, const Occupancy& occupancy);
+
+  private:
+    enum class Ranking { Exact, Ceiling, Estimate };
+    struct Ranked {
+        Index position;
+        double gain;
+        bool operator<(const Ranked& other) const {
+            return gain != other.gain ? gain < other.gain : position > other.position;
+        }
+    };
+
+    MatrixXd make_C_root(const MatrixXd& M) const;
+    /// Exchanges that concavity does not rule out, in the order of the shortlist.
+    std::vector<Index> promising(Index removed, const Occupancy& occupancy) const;
+    /// As a heap, the largest gain first.
+    std::vector<Ranked> rank(const std::vector<Index>& positions);
+    Index best_by_gains(Index removed, double value, const Occupancy& occupancy);
+    Index best_by_eigenvalues(Index removed, double value, const Occupancy& occupancy);
+    bool is_allowed(Index position, Index removed, const Occupancy& occupancy) const;
+    /// G of M; 0 where it is not above `value`.
+    double worst_prediction(const MatrixXd& M, double value);
+    /// Whether the worst of the worst test poses at present is predicted well enough.
+    bool passes_witnesses(const MatrixXd& M, double value);
+
+    const Objective& objective_;
+    const Blocks& candidates_;
+    const Shortlist& shortlist_;
+    Index most_evaluated_;
+    const std::function<bool()>& must_stop_;
+    Ranking ranking_;
+    MatrixXd M_;
+    Gains gains_;
+    MatrixXd C_root_;                     // where it does not depend on M
+    std::vector<RowMatrixXd> witnesses_;  // for G
+    std::optional<RayleighRitz> ritz_;    // for E, O3, O2 and O4
+};
 
 }  // namespace posewise

@@ -6,9 +6,9 @@
 
 #include "limits.hpp"
 #include "objective_bound.hpp"
+#include "posewise/core/sensitivities.hpp"
 #include "posewise/criteria/information_function.hpp"
 #include "projected_gradient.hpp"
-#include "sensitivity.hpp"
 
 namespace posewise {
 namespace {

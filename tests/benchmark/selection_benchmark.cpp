@@ -3,9 +3,9 @@
 #include <Eigen/Cholesky>
 #include <numeric>
 
-#include "../../src/selection/block_updates.hpp"
+#include "../../src/selection/gains.hpp"
 #include "../../src/selection/relaxation.hpp"
-#include "../../src/selection/sensitivity.hpp"
+#include "posewise/core/sensitivities.hpp"
 #include "posewise/selection/bound.hpp"
 #include "support/fanuc_pool.hpp"
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "../../src/selection/projected_gradient.hpp"
-#include "../../src/selection/sensitivity.hpp"
+#include "posewise/core/sensitivities.hpp"
 #include "support/designs.hpp"
 
 namespace posewise {

@@ -1,11 +1,11 @@
-#include "sensitivity.hpp"
+#include "posewise/core/sensitivities.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <vector>
 
-#include "simd.hpp"
+#include "posewise/core/simd.hpp"
 
 namespace posewise {
 namespace {

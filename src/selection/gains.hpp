@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+
+#include "lanes.hpp"
+
+namespace posewise {
+
+/// Candidates to exchange with, prepared once and read by all starts.
+struct Shortlist {
+    std::vector<Index> members;
+    LaneBlocks lanes;  ///< empty (rows 0) where the blocks are too high for a kernel
+};
+Shortlist make_shortlist(const Blocks& candidates, std::vector<Index> members);
+
+/// What exchanges of one pose do to the determinant of M, or to trace(C M^-1), by block updates of
+/// the inverse, eight candidates at a time. With W = (M - B^T B)^-1 after removing block B, W =
+/// M^-1 + P P^T where P = W B^T U^-T and U U^T = I + B W B^T. Candidate i multiplies the
+/// determinant by det(I + B_i W B_i^T) and lowers trace(C W) by trace((I + B_i W B_i^T)^-1 B_i W C
+/// W B_i^T); what does not depend on B is cached.
+class Gains {
+  public:
+    Gains(const Blocks& candidates, const Shortlist& shortlist);
+
+    /// From now on about M (positive definite) and C = C_root C_root^T; an empty C_root asks for
+    /// determinants.
+    void move_to(const MatrixXd& M, const MatrixXd& C_root);
+
+    /// By M's slope, trace(B_i slope B_i^T): that of log det M, or of -trace(C M^-1).
+    double sensitivity(Index position) const { return sensitivity_[position]; }
+    double sensitivity_of(const Eigen::Ref<const RowMatrixXd>& block) const;
+
+    /// Takes a block out. False where what is left is singular.
+    bool remove(const Eigen::Ref<const RowMatrixXd>& block);
+    /// trace(C M^-1); 0 for determinants.
+    double trace() const { return trace_; }
+    /// trace(C W) without the removed block; 0 for determinants.
+    double remaining_trace() const { return remaining_trace_; }
+
+    /// For the shortlisted positions asked for: the factor of the determinant, or by how much
+    /// trace(C W) falls. Only after remove().
+    VectorXd compute(const std::vector<Index>& positions);
+
+  private:
+    bool is_determinant() const { return C_.size() == 0; }
+    double compute_plainly(Index position, const MatrixXd& W, const MatrixXd& WCW) const;
+
+    const Blocks& candidates_;
+    const Shortlist& shortlist_;
+    MatrixXd C_;
+    Eigen::LLT<MatrixXd> cholesky_;  // of M
+    MatrixXd M_;
+    MatrixXd slope_;        // M^-1, or M^-1 C M^-1
+    LaneGrams G_;           // B_i M^-1 B_i^T
+    LaneGrams H_;           // B_i M^-1 C M^-1 B_i^T
+    VectorXd sensitivity_;  // of the shortlist's members
+    MatrixXd P_;
+    double trace_ = 0;  // of C M^-1
+    double remaining_trace_ = 0;
+    std::vector<char> asked_;  // groups of candidates
+    std::vector<Lane> gains_;
+};
+
+}  // namespace posewise
