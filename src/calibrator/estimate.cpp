@@ -41,25 +41,28 @@ std::vector<Correlation> strongest_correlations(const Estimate& estimate, Index 
 
 RowMatrixXd residuals(const Campaign& campaign, const Parameters& parameters,
                       const Measurements& measurements) {
-    RowMatrixXd r = measurements.observations;
+    const Index width = campaign.sensor->rows_per_target();
+    RowMatrixXd r(measurements.is_seen.count(), width);
+    Index row = 0;
     for (Index i = 0; i < measurements.configuration_count(); ++i) {
         const Isometry3d flange =
             world_from_flange(campaign, parameters, measurements.configurations.row(i).transpose());
-        r.middleRows(measurements.first_sample[static_cast<std::size_t>(i)],
-                     measurements.sample_count(i))
-            .rowwise() -= campaign.sensor->predict(flange, parameters.sensor).transpose();
+        const VectorXd predicted = campaign.sensor->predict(flange, parameters.sensor);
+        const Index first = measurements.first_sample[static_cast<std::size_t>(i)];
+        for (Index k = first; k < first + measurements.sample_count(i); ++k) {
+            for (Index j = 0; j < measurements.is_seen.cols(); ++j) {
+                if (!measurements.is_seen(k, j)) continue;
+                r.row(row++) = measurements.observation(k, j) -
+                               predicted.segment(width * j, width).transpose();
+            }
+        }
     }
     return r;
 }
 
 RowMatrixXd mean_residuals(const Campaign& campaign, const Parameters& parameters,
                            const Measurements& measurements) {
-    Measurements means = measurements;
-    means.observations = mean_observations(measurements);
-    for (std::size_t i = 0; i < means.first_sample.size(); ++i) {
-        means.first_sample[i] = static_cast<Index>(i);
-    }
-    return residuals(campaign, parameters, means);
+    return residuals(campaign, parameters, mean_measurements(measurements));
 }
 
 Metrics make_metrics(const RowMatrixXd& residuals) {

@@ -36,7 +36,7 @@ struct LevenbergMarquardt {
     void iterate() {
         const Triangle triangle = triangularise(linearise(problem, estimate.parameters));
         const double negligible =
-            negligible_per_equation * static_cast<double>(problem.means.size()) +
+            negligible_per_equation * static_cast<double>(problem.equation_count()) +
             options.relative_tolerance * cost;
         if (triangle.c.squaredNorm() <= negligible) {  // what a full step could gain
             estimate.ending = Ending::Converged;
@@ -111,7 +111,7 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
         }
     }
     const auto join = [&](const std::vector<RowMatrixXd>& parts) {
-        RowMatrixXd all(0, measurements.observations.cols());
+        RowMatrixXd all(0, campaign.sensor->rows_per_target());
         for (const RowMatrixXd& part : parts) {
             if (part.rows() == 0) continue;  // a fold that failed
             all.conservativeResize(all.rows() + part.rows(), all.cols());

@@ -9,49 +9,86 @@
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/noise.hpp"
+#include "posewise/measurement/point_sensor.hpp"
 
 namespace posewise {
 
-IdentificationProblem make_problem(const Campaign& campaign, const Measurements& measurements) {
-    check_noise(campaign);
+namespace {
+
+void check_size(const Campaign& campaign, const Measurements& measurements) {
+    const Sensor& sensor = *campaign.sensor;
     if (measurements.configurations.cols() != campaign.robot.joint_count()) {
         throw InputError(fmt::format("measurements have {} joints, the robot has {}",
                                      measurements.configurations.cols(),
                                      campaign.robot.joint_count()));
     }
-    if (measurements.observations.cols() != campaign.sensor->row_count()) {
+    if (measurements.observations.cols() != sensor.row_count()) {
         throw InputError(fmt::format("an observation has {} numbers, the sensor returns {}",
-                                     measurements.observations.cols(),
-                                     campaign.sensor->row_count()));
+                                     measurements.observations.cols(), sensor.row_count()));
     }
-    const Index equations = measurements.configuration_count() * campaign.sensor->row_count();
-    if (equations < parameter_count(campaign)) {
-        throw InputError(
-            fmt::format("{} configurations give {} equations, {} parameters need at least as many",
-                        measurements.configuration_count(), equations, parameter_count(campaign)));
+    if (measurements.is_seen.rows() != measurements.observations.rows() ||
+        measurements.is_seen.cols() != sensor.target_count()) {
+        throw InputError(fmt::format("is_seen is {} x {}, must be samples x targets, {} x {}",
+                                     measurements.is_seen.rows(), measurements.is_seen.cols(),
+                                     measurements.observations.rows(), sensor.target_count()));
     }
-    return {campaign, measurements, mean_observations(measurements), parameter_scale(campaign)};
+}
+
+/// The equations of configuration i, whitened, out of all that it would have.
+RowMatrixXd whiten_seen(const IdentificationProblem& problem, Index i, const FlangeMotion& motion,
+                        const Parameters& parameters, const RowMatrixXd& all) {
+    const VectorXd repeats = problem.repeats.row(i).transpose();
+    RowMatrixXd seen = all(seen_rows(*problem.campaign.sensor, repeats), Eigen::all);
+    whiten(mean_covariance(problem.campaign, motion, parameters.sensor, repeats), seen);
+    return seen;
+}
+
+}  // namespace
+
+void check_all_seen(const Campaign& campaign, const Measurements& measurements) {
+    const auto* points = dynamic_cast<const PointSensor*>(campaign.sensor.get());
+    for (Index j = 0; points != nullptr && j < points->target_count(); ++j) {
+        if (points->is_known(j) || measurements.is_seen.col(j).any()) continue;
+        throw InputError(fmt::format(
+            "target {} is seen in no sample of these {} configurations, so its position cannot be "
+            "found; measure it, or leave it out of the campaign's targets",
+            j + 1, measurements.configuration_count()));
+    }
+}
+
+IdentificationProblem make_problem(const Campaign& campaign, const Measurements& measurements) {
+    check_noise(campaign);
+    check_size(campaign, measurements);
+    check_all_seen(campaign, measurements);
+    IdentificationProblem problem{campaign, measurements, mean_measurements(measurements),
+                                  times_seen(measurements), parameter_scale(campaign)};
+    if (problem.equation_count() < problem.scale.size()) {
+        throw InputError(fmt::format(
+            "{} configurations give {} equations, {} parameters need at least as many",
+            measurements.configuration_count(), problem.equation_count(), problem.scale.size()));
+    }
+    return problem;
 }
 
 LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters) {
     const Campaign& campaign = problem.campaign;
-    const Index rows = campaign.sensor->row_count();
     const Index size = problem.scale.size();
-    const Index count = problem.means.rows();
-    LinearisedSystem system{MatrixXd(rows * count, size), VectorXd(rows * count)};
-    RowMatrixXd augmented(rows, size + 1);  // the residual is whitened with the Jacobian
+    LinearisedSystem system{MatrixXd(problem.equation_count(), size),
+                            VectorXd(problem.equation_count())};
+    // The residual is whitened with the Jacobian.
+    RowMatrixXd augmented(campaign.sensor->row_count(), size + 1);
     FlangeMotion motion;
     VectorXd q(campaign.robot.joint_count());
-    for (Index i = 0; i < count; ++i) {
-        q = problem.measurements.configurations.row(i).transpose();
+    Index row = 0;
+    for (Index i = 0; i < problem.means.configuration_count(); ++i) {
+        q = problem.means.configurations.row(i).transpose();
         differentiate_pose(campaign, parameters, q, motion, augmented.leftCols(size));
-        augmented.col(size) = problem.means.row(i).transpose() -
+        augmented.col(size) = problem.means.observations.row(i).transpose() -
                               campaign.sensor->predict(motion.world_from_flange, parameters.sensor);
-        whiten(mean_covariance(campaign, motion, parameters.sensor,
-                               static_cast<double>(problem.measurements.sample_count(i))),
-               augmented);
-        system.J.middleRows(rows * i, rows) = augmented.leftCols(size) * problem.scale.asDiagonal();
-        system.r.segment(rows * i, rows) = augmented.col(size);
+        const RowMatrixXd seen = whiten_seen(problem, i, motion, parameters, augmented);
+        system.J.middleRows(row, seen.rows()) = seen.leftCols(size) * problem.scale.asDiagonal();
+        system.r.segment(row, seen.rows()) = seen.col(size);
+        row += seen.rows();
     }
     return system;
 }
@@ -59,18 +96,14 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
 double sum_of_squares(const IdentificationProblem& problem, const Parameters& parameters) {
     const Campaign& campaign = problem.campaign;
     double sum = 0;
-    RowMatrixXd r(campaign.sensor->row_count(), 1);
     FlangeMotion motion;
     VectorXd q(campaign.robot.joint_count());
-    for (Index i = 0; i < problem.means.rows(); ++i) {
-        q = problem.measurements.configurations.row(i).transpose();
+    for (Index i = 0; i < problem.means.configuration_count(); ++i) {
+        q = problem.means.configurations.row(i).transpose();
         campaign.robot.differentiate(parameters.world_from_base, q, parameters.robot, motion);
-        r.col(0) = problem.means.row(i).transpose() -
-                   campaign.sensor->predict(motion.world_from_flange, parameters.sensor);
-        whiten(mean_covariance(campaign, motion, parameters.sensor,
-                               static_cast<double>(problem.measurements.sample_count(i))),
-               r);
-        sum += r.squaredNorm();
+        const VectorXd r = problem.means.observations.row(i).transpose() -
+                           campaign.sensor->predict(motion.world_from_flange, parameters.sensor);
+        sum += whiten_seen(problem, i, motion, parameters, r).squaredNorm();
     }
     return sum;
 }
@@ -103,7 +136,7 @@ void check_identifiable(const IdentificationProblem& problem, const Parameters& 
     throw InputError(fmt::format(
         "these {} configurations cannot tell apart the effects of: {}; measure more or more "
         "different configurations, or leave one of these parameters out",
-        problem.means.rows(), words));
+        problem.means.configuration_count(), words));
 }
 
 void finish(const IdentificationProblem& problem, Estimate& estimate) {

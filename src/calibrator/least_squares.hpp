@@ -15,13 +15,23 @@ struct LinearisedSystem {
 struct IdentificationProblem {
     const Campaign& campaign;
     const Measurements& measurements;
-    RowMatrixXd means;
+    Measurements means;   ///< one sample a configuration
+    RowMatrixXd repeats;  ///< configurations x targets: samples behind each mean
     VectorXd scale;
+
+    /// Numbers observed: those of the targets seen.
+    Index equation_count() const {
+        return means.is_seen.count() * campaign.sensor->rows_per_target();
+    }
 };
 
-/// Throws InputError if the measurements do not fit the campaign (joint or column count) or give
-/// fewer equations than there are parameters.
+/// Throws InputError if the measurements do not fit the campaign (count of joints, columns or
+/// targets), never show a target whose position is unknown, or give fewer equations than there are
+/// parameters.
 IdentificationProblem make_problem(const Campaign& campaign, const Measurements& measurements);
+
+/// Throws InputError if a target whose position is unknown is seen in no sample, by its number.
+void check_all_seen(const Campaign& campaign, const Measurements& measurements);
 
 LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters);
 

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include "least_squares.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/point_sensor.hpp"
@@ -20,18 +21,19 @@ Matrix3d project_on_rotations(const Matrix3d& X) {
 /// Least squares for (rows of X, c, unknown targets) of X p_ij + c - R_i t_j = p_i.
 VectorXd solve_linear(const Campaign& campaign, const PointSensor& sensor,
                       const Measurements& measurements) {
-    const RowMatrixXd means = mean_observations(measurements);
+    const Measurements means = mean_measurements(measurements);
     const auto unknowns = static_cast<Index>(sensor.unknown_names().size());
-    const Index rows = sensor.row_count();
-    MatrixXd A = MatrixXd::Zero(rows * means.rows(), 12 + unknowns);
+    const Index point_count = means.is_seen.count();
+    MatrixXd A = MatrixXd::Zero(3 * point_count, 12 + unknowns);
     VectorXd b(A.rows());
-    for (Index i = 0; i < means.rows(); ++i) {
+    Index row = 0;
+    for (Index i = 0; i < means.configuration_count(); ++i) {
         const Isometry3d flange = campaign.robot.base_from_flange(
-            measurements.configurations.row(i).transpose(), campaign.nominal.robot);
+            means.configurations.row(i).transpose(), campaign.nominal.robot);
         for (Index j = 0; j < sensor.target_count(); ++j) {
-            const Index row = rows * i + 3 * j;
+            if (!means.is_seen(i, j)) continue;
             for (Index axis = 0; axis < 3; ++axis) {
-                A.block<1, 3>(row + axis, 3 * axis) = means.block<1, 3>(i, 3 * j);
+                A.block<1, 3>(row + axis, 3 * axis) = means.observation(i, j);
             }
             A.block<3, 3>(row, 9).setIdentity();
             b.segment<3>(row) = flange.translation();
@@ -40,13 +42,15 @@ VectorXd solve_linear(const Campaign& campaign, const PointSensor& sensor,
             } else {
                 A.block<3, 3>(row, 12 + sensor.unknown_offset(j)) = -flange.linear();
             }
+            row += 3;
         }
     }
     Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
     qr.setThreshold(1e-9);
     if (A.rows() < A.cols() || qr.rank() < A.cols()) {
-        throw InputError("these " + std::to_string(means.rows()) +
-                         " configurations do not determine base and targets; more configurations "
+        throw InputError("these " + std::to_string(means.configuration_count()) +
+                         " configurations with " + std::to_string(point_count) +
+                         " points do not determine base and targets; more configurations "
                          "that turn the tool in different ways are needed");
     }
     return qr.solve(b);
@@ -58,6 +62,7 @@ Parameters register_base_and_targets(const Campaign& campaign, const Measurement
     const auto* sensor = dynamic_cast<const PointSensor*>(campaign.sensor.get());
     if (sensor == nullptr) throw InputError("registration needs a sensor that measures points");
     const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
+    check_all_seen(nominal, measurements);
     const VectorXd solution = solve_linear(nominal, *sensor, measurements);
 
     Parameters start = nominal.nominal;

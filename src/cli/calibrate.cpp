@@ -167,6 +167,10 @@ void print_report(const Arguments& arguments, const Campaign& campaign, const Me
     print(fmt::format("{}: {} configurations, {} samples, {} parameters\n", campaign.name,
                       used.configuration_count(), used.observations.rows(),
                       parameter_count(campaign)));
+    if (!used.is_seen.all()) {
+        print(fmt::format("{} of {} points are missing: targets that were not seen\n",
+                          used.is_seen.size() - used.is_seen.count(), used.is_seen.size()));
+    }
     print(describe_ending(arguments, report.estimate));
     print_accuracy(report);
     print_section("Parameters (errors of the robot, base, targets in the flange frame)",

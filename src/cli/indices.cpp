@@ -96,9 +96,12 @@ void print_indices(const Arguments& arguments) {
         return register_base_and_targets(campaign, measurements);
     });
     const double repeats = mean_repeats(measurements);
-    const Blocks scaled = make_blocks(campaign, registered, measurements.configurations, repeats);
+    const RowMatrixXd share = share_seen(measurements);
+    const Blocks scaled =
+        make_blocks(campaign, registered, measurements.configurations, repeats * share);
     // m per m and m per rad are mm per mm and mm per mrad: nothing to convert.
-    const Blocks plain = make_plain_blocks(campaign, registered, measurements.configurations);
+    const Blocks plain =
+        make_plain_blocks(campaign, registered, measurements.configurations, share);
     print(fmt::format("{} configurations, {} parameters\n{}", scaled.count(),
                       scaled.parameter_count(), describe_scaling(campaign, repeats)));
     print_section("Indices (-inf, condition inf: the parameters are not identifiable)",

@@ -86,10 +86,11 @@ void hold_prior(PlanningProblem& problem) {
 }
 
 void hold_measured(PlanningProblem& problem, const Measurements& measured) {
-    hold(problem,
-         information(make_blocks(problem.campaign, problem.campaign.nominal,
-                                 measured.configurations, mean_repeats(measured))),
-         measured.configurations);
+    hold(
+        problem,
+        information(make_blocks(problem.campaign, problem.campaign.nominal, measured.configurations,
+                                mean_repeats(measured) * share_seen(measured))),
+        measured.configurations);
     problem.measured_count = measured.configuration_count();
     problem.options.held_pose_count += problem.measured_count;
 }

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "common.hpp"
+#include "files.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/io/checksum.hpp"
@@ -76,40 +77,55 @@ void state_plain(SelectionProblem& problem) {
 
 // ---- A robot ----
 
-/// Candidates as the request says where; the measured ones are given back whole.
-std::optional<Measurements> read_candidates(SelectionProblem& problem) {
+/// Candidates as the request says where.
+struct Candidates {
+    std::optional<Measurements> measured;
+    RowMatrixXd share;  ///< of a candidate's samples in which each target is seen
+};
+
+Candidates read_candidates(SelectionProblem& problem) {
     const io::CandidateSource& source = problem.request.source;
     io::Checksum checksum;
-    std::optional<Measurements> measured;
+    Candidates candidates;
     if (source.kind == Kind::Random) {
         HaltonOptions halton;
         halton.scramble_seed = source.seed;
         problem.configurations =
             halton_configurations(problem.campaign->campaign.robot, source.count, halton);
         problem.ids = number_ids(source.count);
+        candidates.share.setOnes(source.count, problem.campaign->campaign.sensor->target_count());
     } else if (source.kind == Kind::Configurations) {
-        auto [ids, joints] = io::read_configurations(source.path, *problem.campaign);
+        auto [ids, joints, is_visible] = io::read_configurations(source.path, *problem.campaign);
         problem.ids = std::move(ids);
         problem.configurations = std::move(joints);
+        candidates.share = is_visible.cast<double>();
     } else {
-        measured = io::read_measurements(source.path, *problem.campaign);
-        problem.ids = measured->ids;
-        problem.configurations = measured->configurations;
-        checksum.add(measured->observations);
+        const Measurements& measured =
+            candidates.measured.emplace(io::read_measurements(source.path, *problem.campaign));
+        problem.ids = measured.ids;
+        problem.configurations = measured.configurations;
+        candidates.share = share_seen(measured);
+        checksum.add(measured.observations);
     }
     for (const std::string& id : problem.ids) checksum.add(id);
     checksum.add(problem.configurations);
+    if ((candidates.share.array() < 1).any()) checksum.add(candidates.share);
     problem.checksum = checksum.text();
-    return measured;
+    return candidates;
 }
 
 /// Base and targets: registered from the candidates' measurements, else as the campaign states
 /// them, else registered from the poses measured already.
-Parameters find_parameters(const Campaign& campaign, const std::optional<Measurements>& candidates,
+Parameters find_parameters(const SelectionProblem& problem,
+                           const std::optional<Measurements>& candidates,
                            const std::optional<Measurements>& augment) {
-    if (candidates) return register_base_and_targets(campaign, *candidates);
+    const Campaign& campaign = problem.campaign->campaign;
+    const auto register_from = [&](const std::string& path, const Measurements& measured) {
+        return compute_from(path, [&] { return register_base_and_targets(campaign, measured); });
+    };
+    if (candidates) return register_from(problem.request.source.path, *candidates);
     if (campaign.has_nominal_base && campaign.has_nominal_targets) return campaign.nominal;
-    if (augment) return register_base_and_targets(campaign, *augment);
+    if (augment) return register_from(problem.request.augment, *augment);
     throw InputError(campaign.name + ": the campaign file states no " +
                      (campaign.has_nominal_base ? "target positions" : "base") +
                      ", and nothing was measured to find them from; state base and "
@@ -118,8 +134,9 @@ Parameters find_parameters(const Campaign& campaign, const std::optional<Measure
 
 void hold_measured(SelectionProblem& problem, const Parameters& parameters,
                    const Measurements& measured) {
-    held(problem) += information(make_blocks(problem.campaign->campaign, parameters,
-                                             measured.configurations, mean_repeats(measured)));
+    held(problem) +=
+        information(make_blocks(problem.campaign->campaign, parameters, measured.configurations,
+                                mean_repeats(measured) * share_seen(measured)));
     problem.options.held_pose_count = measured.configuration_count();
     for (Index i = 0; i < problem.configurations.rows(); ++i) {
         const auto distance =
@@ -150,7 +167,7 @@ void state_with_robot(SelectionProblem& problem) {
     io::SelectionRequest& request = problem.request;
     problem.campaign = io::read_campaign(request.source.campaign);
     const Campaign& campaign = problem.campaign->campaign;
-    const auto measured = read_candidates(problem);
+    const auto [measured, share] = read_candidates(problem);
     if (request.source.repeats == 0) {
         request.source.repeats = measured ? mean_repeats(*measured) : 1;
     }
@@ -158,11 +175,9 @@ void state_with_robot(SelectionProblem& problem) {
     if (!request.augment.empty()) {
         augment = io::read_measurements(request.augment, *problem.campaign);
     }
-    const Parameters parameters = find_parameters(campaign, measured, augment);
-    const auto blocks_of = [&](const RowMatrixXd& configurations) {
-        return make_blocks(campaign, parameters, configurations, request.source.repeats);
-    };
-    problem.blocks = blocks_of(problem.configurations);
+    const Parameters parameters = find_parameters(problem, measured, augment);
+    problem.blocks =
+        make_blocks(campaign, parameters, problem.configurations, request.source.repeats * share);
     problem.options.column_names = parameter_names(campaign);
     if (request.has_prior) {
         held(problem).diagonal().segment(6, campaign.robot.parameter_count()).array() += 1;
@@ -174,7 +189,9 @@ void state_with_robot(SelectionProblem& problem) {
     }
     if (!request.test_poses.empty()) {
         problem.test_poses = std::make_unique<Blocks>(
-            blocks_of(io::read_configurations(request.test_poses, *problem.campaign).joints));
+            make_blocks(campaign, parameters,
+                        io::read_configurations(request.test_poses, *problem.campaign).joints,
+                        request.source.repeats));
     }
 }
 

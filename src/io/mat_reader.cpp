@@ -96,6 +96,29 @@ MatrixXd MatReader::read_first() const {
 }
 
 MatrixXd MatReader::read(const std::string& name, std::optional<Index> columns) const {
+    MatrixXd values = read_unchecked(name, columns);
+    for (Index row = 0; row < values.rows(); ++row) {
+        if (values.row(row).allFinite()) continue;
+        throw variable_error(path_, name,
+                             "has a value in row " + std::to_string(row + 1) +
+                                 " that is not finite; must be finite numbers");
+    }
+    return values;
+}
+
+MatrixXd MatReader::read_with_gaps(const std::string& name, Index columns) const {
+    MatrixXd values = read_unchecked(name, columns);
+    for (Index row = 0; row < values.rows(); ++row) {
+        if (values.row(row).allFinite() || values.row(row).array().isNaN().all()) continue;
+        throw variable_error(path_, name,
+                             "has a value in row " + std::to_string(row + 1) +
+                                 " that is not finite; must be finite numbers, or NaN in all " +
+                                 std::to_string(columns) + " columns if nothing was seen");
+    }
+    return values;
+}
+
+MatrixXd MatReader::read_unchecked(const std::string& name, std::optional<Index> columns) const {
     damage_count = 0;
     const Variable variable(Mat_VarReadInfo(file_.get(), name.c_str()), Mat_VarFree);
     if (variable == nullptr) {
@@ -120,21 +143,15 @@ MatrixXd MatReader::read(const std::string& name, std::optional<Index> columns) 
     // Compression gains at most a factor of about 1030, so a larger size is damage.
     const bool is_plausible = rows <= std::min<std::size_t>(2000 * byte_count_ / width, INT_MAX);
     if (!is_plausible) throw variable_error(path_, name, damaged);
-    // What a damaged file lacks stays NaN: the library leaves it alone and does not tell.
-    MatrixXd values = MatrixXd::Constant(static_cast<Index>(rows), static_cast<Index>(width), NAN);
+    // What a damaged file lacks stays infinite: the library leaves it alone and does not tell.
+    MatrixXd values =
+        MatrixXd::Constant(static_cast<Index>(rows), static_cast<Index>(width), INFINITY);
     int start[2] = {0, 0};
     int stride[2] = {1, 1};
     int count[2] = {static_cast<int>(rows), static_cast<int>(width)};
     if (Mat_VarReadData(file_.get(), variable.get(), values.data(), start, stride, count) != 0 ||
         damage_count > 0) {
         throw variable_error(path_, name, damaged);
-    }
-    for (Index row = 0; row < values.rows(); ++row) {
-        if (!values.row(row).allFinite()) {
-            throw variable_error(path_, name,
-                                 "has a value in row " + std::to_string(row + 1) +
-                                     " that is not finite; must be finite numbers");
-        }
     }
     return values;
 }

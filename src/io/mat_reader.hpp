@@ -20,10 +20,15 @@ class MatReader {
     /// A variable of `columns` columns (nothing: any number) and at least one row, all finite.
     MatrixXd read(const std::string& name, std::optional<Index> columns = std::nullopt) const;
 
+    /// The same, where rows may be missing: all of NaN.
+    MatrixXd read_with_gaps(const std::string& name, Index columns) const;
+
     /// The first variable of the file.
     MatrixXd read_first() const;
 
   private:
+    MatrixXd read_unchecked(const std::string& name, std::optional<Index> columns) const;
+
     std::string path_;
     std::size_t byte_count_ = 0;
     std::unique_ptr<_mat_t, int (*)(_mat_t*)> file_;

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
+#include <cmath>
 #include <unordered_set>
 
 #include "csv_reader.hpp"
-#include "posewise/io/atomic_file.hpp"
+#include "measurement_columns.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "sample_collector.hpp"
 #include "text.hpp"
@@ -14,39 +14,15 @@
 namespace posewise::io {
 namespace {
 
-enum class Role { Configuration, Sample, Joint, Observation };
-
 struct Column {
     Role role = Role::Sample;
     Index index = 0;             ///< of the joint or of the number in an observation
     const Unit* unit = nullptr;  ///< of joints and observations
 };
 
-/// A column with a unit that a campaign's measurements must have.
-struct WantedColumn {
-    std::string stem;
-    Role role = Role::Joint;
-    Index index = 0;
-    Quantity quantity = Quantity::Angle;
-
-    std::string example() const { return stem + (quantity == Quantity::Angle ? "_rad" : "_mm"); }
-};
-
-std::vector<WantedColumn> wanted_columns(const Campaign& campaign) {
-    std::vector<WantedColumn> wanted;
-    for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
-        wanted.push_back({campaign.robot.joints()[static_cast<std::size_t>(j)].name, Role::Joint, j,
-                          quantity_of(campaign.robot.joint_motion(j))});
-    }
-    Index k = 0;
-    for (const std::string& name : campaign.sensor->observation_names()) {
-        wanted.push_back({name, Role::Observation, k++, Quantity::Length});
-    }
-    return wanted;
-}
-
-/// What of a row is read: without observations their columns may be missing or hold anything.
-enum class Content { JointsAndObservations, JointsOnly };
+/// What of a row is read: observations, or without them (their columns may be missing or hold
+/// anything) which targets the column visible_targets lists.
+enum class Content { JointsAndObservations, JointsAndVisibleTargets };
 
 /// The columns of the header. `q1_rad` is looked up by its stem and its unit checked.
 class HeaderReader {
@@ -80,15 +56,22 @@ class HeaderReader {
                               "column " + quote(csv_.fields()[field]) + " " + problem);
     }
 
+    InputError unknown(std::size_t field) const {
+        std::vector<std::string> known = examples_;
+        known.emplace_back(visible_targets);
+        return error(field, "is unknown; " + suggest(csv_.fields()[field], known));
+    }
+
     Column read_column(std::size_t field) const {
         const std::string_view name = csv_.fields()[field];
         if (name == "config") return {Role::Configuration, 0, nullptr};
         if (name == "sample") return {Role::Sample, 0, nullptr};
+        if (name == visible_targets) return {Role::VisibleTargets, 0, nullptr};
         const NameWithUnit with_unit = split_unit(name);
         const auto found = std::find_if(wanted_.begin(), wanted_.end(), [&](const auto& column) {
             return column.stem == name || column.stem == with_unit.stem;
         });
-        if (found == wanted_.end()) throw error(field, "is unknown; " + suggest(name, examples_));
+        if (found == wanted_.end()) throw unknown(field);
         if (with_unit.unit == nullptr || found->stem == name) {
             throw error(field, "has no unit; must be like " + found->example());
         }
@@ -107,7 +90,8 @@ class HeaderReader {
         std::vector<std::string> missing;
         if (!has(Role::Configuration, 0)) missing.emplace_back("config");
         for (const WantedColumn& column : wanted_) {
-            if (column.role == Role::Observation && content_ == Content::JointsOnly) continue;
+            if (column.role == Role::Observation && content_ == Content::JointsAndVisibleTargets)
+                continue;
             if (!has(column.role, column.index)) missing.push_back(column.example());
         }
         if (missing.empty()) return;
@@ -132,23 +116,27 @@ class RowReader {
           campaign_(campaign),
           content_(content),
           columns_(std::move(columns)),
-          field_of_joint_(campaign.robot.joints().size()) {
+          field_of_joint_(campaign.robot.joints().size()),
+          field_of_observation_(static_cast<std::size_t>(campaign.sensor->row_count())) {
         for (std::size_t field = 0; field < columns_.size(); ++field) {
-            const Column& column = columns_[field];
-            if (column.role == Role::Joint) {
-                field_of_joint_[static_cast<std::size_t>(column.index)] = field;
-            }
+            const auto index = static_cast<std::size_t>(columns_[field].index);
+            if (columns_[field].role == Role::Joint) field_of_joint_[index] = field;
+            if (columns_[field].role == Role::Observation) field_of_observation_[index] = field;
         }
-        joints_.resize(campaign.robot.joint_count());
-        observation_.setZero(content == Content::JointsOnly ? 0 : campaign.sensor->row_count());
+        row_.joints.resize(campaign.robot.joint_count());
+        row_.is_seen.assign(static_cast<std::size_t>(campaign.sensor->target_count()), true);
+        if (content == Content::JointsAndObservations) {
+            row_.observation.setZero(campaign.sensor->row_count());
+        }
     }
 
     void add_to(SampleCollector& samples) {
         check_width();
         sample_.clear();
         for (std::size_t field = 0; field < columns_.size(); ++field) read_field(field);
+        if (content_ == Content::JointsAndObservations) read_targets();
         check_new_sample();
-        samples.add(id_, joints_, observation_, [this](Index joint) {
+        samples.add(row_, [this](Index joint) {
             return csv_.locate(field_of_joint_[static_cast<std::size_t>(joint)]);
         });
     }
@@ -170,22 +158,24 @@ class RowReader {
                 if (text.empty()) {
                     throw input_error_at(csv_.locate(field), "config is empty; must be an id");
                 }
-                id_ = text;
+                row_.id = text;
                 return;
             case Role::Sample:
                 sample_ = text;
                 return;
+            case Role::VisibleTargets:
+                // What was planned; what was measured tells by itself what was seen.
+                if (content_ == Content::JointsAndVisibleTargets) read_visible(field);
+                return;
             case Role::Joint:
-                joints_[column.index] = read_number(field);
+                row_.joints[column.index] = read_number(field);
                 if (column.unit->name == "rad") {
-                    check_not_degrees(campaign_.robot, column.index, joints_[column.index],
+                    check_not_degrees(campaign_.robot, column.index, row_.joints[column.index],
                                       [this, field] { return csv_.locate(field); });
                 }
                 return;
             case Role::Observation:
-                if (content_ == Content::JointsOnly) return;
-                observation_[column.index] = read_number(field);
-                return;
+                return;  // by read_targets()
         }
     }
 
@@ -208,12 +198,63 @@ class RowReader {
         return si;
     }
 
+    /// "1 3": the targets with these numbers.
+    void read_visible(std::size_t field) {
+        const std::string_view text = csv_.fields()[field];
+        std::fill(row_.is_seen.begin(), row_.is_seen.end(), false);
+        bool is_good = !text.empty();
+        for (std::string_view rest = text; !rest.empty();) {
+            const std::string_view word = rest.substr(0, rest.find(' '));
+            rest = trim(rest.substr(word.size()));
+            const ParsedNumber number = parse_number(word);
+            is_good = is_good && number.ok() && number.value >= 1 &&
+                      number.value <= static_cast<double>(row_.is_seen.size()) &&
+                      number.value == std::floor(number.value);
+            if (is_good) row_.is_seen[static_cast<std::size_t>(number.value) - 1] = true;
+        }
+        if (is_good) return;
+        throw input_error_at(
+            csv_.locate(field),
+            fmt::format("{} is {}; must be numbers of targets from 1 to {}, separated by blanks",
+                        visible_targets, quote(text), row_.is_seen.size()));
+    }
+
+    void read_targets() {
+        for (std::size_t target = 0; target < row_.is_seen.size(); ++target) read_target(target);
+        if (std::count(row_.is_seen.begin(), row_.is_seen.end(), true) > 0) return;
+        throw input_error_at(csv_.locate(field_of_observation_.front()),
+                             "the sample shows no target; must show one at least, or be left out");
+    }
+
+    /// The cells of a target that was not seen are empty, all of them.
+    void read_target(std::size_t target) {
+        const auto width = static_cast<std::size_t>(campaign_.sensor->rows_per_target());
+        const std::size_t first = width * target;
+        const auto is_empty = [&](std::size_t k) {
+            return csv_.fields()[field_of_observation_[k]].empty();
+        };
+        std::size_t empty_count = 0;
+        for (std::size_t k = first; k < first + width; ++k) empty_count += is_empty(k) ? 1 : 0;
+        row_.is_seen[target] = empty_count < width;
+        if (!row_.is_seen[target]) return;
+        for (std::size_t k = first; k < first + width; ++k) {
+            if (is_empty(k)) {
+                throw input_error_at(
+                    csv_.locate(field_of_observation_[k]),
+                    fmt::format("{} is empty, but not all cells of target {} are; must be a "
+                                "number, or all empty if it was not seen",
+                                campaign_.sensor->observation_names()[k], target + 1));
+            }
+            row_.observation[static_cast<Index>(k)] = read_number(field_of_observation_[k]);
+        }
+    }
+
     /// The same sample of the same configuration twice is a file joined with itself.
     void check_new_sample() {
-        if (sample_.empty() || seen_.insert(id_ + '\n' + sample_).second) return;
+        if (sample_.empty() || seen_.insert(row_.id + '\n' + sample_).second) return;
         throw input_error_at(csv_.locate(0),
                              fmt::format("sample {} of configuration {} occurs twice; keep one",
-                                         quote(sample_), quote(id_)));
+                                         quote(sample_), quote(row_.id)));
     }
 
     const CsvReader& csv_;
@@ -221,11 +262,10 @@ class RowReader {
     Content content_;
     std::vector<Column> columns_;
     std::vector<std::size_t> field_of_joint_;
+    std::vector<std::size_t> field_of_observation_;
     std::unordered_set<std::string> seen_;
-    std::string id_;
     std::string sample_;
-    VectorXd joints_;
-    VectorXd observation_;
+    Sample row_;
 };
 
 Measurements read_csv(const std::string& path, const Campaign& campaign, Content content) {
@@ -236,8 +276,7 @@ Measurements read_csv(const std::string& path, const Campaign& campaign, Content
                              "config,sample,q1_rad,...,p1_x_mm,...");
     }
     RowReader row(csv, campaign, content, HeaderReader(csv, campaign, content).read());
-    SampleCollector samples(campaign,
-                            content == Content::JointsOnly ? 0 : campaign.sensor->row_count());
+    SampleCollector samples(campaign);
     while (csv.next_row()) row.add_to(samples);
     return samples.finish(path);
 }
@@ -249,50 +288,9 @@ Measurements read_measurements_csv(const std::string& path, const Campaign& camp
 }
 
 Configurations read_configurations_csv(const std::string& path, const Campaign& campaign) {
-    Measurements read = read_csv(path, campaign, Content::JointsOnly);
-    return {std::move(read.ids), std::move(read.configurations)};
-}
-
-void write_measurements_csv(const std::string& path, const Campaign& campaign,
-                            const Measurements& measurements,
-                            const std::vector<std::string>& comment_lines) {
-    if (!measurements.configurations.allFinite() || !measurements.observations.allFinite()) {
-        throw input_error_at({path},
-                             "is not written, since a measurement is not a finite number; the "
-                             "campaign's amounts must be smaller");
-    }
-    std::string text;
-    const auto out = std::back_inserter(text);
-    for (const std::string& line : comment_lines) {
-        fmt::format_to(out, "# {}\n", escape_controls(line));
-    }
-    text += "config,sample";
-    std::vector<double> joint_factors;  // to the unit written
-    for (const WantedColumn& column : wanted_columns(campaign)) {
-        text += ',' + column.example();
-        if (column.role == Role::Joint) {
-            joint_factors.push_back(column.quantity == Quantity::Angle ? 1 : 1e3);
-        }
-    }
-    text += '\n';
-    for (Index i = 0; i < measurements.configuration_count(); ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        std::string joints;
-        for (Index j = 0; j < measurements.configurations.cols(); ++j) {
-            fmt::format_to(
-                std::back_inserter(joints), ",{}",
-                measurements.configurations(i, j) * joint_factors[static_cast<std::size_t>(j)]);
-        }
-        for (Index sample = 0; sample < measurements.sample_count(i); ++sample) {
-            fmt::format_to(out, "{},{}{}", csv_field(measurements.ids[k]), sample, joints);
-            for (const double value :
-                 measurements.observations.row(measurements.first_sample[k] + sample)) {
-                fmt::format_to(out, ",{}", 1e3 * value);
-            }
-            text += '\n';
-        }
-    }
-    write_file(path, text);
+    Measurements read = read_csv(path, campaign, Content::JointsAndVisibleTargets);
+    const RowMatrixXd visible = times_seen(read);
+    return {std::move(read.ids), std::move(read.configurations), visible.array() > 0};
 }
 
 }  // namespace posewise::io

@@ -15,7 +15,9 @@ Measurements read_measurements(const std::string& path, const CampaignFile& file
 Configurations read_configurations(const std::string& path, const CampaignFile& file) {
     if (!is_matlab(path)) return read_configurations_csv(path, file.campaign);
     Measurements read = read_measurements_mat(path, file.campaign, file.mat);
-    return {std::move(read.ids), std::move(read.configurations)};
+    const Index count = read.configuration_count();
+    return {std::move(read.ids), std::move(read.configurations),
+            RowArrayXb::Constant(count, file.campaign.sensor->target_count(), true)};
 }
 
 }  // namespace posewise::io

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "mat_reader.hpp"
@@ -25,6 +27,15 @@ MatrixXd read_joints(const MatReader& file, const std::string& path, const Chain
     return joints;
 }
 
+/// Three numbers a target; NaN: it was not seen.
+void take_seen(const VectorXd& points, Sample& sample) {
+    sample.observation = points;
+    for (Index k = 0; k < points.size(); k += 3) {
+        sample.is_seen.push_back(!std::isnan(points[k]));
+        if (!sample.is_seen.back()) sample.observation.segment<3>(k).setZero();
+    }
+}
+
 }  // namespace
 
 Measurements read_measurements_mat(const std::string& path, const Campaign& campaign,
@@ -40,7 +51,7 @@ Measurements read_measurements_mat(const std::string& path, const Campaign& camp
     const MatrixXd joints = read_joints(file, path, campaign.robot, mapping);
     MatrixXd observations(joints.rows(), rows);
     for (std::size_t k = 0; k < mapping.points.size(); ++k) {
-        const MatrixXd points = file.read(mapping.points[k], 3);
+        const MatrixXd points = file.read_with_gaps(mapping.points[k], 3);
         if (points.rows() != joints.rows()) {
             throw input_error_at({path}, "variable '" + mapping.points[k] + "' has " +
                                              std::to_string(points.rows()) + " rows; must have " +
@@ -49,15 +60,22 @@ Measurements read_measurements_mat(const std::string& path, const Campaign& camp
         }
         observations.middleCols(3 * static_cast<Index>(k), 3) = mapping.length_unit * points;
     }
-    SampleCollector samples(campaign, rows);
+    SampleCollector samples(campaign);
     std::map<std::vector<double>, std::string> ids;
     for (Index row = 0; row < joints.rows(); ++row) {
-        const VectorXd q = joints.row(row);
+        Sample sample;
+        sample.joints = joints.row(row).transpose();
         const auto next = std::to_string(ids.size());
-        const std::string& id =
-            ids.emplace(std::vector<double>(q.begin(), q.end()), next).first->second;
-        samples.add(id, q, observations.row(row).transpose(),
-                    [&path](Index) { return FileLocation{path}; });
+        sample.id =
+            ids.emplace(std::vector<double>(sample.joints.begin(), sample.joints.end()), next)
+                .first->second;
+        take_seen(observations.row(row).transpose(), sample);
+        if (std::count(sample.is_seen.begin(), sample.is_seen.end(), true) == 0) {
+            throw input_error_at({path}, "row " + std::to_string(row + 1) +
+                                             " shows no target, all points are NaN; must show one "
+                                             "at least, or be left out");
+        }
+        samples.add(sample, [&path](Index) { return FileLocation{path}; });
     }
     return samples.finish(path);
 }

@@ -7,6 +7,7 @@
 
 #include "csv_reader.hpp"
 #include "json_reader.hpp"
+#include "measurement_columns.hpp"
 #include "posewise/io/atomic_file.hpp"
 
 namespace posewise::io {
@@ -153,13 +154,17 @@ void write_configurations_csv(const std::string& path, const Campaign& campaign,
     for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
         fmt::format_to(out, ",{}{}", joint_name(campaign, j), turns(campaign, j) ? "_deg" : "_mm");
     }
-    text += '\n';
+    fmt::format_to(out, ",{}\n", visible_targets);
     for (const ContinuousPose& pose : poses) {
         text += csv_field(pose.id);
         for (Index j = 0; j < pose.joints.size(); ++j) {
             fmt::format_to(out, ",{}", for_people(campaign, j, pose.joints[j]));
         }
-        text += '\n';
+        std::string targets;
+        for (const Index target : pose.visible) {
+            targets += (targets.empty() ? "" : " ") + std::to_string(target + 1);
+        }
+        fmt::format_to(out, ",{}\n", targets);
     }
     write_file(path, text);
 }

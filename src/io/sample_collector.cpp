@@ -21,22 +21,19 @@ std::string in_line(const FileLocation& location) {
 
 }  // namespace
 
-SampleCollector::SampleCollector(const Campaign& campaign, Index observation_size)
-    : campaign_(campaign), observation_size_(observation_size) {}
-
-void SampleCollector::add(const std::string& id, const VectorXd& joints,
-                          const VectorXd& observation, const LocateJoint& locate) {
+void SampleCollector::add(const Sample& sample, const LocateJoint& locate) {
     const auto next = static_cast<Index>(ids_.size());
-    const auto [entry, is_new] = configuration_of_id_.emplace(id, next);
+    const auto [entry, is_new] = configuration_of_id_.emplace(sample.id, next);
     if (is_new) {
-        ids_.push_back(id);
-        configurations_.push_back(joints);
+        ids_.push_back(sample.id);
+        configurations_.push_back(sample.joints);
         first_places_.push_back(locate(0));
     } else {
-        check_same_joints(entry->second, joints, locate);
+        check_same_joints(entry->second, sample.joints, locate);
     }
     configuration_.push_back(entry->second);
-    observations_.insert(observations_.end(), observation.begin(), observation.end());
+    observations_.insert(observations_.end(), sample.observation.begin(), sample.observation.end());
+    is_seen_.insert(is_seen_.end(), sample.is_seen.begin(), sample.is_seen.end());
 }
 
 void SampleCollector::check_same_joints(Index configuration, const VectorXd& joints,
@@ -90,14 +87,20 @@ Measurements SampleCollector::finish(const std::string& path) const {
     for (const Index i : configuration_) ++first[static_cast<std::size_t>(i) + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
 
+    const auto samples = static_cast<Index>(configuration_.size());
+    const auto width = static_cast<Index>(observations_.size()) / samples;
+    const auto targets = static_cast<Index>(is_seen_.size()) / samples;
+    const Eigen::Map<const RowMatrixXd> observations(observations_.data(), samples, width);
+    measurements.observations.resize(samples, width);
+    measurements.is_seen.resize(samples, targets);
     std::vector<Index> next = first;
-    const Eigen::Map<const RowMatrixXd> observations(
-        observations_.data(), static_cast<Index>(configuration_.size()), observation_size_);
-    measurements.observations.resize(observations.rows(), observation_size_);
-    for (Index sample = 0; sample < observations.rows(); ++sample) {
+    for (Index sample = 0; sample < samples; ++sample) {
         const Index i = configuration_[static_cast<std::size_t>(sample)];
-        measurements.observations.row(next[static_cast<std::size_t>(i)]++) =
-            observations.row(sample);
+        const Index row = next[static_cast<std::size_t>(i)]++;
+        measurements.observations.row(row) = observations.row(sample);
+        for (Index j = 0; j < targets; ++j) {
+            measurements.is_seen(row, j) = is_seen_[static_cast<std::size_t>(targets * sample + j)];
+        }
     }
     return measurements;
 }

@@ -11,19 +11,25 @@
 
 namespace posewise::io {
 
+/// One sample, as a row of a file has it.
+struct Sample {
+    std::string id;             ///< of the configuration
+    VectorXd joints;            ///< rad or m
+    VectorXd observation;       ///< m; without what was observed if only configurations are read
+    std::vector<bool> is_seen;  ///< each target; at least one of them
+};
+
 /// Samples as a file has them, row by row in any order, on the way to Measurements.
 class SampleCollector {
   public:
     /// Where joint j of the row at hand stands in the file.
     using LocateJoint = std::function<FileLocation(Index joint)>;
 
-    /// `observation_size`: numbers each sample brings; 0 if only configurations are collected.
-    SampleCollector(const Campaign& campaign, Index observation_size);
+    explicit SampleCollector(const Campaign& campaign) : campaign_(campaign) {}
 
-    /// One more sample of configuration `id`: joints in rad or m, observation in m. Throws
-    /// InputError if its joint values differ by over 1e-6 from the configuration's first sample.
-    void add(const std::string& id, const VectorXd& joints, const VectorXd& observation,
-             const LocateJoint& locate);
+    /// One more sample. Throws InputError if its joint values differ by over 1e-6 from those of the
+    /// configuration's first sample.
+    void add(const Sample& sample, const LocateJoint& locate);
 
     /// Samples grouped by configuration, in the order the configurations first occurred. Throws
     /// InputError if there are none or if two configurations have the same joint values.
@@ -35,13 +41,13 @@ class SampleCollector {
     void check_all_different() const;
 
     const Campaign& campaign_;
-    Index observation_size_;
     std::unordered_map<std::string, Index> configuration_of_id_;
     std::vector<std::string> ids_;
     std::vector<VectorXd> configurations_;
     std::vector<FileLocation> first_places_;  // of each configuration
     std::vector<Index> configuration_;        // of each sample
     std::vector<double> observations_;        // of all samples, one after another
+    std::vector<bool> is_seen_;               // of all samples, one after another
 };
 
 /// Throws InputError (at `locate()`) if a revolute joint's value, read in rad, lies over a full

@@ -1,39 +1,65 @@
 #include "posewise/jacobian/identification.hpp"
 
+#include "posewise/core/errors.hpp"
 #include "posewise/measurement/noise.hpp"
 
 namespace posewise {
 namespace {
 
-Blocks make_unfilled_blocks(const Campaign& campaign, const RowMatrixXd& configurations) {
+void check_repeats(const Campaign& campaign, Index configuration_count,
+                   const RowMatrixXd& repeats) {
+    const Index targets = campaign.sensor->target_count();
+    if (repeats.rows() != configuration_count || repeats.cols() != targets) {
+        throw InputError("repeats are stated for " + std::to_string(repeats.rows()) + " x " +
+                         std::to_string(repeats.cols()) + " configurations and targets, must be " +
+                         std::to_string(configuration_count) + " x " + std::to_string(targets));
+    }
+    if (!repeats.allFinite() || (repeats.array() < 0).any()) {
+        throw InputError("repeats has a value that is negative or not a finite number");
+    }
+}
+
+/// Every pose's rows of the targets it shows, finished by `finish(motion, repeats, rows)`.
+template <typename Finish>
+Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
+                   const RowMatrixXd& configurations, const RowMatrixXd& repeats,
+                   const Finish& finish) {
     for (Index i = 0; i < configurations.rows(); ++i) {
         campaign.robot.check_configuration(configurations.row(i).transpose());
     }
     check_noise(campaign);
-    const Index rows = campaign.sensor->row_count();
+    check_repeats(campaign, configurations.rows(), repeats);
+    const Sensor& sensor = *campaign.sensor;
     Blocks blocks;
-    blocks.matrix.resize(rows * configurations.rows(), parameter_count(campaign));
-    for (Index i = 1; i <= configurations.rows(); ++i) blocks.first_row.push_back(rows * i);
-    return blocks;
-}
-
-/// Fills every pose's rows, then lets `finish(motion, rows)` whiten and scale them.
-template <typename Finish>
-void fill(const Campaign& campaign, const Parameters& parameters, const RowMatrixXd& configurations,
-          Blocks& blocks, const Finish& finish) {
-    const Index rows = campaign.sensor->row_count();
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        const Index seen = (repeats.row(i).array() > 0).count();
+        blocks.first_row.push_back(blocks.first_row.back() + seen * sensor.rows_per_target());
+    }
+    blocks.matrix.resize(blocks.first_row.back(), parameter_count(campaign));
 #pragma omp parallel
     {
         FlangeMotion motion;
+        RowMatrixXd J(sensor.row_count(), blocks.parameter_count());
         VectorXd q(configurations.cols());
+        VectorXd times(repeats.cols());
 #pragma omp for schedule(static)
         for (Index i = 0; i < configurations.rows(); ++i) {
             q = configurations.row(i).transpose();
-            auto J = blocks.matrix.middleRows(rows * i, rows);
+            times = repeats.row(i).transpose();
             differentiate_pose(campaign, parameters, q, motion, J);
-            finish(motion, J);
+            const std::vector<Index> seen = seen_rows(sensor, times);
+            auto block = blocks.matrix.middleRows(blocks.first_row[static_cast<std::size_t>(i)],
+                                                  static_cast<Index>(seen.size()));
+            block = J(seen, Eigen::all);
+            finish(motion, times, block);
         }
     }
+    return blocks;
+}
+
+/// All targets, each so often.
+RowMatrixXd all_seen(const Campaign& campaign, const RowMatrixXd& configurations, double repeats) {
+    return RowMatrixXd::Constant(configurations.rows(), campaign.sensor->target_count(), repeats);
 }
 
 }  // namespace
@@ -48,21 +74,33 @@ void differentiate_pose(const Campaign& campaign, const Parameters& parameters,
 }
 
 Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
+                         const RowMatrixXd& configurations, const RowMatrixXd& repeats) {
+    return fill_blocks(campaign, parameters, configurations, repeats,
+                       [](const auto&, const auto&, auto&) {});
+}
+
+Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
                          const RowMatrixXd& configurations) {
-    Blocks blocks = make_unfilled_blocks(campaign, configurations);
-    fill(campaign, parameters, configurations, blocks, [](const auto&, auto&) {});
-    return blocks;
+    return make_plain_blocks(campaign, parameters, configurations,
+                             all_seen(campaign, configurations, 1));
+}
+
+Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,
+                   const RowMatrixXd& configurations, const RowMatrixXd& repeats) {
+    const VectorXd scale = parameter_scale(campaign);
+    // Hidden rows are left out before whitening: what is not observed has no covariance.
+    return fill_blocks(campaign, parameters, configurations, repeats,
+                       [&](const FlangeMotion& motion, const VectorXd& times, auto& block) {
+                           whiten(mean_covariance(campaign, motion, parameters.sensor, times),
+                                  block);
+                           block *= scale.asDiagonal();
+                       });
 }
 
 Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,
                    const RowMatrixXd& configurations, double repeats) {
-    Blocks blocks = make_unfilled_blocks(campaign, configurations);
-    const VectorXd scale = parameter_scale(campaign);
-    fill(campaign, parameters, configurations, blocks, [&](const FlangeMotion& motion, auto& J) {
-        whiten(mean_covariance(campaign, motion, parameters.sensor, repeats), J);
-        J *= scale.asDiagonal();
-    });
-    return blocks;
+    return make_blocks(campaign, parameters, configurations,
+                       all_seen(campaign, configurations, repeats));
 }
 
 }  // namespace posewise

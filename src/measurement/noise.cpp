@@ -41,16 +41,36 @@ void check_noise(const Campaign& campaign) {
     }
 }
 
+std::vector<Index> seen_rows(const Sensor& sensor, const VectorXd& repeats) {
+    const Index width = sensor.rows_per_target();
+    std::vector<Index> rows;
+    for (Index row = 0; row < sensor.row_count(); ++row) {
+        if (repeats[row / width] > 0) rows.push_back(row);
+    }
+    return rows;
+}
+
 MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
-                         const VectorXd& sensor_unknowns, double repeats) {
-    MatrixXd covariance =
-        campaign.sensor->covariance(motion.world_from_flange, sensor_unknowns) / repeats;
+                         const VectorXd& sensor_unknowns, const VectorXd& repeats) {
+    const Sensor& sensor = *campaign.sensor;
+    const std::vector<Index> rows = seen_rows(sensor, repeats);
+    MatrixXd covariance = sensor.covariance(motion.world_from_flange, sensor_unknowns)(rows, rows);
+    for (Index k = 0; k < covariance.rows(); ++k) {  // targets are independent of each other
+        covariance.row(k) /= repeats[rows[static_cast<std::size_t>(k)] / sensor.rows_per_target()];
+    }
     covariance.diagonal().array() += campaign.model_error * campaign.model_error;
     if (campaign.joint_repeatability.size() > 0) {
-        const RowMatrixXd effect = joint_noise_effect(campaign, motion, sensor_unknowns);
+        const RowMatrixXd effect =
+            joint_noise_effect(campaign, motion, sensor_unknowns)(rows, Eigen::all);
         covariance.noalias() += effect * effect.transpose();
     }
     return covariance;
+}
+
+MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
+                         const VectorXd& sensor_unknowns, double repeats) {
+    return mean_covariance(campaign, motion, sensor_unknowns,
+                           VectorXd::Constant(campaign.sensor->target_count(), repeats));
 }
 
 bool has_constant_noise(const Campaign& campaign) {

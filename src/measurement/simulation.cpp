@@ -32,6 +32,7 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
     Measurements measurements;
     measurements.configurations = configurations;
     measurements.observations.resize(configurations.rows() * repeats, rows);
+    measurements.is_seen.setConstant(configurations.rows() * repeats, sensor.target_count(), true);
     for (Index i = 0; i < configurations.rows(); ++i) {
         RandomStream stream(seed, static_cast<std::uint64_t>(i));
         VectorXd q = configurations.row(i).transpose();
@@ -53,24 +54,42 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
 }
 
 Simulation simulate(const Campaign& campaign, const SimulateOptions& options) {
-    if (options.pose_count < 1 || options.repeats < 1) {
-        throw InputError("poses and repeats must be at least 1, are " +
-                         std::to_string(options.pose_count) + " and " +
-                         std::to_string(options.repeats));
+    if (options.pose_count < 1) {
+        throw InputError("poses must be at least 1, are " + std::to_string(options.pose_count));
+    }
+    // Configurations and noise come from different streams of one seed.
+    const std::uint64_t configuration_seed = ~options.seed;
+    const Index targets = campaign.sensor->target_count();
+    return simulate(campaign,
+                    random_configurations(campaign.robot, options.pose_count, configuration_seed),
+                    RowArrayXb::Constant(options.pose_count, targets, true), options);
+}
+
+Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
+                    const RowArrayXb& is_visible, const SimulateOptions& options) {
+    if (options.repeats < 1) {
+        throw InputError("repeats must be at least 1, are " + std::to_string(options.repeats));
     }
     if (!campaign.has_nominal_base || !campaign.has_nominal_targets) {
         throw InputError(
             "to simulate, the campaign must state where base and targets are (keys 'base' and "
             "'sensor.targets.position_mm')");
     }
-    // Configurations and noise come from different streams of one seed.
-    const std::uint64_t configuration_seed = ~options.seed;
+    if (is_visible.rows() != configurations.rows() ||
+        is_visible.cols() != campaign.sensor->target_count()) {
+        throw InputError("visibility is stated for " + std::to_string(is_visible.rows()) + " x " +
+                         std::to_string(is_visible.cols()) +
+                         " configurations and targets, must be " +
+                         std::to_string(configurations.rows()) + " x " +
+                         std::to_string(campaign.sensor->target_count()));
+    }
     Simulation simulation;
     simulation.truth = draw_truth(campaign, options.truth_seed);
-    simulation.measurements = simulate_measurements(
-        campaign, simulation.truth,
-        random_configurations(campaign.robot, options.pose_count, configuration_seed),
-        options.repeats, options.seed);
+    simulation.measurements = simulate_measurements(campaign, simulation.truth, configurations,
+                                                    options.repeats, options.seed);
+    for (Index sample = 0; sample < simulation.measurements.is_seen.rows(); ++sample) {
+        simulation.measurements.is_seen.row(sample) = is_visible.row(sample / options.repeats);
+    }
     return simulation;
 }
 

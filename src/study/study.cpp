@@ -36,7 +36,8 @@ Blocks make_study_blocks(const Campaign& campaign, const Measurements& measureme
     identify(campaign, measurements, registered);
     const double mean_repeats = static_cast<double>(measurements.observations.rows()) /
                                 static_cast<double>(measurements.configuration_count());
-    return make_blocks(campaign, registered, measurements.configurations, mean_repeats);
+    return make_blocks(campaign, registered, measurements.configurations,
+                       mean_repeats * share_seen(measurements));
 }
 
 std::vector<Index> choose_pose_counts(const Campaign& campaign, const Measurements& measurements,

@@ -93,6 +93,7 @@ TEST(Identify, CovarianceShrinksWithRepeatsAsOneOverTheirNumber) {
     const auto one = simulate_measurements(campaign, truth, configurations, 1, 5);
     Measurements four = one;  // the same mean, claimed to be of four observations
     four.observations.resize(80, 9);
+    four.is_seen.setConstant(80, 3, true);
     four.first_sample = {0};
     for (Index i = 0; i < 20; ++i) {
         for (Index k = 0; k < 4; ++k) four.observations.row(4 * i + k) = one.observations.row(i);

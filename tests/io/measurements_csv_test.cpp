@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "campaign_text.hpp"
+#include "posewise/io/atomic_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -47,6 +49,7 @@ void expect_equal(const Measurements& a, const Measurements& b) {
     EXPECT_EQ(a.first_sample, b.first_sample);
     EXPECT_EQ(a.configurations, b.configurations);
     EXPECT_EQ(a.observations, b.observations);
+    EXPECT_TRUE((a.is_seen == b.is_seen).all());
 }
 
 TEST(ReadMeasurementsCsv, GroupsSamplesByConfiguration) {
@@ -64,6 +67,29 @@ TEST(ReadMeasurementsCsv, TakesConfigurationsInTurns) {
     EXPECT_EQ(measurements.first_sample, (std::vector<Index>{0, 3, 4}));
     EXPECT_EQ(measurements.observations(2, 0), 1.25);
     EXPECT_EQ(measurements.observations(3, 0), 7);
+}
+
+TEST(ReadMeasurementsCsv, EmptyCellsAreATargetThatWasNotSeen) {
+    EXPECT_TRUE(read(good).is_seen.all());
+    const Measurements measurements = read(replaced(
+        replaced(good, "a,1,0.1,0.2,0.3,1.5,2,3,", "a,1,0.1,0.2,0.3,, ,\"\","), "10,11,12", ",,"));
+    EXPECT_TRUE(
+        (measurements.is_seen == RowArrayXb{{true, true}, {false, true}, {true, false}}).all());
+    EXPECT_EQ(measurements.observations.row(1).tail(3), Eigen::RowVector3d(4, 5, 6));
+    EXPECT_EQ(measurements.observations.row(2).head(3), Eigen::RowVector3d(7, 8, 9));
+    EXPECT_TRUE(measurements.observations.allFinite());
+    const Measurements means = mean_measurements(measurements);
+    EXPECT_EQ(means.observations(0, 0), 1);
+    EXPECT_EQ(means.observations(0, 3), 4);
+}
+
+TEST(ReadMeasurementsCsv, DoesNotMindWhichTargetsWerePlannedToBeVisible) {
+    std::string text = replaced(good, "config,", "visible_targets,config,");
+    for (const char* row : {"\na,0", "\na,1", "\nb,0"}) {
+        text = replaced(text, row, "\n1 2," + std::string(row + 1));
+    }
+    expect_equal(read(text), read(good));
+    expect_equal(read(replaced(text, "1 2,b", "2,b")), read(good));
 }
 
 TEST(ReadMeasurementsCsv, ConvertsDegreesAndMillimetres) {
@@ -121,6 +147,21 @@ TEST(WriteMeasurementsCsv, IsReadBackExactly) {
     EXPECT_EQ(again.first_sample, measurements.first_sample);
     EXPECT_EQ(again.configurations.leftCols(2), measurements.configurations.leftCols(2));
     EXPECT_LT((again.observations - measurements.observations).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST(WriteMeasurementsCsv, LeavesTargetsThatWereNotSeenEmpty) {
+    Measurements measurements = read(good);
+    measurements.is_seen(1, 0) = measurements.is_seen(2, 1) = false;
+    measurements.observations.row(1).head(3).setConstant(std::nan(""));
+    const TemporaryFolder folder;
+    const std::string path = folder.path("m.csv");
+    write_measurements_csv(path, crane(), measurements);
+    const std::string text = read_file(path);
+    EXPECT_NE(text.find("\na,1,0.1,0.2,300,,,,4000,5000,6000\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("\nb,0,0.1,0.25,300,7000,8000,9000,,,\n"), std::string::npos) << text;
+    const Measurements again = read_measurements_csv(path, crane());
+    EXPECT_TRUE((again.is_seen == measurements.is_seen).all());
+    EXPECT_EQ(again.observations.row(1).tail(3), measurements.observations.row(1).tail(3));
 }
 
 TEST(WriteMeasurementsCsv, KeepsACommentInItsLine) {
@@ -196,8 +237,23 @@ TEST(BadMeasurementsCsv, RaggedRow) {
 TEST(BadMeasurementsCsv, TextWhereANumberBelongs) {
     EXPECT_EQ(error_with("1.5", "1.5mm"),
               "m.csv:3:17: '1.5mm' is not a number; must be a finite number with a decimal point");
-    EXPECT_EQ(error_with("1.5", ""),
-              "m.csv:3:17: '' is not a number; must be a finite number with a decimal point");
+    EXPECT_EQ(error_with("0.25", ""),
+              "m.csv:4:9: '' is not a number; must be a finite number with a decimal point");
+}
+
+TEST(BadMeasurementsCsv, TargetWithSomeCellsEmpty) {
+    const std::string rule =
+        " is empty, but not all cells of target 1 are; must be a number, or all empty if it was "
+        "not seen";
+    EXPECT_EQ(error_with("1.5", ""), "m.csv:3:17: p1_x" + rule);
+    EXPECT_EQ(error_with("1.5,2,3", "1.5,,3"), "m.csv:3:21: p1_y" + rule);
+    EXPECT_EQ(error_with("1.5,2,3", ",,3"), "m.csv:3:17: p1_x" + rule);
+    EXPECT_EQ(error_with("10,11,12", "nan,nan,nan").substr(0, 28), "m.csv:4:24: 'nan' is not fin");
+}
+
+TEST(BadMeasurementsCsv, SampleThatShowsNoTarget) {
+    EXPECT_EQ(error_with("7,8,9,10,11,12", ",,,,,"),
+              "m.csv:4:18: the sample shows no target; must show one at least, or be left out");
 }
 
 TEST(BadMeasurementsCsv, NumbersThatAreNotFinite) {

@@ -21,10 +21,10 @@ class ReadMeasurementsMat : public ::testing::Test {
         : campaign_(read_campaign(folder_.write("c.yaml", testing::campaign_text))) {}
 
     void write(const Value& q, matio_compression compression = MAT_COMPRESSION_NONE,
-               mat_ft version = MAT_FT_MAT5) const {
+               mat_ft version = MAT_FT_MAT5, const Value& mA = {1, 2, 3, 4, 5, 6, 7, 8, 9}) const {
         mat_t* const file = Mat_CreateVer(path_.c_str(), nullptr, version);
         add(file, "q", q, compression);
-        add(file, "mA", {1, 2, 3, 4, 5, 6, 7, 8, 9}, compression);
+        add(file, "mA", mA, compression);
         add(file, "mB", {11, 12, 13, 14, 15, 16, 17, 18, 19}, compression);
         Mat_Close(file);
     }
@@ -132,6 +132,42 @@ TEST_F(ReadMeasurementsMat, RefusesNumbersThatAreNotFinite) {
     EXPECT_EQ(
         error(),
         "m.mat: variable 'q' has a value in row 2 that is not finite; must be finite numbers");
+}
+
+TEST_F(ReadMeasurementsMat, ARowOfNaNIsATargetThatWasNotSeen) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const auto compression : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
+        write(good_q, compression, MAT_FT_MAT5, {1, 2, nan, 4, 5, nan, 7, 8, nan});
+        const Measurements measurements = read();
+        EXPECT_TRUE(
+            (measurements.is_seen == RowArrayXb{{true, true}, {false, true}, {true, true}}).all());
+        EXPECT_TRUE(measurements.observations.allFinite());
+        EXPECT_NEAR(measurements.observations(0, 0), 1e-3, 1e-15);
+        EXPECT_NEAR(measurements.observations(1, 3), 13e-3, 1e-15);
+        EXPECT_TRUE(read_configurations(path_, campaign_).is_visible.all());
+    }
+}
+
+TEST_F(ReadMeasurementsMat, RefusesATargetOrSampleThatIsHalfMissing) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    write(good_q, MAT_COMPRESSION_NONE, MAT_FT_MAT5, {1, 2, 3, 4, nan, 6, 7, nan, 9});
+    EXPECT_EQ(error(),
+              "m.mat: variable 'mA' has a value in row 2 that is not finite; must be finite "
+              "numbers, or NaN in all 3 columns if nothing was seen");
+    const double inf = std::numeric_limits<double>::infinity();
+    write(good_q, MAT_COMPRESSION_NONE, MAT_FT_MAT5, {1, 2, inf, 4, 5, inf, 7, 8, inf});
+    EXPECT_EQ(error().substr(0, 63),
+              "m.mat: variable 'mA' has a value in row 3 that is not finite; m");
+
+    mat_t* const file = Mat_CreateVer(path_.c_str(), nullptr, MAT_FT_MAT5);
+    add(file, "q", good_q, MAT_COMPRESSION_NONE);
+    for (const char* name : {"mA", "mB"}) {
+        add(file, name, {1, nan, 3, 4, nan, 6, 7, nan, 9}, MAT_COMPRESSION_NONE);
+    }
+    Mat_Close(file);
+    EXPECT_EQ(error(),
+              "m.mat: row 2 shows no target, all points are NaN; must show one at least, or be "
+              "left out");
 }
 
 TEST_F(ReadMeasurementsMat, RefusesAnglesThatLookLikeDegrees) {

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <cmath>
 #include <limits>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/noise.hpp"
 #include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 #include "support/derivative_check.hpp"
@@ -73,6 +76,54 @@ TEST(MakeBlocks, ScaleInverselyWithTheNoise) {
     const RowMatrixXd once = make_blocks(campaign, campaign.nominal, poses, 1).matrix;
     const RowMatrixXd four_times = make_blocks(campaign, campaign.nominal, poses, 4).matrix;
     EXPECT_TRUE(four_times.isApprox(2 * once, 1e-14));
+}
+
+TEST(MakeBlocks, ATargetThatIsNotSeenTellsAsMuchAsOneWithEndlessNoise) {
+    Campaign campaign = tracked_campaign(fanuc());
+    campaign.joint_repeatability = VectorXd::Constant(6, 4e-5);  // correlates the targets
+    const RowMatrixXd poses = random_configurations(campaign.robot, 4, 66);
+    const RowMatrixXd repeats{{3, 0, 2}, {0, 0, 1}, {1, 5, 2}, {0, 0, 0}};
+    const Blocks blocks = make_blocks(campaign, campaign.nominal, poses, repeats);
+    const Blocks plain = make_plain_blocks(campaign, campaign.nominal, poses);
+    EXPECT_EQ(blocks.first_row, (std::vector<Index>{0, 6, 9, 18, 18}));
+    const VectorXd scale = parameter_scale(campaign);
+    for (Index i = 0; i < 4; ++i) {
+        FlangeMotion motion;
+        campaign.robot.differentiate(campaign.nominal.world_from_base, poses.row(i).transpose(),
+                                     campaign.nominal.robot, motion);
+        const VectorXd times = repeats.row(i).transpose().cwiseMax(1);
+        MatrixXd S = mean_covariance(campaign, motion, campaign.nominal.sensor, times);
+        for (Index j = 0; j < 3; ++j) {
+            if (repeats(i, j) == 0) S.diagonal().segment<3>(3 * j).array() += 1e4;
+        }
+        const MatrixXd J = plain[i] * scale.asDiagonal();
+        const MatrixXd expected = J.transpose() * S.ldlt().solve(J);
+        const MatrixXd found = blocks[i].transpose() * blocks[i];
+        EXPECT_LT((found - expected).norm(), 1e-6 * (1 + expected.norm())) << i;
+    }
+}
+
+TEST(MakePlainBlocks, HaveTheRowsOfTheTargetsSeen) {
+    const Campaign campaign = tracked_campaign(fanuc());
+    const RowMatrixXd poses = random_configurations(campaign.robot, 2, 67);
+    const Blocks all = make_plain_blocks(campaign, campaign.nominal, poses);
+    const Blocks some =
+        make_plain_blocks(campaign, campaign.nominal, poses, RowMatrixXd{{0, 0.3, 7}, {0, 1, 0}});
+    EXPECT_EQ(RowMatrixXd(some[0]), RowMatrixXd(all[0].bottomRows(6)));
+    EXPECT_EQ(RowMatrixXd(some[1]), RowMatrixXd(all[1].middleRows(3, 3)));
+}
+
+TEST(MakeBlocks, RefuseRepeatsThatDoNotFit) {
+    const Campaign campaign = tracked_campaign(fanuc());
+    const RowMatrixXd poses = random_configurations(campaign.robot, 2, 68);
+    const auto make = [&](const RowMatrixXd& repeats) {
+        make_blocks(campaign, campaign.nominal, poses, repeats);
+    };
+    EXPECT_THROW(make(RowMatrixXd::Ones(2, 2)), InputError);
+    EXPECT_THROW(make(RowMatrixXd::Ones(3, 3)), InputError);
+    EXPECT_THROW(make(-RowMatrixXd::Ones(2, 3)), InputError);
+    EXPECT_THROW(make(RowMatrixXd::Constant(2, 3, std::nan(""))), InputError);
+    EXPECT_NO_THROW(make(RowMatrixXd::Zero(2, 3)));
 }
 
 TEST(MakeBlocks, RefuseConfigurationsTheRobotCannotTake) {

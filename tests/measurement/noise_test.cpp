@@ -66,6 +66,25 @@ TEST(MeanCovariance, JointErrorsCorrelateTheTargetsAndRepeatsDoNotReduceThem) {
     EXPECT_TRUE((with - without).isApprox(effect * effect.transpose(), 1e-8));
 }
 
+TEST(MeanCovariance, DividesEachTargetByItsOwnRepeatsAndLeavesOutThoseNotSeen) {
+    const Campaign campaign = noisy_campaign();
+    std::vector<FlangeMotionRate> rates;
+    const FlangeMotion motion = motion_at(campaign, VectorXd::LinSpaced(6, -0.5, 0.7), rates);
+    const auto covariance = [&](const auto& repeats) {
+        return mean_covariance(campaign, motion, campaign.nominal.sensor, repeats);
+    };
+    const MatrixXd some = covariance(VectorXd(Vector3d(7, 0, 2)));
+    ASSERT_EQ(some.rows(), 6);
+    EXPECT_TRUE(some.topLeftCorner(3, 3).isApprox(covariance(7.0).topLeftCorner(3, 3), 1e-12));
+    EXPECT_TRUE(
+        some.bottomRightCorner(3, 3).isApprox(covariance(2.0).bottomRightCorner(3, 3), 1e-12));
+    const MatrixXd joint_errors = covariance(1.0).topRightCorner(3, 3);
+    EXPECT_TRUE(some.topRightCorner(3, 3).isApprox(joint_errors, 1e-12));
+    EXPECT_GT(joint_errors.norm(), 0);
+    EXPECT_TRUE(some.isApprox(some.transpose(), 1e-12));
+    EXPECT_EQ(covariance(VectorXd(Vector3d(4, 4, 4))), covariance(4.0));
+}
+
 TEST(MeanCovarianceRate, AgreesWithDifferences) {
     const Campaign campaign = noisy_campaign();
     const VectorXd& targets = campaign.nominal.sensor;

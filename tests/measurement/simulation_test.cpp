@@ -20,7 +20,7 @@ void expect_variance(double mean_square, Index degrees_of_freedom, double varian
 
 /// Observed minus expected, of every configuration's mean.
 RowMatrixXd mean_errors(const Campaign& campaign, const Simulation& simulation) {
-    RowMatrixXd errors = mean_observations(simulation.measurements);
+    RowMatrixXd errors = mean_measurements(simulation.measurements).observations;
     for (Index i = 0; i < errors.rows(); ++i) {
         const VectorXd q = simulation.measurements.configurations.row(i).transpose();
         errors.row(i) -=
@@ -77,6 +77,47 @@ TEST(Simulate, ObservationsHaveTheStatedCovarianceOfTheirMean) {
         chi_square += error.squaredNorm();
     }
     expect_variance(chi_square / 3600, 3600, 1);
+}
+
+TEST(Simulate, MeansOfTheSamplesThatShowATargetHaveTheStatedCovariance) {
+    Campaign campaign = tracked_campaign(fanuc());
+    campaign.sensor = std::make_shared<PointSensor>(
+        std::vector<std::optional<Vector3d>>(3, std::nullopt), LaserTrackerNoise{2e-4, 1e-4});
+    campaign.joint_repeatability = VectorXd::Constant(6, 3e-5);
+    Simulation simulation = simulate(campaign, {.pose_count = 400, .repeats = 3});
+    hide_at_random(simulation.measurements, 0.4, 5);
+    const RowMatrixXd errors = mean_errors(campaign, simulation);
+    const RowMatrixXd times = times_seen(simulation.measurements);
+    double chi_square = 0;
+    for (Index i = 0; i < errors.rows(); ++i) {
+        FlangeMotion motion;
+        campaign.robot.differentiate(simulation.truth.world_from_base,
+                                     simulation.measurements.configurations.row(i).transpose(),
+                                     simulation.truth.robot, motion);
+        const VectorXd repeats = times.row(i).transpose();
+        const VectorXd all = errors.row(i).transpose();
+        RowMatrixXd error = all(seen_rows(*campaign.sensor, repeats));
+        whiten(mean_covariance(campaign, motion, simulation.truth.sensor, repeats), error);
+        chi_square += error.squaredNorm();
+    }
+    const Index numbers = 3 * (times.array() > 0).count();
+    EXPECT_LT(numbers, 3600);
+    expect_variance(chi_square / static_cast<double>(numbers), numbers, 1);
+}
+
+TEST(Simulate, AtGivenConfigurationsShowsWhatIsVisibleThere) {
+    const Campaign campaign = tracked_campaign(fanuc());
+    const SimulateOptions options{.pose_count = 2, .repeats = 2};
+    const Measurements all = simulate(campaign, options).measurements;
+    const RowArrayXb visible{{true, false, true}, {true, true, true}};
+    const Measurements some = simulate(campaign, all.configurations, visible, options).measurements;
+    EXPECT_EQ(some.observations, all.observations);
+    for (const Index sample : {0, 1}) {
+        EXPECT_TRUE((some.is_seen.row(sample) == visible.row(0)).all());
+    }
+    EXPECT_TRUE(some.is_seen.bottomRows(2).all());
+    EXPECT_TRUE(all.is_seen.all());
+    EXPECT_THROW(simulate(campaign, all.configurations, visible.topRows(1), options), InputError);
 }
 
 TEST(Simulate, TruthDependsOnItsOwnSeedOnly) {

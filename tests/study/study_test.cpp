@@ -7,7 +7,9 @@
 
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/simulation.hpp"
+#include "posewise/selection/exchange.hpp"
 #include "support/campaigns.hpp"
 
 namespace posewise {
@@ -65,6 +67,33 @@ TEST(StudyPoseCounts, JudgesEachSubsetOnWhatItLeftOut) {
                                     take(example.measurements, all_but(14, chosen.poses))));
     EXPECT_DOUBLE_EQ(chosen.held_out.distance_rms, held_out.distance_rms);
     EXPECT_DOUBLE_EQ(chosen.held_out.distance_max, held_out.distance_max);
+}
+
+TEST(StudyPoseCounts, ChoosesAndJudgesByTheTargetsSeen) {
+    Example example;
+    testing::hide_at_random(example.measurements, 0.3, 6);
+    const auto rows = study_pose_counts(example.campaign, example.measurements, small_options());
+    const StudyCase& chosen = rows[1].optimal[0];
+    const auto part = take(example.measurements, chosen.poses);
+    const auto start = register_base_and_targets(example.campaign, example.measurements);
+    SelectOptions options;
+    options.criterion = Criterion::D;
+    options.pose_count = 9;
+    options.starts = 4;
+    const RowMatrixXd repeats = 2 * share_seen(example.measurements);  // of two samples
+    EXPECT_EQ(repeats, times_seen(example.measurements));
+    EXPECT_EQ(chosen.poses, select_poses(make_blocks(example.campaign, start,
+                                                     example.measurements.configurations, repeats),
+                                         options)
+                                .poses);
+    const auto estimate =
+        identify(example.campaign, part, register_base_and_targets(example.campaign, part));
+    const auto left_out = take(example.measurements, all_but(14, chosen.poses));
+    const auto held_out =
+        make_metrics(mean_residuals(example.campaign, estimate.parameters, left_out));
+    EXPECT_EQ(held_out.point_count, (times_seen(left_out).array() > 0).count());
+    EXPECT_EQ(chosen.held_out.point_count, held_out.point_count);
+    EXPECT_DOUBLE_EQ(chosen.held_out.distance_rms, held_out.distance_rms);
 }
 
 TEST(StudyPoseCounts, IsTheSameForAnyNumberOfThreads) {

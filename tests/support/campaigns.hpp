@@ -1,8 +1,11 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 
+#include "posewise/core/random.hpp"
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/point_sensor.hpp"
 #include "support/robots.hpp"
 
@@ -23,6 +26,21 @@ inline Campaign tracked_campaign(Chain robot) {
     campaign.has_nominal_base = true;
     campaign.has_nominal_targets = true;
     return campaign;
+}
+
+/// Takes this share of all targets out of the samples, at random, and leaves NaN in their place.
+inline void hide_at_random(Measurements& measurements, double share, std::uint64_t seed) {
+    RandomStream stream(seed);
+    const Index width = measurements.observations.cols() / measurements.is_seen.cols();
+    for (Index sample = 0; sample < measurements.is_seen.rows(); ++sample) {
+        for (Index target = 0; target < measurements.is_seen.cols(); ++target) {
+            if (stream.uniform() >= share) continue;
+            measurements.is_seen(sample, target) = false;
+            measurements.observations.row(sample)
+                .segment(width * target, width)
+                .setConstant(std::numeric_limits<double>::quiet_NaN());
+        }
+    }
 }
 
 }  // namespace posewise::testing

@@ -57,14 +57,14 @@ struct Correlation {
 /// The `count` strongest correlations between two parameters, strongest first.
 std::vector<Correlation> strongest_correlations(const Estimate& estimate, Index count);
 
-/// observed - predicted, of every sample: samples x sensor rows, m.
+/// observed - predicted, of every target seen in every sample, one a row: points x 3, m.
 RowMatrixXd residuals(const Campaign& campaign, const Parameters& parameters,
                       const Measurements& measurements);
-/// observed mean - predicted, one row each configuration.
+/// The same of the means of each configuration.
 RowMatrixXd mean_residuals(const Campaign& campaign, const Parameters& parameters,
                            const Measurements& measurements);
 
-/// Metrics of residual rows whose columns are x, y, z of one point after another.
+/// Metrics of residual rows whose columns are x, y, z of one point (or of one after another).
 Metrics make_metrics(const RowMatrixXd& residuals);
 
 }  // namespace posewise

@@ -9,34 +9,40 @@
 namespace posewise::io {
 
 /// Reads measurements by the file's ending: `.mat` or else CSV. Throws InputError with
-/// path:line:column. Refused: missing or unknown columns, ragged rows, text or non-finite numbers,
-/// two configurations with the same joint values, angles in rad over a full turn beyond the limits
-/// (degrees by the look of them), a configuration whose samples differ in a joint by over 1e-6.
+/// path:line:column. A target that a sample does not show has empty cells (CSV) or NaN (MATLAB),
+/// all of them. Refused: a sample that shows no target, missing or unknown columns, ragged rows,
+/// text or other non-finite numbers, two configurations with the same joint values, angles in rad
+/// over a full turn beyond the limits (degrees by the look of them), a configuration whose samples
+/// differ in a joint by over 1e-6.
 Measurements read_measurements(const std::string& path, const CampaignFile& file);
 
 /// Named configurations, none of them measured (or not of interest whether).
 struct Configurations {
     std::vector<std::string> ids;
-    RowMatrixXd joints;  ///< configurations x joints, rad or m
+    RowMatrixXd joints;     ///< configurations x joints, rad or m
+    RowArrayXb is_visible;  ///< configurations x targets: those to be measured
 };
 
 /// Reads configurations as read_measurements() does; a CSV need not have the sensor's columns, and
-/// what stands in them does not matter.
+/// what stands in them does not matter. Its column visible_targets, if there is one, lists the
+/// targets each shows ("1 3"), as plans do; else all are visible.
 Configurations read_configurations(const std::string& path, const CampaignFile& file);
 Configurations read_configurations_csv(const std::string& path, const Campaign& campaign);
 
 /// CSV with a header that carries the units: config, <joint>_rad or _deg (_m or _mm if it slides),
-/// the sensor's columns with _m or _mm, and optionally sample; in any order. Separated by commas,
+/// the sensor's columns with _m or _mm, and optionally sample and visible_targets (which measured
+/// ones need not agree with); in any order. Separated by commas,
 /// semicolons or tabs; lines behind # are comments. Rows of one config may stand anywhere.
 Measurements read_measurements_csv(const std::string& path, const Campaign& campaign);
 
 /// MATLAB file (5 to 7.3) of real double matrices; rows with equal joint values are samples of one
-/// configuration. Configurations are named 0, 1, ... in the order they first occur.
+/// configuration; NaN in all three columns of a target: not seen. Configurations are named 0, 1,
+/// ... in the order they first occur.
 Measurements read_measurements_mat(const std::string& path, const Campaign& campaign,
                                    const MatMapping& mapping);
 
-/// Writes CSV (rad and mm, digits enough to read the numbers back exactly). `comment_lines` go
-/// first, each behind "# ".
+/// Writes CSV (rad and mm, digits enough to read the numbers back exactly; cells of targets not
+/// seen are empty). `comment_lines` go first, each behind "# ".
 void write_measurements_csv(const std::string& path, const Campaign& campaign,
                             const Measurements& measurements,
                             const std::vector<std::string>& comment_lines = {});

@@ -65,7 +65,7 @@ void write_pose_plan(const std::string& path, const PosePlanFile& file, const Ca
 std::vector<ContinuousPose> read_planned_poses(const std::string& path, const Campaign& campaign);
 
 /// The configurations as CSV: config, then each joint in degrees or mm, digits enough to read the
-/// numbers back exactly. `select --candidates` reads it.
+/// numbers back exactly, then visible_targets ("1 3"). read_configurations() reads it.
 void write_configurations_csv(const std::string& path, const Campaign& campaign,
                               const std::vector<ContinuousPose>& poses);
 

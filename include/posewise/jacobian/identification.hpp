@@ -14,13 +14,21 @@ void differentiate_pose(const Campaign& campaign, const Parameters& parameters,
                         Eigen::Ref<RowMatrixXd> J_measured_parameters);
 
 /// Blocks without whitening or scaling, one per row of `configurations` (m x joints): the stacked
-/// identification Jacobian in SI units.
+/// identification Jacobian in SI units. `repeats` (m x targets): a target with 0 is not seen, and
+/// its rows are left out. Computed over OpenMP threads. Throws InputError for a configuration of
+/// the wrong size or not finite, or repeats of another shape or below 0.
+Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
+                         const RowMatrixXd& configurations, const RowMatrixXd& repeats);
+/// The same with all targets seen.
 Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
                          const RowMatrixXd& configurations);
 
-/// Blocks whitened by the noise (sensor / repeats, plus model error) and scaled by
-/// parameter_scale(): without units, ready for criteria and selection. Computed over OpenMP
-/// threads. Throws InputError for a configuration of the wrong size or not finite.
+/// make_plain_blocks() whitened by the noise of means (see mean_covariance()) over so many
+/// `repeats` of each target (m x targets) and scaled by parameter_scale(): without units, ready
+/// for criteria and selection.
+Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,
+                   const RowMatrixXd& configurations, const RowMatrixXd& repeats);
+/// The same with all targets seen equally often.
 Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,
                    const RowMatrixXd& configurations, double repeats = 1);
 

@@ -10,9 +10,12 @@ namespace posewise {
 
 /// A measured campaign: configurations, each observed once or several times.
 struct Measurements {
-    RowMatrixXd configurations;          ///< m x joints, rad or m
-    std::vector<std::string> ids;        ///< m names of the configurations, as in the file
-    RowMatrixXd observations;            ///< samples x sensor rows, m; grouped by configuration
+    RowMatrixXd configurations;    ///< m x joints, rad or m
+    std::vector<std::string> ids;  ///< m names of the configurations, as in the file
+    RowMatrixXd observations;      ///< samples x sensor rows, m; grouped by configuration
+    /// samples x targets: which targets each sample shows. What stands in `observations` for the
+    /// others is never looked at.
+    RowArrayXb is_seen;
     std::vector<Index> first_sample{0};  ///< m + 1; samples of configuration i start at [i]
 
     Index configuration_count() const { return static_cast<Index>(ids.size()); }
@@ -20,10 +23,22 @@ struct Measurements {
         const auto i = static_cast<std::size_t>(configuration);
         return first_sample[i + 1] - first_sample[i];
     }
+    /// What a sample observed of a target it shows, as a view.
+    auto observation(Index sample, Index target) const {
+        const Index width = observations.cols() / is_seen.cols();
+        return observations.row(sample).segment(width * target, width);
+    }
 };
 
-/// Mean observation of each configuration: m x sensor rows.
-RowMatrixXd mean_observations(const Measurements& measurements);
+/// How many samples of each configuration show each target: m x targets.
+RowMatrixXd times_seen(const Measurements& measurements);
+
+/// The same as part of the configuration's samples, 0 to 1.
+RowMatrixXd share_seen(const Measurements& measurements);
+
+/// The means of each configuration as its only sample: of each target over the samples that show
+/// it, which may be fewer than there are.
+Measurements mean_measurements(const Measurements& measurements);
 
 /// The measurements of some configurations, in the order asked for.
 Measurements take(const Measurements& measurements, const std::vector<Index>& configurations);
@@ -32,7 +47,7 @@ Measurements take(const Measurements& measurements, const std::vector<Index>& co
 std::vector<Index> all_but(Index count, const std::vector<Index>& left_out);
 
 /// Standard deviation of one observed coordinate about its configuration's mean, pooled over all
-/// samples (m); nothing if no configuration was repeated.
+/// samples (m); nothing if no target was seen twice at one configuration.
 std::optional<double> repeatability(const Measurements& measurements);
 
 }  // namespace posewise

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "posewise/measurement/campaign.hpp"
 
 namespace posewise {
@@ -8,10 +10,18 @@ namespace posewise {
 /// a value that is negative or not finite, or if model_error is.
 void check_noise(const Campaign& campaign);
 
-/// Covariance of the mean of `repeats` observations at a pose: the sensor's divided by repeats,
-/// plus what repeats do not reduce: model_error^2 on the diagonal, and J_q diag(s^2) J_q^T of the
-/// joints' repeatability s (the robot stands still while it is observed again), which correlates
-/// the targets. Sensor rows square, m^2.
+/// Rows of the sensor that belong to the targets seen: those with repeats above 0. Ascending.
+std::vector<Index> seen_rows(const Sensor& sensor, const VectorXd& repeats);
+
+/// Covariance of the mean observation of the targets seen at a pose, target j over repeats[j]
+/// observations (0: not seen): the sensor's divided by repeats, plus what repeats do not reduce:
+/// model_error^2 on the diagonal, and J_q diag(s^2) J_q^T of the joints' repeatability s (the
+/// robot stands still while it is observed again), which correlates the targets. seen_rows()
+/// square, m^2.
+MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
+                         const VectorXd& sensor_unknowns, const VectorXd& repeats);
+
+/// The same with all targets seen equally often: sensor rows square.
 MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
                          const VectorXd& sensor_unknowns, double repeats);
 

@@ -19,7 +19,6 @@ class PointSensor final : public Sensor {
     /// With isotropic noise of standard deviation sigma (m).
     PointSensor(std::vector<std::optional<Vector3d>> known_targets, double sigma);
 
-    Index target_count() const { return static_cast<Index>(known_targets_.size()); }
     const PointNoise& noise() const { return noise_; }
     /// Standard deviation of one coordinate of one observation, m (root mean square over the axes;
     /// a laser tracker's at 3 m).
@@ -31,6 +30,7 @@ class PointSensor final : public Sensor {
     Index unknown_offset(Index target) const;
 
     Index row_count() const override { return 3 * target_count(); }
+    Index target_count() const override { return static_cast<Index>(known_targets_.size()); }
     std::vector<std::string> observation_names() const override;
     std::vector<std::string> unknown_names() const override;
     VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const override;

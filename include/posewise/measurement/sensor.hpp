@@ -17,6 +17,10 @@ class Sensor {
 
     /// Numbers one complete observation has, in the order of observation_names().
     virtual Index row_count() const = 0;
+    /// What is seen or missed as a whole: an observation holds row_count() / target_count() numbers
+    /// of each, one after another, and the errors of two are independent.
+    virtual Index target_count() const = 0;
+    Index rows_per_target() const { return row_count() / target_count(); }
     /// Column names of an observation without unit, e.g. "p1_x".
     virtual std::vector<std::string> observation_names() const = 0;
     /// Names of the sensor's own unknowns, e.g. "target1.x".

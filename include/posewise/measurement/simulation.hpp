@@ -8,7 +8,7 @@
 namespace posewise {
 
 struct SimulateOptions {
-    Index pose_count = 0;          ///< must be stated
+    Index pose_count = 0;          ///< of configurations to draw; must be stated
     Index repeats = 1;             ///< observations of each configuration
     std::uint64_t truth_seed = 1;  ///< draws the true parameters
     std::uint64_t seed = 1;        ///< draws configurations and noise
@@ -34,5 +34,10 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
 /// draw_truth() measured at random configurations within the joint limits. Throws InputError for
 /// counts below 1 or if the campaign does not state its base and targets.
 Simulation simulate(const Campaign& campaign, const SimulateOptions& options);
+
+/// The same at given configurations (m x joints), each of which shows some targets (m x targets);
+/// options.pose_count is not looked at.
+Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
+                    const RowArrayXb& is_visible, const SimulateOptions& options);
 
 }  // namespace posewise

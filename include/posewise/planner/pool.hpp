@@ -34,8 +34,8 @@ std::string describe_rejections(const Pool& pool);
 /// The configurations checked as they are, not drawn.
 Pool filter_pool(const Constraints& constraints, const RowMatrixXd& candidates);
 
-/// As make_blocks(), with the rows of visible targets only: `is_visible[i]` says which targets (3
-/// rows each) configuration i shows; without entries, all of all.
+/// As make_blocks(), with the rows of visible targets only: `is_visible[i]` says which targets
+/// configuration i shows; without entries, all of all.
 Blocks make_visible_blocks(const Campaign& campaign, const Parameters& parameters,
                            const RowMatrixXd& configurations,
                            const std::vector<std::vector<bool>>& is_visible, double repeats = 1);

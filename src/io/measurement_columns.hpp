@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "posewise/measurement/campaign.hpp"
+#include "units.hpp"
+
+/// Columns of CSV files of measurements and configurations, for reader and writers.
+namespace posewise::io {
+
+/// Of a configuration: the numbers of the targets it shows, from 1, separated by blanks.
+inline constexpr std::string_view visible_targets = "visible_targets";
+
+enum class Role { Configuration, Sample, VisibleTargets, Joint, Observation };
+
+/// A column with a unit that a campaign's measurements must have.
+struct WantedColumn {
+    std::string stem;
+    Role role = Role::Joint;
+    Index index = 0;
+    Quantity quantity = Quantity::Angle;
+
+    std::string example() const { return stem + (quantity == Quantity::Angle ? "_rad" : "_mm"); }
+};
+
+/// Joints, then observations.
+std::vector<WantedColumn> wanted_columns(const Campaign& campaign);
+
+}  // namespace posewise::io

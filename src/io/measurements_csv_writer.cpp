@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "csv_reader.hpp"
+#include "measurement_columns.hpp"
+#include "posewise/core/text.hpp"
+#include "posewise/io/atomic_file.hpp"
+#include "posewise/io/measurements_file.hpp"
+
+namespace posewise::io {
+
+namespace {
+
+/// Joint values of a configuration, each behind a comma.
+std::string joint_cells(const Measurements& measurements, Index configuration,
+                        const std::vector<double>& factors) {
+    std::string cells;
+    for (Index j = 0; j < measurements.configurations.cols(); ++j) {
+        fmt::format_to(
+            std::back_inserter(cells), ",{}",
+            measurements.configurations(configuration, j) * factors[static_cast<std::size_t>(j)]);
+    }
+    return cells;
+}
+
+/// The observation of a sample, empty where it does not show a target.
+std::string observation_cells(const Measurements& measurements, Index sample) {
+    std::string cells;
+    for (Index target = 0; target < measurements.is_seen.cols(); ++target) {
+        const bool is_seen = measurements.is_seen(sample, target);
+        for (const double value : measurements.observation(sample, target)) {
+            cells += is_seen ? fmt::format(",{}", 1e3 * value) : ",";
+        }
+    }
+    return cells;
+}
+
+bool is_finite(const Measurements& measurements) {
+    if (!measurements.configurations.allFinite()) return false;
+    for (Index sample = 0; sample < measurements.is_seen.rows(); ++sample) {
+        for (Index target = 0; target < measurements.is_seen.cols(); ++target) {
+            if (measurements.is_seen(sample, target) &&
+                !measurements.observation(sample, target).allFinite()) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+void write_measurements_csv(const std::string& path, const Campaign& campaign,
+                            const Measurements& measurements,
+                            const std::vector<std::string>& comment_lines) {
+    if (!is_finite(measurements)) {
+        throw input_error_at({path},
+                             "is not written, since a measurement is not a finite number; the "
+                             "campaign's amounts must be smaller");
+    }
+    std::string text;
+    const auto out = std::back_inserter(text);
+    for (const std::string& line : comment_lines) {
+        fmt::format_to(out, "# {}\n", escape_controls(line));
+    }
+    text += "config,sample";
+    std::vector<double> joint_factors;  // to the unit written
+    for (const WantedColumn& column : wanted_columns(campaign)) {
+        text += ',' + column.example();
+        if (column.role == Role::Joint) {
+            joint_factors.push_back(column.quantity == Quantity::Angle ? 1 : 1e3);
+        }
+    }
+    text += '\n';
+    for (Index i = 0; i < measurements.configuration_count(); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const std::string joints = joint_cells(measurements, i, joint_factors);
+        for (Index sample = 0; sample < measurements.sample_count(i); ++sample) {
+            fmt::format_to(out, "{},{}{}{}\n", csv_field(measurements.ids[k]), sample, joints,
+                           observation_cells(measurements, measurements.first_sample[k] + sample));
+        }
+    }
+    write_file(path, text);
+}
+
+}  // namespace posewise::io
