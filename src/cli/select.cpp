@@ -35,9 +35,10 @@ what is proven about it:
 At few poses the bound is loose: the plan may well be the best although little is proven.
 
 Measurements register the base and the targets; other candidates need them in the campaign file (or
-measured poses, --augment). A candidate file has the columns config,q1_deg,... and may have more;
---random draws a scrambled Halton sequence within the joint limits. A file of blocks has a row of
-numbers a line (or is a MATLAB matrix), and each --rows of them are one candidate, named 0, 1, ...
+measured poses, --augment). A candidate file has the columns config,q1_deg,..., perhaps
+visible_targets (as plan --csv writes it), and may have more; --random draws a scrambled Halton
+sequence within the joint limits. A file of blocks has a row of numbers a line (or is a MATLAB
+matrix), and each --rows of them are one candidate, named 0, 1, ...
 A file of --groups has the columns config,group.
 
 Ctrl-C or --time end the search with the best plan so far, written with its bound; exit code 0.

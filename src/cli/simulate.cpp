@@ -17,16 +17,20 @@ namespace {
 constexpr const char* footer = R"(
 Example:
   posewise simulate campaign.yaml --truth 7 --poses 24 --repeats 10 --out simulated.csv
+  posewise simulate campaign.yaml --configurations poses.csv --out simulated.csv
 
 Draws a robot with errors of the campaign's spread (by the seed --truth), sends it to random
-configurations within the joint limits and measures with the sensor's noise. The file starts with
-comment lines that hold the command, so it can be made again. Prints the true parameters, to
-compare a calibration with:
+configurations within the joint limits, or to those of a file, and measures with the sensor's noise.
+In the column visible_targets that file may list which targets each configuration shows ("1 3"), as
+plan --csv writes it; the cells of the others stay empty. The file written starts with comment lines
+that hold the command, so it can be made again. Prints the true parameters, to compare a
+calibration with:
   parameter      error
   Tx1        -0.8412 mm)";
 
 struct Arguments {
     InputPaths paths;
+    std::string configurations;
     std::optional<std::uint64_t> seed;
     std::string out;
     SimulateOptions options;
@@ -35,9 +39,22 @@ struct Arguments {
 std::vector<std::string> make_comments(const Arguments& arguments, const Campaign& campaign) {
     const SimulateOptions& options = arguments.options;
     return {fmt::format("{}: simulated, not measured, by posewise {}", campaign.name, version),
-            fmt::format("posewise simulate {} --truth {} --seed {} --poses {} --repeats {}",
+            fmt::format("posewise simulate {} --truth {} --seed {} {} --repeats {}",
                         arguments.paths.campaign, options.truth_seed, options.seed,
-                        options.pose_count, options.repeats)};
+                        arguments.configurations.empty()
+                            ? fmt::format("--poses {}", options.pose_count)
+                            : "--configurations " + arguments.configurations,
+                        options.repeats)};
+}
+
+/// At random configurations, or at those of a file.
+Simulation simulate_as_asked(const Arguments& arguments, const io::CampaignFile& file) {
+    if (arguments.configurations.empty()) return simulate(file.campaign, arguments.options);
+    const auto asked = io::read_configurations(arguments.configurations, file);
+    Simulation simulation =
+        simulate(file.campaign, asked.joints, asked.is_visible, arguments.options);
+    simulation.measurements.ids = asked.ids;
+    return simulation;
 }
 
 /// The robot's true errors; base and targets are at the campaign's, moved by the spread.
@@ -54,10 +71,10 @@ Table truth_table(const Campaign& campaign, const Parameters& truth) {
 }
 
 void run_simulation(Arguments arguments) {
-    check_outputs({arguments.paths.campaign}, {arguments.out});
+    check_outputs({arguments.paths.campaign, arguments.configurations}, {arguments.out});
     const auto file = io::read_campaign(arguments.paths.campaign);
     arguments.options.seed = arguments.seed.value_or(file.seed);
-    const Simulation simulation = simulate(file.campaign, arguments.options);
+    const Simulation simulation = simulate_as_asked(arguments, file);
     io::write_measurements_csv(arguments.out, file.campaign, simulation.measurements,
                                make_comments(arguments, file.campaign));
     print(fmt::format("{} configurations, {} samples: {}\n",
@@ -75,9 +92,14 @@ void add_options(CLI::App& command, Arguments& arguments) {
         .add_option("--seed", arguments.seed,
                     "Seed of configurations and noise (default: the campaign's)")
         ->check(whole_number(0, largest_seed));
-    command.add_option("-k,--poses", arguments.options.pose_count, "Number of configurations")
-        ->required()
+    CLI::Option_group& group = *command.add_option_group("Configurations", "one of these");
+    group.add_option("-k,--poses", arguments.options.pose_count, "As many, drawn at random")
         ->check(count);
+    group
+        .add_option("--configurations", arguments.configurations,
+                    "File of configurations (CSV), as plan --csv writes it")
+        ->check(file_name());
+    group.require_option(1);
     command.add_option("--repeats", arguments.options.repeats, "Samples of each configuration")
         ->check(count)
         ->capture_default_str();
