@@ -1,15 +1,22 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <memory>
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "files.hpp"
+#include "options.hpp"
+#include "posewise/core/text.hpp"
+#include "posewise/io/atomic_file.hpp"
+#include "posewise/io/urdf_file.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/point_sensor.hpp"
 #include "posewise/model/complete_model.hpp"
 #include "posewise/report/units.hpp"
+#include "robot_tables.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -17,56 +24,26 @@ namespace {
 constexpr const char* footer = R"(
 Example:
   posewise inspect campaign.yaml
+  posewise inspect robot.urdf --base base_link --tip tool0 --write-campaign campaign.yaml
 
-Prints the robot's elements from base to flange, the joints' limits, and every parameter a
-calibration would identify (base, robot's errors, targets). One that no measurement can tell from
-the others is marked "no", with the errors that do exactly the same, for example
+Prints the robot's elements from base to flange, the joints with their limits and axes, and every
+parameter a calibration would identify (base, robot's errors, targets). One that no measurement can
+tell from the others is marked "no", with the errors that do exactly the same, for example
   Tx2  mm  1  no  1 mm Tx2 = 1 mm Tx1 - 0.7813 mrad dq2
-Such a set makes a calibration singular: drop the parameter. The last lines compare the set with
-the complete model (every error a rigid link can have): a set that spans less leaves errors of the
-real robot uncorrected.)";
+A campaign that states such a parameter is singular: drop it. A campaign that states no parameters
+has the complete model (every error a rigid link can have), less those marked "no". The last lines
+compare with the formula for what is identifiable; a stated set that spans less leaves errors of the
+real robot uncorrected.
 
-std::string format_terms(const std::vector<JointTerm>& terms, const Chain& robot) {
-    std::string text;
-    for (const JointTerm& term : terms) {
-        const double size = std::abs(term.coefficient);
-        if (term.coefficient < 0) {
-            text += text.empty() ? "-" : " - ";
-        } else if (!text.empty()) {
-            text += " + ";
-        }
-        if (size != 1) text += format_short(size) + ' ';
-        text += robot.joints()[static_cast<std::size_t>(term.joint)].name;
-    }
-    return text;
-}
+A robot can be inspected before there is a campaign, straight from its URDF; --write-campaign then
+makes a file to begin with, which says what is left to fill in.)";
 
-Table element_table(const Chain& robot) {
-    Table table{{"no", "transform", "nominal", "", "joint", "error parameter"}, {}};
-    for (const Element& element : robot.elements()) {
-        const bool turns = element.motion == Motion::Rotation;
-        const char axis = "xyz"[static_cast<std::size_t>(element.axis)];
-        table.rows.push_back(
-            {std::to_string(table.rows.size() + 1), fmt::format("{}{}", turns ? 'R' : 'T', axis),
-             format_short(turns ? to_degrees(element.value) : mm_per_m * element.value, 9),
-             turns ? "deg" : "mm", format_terms(element.joints, robot), element.parameter});
-    }
-    return table;
-}
-
-Table joint_table(const Chain& robot) {
-    Table table{{"joint", "lower", "upper", ""}, {}};
-    for (Index j = 0; j < robot.joint_count(); ++j) {
-        const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
-        const bool turns = robot.joint_motion(j) == Motion::Rotation;
-        const auto limit = [&](double value) {
-            return format_short(turns ? to_degrees(value) : mm_per_m * value, 6);
-        };
-        table.rows.push_back(
-            {joint.name, limit(joint.lower), limit(joint.upper), turns ? "deg" : "mm"});
-    }
-    return table;
-}
+struct Arguments {
+    std::string file;  ///< campaign or URDF
+    std::string base_link;
+    std::string tip_link;
+    std::string written;
+};
 
 /// "1 mm Tx2 = 1 mm Tx1 - 0.78 mrad dq2". Both units are a thousandth of SI, so coefficients stay.
 std::string format_absorbed(const DroppedParameter& dropped, const std::vector<std::string>& names,
@@ -125,48 +102,120 @@ std::string describe_formula(const Campaign& campaign) {
                        prismatic, targets, 4 * revolute + 2 * prismatic + 3 * targets);
 }
 
-std::string compare_with_complete(const Campaign& campaign, std::size_t stated_rank) {
-    const Campaign complete = with_robot(campaign, complete_model(campaign.robot));
-    const std::size_t complete_rank = find_identifiable(complete).kept.size();
-    std::string text =
-        fmt::format("complete model: {} of its {} parameters are identifiable{}\n", complete_rank,
-                    parameter_count(complete), describe_formula(campaign));
-    if (stated_rank < complete_rank) {
-        text += fmt::format(
-            "The stated set spans only {} of these {} directions: errors of the robot in the other "
-            "{} stay uncorrected.\n",
-            stated_rank, complete_rank, complete_rank - stated_rank);
-    } else {
-        text += "The stated set spans them all.\n";
-    }
-    return text;
+/// The campaign with every error a rigid link can have.
+Campaign with_complete_model(const io::CampaignFile& file) {
+    return with_robot(file.campaign, complete_model(file.declared_robot));
 }
 
-void inspect(const InputPaths& paths) {
-    const Campaign campaign = io::read_campaign(paths.campaign).campaign;
-    const Identifiability identifiability = find_identifiable(campaign);
-    const std::size_t rank = identifiability.kept.size();
+std::string describe_complete(const Campaign& complete, std::size_t rank) {
+    return fmt::format("complete model: {} of its {} parameters are identifiable{}\n", rank,
+                       parameter_count(complete), describe_formula(complete));
+}
+
+void print_stated(const io::CampaignFile& file) {
+    const Campaign& campaign = file.campaign;
+    const Identifiability stated = find_identifiable(campaign);
+    const Campaign complete = with_complete_model(file);
+    const std::size_t rank = stated.kept.size();
+    const std::size_t complete_rank = find_identifiable(complete).kept.size();
+    print_section("Parameters", parameter_table(campaign, stated));
+    print(fmt::format("\nstated set: rank {} of {} parameters{}\n", rank, parameter_count(campaign),
+                      stated.dropped.empty() ? "" : ": rank deficient, drop those marked no"));
+    print(describe_complete(complete, complete_rank));
+    print(rank < complete_rank
+              ? fmt::format("The stated set spans only {} of these {} directions: errors of the "
+                            "robot in the other {} stay uncorrected.\n",
+                            rank, complete_rank, complete_rank - rank)
+              : "The stated set spans them all.\n");
+}
+
+void print_reduced(const io::CampaignFile& file) {
+    const Campaign complete = with_complete_model(file);
+    const Identifiability found = find_identifiable(complete);
+    print_section("Parameters of the complete model", parameter_table(complete, found));
+    print('\n' + describe_complete(complete, found.kept.size()));
+    print(
+        fmt::format("Of a column of norm 1, those before leave at least {} of one that is kept, "
+                    "at most {} of one that is dropped.\n",
+                    format_short(found.least_kept_residual, 2),
+                    format_short(found.largest_dropped_residual, 2)));
+}
+
+void print_campaign(const io::CampaignFile& file) {
+    const Campaign& campaign = file.campaign;
     print(fmt::format("{}\nsensor: {}; model error {} mm\n", campaign.name,
                       describe(*campaign.sensor), format_short(mm_per_m * campaign.model_error)));
+    if (file.urdf) {
+        print(fmt::format("robot: {}, from base link {} to tip link {}\n",
+                          escape_controls(file.urdf->path), quote(file.urdf->base_link),
+                          quote(file.urdf->tip_link)));
+    }
     print_section("Elements, base to flange", element_table(campaign.robot));
     print_section("Joint limits", joint_table(campaign.robot));
-    print_section("Parameters", parameter_table(campaign, identifiability));
-    print(fmt::format(
-        "\nstated set: rank {} of {} parameters{}\n", rank, parameter_count(campaign),
-        identifiability.dropped.empty() ? "" : ": rank deficient, drop those marked no"));
-    print(compare_with_complete(campaign, rank));
+    print_section("Axes in the base frame, all joints at zero", axis_table(campaign.robot));
+    print("\nflange at zero: " + describe_flange_at_zero(campaign.robot) + '\n');
+    if (file.error_model == io::ErrorModel::Complete) {
+        print_reduced(file);
+    } else {
+        print_stated(file);
+    }
     print(fmt::format("least number of poses: {}\n", least_pose_count(campaign)));
+}
+
+bool is_urdf(const Arguments& arguments) {
+    return !arguments.base_link.empty() || !arguments.tip_link.empty() ||
+           !arguments.written.empty() || arguments.file.ends_with(".urdf");
+}
+
+/// The campaign that --write-campaign would write.
+void inspect_urdf(const Arguments& arguments) {
+    const std::string& urdf = arguments.file;
+    const std::string& written = arguments.written;
+    check_outputs({urdf}, {written});
+    if (std::filesystem::exists(written)) {
+        throw input_error_at({written}, "exists already; must be a new file");
+    }
+    const io::UrdfRobot robot = io::read_urdf({urdf, arguments.base_link, arguments.tip_link});
+    const std::string path = written.empty() ? urdf : written;
+    const std::string text = io::make_campaign_text(robot, path);
+    const io::CampaignFile file = io::parse_campaign(text, path);
+    if (!written.empty()) io::write_file(written, text);
+    print_campaign(file);
+    if (!written.empty()) {
+        print(fmt::format("\nThe campaign is in {}; fill in what is marked there.\n",
+                          escape_controls(written)));
+    }
+}
+
+void inspect(const Arguments& arguments) {
+    if (is_urdf(arguments)) return inspect_urdf(arguments);
+    print_campaign(io::read_campaign(arguments.file));
 }
 
 }  // namespace
 
 void add_inspect(CLI::App& program) {
-    const auto paths = std::make_shared<InputPaths>();
+    const auto arguments = std::make_shared<Arguments>();
     CLI::App* command =
         program.add_subcommand("inspect", "Show the robot, and which of its errors can be found");
-    add_campaign_argument(*command, *paths);
+    command
+        ->add_option("CAMPAIGN", arguments->file, "Campaign file (YAML), or a robot alone (URDF)")
+        ->required()
+        ->check(file_name());
+    command
+        ->add_option("--base", arguments->base_link,
+                     "URDF: link the robot begins at (default: the root)")
+        ->check(file_name());
+    command
+        ->add_option("--tip", arguments->tip_link,
+                     "URDF: link that carries the targets (default: the only leaf)")
+        ->check(file_name());
+    command
+        ->add_option("--write-campaign", arguments->written,
+                     "URDF: write a campaign file to begin with")
+        ->check(file_name());
     command->footer(footer);
-    command->callback([paths] { inspect(*paths); });
+    command->callback([arguments] { inspect(*arguments); });
 }
 
 }  // namespace posewise::cli

@@ -1,6 +1,7 @@
 #include "posewise/io/campaign_file.hpp"
 
 #include "campaign_sections.hpp"
+#include "posewise/io/atomic_file.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/model/complete_model.hpp"
 #include "posewise/model/transforms.hpp"
@@ -137,7 +138,11 @@ double read_amount(const YamlValue& value, Quantity quantity, Sign sign) {
 }
 
 CampaignFile read_campaign(const std::string& path) {
-    const YamlMap map(read_yaml(path),
+    return parse_campaign(read_file(path, 1 << 20), path);
+}
+
+CampaignFile parse_campaign(const std::string& content, const std::string& path) {
+    const YamlMap map(parse_yaml(content, path),
                       {"name", "robot", "sensor", "model_error_<length>", "base", "spread", "prior",
                        "criterion", "seed", "measurements", "cell"});
     CampaignFile file;

@@ -10,7 +10,8 @@ namespace {
 /// A path of the campaign file is one from its folder.
 std::string resolve(const YamlValue& path) {
     if (path.text().empty()) throw path.error("is empty; must be the path of a URDF file");
-    return (std::filesystem::path(path.location().path).parent_path() / path.text()).string();
+    const auto folder = std::filesystem::path(path.location().path).parent_path();
+    return (folder / path.text()).lexically_normal().string();
 }
 
 std::string read_link_name(const YamlMap& robot, const char* key) {

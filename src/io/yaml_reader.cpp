@@ -6,7 +6,6 @@
 #include <charconv>
 #include <map>
 
-#include "posewise/io/atomic_file.hpp"
 #include "text.hpp"
 
 namespace posewise::io {
@@ -203,8 +202,7 @@ InputError YamlMap::missing(const std::vector<std::string>& alternatives) const 
     return value_.error("has no key " + list_words(alternatives) + "; it must be stated");
 }
 
-YamlValue read_yaml(const std::string& path) {
-    const std::string content = read_file(path, 1 << 20);
+YamlValue parse_yaml(const std::string& content, const std::string& path) {
     std::vector<YAML::Node> documents;
     try {
         documents = YAML::LoadAll(content);

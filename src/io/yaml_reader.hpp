@@ -87,7 +87,8 @@ class YamlMap {
     std::vector<std::string> keys_;  // units spelled out
 };
 
-/// The one document of a YAML file. Throws InputError with path:line:column.
-YamlValue read_yaml(const std::string& path);
+/// The one document of a YAML text; `path` is where it is from, for messages. Throws InputError
+/// with path:line:column.
+YamlValue parse_yaml(const std::string& content, const std::string& path);
 
 }  // namespace posewise::io

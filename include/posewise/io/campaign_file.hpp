@@ -66,4 +66,7 @@ struct CampaignFile {
 /// poses; designs/cell_demo/campaign.yaml has each of its keys.
 CampaignFile read_campaign(const std::string& path);
 
+/// The same from a text that is not in its file (yet). Paths in it are from the folder of `path`.
+CampaignFile parse_campaign(const std::string& content, const std::string& path);
+
 }  // namespace posewise::io

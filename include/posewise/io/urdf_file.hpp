@@ -59,4 +59,8 @@ Chain make_chain(const UrdfRobot& robot);
 /// Largest speed of each joint of the chain, rad/s or m/s; empty unless the file states all.
 VectorXd joint_speeds(const UrdfRobot& robot);
 
+/// A campaign file for the robot, complete but for what only its user knows, with comments that say
+/// what to fill in. It shall stand at `path` and find the URDF from there.
+std::string make_campaign_text(const UrdfRobot& robot, const std::string& path);
+
 }  // namespace posewise::io

@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <numbers>
+
+#include "json.hpp"
+#include "posewise/core/text.hpp"
+#include "posewise/io/urdf_file.hpp"
+
+namespace posewise::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The URDF as seen from the folder of the campaign file.
+std::string path_from(const std::string& campaign, const std::string& urdf) {
+    std::error_code error;
+    const fs::path folder = fs::weakly_canonical(fs::absolute(campaign), error).parent_path();
+    if (error) return fs::absolute(urdf).string();
+    const fs::path target = fs::weakly_canonical(fs::absolute(urdf), error);
+    const fs::path relative = error ? fs::path() : target.lexically_relative(folder);
+    return relative.empty() ? fs::absolute(urdf).string() : relative.string();
+}
+
+/// A text as YAML in double quotes, which are those of JSON.
+std::string quote_for_yaml(const std::string& text) {
+    try {
+        return nlohmann::json(text).dump();
+    } catch (const nlohmann::json::exception&) {
+        throw InputError("the name '" + escape_controls(text) + "' must be UTF-8");
+    }
+}
+
+std::string joint_line(const UrdfJoint& joint) {
+    const bool turns = joint_motion(joint) == Motion::Rotation;
+    const double factor = turns ? 180 / std::numbers::pi : 1e3;
+    return fmt::format("    {}: {{limits_{}: [{:.9g}, {:.9g}]}}{}\n", chain_joint_name(joint.name),
+                       turns ? "deg" : "mm", factor * joint.limits->lower,
+                       factor * joint.limits->upper,
+                       joint.kind == UrdfJointKind::Continuous ? "  # continuous in the URDF" : "");
+}
+
+constexpr const char* rest = R"(
+sensor:
+  kind: points           # the instrument returns the positions of targets fixed to the tip link
+  sigma_mm: 0.05         # FILL IN: standard deviation of one coordinate of one reading
+  targets: {count: 3}    # FILL IN: how many targets, or where they are expected on the tip link:
+                         #   position_mm: [[100, 0, 50], [0, 100, 50], [-80, -80, 60]]
+
+# FILL IN for plans and simulations: where the instrument is expected to see the base link.
+# base: {position_mm: [2500, 0, 0], rpy_deg: [0, 0, 180]}
+
+model_error_mm: 0.1      # what a rigid robot cannot express (gears, gravity), at your guess
+spread: {length_mm: 1, angle_mrad: 1}    # expected size of the robot's errors
+)";
+
+}  // namespace
+
+std::string make_campaign_text(const UrdfRobot& robot, const std::string& path) {
+    make_chain(robot);  // throws if there is none
+    const fs::path urdf = robot.source.path;
+    std::string text =
+        "# A campaign for posewise. What is marked FILL IN is not known from the URDF.\n";
+    text += "name: " + quote_for_yaml(robot.name.empty() ? urdf.stem().string() : robot.name);
+    text += "\n\nrobot:\n  urdf: " + quote_for_yaml(path_from(path, robot.source.path));
+    text += "    # a path from the folder of this file\n";
+    text += "  base_link: " + quote_for_yaml(robot.source.base_link) + '\n';
+    text += "  tip_link: " + quote_for_yaml(robot.source.tip_link) + '\n';
+    text +=
+        "  # Limits of the URDF. FILL IN: narrower ones where the cell needs them.\n  joints:\n";
+    for (const UrdfJoint& joint : robot.joints) {
+        if (joint.kind != UrdfJointKind::Fixed) text += joint_line(joint);
+    }
+    return text + rest;
+}
+
+}  // namespace posewise::io

@@ -1,0 +1,116 @@
+#include "program.hpp"
+
+/// A robot from its URDF to a campaign, and calibrated back to its URDF.
+namespace posewise::testing {
+namespace {
+
+/// Like a UR: quarter turns rounded as many files have them, a gripper beside the way.
+const std::string urdf = R"(<?xml version="1.0"?>
+<!-- An arm; its maker's comment -->
+<robot name="arm">
+  <link name="world"/>
+  <link name="base"/>
+  <joint name="stand" type="fixed">
+    <parent link="world"/><child link="base"/>
+    <origin xyz="0 0 0.5" rpy="0 0 0"/>
+  </joint>
+  <joint name="pan" type="revolute">
+    <parent link="base"/><child link="shoulder"/>
+    <origin xyz="0 0 0.1273" rpy="0 0 0"/>
+    <axis xyz="0 0 1"/>
+    <limit lower="-3" upper="3" effort="1" velocity="2"/>
+  </joint>
+  <link name="shoulder"/>
+  <joint name='lift' type='revolute'>
+    <parent link="shoulder"/><child link="upper_arm"/>
+    <origin   xyz='0 0.05 0'   rpy = '1.5708 0.0 0'  />
+    <axis xyz="0 0 1"/>
+    <limit lower="-3" upper="3" effort="1" velocity="2"/>
+  </joint>
+  <link name="upper_arm"/>
+  <joint name="elbow" type="revolute">
+    <parent link="upper_arm"/><child link="forearm"/>
+    <origin rpy="1.5708 0 0"
+            xyz="-0.612 0 0"/>
+    <axis xyz="0 1 0"/>
+    <limit lower="-3" upper="3" effort="1" velocity="2"/>
+  </joint>
+  <link name="forearm"/>
+  <joint name="wrist-1" type="revolute">
+    <parent link="forearm"/><child link="wrist_1"/>
+    <origin xyz="-0.5723 0 0"/>
+    <axis xyz="0 1 0"/>
+    <limit lower="-3" upper="3" effort="1" velocity="2"/>
+  </joint>
+  <link name="wrist_1"/>
+  <joint name="wrist-2" type="continuous">
+    <parent link="wrist_1"/><child link="wrist_2"/>
+    <origin xyz="0 0.1639 0"/>
+    <axis xyz="0 0.1 1"/>
+  </joint>
+  <link name="wrist_2"/>
+  <joint name="wrist-3" type="revolute"><parent link="wrist_2"/><child link="wrist_3"/>
+    <axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="1" velocity="2"/></joint>
+  <link name="wrist_3"/>
+  <link name="tool0"/>
+  <joint name="flange" type="fixed">
+    <parent link="wrist_3"/><child link="tool0"/>
+    <origin xyz="0 0.0922 0" rpy="-1.5708 0 0"/>
+  </joint>
+  <link name="finger"/>
+  <joint name="grip" type="prismatic">
+    <parent link="wrist_3"/><child link="finger"/>
+    <axis xyz="1 0 0"/>
+    <mimic joint="wrist-3"/>
+  </joint>
+</robot>
+)";
+
+class Urdf : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        write_text("arm.urdf", urdf);
+    }
+};
+
+TEST_F(Urdf, IsInspectedWithoutACampaign) {
+    const std::string text = run_well("inspect arm.urdf --base base --tip tool0");
+    EXPECT_EQ(text.rfind("arm\n", 0), 0U) << text;
+    EXPECT_NE(text.find("33 of its 45 parameters are identifiable; by the formula 4R + 2P + 3n = "
+                        "4*6 + 2*0 + 3*3 = 33"),
+              std::string::npos)
+        << text;
+    EXPECT_EQ(number_behind(text, "least number of poses:"), 5);
+    EXPECT_NE(text.find("wrist_2  revolute      -180      180  deg"), std::string::npos) << text;
+    EXPECT_NE(text.find("lift     0.000000  -1.000000  -0.000004"), std::string::npos) << text;
+    EXPECT_NE(text.find("1 mm Ty_lift = "), std::string::npos) << "dropped: the next is parallel";
+    EXPECT_EQ(number_behind(text, "flange at zero: position"), -1184.3);
+}
+
+TEST_F(Urdf, NeedsATipWhereThereAreSeveral) {
+    expect_input_error("inspect arm.urdf",
+                       "arm.urdf: the tip link must be named, it could be finger or tool0");
+    expect_input_error("inspect arm.urdf --tip tol0", "did you mean 'tool0'?");
+    expect_input_error("inspect arm.urdf --tip finger --write-campaign c.yaml", "mimics another");
+}
+
+TEST_F(Urdf, BecomesACampaignThatLoads) {
+    std::filesystem::create_directory(folder_ / "cell");
+    run_well("inspect arm.urdf --base base --tip tool0 --write-campaign cell/campaign.yaml");
+    const std::string campaign = text_of("cell/campaign.yaml");
+    EXPECT_NE(campaign.find("urdf: \"../arm.urdf\""), std::string::npos) << campaign;
+    EXPECT_NE(campaign.find("FILL IN"), std::string::npos);
+    const std::string text = run_well("inspect cell/campaign.yaml");
+    EXPECT_NE(text.find("33 of its 45 parameters"), std::string::npos) << text;
+    expect_input_error("inspect arm.urdf --tip tool0 --write-campaign cell/campaign.yaml",
+                       "cell/campaign.yaml: exists already; must be a new file");
+    expect_input_error("inspect arm.urdf --tip tool0 --write-campaign none/campaign.yaml",
+                       "none/campaign.yaml: cannot be written");
+    expect_input_error("inspect arm.urdf --tip tool0 --write-campaign arm.urdf",
+                       "is read and shall be written");
+    EXPECT_EQ(text_of("arm.urdf"), urdf);
+}
+
+}  // namespace
+}  // namespace posewise::testing
