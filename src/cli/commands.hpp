@@ -12,6 +12,7 @@ void add_select(CLI::App& program);
 void add_plan(CLI::App& program);
 void add_verify(CLI::App& program);
 void add_calibrate(CLI::App& program);
+void add_export(CLI::App& program);
 void add_study(CLI::App& program);
 void add_simulate(CLI::App& program);
 

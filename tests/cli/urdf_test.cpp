@@ -112,5 +112,49 @@ TEST_F(Urdf, BecomesACampaignThatLoads) {
     EXPECT_EQ(text_of("arm.urdf"), urdf);
 }
 
+/// inspect, simulate, calibrate, export: with the exported URDF and base and targets fitted only,
+/// the same measurements fit as well as with the estimate.
+TEST_F(Urdf, IsCalibrated) {
+    run_well("inspect arm.urdf --base base --tip tool0 --write-campaign c.yaml");
+    std::string campaign = text_of("c.yaml");
+    const auto replace = [&](const std::string& part, const std::string& by) {
+        ASSERT_NE(campaign.find(part), std::string::npos) << part;
+        campaign.replace(campaign.find(part), part.size(), by);
+    };
+    replace("# base:", "base:");
+    replace("{count: 3}", "{position_mm: [[100, 0, 50], [0, 100, 50], [-80, -80, 60]]}");
+    write_text("c.yaml", campaign);
+    run_well("simulate c.yaml --poses 20 --truth 5 -o m.csv");
+    const std::string calibrated = run_well("calibrate c.yaml -m m.csv --folds 0 -o e.json");
+    const std::string text = run_well("export c.yaml e.json --urdf out.urdf");
+    EXPECT_NE(text.find("origins of 5 joints changed"), std::string::npos) << text;
+    EXPECT_NE(text.find("not in the URDF: where the instrument sees base link 'base' (position 2"),
+              std::string::npos)
+        << text;
+
+    replace("urdf: \"arm.urdf\"", "errors: stated\n  urdf: out.urdf");
+    write_text("out.yaml", campaign);
+    const std::string again = run_well("calibrate out.yaml -m m.csv --folds 0");
+    EXPECT_EQ(number_behind(again, "distance RMS", 1),
+              number_behind(calibrated, "distance RMS", 1));
+    EXPECT_GT(number_behind(calibrated, "distance RMS"),
+              5 * number_behind(calibrated, "distance RMS", 1));
+
+    const std::string exported = text_of("out.urdf");
+    EXPECT_EQ(exported.substr(0, exported.find("<joint name=\"pan\"")),
+              urdf.substr(0, urdf.find("<joint name=\"pan\"")));
+    EXPECT_NE(exported.find("xyz='"), std::string::npos) << "quotation marks stay";
+}
+
+TEST_F(Urdf, IsNotOverwrittenNorMadeFromAnotherRobot) {
+    run_well("inspect arm.urdf --base base --tip tool0 --write-campaign c.yaml");
+    expect_input_error("export c.yaml e.json --urdf arm.urdf", "is read and shall be written");
+    expect_input_error("export c.yaml e.json --urdf c.yaml", "is read and shall be written");
+    expect_input_error("export c.yaml none.json --urdf o.urdf", "none.json: cannot be read");
+    expect_input_error("export " + fanuc_design + " e.json --urdf o.urdf",
+                       "has a robot that does not come from a URDF");
+    EXPECT_EQ(text_of("arm.urdf"), urdf);
+}
+
 }  // namespace
 }  // namespace posewise::testing

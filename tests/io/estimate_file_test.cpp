@@ -115,5 +115,47 @@ TEST_F(EstimateFile, HasTheSameBytesForTheSameEstimate) {
     EXPECT_EQ(read_file(path_), first);
 }
 
+TEST_F(EstimateFile, IsReadBackExactly) {
+    written();
+    const Parameters parameters = read_estimate(path_, campaign_);
+    const Parameters& expected = report_.estimate.parameters;
+    EXPECT_EQ(parameters.robot, expected.robot);
+    EXPECT_EQ(parameters.sensor, expected.sensor);
+    EXPECT_EQ(parameters.world_from_base.translation(), expected.world_from_base.translation());
+    EXPECT_TRUE(parameters.world_from_base.isApprox(expected.world_from_base, 1e-15));
+}
+
+TEST_F(EstimateFile, OfAnotherCampaignIsRefused) {
+    written();
+    const std::string good = read_file(path_);
+    const auto error_with = [&](const std::string& part, const std::string& by) {
+        folder_.write("estimate.json", testing::replaced(good, part, by));
+        return testing::input_error_of([&] { read_estimate(path_, campaign_); });
+    };
+    EXPECT_EQ(error_with("\"Tx1\"", "\"Tx9\""),
+              "estimate.json: robot: has no parameter 'Tx1'; must be an estimate of this campaign");
+    EXPECT_EQ(error_with("\"robot\": {", "\"robot\": {\"Tx9\": {},"),
+              "estimate.json: robot: has 5 parameters, the campaign's robot 4; must be an estimate "
+              "of this campaign");
+    EXPECT_EQ(
+        error_with("\"value_rad\"", "\"value_m\""),
+        "estimate.json: robot.dq1.value_rad: is missing; must be there as posewise writes it");
+    EXPECT_EQ(error_with("\"quaternion_wxyz\": [", "\"quaternion_wxyz\": [1,"),
+              "estimate.json: base.quaternion_wxyz: has 5 values; must have 4");
+    EXPECT_EQ(error_with("\"posewise estimate\"", "\"posewise plan\""),
+              "estimate.json: kind: must be \"posewise estimate\", as in a estimate written by "
+              "posewise");
+    EXPECT_EQ(error_with("\"target2\"", "\"target7\""),
+              "estimate.json: targets.target2: is missing; must be there as posewise writes it");
+}
+
+TEST_F(EstimateFile, WithAQuaternionThatIsNoRotationIsRefused) {
+    Json document = written();
+    document["base"]["quaternion_wxyz"] = {2, 0, 0, 0};
+    folder_.write("estimate.json", document.dump());
+    EXPECT_EQ(testing::input_error_of([&] { read_estimate(path_, campaign_); }),
+              "estimate.json: base.quaternion_wxyz: has length 2.000000; must be 1");
+}
+
 }  // namespace
 }  // namespace posewise::io

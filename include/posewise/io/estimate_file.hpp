@@ -24,4 +24,8 @@ struct CalibrationReport {
 void write_estimate(const std::string& path, const Campaign& campaign,
                     const CalibrationReport& report);
 
+/// The identified parameters that such a file holds, exactly as they were. Throws InputError with
+/// the place if it is none, or not one of this campaign's parameters.
+Parameters read_estimate(const std::string& path, const Campaign& campaign);
+
 }  // namespace posewise::io

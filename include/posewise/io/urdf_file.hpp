@@ -63,4 +63,27 @@ VectorXd joint_speeds(const UrdfRobot& robot);
 /// what to fill in. It shall stand at `path` and find the URDF from there.
 std::string make_campaign_text(const UrdfRobot& robot, const std::string& path);
 
+/// How much the origin of a joint was changed.
+struct OriginChange {
+    std::string joint;       ///< its name in the file
+    double translation = 0;  ///< m
+    double rotation = 0;     ///< rad
+};
+
+struct CalibratedUrdf {
+    /// The file as it was, but for numbers in the origins of the joints below.
+    std::string text;
+    std::vector<OriginChange> changes;
+    /// Parameters whose errors no origin between base and tip link can express: those behind the
+    /// last joint if no fixed joint follows it.
+    std::vector<std::string> not_expressed;
+};
+
+/// The URDF that predicts the pose of the tip link as `robot` does with error parameters
+/// `parameters`. `robot` is make_chain() of the source, with error parameters. Each constant
+/// transform between two moving joints goes into the origin of the second one, that behind the last
+/// into the first fixed joint there.
+CalibratedUrdf make_calibrated_urdf(const UrdfSource& source, const Chain& robot,
+                                    const VectorXd& parameters);
+
 }  // namespace posewise::io

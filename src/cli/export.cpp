@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.hpp"
+#include "common.hpp"
+#include "files.hpp"
+#include "options.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/text.hpp"
+#include "posewise/io/atomic_file.hpp"
+#include "posewise/io/campaign_file.hpp"
+#include "posewise/io/estimate_file.hpp"
+#include "posewise/io/urdf_file.hpp"
+#include "posewise/model/transforms.hpp"
+#include "posewise/report/units.hpp"
+
+namespace posewise::cli {
+namespace {
+
+constexpr const char* footer = R"(
+Example:
+  posewise export campaign.yaml estimate.json --urdf calibrated.urdf
+
+The estimate is what calibrate --out wrote. The URDF is the one the campaign's robot comes from, and
+stays as it is (names, order, comments, layout) but for the numbers of joint origins: between base
+link and tip link it then predicts exactly what the estimate does. The base as the instrument sees it
+and the targets are not part of the robot, and not of the URDF.)";
+
+struct Arguments {
+    std::string campaign;
+    std::string estimate;
+    std::string urdf;
+};
+
+Table change_table(const io::CalibratedUrdf& urdf) {
+    Table table{{"joint", "moved by/mm", "turned by/mrad"}, {}};
+    for (const io::OriginChange& change : urdf.changes) {
+        table.rows.push_back({escape_controls(change.joint), format_mm(change.translation),
+                              format_fixed(mrad_per_rad * change.rotation, 4)});
+    }
+    return table;
+}
+
+std::string describe_base(const Isometry3d& world_from_base) {
+    const Vector3d p = world_from_base.translation();
+    const Vector3d rpy = rpy_from_rotation(world_from_base.linear());
+    return fmt::format("position {} {} {} mm, roll pitch yaw {} {} {} deg", format_mm(p.x()),
+                       format_mm(p.y()), format_mm(p.z()), format_fixed(to_degrees(rpy.x()), 5),
+                       format_fixed(to_degrees(rpy.y()), 5), format_fixed(to_degrees(rpy.z()), 5));
+}
+
+void print_export(const Arguments& arguments, const io::CampaignFile& file,
+                  const Parameters& parameters, const io::CalibratedUrdf& urdf) {
+    print(fmt::format("{}: {} with the origins of {} joints changed is in {}\n", file.campaign.name,
+                      escape_controls(file.urdf->path), urdf.changes.size(),
+                      escape_controls(arguments.urdf)));
+    print_section("Origins", change_table(urdf));
+    print(
+        fmt::format("\nnot in the URDF: where the instrument sees base link {} ({}), and the "
+                    "targets\n",
+                    quote(file.urdf->base_link), describe_base(parameters.world_from_base)));
+    if (urdf.not_expressed.empty()) return;
+    print("not in the URDF: ");
+    for (const std::string& name : urdf.not_expressed) print(name + ' ');
+    print("act behind the last joint, where no fixed joint is that could take them\n");
+}
+
+void export_estimate(const Arguments& arguments) {
+    check_outputs({arguments.campaign, arguments.estimate}, {arguments.urdf});
+    const io::CampaignFile file = io::read_campaign(arguments.campaign);
+    if (!file.urdf) {
+        throw input_error_at({arguments.campaign},
+                             "has a robot that does not come from a URDF; only such a one can go "
+                             "into one");
+    }
+    check_outputs({file.urdf->path}, {arguments.urdf});
+    const Parameters parameters = io::read_estimate(arguments.estimate, file.campaign);
+    const io::CalibratedUrdf urdf =
+        io::make_calibrated_urdf(*file.urdf, file.campaign.robot, parameters.robot);
+    io::write_file(arguments.urdf, urdf.text);
+    print_export(arguments, file, parameters, urdf);
+}
+
+}  // namespace
+
+void add_export(CLI::App& program) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App* command =
+        program.add_subcommand("export", "Write the calibrated robot in a form others read");
+    command->add_option("CAMPAIGN", arguments->campaign, "Campaign file (YAML)")
+        ->required()
+        ->check(file_name());
+    command->add_option("ESTIMATE", arguments->estimate, "Estimate (JSON), from calibrate --out")
+        ->required()
+        ->check(file_name());
+    command->add_option("--urdf", arguments->urdf, "Write the calibrated URDF to this file")
+        ->required()
+        ->check(file_name());
+    command->footer(footer);
+    command->callback([arguments] { export_estimate(*arguments); });
+}
+
+}  // namespace posewise::cli

@@ -1,0 +1,83 @@
+#include <cmath>
+
+#include "json_reader.hpp"
+#include "posewise/core/text.hpp"
+#include "posewise/io/estimate_file.hpp"
+#include "posewise/measurement/point_sensor.hpp"
+
+namespace posewise::io {
+namespace {
+
+std::vector<double> read_numbers(const JsonValue& value, std::size_t count) {
+    const std::vector<JsonValue> items = value.list();
+    if (items.size() != count) {
+        throw value.error("has " + std::to_string(items.size()) + " values; must have " +
+                          std::to_string(count));
+    }
+    std::vector<double> numbers;
+    for (const JsonValue& item : items) numbers.push_back(item.number());
+    return numbers;
+}
+
+Vector3d read_vector(const JsonValue& value) {
+    const std::vector<double> xyz = read_numbers(value, 3);
+    return {xyz[0], xyz[1], xyz[2]};
+}
+
+Isometry3d read_base(const JsonValue& base) {
+    const JsonValue quaternion = base["quaternion_wxyz"];
+    const std::vector<double> wxyz = read_numbers(quaternion, 4);
+    const Eigen::Quaterniond q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+    if (!(std::abs(q.norm() - 1) < 1e-6)) {
+        throw quaternion.error("has length " + std::to_string(q.norm()) + "; must be 1");
+    }
+    Isometry3d world_from_base(q.normalized());
+    world_from_base.translation() = read_vector(base["position_m"]);
+    return world_from_base;
+}
+
+VectorXd read_robot(const JsonValue& robot, const Campaign& campaign) {
+    const std::vector<std::string> names = campaign.robot.parameter_names();
+    VectorXd values(campaign.robot.parameter_count());
+    for (Index k = 0; k < values.size(); ++k) {
+        const bool turns = campaign.robot.parameter_element(k).motion == Motion::Rotation;
+        const std::string& name = names[static_cast<std::size_t>(k)];
+        if (!robot.has(name)) {
+            throw robot.error("has no parameter " + quote(name) +
+                              "; must be an estimate of this campaign");
+        }
+        values[k] = robot[name][turns ? "value_rad" : "value_m"].number();
+    }
+    const std::size_t count = robot.values().size();
+    if (count != names.size()) {
+        throw robot.error("has " + std::to_string(count) + " parameters, the campaign's robot " +
+                          std::to_string(names.size()) + "; must be an estimate of this campaign");
+    }
+    return values;
+}
+
+VectorXd read_targets(const JsonValue& targets, const PointSensor& sensor) {
+    VectorXd unknowns(static_cast<Index>(sensor.unknown_names().size()));
+    for (Index j = 0; j < sensor.target_count(); ++j) {
+        if (sensor.is_known(j)) continue;
+        unknowns.segment<3>(sensor.unknown_offset(j)) =
+            read_vector(targets["target" + std::to_string(j + 1)]["position_m"]);
+    }
+    return unknowns;
+}
+
+}  // namespace
+
+Parameters read_estimate(const std::string& path, const Campaign& campaign) {
+    const Json document = read_document(path, "estimate");
+    const JsonValue root(document, path);
+    Parameters parameters;
+    parameters.world_from_base = read_base(root["base"]);
+    parameters.robot = read_robot(root["robot"], campaign);
+    if (const auto* const points = dynamic_cast<const PointSensor*>(campaign.sensor.get())) {
+        parameters.sensor = read_targets(root["targets"], *points);
+    }
+    return parameters;
+}
+
+}  // namespace posewise::io

@@ -1,0 +1,224 @@
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "campaign_text.hpp"
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/io/campaign_file.hpp"
+#include "posewise/io/estimate_file.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "posewise/model/complete_model.hpp"
+#include "posewise/model/sampling.hpp"
+#include "support/sweep.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/urdf_text.hpp"
+
+namespace posewise::io {
+namespace {
+
+using namespace testing;
+
+std::string vector_text(const Vector3d& v) {
+    std::ostringstream words;
+    words.precision(17);
+    words << v.x() << ' ' << v.y() << ' ' << v.z();
+    return words.str();
+}
+
+/// Joints with random origins and axes, every third fixed, the last one as asked for.
+std::string random_urdf(RandomStream& stream, bool is_last_fixed) {
+    std::vector<JointText> joints;
+    for (int j = 0; j < 9; ++j) {
+        const bool is_fixed = j == 8 ? is_last_fixed : j % 3 == 1;
+        const bool slides = stream.uniform(0, 1) < 0.3;
+        Vector3d axis = random_vector(stream, 3, 1);
+        if (j % 2 == 0) axis = -Vector3d::Unit(j % 3);
+        std::string origin = "xyz=\"" + vector_text(random_vector(stream, 3, 1)) + "\" rpy=\"" +
+                             vector_text(random_vector(stream, 3, 3)) + '"';
+        if (j == 3) origin = "rpy='0 1.5707963267948966 0'";
+        if (j == 5) origin = "";
+        joints.push_back({is_fixed ? "fixed"
+                          : slides ? "prismatic"
+                                   : "revolute",
+                          origin, is_fixed ? "" : vector_text(axis)});
+    }
+    return urdf_text(joints);
+}
+
+double distance(const Isometry3d& a, const Isometry3d& b) {
+    return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff();
+}
+
+/// Largest difference of the tip's pose over random configurations.
+double difference(const Chain& a, const VectorXd& parameters_a, const Chain& b,
+                  const VectorXd& parameters_b) {
+    double largest = 0;
+    const RowMatrixXd configurations = random_configurations(a, 20, 5);
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        const VectorXd q = configurations.row(i).transpose();
+        largest = std::max(largest, distance(a.base_from_flange(q, parameters_a),
+                                             b.base_from_flange(q, parameters_b)));
+    }
+    return largest;
+}
+
+struct Exported {
+    std::string before;
+    CalibratedUrdf urdf;
+    Chain robot;  ///< with error parameters
+    Chain again;  ///< of the exported file
+};
+
+Exported export_with(const std::string& text, const VectorXd& parameters) {
+    const TemporaryFolder folder;
+    const UrdfSource source{folder.write("robot.urdf", text), "", ""};
+    Exported result;
+    result.before = text;
+    result.robot = complete_model(make_chain(read_urdf(source)));
+    result.urdf = make_calibrated_urdf(
+        source, result.robot,
+        parameters.head(std::min(parameters.size(), result.robot.parameter_count())));
+    result.again =
+        make_chain(read_urdf({folder.write("calibrated.urdf", result.urdf.text), "", ""}));
+    return result;
+}
+
+TEST(CalibratedUrdf, PredictsAsTheErrorModelDoes) {
+    RandomStream stream(21);
+    for (Index i = 0; i < sweep_count() / 10; ++i) {
+        const VectorXd parameters = random_vector(stream, 30, i % 2 == 0 ? 1e-3 : 0.3);
+        const Exported exported = export_with(random_urdf(stream, true), parameters);
+        ASSERT_EQ(exported.robot.parameter_count(), 25);
+        EXPECT_LT(difference(exported.robot, parameters.head(25), exported.again, VectorXd()),
+                  1e-12)
+            << i;
+        EXPECT_TRUE(exported.urdf.not_expressed.empty());
+        EXPECT_EQ(exported.urdf.changes.size(), 6U) << "five that move and the first behind them";
+    }
+}
+
+TEST(CalibratedUrdf, OfNoErrorsIsTheFileItself) {
+    RandomStream stream(22);
+    const std::string text = random_urdf(stream, false);
+    const Exported exported = export_with(text, VectorXd::Zero(30));
+    EXPECT_EQ(exported.urdf.text, text);
+    EXPECT_TRUE(exported.urdf.changes.empty());
+}
+
+TEST(CalibratedUrdf, SaysWhatItCannotExpress) {
+    RandomStream stream(23);
+    VectorXd parameters = random_vector(stream, 30, 1e-3);
+    const std::string text = random_urdf(stream, false);
+    const Exported exported = export_with(text, parameters);
+    const Index count = exported.robot.parameter_count();
+    ASSERT_EQ(count, 30);
+    const auto names = exported.robot.parameter_names();
+    EXPECT_EQ(exported.urdf.not_expressed, std::vector<std::string>(names.end() - 4, names.end()));
+    parameters.tail<4>().setZero();
+    EXPECT_TRUE(export_with(text, parameters).urdf.not_expressed.empty());
+    EXPECT_LT(difference(exported.robot, parameters, exported.again, VectorXd()), 1e-12)
+        << "all else is expressed";
+}
+
+/// A rail with a wrist, measured: what the calibrated file predicts of every point is what the
+/// estimate predicts, and the estimate is read back as it was.
+TEST(CalibratedUrdf, PredictsTheMeasuredPointsAsTheEstimateDoes) {
+    const TemporaryFolder folder;
+    const std::string rpy = " rpy=\"1.5708 0.2 -0.4\"";
+    folder.write("robot.urdf", urdf_text({{"prismatic", "", "0 1 0"},
+                                          {"revolute", "xyz=\"0.2 0 0.4\"" + rpy, "0 0 1"},
+                                          {"fixed", "xyz=\"0 0 0.3\"" + rpy, ""},
+                                          {"revolute", "xyz=\"0.5 0 0\"", "0 1 0"},
+                                          {"revolute", "xyz=\"0.4 0 0.1\"" + rpy, "0.3 0 -1"},
+                                          {"revolute", "xyz=\"0.1 0 0\"", "1 0 0"}}));
+    const std::string text =
+        "name: rail\nrobot: {urdf: robot.urdf, base_link: link0, tip_link: link6}\n"
+        "base: {position_mm: [2000, 500, -300], rpy_deg: [10, 20, 130]}\n"
+        "sensor: {kind: points, sigma_mm: 0.05, targets: {position_mm: [[100, 0, 50], [0, 100, "
+        "50], "
+        "[-80, -80, 60]]}}\n";
+    const CampaignFile file = read_campaign(folder.write("campaign.yaml", text));
+    const Simulation simulation = simulate(file.campaign, {30, 1, 4, 9});
+    const Measurements& measurements = simulation.measurements;
+    CalibrationReport report;
+    report.estimate = identify(file.campaign, measurements,
+                               register_base_and_targets(file.campaign, measurements));
+    ASSERT_EQ(report.estimate.ending, Ending::Converged);
+    write_estimate(folder.path("estimate.json"), file.campaign, report);
+    const Parameters parameters = read_estimate(folder.path("estimate.json"), file.campaign);
+    const CalibratedUrdf urdf =
+        make_calibrated_urdf(*file.urdf, file.campaign.robot, parameters.robot);
+    EXPECT_TRUE(urdf.not_expressed.empty());
+
+    folder.write("calibrated.urdf", urdf.text);
+    const std::string plain =
+        replaced(text, "robot: {urdf: robot", "robot: {errors: stated, urdf: calibrated");
+    const Campaign calibrated = read_campaign(folder.write("again.yaml", plain)).campaign;
+    ASSERT_EQ(calibrated.robot.parameter_count(), 0);
+    Parameters same = parameters;
+    same.robot.resize(0);
+    const RowMatrixXd expected = residuals(file.campaign, report.estimate.parameters, measurements);
+    EXPECT_LT((residuals(calibrated, same, measurements) - expected).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_GT((residuals(file.campaign, file.campaign.nominal, measurements) - expected).norm(),
+              1e-3)
+        << "there was something to calibrate";
+}
+
+/// Everything but the origins of the joints on the way, byte by byte.
+TEST(CalibratedUrdf, KeepsEveryOtherByte) {
+    const std::string head =
+        "\xEF\xBB\xBF<?xml version='1.0' encoding=\"utf-8\"?>\r\n<!-- <origin xyz=\"9\"> -->\n"
+        "<robot  name='a &amp; b'\n  xmlns:x=\"y\"><link name='base'/>\t<link name='tip'/>"
+        "<gazebo><![CDATA[ <joint> > ]]></gazebo>\n"
+        "<transmission name='t'><joint name='turn'/></transmission>\n";
+    const std::string joint_head =
+        "<joint name='turn' type='revolute'>  <!-- here --> <parent link='base'/>"
+        "<child link='tip'/><origin ";
+    const std::string joint_tail =
+        " /><axis xyz='0 0 1'/><limit lower='-1' upper='1'/></joint>\n\n</robot>\n<!-- end -->";
+    const TemporaryFolder folder;
+    const UrdfSource source{
+        folder.write("a.urdf", head + joint_head + "rpy = '0 0 0.5'  xyz='1 2 3'" + joint_tail), "",
+        ""};
+    std::vector<Element> elements = make_chain(read_urdf(source)).elements();
+    elements.front().parameter = "Tx0";
+    const Chain robot({{"turn", -1, 1}}, elements);
+    const auto urdf = make_calibrated_urdf(source, robot, VectorXd::Constant(1, 0.25));
+    EXPECT_EQ(urdf.text, head + joint_head + "rpy = '0 0 0.5'  xyz='1.25 2 3'" + joint_tail);
+    ASSERT_EQ(urdf.changes.size(), 1U);
+    EXPECT_EQ(urdf.changes[0].joint, "turn");
+    EXPECT_NEAR(urdf.changes[0].translation, 0.25, 1e-15);
+    EXPECT_EQ(urdf.changes[0].rotation, 0);
+}
+
+TEST(CalibratedUrdf, PutsInOriginsThatWereNotThere) {
+    const TemporaryFolder folder;
+    const std::string text =
+        urdf_text({{"revolute", "", "0 0 1"}, {"revolute", "xyz='0 0 1'", "1 0 0"}});
+    const UrdfSource source{folder.write("a.urdf", text), "", ""};
+    const auto chain = make_chain(read_urdf(source));
+    std::vector<Element> elements = chain.elements();
+    elements.insert(elements.begin(), {Motion::Translation, Axis::Y, 0, {}, "Ty0"});
+    elements.back().parameter = "dq2";
+    const Chain robot(chain.joints(), elements);
+    const auto urdf = make_calibrated_urdf(source, robot, Eigen::Vector2d(0.5, 0.25));
+    const std::string expected =
+        replaced(replaced(text, "type=\"revolute\">\n",
+                          "type=\"revolute\">\n    <origin xyz=\"0 0.5 0\"/>\n"),
+                 "<origin xyz='0 0 1'/>", "<origin rpy=\"0.25 0 0\" xyz='0 0 1'/>");
+    EXPECT_EQ(urdf.text, expected);
+}
+
+TEST(CalibratedUrdf, IsOfTheRobotItself) {
+    const TemporaryFolder folder;
+    const UrdfSource source{folder.write("a.urdf", urdf_text({{"revolute", "", "0 0 1"}})), "", ""};
+    const Chain other({{"a", 0, 1}, {"b", 0, 1}}, {{Motion::Rotation, Axis::Z, 0, {{0, 1.0}}, ""},
+                                                   {Motion::Rotation, Axis::X, 0, {{1, 1.0}}, ""}});
+    EXPECT_EQ(input_error_of([&] { make_calibrated_urdf(source, other, VectorXd()); }),
+              "a.urdf: has 1 joints that move, the robot 2; must be the URDF the robot was made "
+              "from");
+}
+
+}  // namespace
+}  // namespace posewise::io
