@@ -12,10 +12,17 @@ using tinyxml2::XMLElement;
 
 std::string require_attribute(const XmlDocument& document, const XMLElement& element,
                               const char* name) {
-    const char* const value = element.Attribute(name);
-    if (value != nullptr && *value != '\0') return value;
-    throw document.error(
-        element, "a <" + std::string(element.Name()) + "> has no " + name + "; it must be stated");
+    const char* const text = element.Attribute(name);
+    const std::string value = text == nullptr ? "" : text;
+    const std::string what = "a <" + std::string(element.Name()) + "> has ";
+    if (value.empty()) {
+        throw document.error(element, what + "no " + name + "; it must be stated");
+    }
+    if (escape_controls(value) != value) {
+        throw document.error(element, what + name + ' ' + quote(value) +
+                                          "; must be one line without control characters");
+    }
+    return value;
 }
 
 /// All links, and the joint above each.

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "campaign_text.hpp"
+#include "posewise/model/complete_model.hpp"
 #include "posewise/model/transforms.hpp"
 #include "support/sweep.hpp"
 #include "support/temporary_folder.hpp"
@@ -242,6 +243,9 @@ TEST(BadUrdf, Trees) {
               "robot.urdf: joint 'arm_joint' occurs twice");
     EXPECT_EQ(error_with(" name=\"wrist\"", ""),
               "robot.urdf:26:3: a <joint> has no name; it must be stated");
+    EXPECT_EQ(error_with("<link name=\"arm\"/>", "<link name=\"a&#10;rm\"/>"),
+              "robot.urdf:7:3: a <link> has name 'a\\x0arm'; must be one line without control "
+              "characters");
     EXPECT_EQ(error_of("<robot name='a'/>"),
               "robot.urdf:1:1: has no <link>; a robot must have links");
     EXPECT_EQ(error_of("<sdf><robot/></sdf>"),
@@ -317,6 +321,53 @@ TEST(HostileXml, ThatIsALongTreeIsReadAtOnce) {
         error_of(urdf_text(std::vector<JointText>(101, {"revolute", "", ""})), "", ""),
         "robot.urdf: has 101 joints between base link 'link0' and tip link 'link101'; at most "
         "100 of them may move");
+}
+
+/// A few bytes replaced, cut out or doubled.
+std::string mutate(std::string content, RandomStream& stream) {
+    const std::string bytes = "<>/=\"'&;! -.09exyz\n\t\x01\xff";
+    const auto below = [&](std::size_t count) {
+        return static_cast<std::size_t>(stream.uniform(0, static_cast<double>(count) - 1e-6));
+    };
+    for (std::size_t edits = 1 + below(3); edits > 0; --edits) {
+        const std::size_t position = below(content.size());
+        const std::size_t length = std::min(below(30), content.size() - position);
+        const double kind = stream.uniform(0, 3);
+        if (kind < 1) {
+            content[position] = bytes[below(bytes.size())];
+        } else if (kind < 2) {
+            content.erase(position, length);
+        } else {
+            content.insert(position, content.substr(below(content.size()), length));
+        }
+    }
+    return content;
+}
+
+TEST(HostileXml, OfAnyKindIsARobotThatCanBeExportedOrOneLine) {
+    RandomStream stream(31);
+    Index readable = 0;
+    const TemporaryFolder folder;
+    for (Index i = 0; i < sweep_count() / 4; ++i) {
+        const UrdfSource source{folder.write("robot.urdf", mutate(text, stream)), "base", "tool"};
+        try {
+            const Chain robot = complete_model(make_chain(read_urdf(source)));
+            const VectorXd errors = random_vector(stream, robot.parameter_count(), 0.1);
+            const CalibratedUrdf urdf = make_calibrated_urdf(source, robot, errors);
+            ++readable;
+            if (!urdf.not_expressed.empty()) continue;
+            const Chain again =
+                make_chain(read_urdf({folder.write("again.urdf", urdf.text), "base", "tool"}));
+            const VectorXd q = random_vector(stream, robot.joint_count(), 1);
+            EXPECT_TRUE(again.base_from_flange(q, VectorXd())
+                            .isApprox(robot.base_from_flange(q, errors), 1e-9))
+                << urdf.text;
+        } catch (const InputError& error) {
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+        }
+    }
+    EXPECT_GT(readable, sweep_count() / 120);
+    EXPECT_LT(readable, sweep_count() / 4);
 }
 
 }  // namespace
