@@ -43,6 +43,11 @@ RowMatrixXd whiten_seen(const IdentificationProblem& problem, Index i, const Fla
     return seen;
 }
 
+/// The robot's errors in units of their expected size.
+VectorXd scaled_errors(const IdentificationProblem& problem, const Parameters& parameters) {
+    return parameters.robot.cwiseQuotient(problem.scale.segment(6, parameters.robot.size()));
+}
+
 }  // namespace
 
 void check_all_seen(const Campaign& campaign, const Measurements& measurements) {
@@ -90,6 +95,11 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
         system.r.segment(row, seen.rows()) = seen.col(size);
         row += seen.rows();
     }
+    if (problem.prior_count() > 0) {
+        system.J.bottomRows(problem.prior_count()).setZero();
+        system.J.block(row, 6, problem.prior_count(), problem.prior_count()).setIdentity();
+        system.r.tail(problem.prior_count()) = -scaled_errors(problem, parameters);
+    }
     return system;
 }
 
@@ -105,6 +115,7 @@ double sum_of_squares(const IdentificationProblem& problem, const Parameters& pa
                            campaign.sensor->predict(motion.world_from_flange, parameters.sensor);
         sum += whiten_seen(problem, i, motion, parameters, r).squaredNorm();
     }
+    if (problem.prior_count() > 0) sum += scaled_errors(problem, parameters).squaredNorm();
     return sum;
 }
 
@@ -150,7 +161,9 @@ void finish(const IdentificationProblem& problem, Estimate& estimate) {
         estimate.degrees_of_freedom > 0
             ? system.r.squaredNorm() / static_cast<double>(estimate.degrees_of_freedom)
             : 1.0;
-    estimate.covariance = estimate.variance_factor * inverse * inverse.transpose();
+    // A prior states the noise, too: residuals that are larger or smaller do not change it.
+    const double factor = problem.prior_count() > 0 ? 1.0 : estimate.variance_factor;
+    estimate.covariance = factor * inverse * inverse.transpose();
     estimate.names = parameter_names(problem.campaign);
     estimate.fit =
         make_metrics(residuals(problem.campaign, estimate.parameters, problem.measurements));

@@ -5,7 +5,7 @@
 namespace posewise {
 
 /// The identification as a linearised least-squares problem, whitened and scaled: minimise
-/// |J d - r|^2 over the scaled step d, rows = equations.
+/// |J d - r|^2 over the scaled step d, rows = equations: observations, then the prior's.
 struct LinearisedSystem {
     MatrixXd J;  ///< equations x L
     VectorXd r;  ///< observed means minus predicted
@@ -20,9 +20,14 @@ struct IdentificationProblem {
     VectorXd scale;
 
     /// Numbers observed: those of the targets seen.
-    Index equation_count() const {
+    Index observation_count() const {
         return means.is_seen.count() * campaign.sensor->rows_per_target();
     }
+    /// One for each error of the robot that has a prior: it is 0, give or take its scale.
+    Index prior_count() const {
+        return campaign.spread.is_prior ? campaign.robot.parameter_count() : 0;
+    }
+    Index equation_count() const { return observation_count() + prior_count(); }
 };
 
 /// Throws InputError if the measurements do not fit the campaign (count of joints, columns or
@@ -35,7 +40,7 @@ void check_all_seen(const Campaign& campaign, const Measurements& measurements);
 
 LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters);
 
-/// chi^2: sum of squares of whitened mean residuals.
+/// chi^2: sum of squares of whitened mean residuals and of what the prior says.
 double sum_of_squares(const IdentificationProblem& problem, const Parameters& parameters);
 
 /// J reduced to its triangle by Householder QR: |J d - r|^2 = |R d - c|^2 + rest.

@@ -46,6 +46,7 @@ struct Arguments {
     std::optional<Index> iteration_limit;
     std::string validate;
     std::optional<Index> folds;
+    std::optional<bool> prior;
     std::string out;
 };
 
@@ -182,7 +183,9 @@ void calibrate(const Arguments& arguments) {
     const InputPaths& paths = arguments.paths;
     check_outputs({paths.campaign, paths.measurements, arguments.plan, arguments.validate},
                   {arguments.out});
-    const auto file = io::read_campaign(paths.campaign);
+    auto file = io::read_campaign(paths.campaign);
+    bool& is_prior = file.campaign.spread.is_prior;
+    is_prior = arguments.prior.value_or(is_prior);
     const Split split = read_split(arguments, file);
     io::CalibrationReport report = compute_from(
         paths.measurements, [&] { return make_report(arguments, file.campaign, split); });
@@ -217,6 +220,7 @@ void add_options(CLI::App& command, Arguments& arguments) {
                     "Groups to hold out in turn; 0: none (default: every configuration by "
                     "itself up to 100 of them, else 10)")
         ->check(whole_number(0, 1000000));
+    add_prior_option(command, arguments.prior, ": fewer poses than parameters will do");
     command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
         ->check(file_name());
 }

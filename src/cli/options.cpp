@@ -53,4 +53,11 @@ CLI::Validator file_name() {
         "");
 }
 
+void add_prior_option(CLI::App& command, std::optional<bool>& prior,
+                      const std::string& consequence) {
+    command.add_flag("--prior,!--no-prior", prior,
+                     "The expected size of each robot error is also its prior standard deviation" +
+                         consequence + " (default: the campaign's)");
+}
+
 }  // namespace posewise::cli

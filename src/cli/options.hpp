@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 
 /// Checks of what an option may hold; anything else is a usage error.
@@ -18,5 +19,9 @@ CLI::Validator real_number(double least, double most);
 
 /// Not empty.
 CLI::Validator file_name();
+
+/// --prior and --no-prior; `consequence` ends the help's sentence.
+void add_prior_option(CLI::App& command, std::optional<bool>& prior,
+                      const std::string& consequence);
 
 }  // namespace posewise::cli

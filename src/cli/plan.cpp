@@ -221,9 +221,7 @@ void add_problem(CLI::App& command, PlanningArguments& problem, std::string& foc
     command.add_option("--plan", request.repaired, "Plan to repair: its poses are held");
     command.add_option("--drop", request.dropped, "Ids of its poses to replace, by commas")
         ->delimiter(',');
-    command.add_flag("--prior,!--no-prior", problem.prior,
-                     "The scale of each robot error is also its prior standard deviation; --poses "
-                     "may then be below what identifies (default: the campaign's)");
+    add_prior_option(command, problem.prior, "; --poses may then be below what identifies");
     command.add_option("--repeats", request.repeats, "Samples of each configuration")
         ->check(real_number(1, 1e9))
         ->capture_default_str();

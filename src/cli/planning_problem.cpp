@@ -79,12 +79,6 @@ void hold(PlanningProblem& problem, const MatrixXd& information, const RowMatrix
     held.configurations = std::move(all);
 }
 
-void hold_prior(PlanningProblem& problem) {
-    VectorXd prior = VectorXd::Zero(parameter_count(problem.campaign));
-    prior.segment(6, problem.campaign.robot.parameter_count()).setOnes();
-    hold(problem, prior.asDiagonal(), {});
-}
-
 void hold_measured(PlanningProblem& problem, const Measurements& measured) {
     hold(
         problem,
@@ -185,7 +179,7 @@ io::PosePlanRequest complete_request(const PlanningArguments& arguments,
                                      const io::CampaignFile& file) {
     io::PosePlanRequest request = arguments.request;
     request.seed = arguments.seed.value_or(file.seed);
-    request.has_prior = arguments.prior.value_or(file.prior);
+    request.has_prior = arguments.prior.value_or(file.campaign.spread.is_prior);
     request.criterion = !arguments.criterion.empty()  ? parse_criterion(arguments.criterion)
                         : request.is_focused_on_robot ? Criterion::D
                                                       : Criterion::V;
@@ -213,6 +207,7 @@ PlanningProblem read_planning_problem(const PlanningArguments& arguments) {
         measured = io::read_measurements(request.augment, file);
         check_is_of_robot(file.campaign, *measured, request.augment);
     }
+    file.campaign.spread.is_prior = request.has_prior;
     settle_base(file.campaign, measured);
     std::vector<io::ContinuousPose> repaired;
     if (!request.repaired.empty()) {
@@ -224,7 +219,7 @@ PlanningProblem read_planning_problem(const PlanningArguments& arguments) {
     PlanningProblem problem{request, campaign, Constraints(campaign, file.cell), {}, {}, 0, 0,
                             {},      {}};
     apply_options(problem);
-    if (request.has_prior) hold_prior(problem);
+    if (request.has_prior) hold(problem, prior_information(campaign), {});
     if (measured) hold_measured(problem, *measured);
     if (!request.repaired.empty()) hold_kept(problem, std::move(repaired));
     count_new_poses(problem, arguments.pose_count);

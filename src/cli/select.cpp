@@ -92,7 +92,7 @@ void apply_campaign_defaults(Arguments& arguments) {
     request.criterion = !arguments.criterion.empty() ? parse_criterion(arguments.criterion)
                         : file                       ? file->criterion
                                                      : Criterion::D;
-    request.has_prior = arguments.prior.value_or(file && file->prior);
+    request.has_prior = arguments.prior.value_or(file && file->campaign.spread.is_prior);
     arguments.search.seed = arguments.seed.value_or(file ? file->seed : 1);
 }
 
@@ -241,12 +241,7 @@ void add_problem(CLI::App& command, Arguments& arguments) {
         ->check(criterion_check());
     command.add_option("--test-poses", request.test_poses,
                        "g and v: predict these (as --candidates; default: the candidates)");
-    command.add_flag_callback(
-        "--prior", [&arguments] { arguments.prior = true; },
-        "The scale of each robot error is also its prior standard deviation; --poses may then be "
-        "below what identifies (default: the campaign's)");
-    command.add_flag_callback(
-        "--no-prior", [&arguments] { arguments.prior = false; }, "Whatever the campaign says");
+    add_prior_option(command, arguments.prior, "; --poses may then be below what identifies");
     command
         .add_option("--focus", arguments.focus,
                     "all, or robot: base and targets are estimated along, but do not count")

@@ -166,6 +166,7 @@ RowMatrixXd turning_joints(const Chain& robot, const RowMatrixXd& configurations
 void state_with_robot(SelectionProblem& problem) {
     io::SelectionRequest& request = problem.request;
     problem.campaign = io::read_campaign(request.source.campaign);
+    problem.campaign->campaign.spread.is_prior = request.has_prior;
     const Campaign& campaign = problem.campaign->campaign;
     const auto [measured, share] = read_candidates(problem);
     if (request.source.repeats == 0) {
@@ -179,9 +180,7 @@ void state_with_robot(SelectionProblem& problem) {
     problem.blocks =
         make_blocks(campaign, parameters, problem.configurations, request.source.repeats * share);
     problem.options.column_names = parameter_names(campaign);
-    if (request.has_prior) {
-        held(problem).diagonal().segment(6, campaign.robot.parameter_count()).array() += 1;
-    }
+    if (request.has_prior) held(problem) += prior_information(campaign);
     if (augment) hold_measured(problem, parameters, *augment);
     if (request.is_focused_on_robot) focus_on_robot(problem);
     if (request.least_distance > 0) {

@@ -36,6 +36,7 @@ is read: six configurations chosen by D leave 0.29 mm, half of all random sixes 
 90 % quantile is no number ("-"). The pose count from which a column stays flat is enough.)";
 
 struct Arguments {
+    std::optional<bool> prior;
     InputPaths paths;
     std::vector<Criterion> criteria;
     std::optional<std::uint64_t> seed;
@@ -138,7 +139,9 @@ void study(const Arguments& arguments) {
     if (!arguments.plot.empty()) check_image_path(arguments.plot);
     check_outputs({arguments.paths.campaign, arguments.paths.measurements},
                   {arguments.csv, arguments.plot});
-    const auto file = io::read_campaign(arguments.paths.campaign);
+    auto file = io::read_campaign(arguments.paths.campaign);
+    bool& is_prior = file.campaign.spread.is_prior;
+    is_prior = arguments.prior.value_or(is_prior);
     const auto measurements = io::read_measurements(arguments.paths.measurements, file);
     StudyOptions options = arguments.options;
     options.seed = arguments.seed.value_or(file.seed);
@@ -176,6 +179,7 @@ void add_options(CLI::App& command, Arguments& arguments) {
             arguments.options.pose_counts = parse_counts(text);
         },
         "Pose counts, 5:24 or 6,9,12 (default: from the least that identifies to all but one)");
+    add_prior_option(command, arguments.prior, ": of choice and calibration alike");
     command.add_option("--starts", arguments.options.starts, "Starts of each exchange")
         ->check(whole_number(1, 1000000))
         ->capture_default_str();

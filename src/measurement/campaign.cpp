@@ -46,6 +46,13 @@ VectorXd parameter_scale(const Campaign& campaign) {
     return scale;
 }
 
+MatrixXd prior_information(const Campaign& campaign) {
+    VectorXd information = VectorXd::Zero(parameter_count(campaign));
+    if (campaign.spread.is_prior)
+        information.segment(6, campaign.robot.parameter_count()).setOnes();
+    return information.asDiagonal();
+}
+
 Parameters advance(const Parameters& parameters, const VectorXd& step) {
     Parameters moved = parameters;
     const Vector3d phi = step.segment<3>(3);

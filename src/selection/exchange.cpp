@@ -156,16 +156,21 @@ std::vector<Choice> run_starts(const SearchProblem& problem, const Relaxation& r
                                const Shortlist& shortlist, const Choice& first) {
     const SelectOptions& options = problem.options;
     Reporter reporter(options, relaxation.bound);
-    std::vector<Choice> choices(static_cast<std::size_t>(options.starts), first);
+    std::vector<std::optional<Choice>> ends(static_cast<std::size_t>(options.starts));
 #pragma omp parallel for schedule(dynamic)
     for (Index start = 0; start < options.starts; ++start) {
         if (start > 0 && problem.must_stop()) continue;
         RandomStream random(options.seed, static_cast<std::uint64_t>(start));
-        Choice& choice = choices[static_cast<std::size_t>(start)];
+        Choice choice = first;
         if (start > 0) choice = make_random_start(problem, relaxation, random).value_or(first);
         choice = make_identifying(problem, shortlist, choice, random);
         choice = improve_with_kicks(problem, shortlist, choice, random);
         reporter.report(choice);
+        ends[static_cast<std::size_t>(start)] = std::move(choice);
+    }
+    std::vector<Choice> choices;  // of the starts there was time for
+    for (const auto& end : ends) {
+        if (end) choices.push_back(*end);
     }
     return choices;
 }

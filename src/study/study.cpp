@@ -73,6 +73,7 @@ std::vector<Index> choose_poses(const Setting& setting, const Job& job) {
     options.criterion = setting.options.criteria[job.number];
     options.pose_count = job.pose_count;
     options.starts = setting.options.starts;
+    if (setting.campaign.spread.is_prior) options.held = prior_information(setting.campaign);
     options.seed = setting.options.seed;
     return select_poses(setting.blocks, options).poses;
 }

@@ -132,6 +132,35 @@ TEST(Identify, NamesParametersThatCannotBeToldApart) {
     }
 }
 
+TEST(Identify, WithAPriorStaysWithinItsCovarianceOnFewerEquationsThanParameters) {
+    Campaign campaign = with_sigma(5e-5);
+    campaign.spread.is_prior = true;
+    constexpr int runs = 300;
+    double mahalanobis = 0;
+    for (std::uint64_t run = 0; run < runs; ++run) {
+        const Parameters truth = draw_truth(campaign, run);  // errors as large as the prior says
+        const auto measurements = simulate_measurements(
+            campaign, truth, random_configurations(campaign.robot, 3, 500 + run), 1, 900 + run);
+        const Estimate estimate = identify(campaign, measurements, truth);
+        const VectorXd error = error_of(estimate.parameters, truth);
+        mahalanobis += error.dot(estimate.covariance.ldlt().solve(error));
+    }
+    EXPECT_NEAR(mahalanobis / runs, 33, 4 * std::sqrt(66.0 / runs));
+}
+
+TEST(Identify, WithAPriorTellsRedundantParametersApart) {
+    Campaign campaign = with_sigma(5e-5);
+    std::vector<Element> elements = campaign.robot.elements();
+    elements.insert(elements.begin() + 5, testing::translation(Axis::X, 0, "Tx2"));
+    const Measurements measurements = simulate(campaign, {24, 1, 7, 8}).measurements;
+    const double without = calibrate(campaign, measurements).fit.distance_rms;
+    campaign = with_robot(campaign, Chain(campaign.robot.joints(), elements));
+    campaign.spread.is_prior = true;
+    const Estimate estimate = calibrate(campaign, measurements);
+    EXPECT_EQ(estimate.ending, Ending::Converged);
+    EXPECT_NEAR(estimate.fit.distance_rms, without, 0.02 * without);
+}
+
 TEST(Identify, RefusesFewerEquationsThanParameters) {
     const Campaign campaign = with_sigma(5e-5);
     const auto measurements = simulate(campaign, {3, 1, 7, 8}).measurements;

@@ -39,7 +39,8 @@ struct Estimate {
     /// Covariance of all L parameters jointly (base and targets estimated too), m and rad.
     MatrixXd covariance;
     /// Residual variance of whitened means: chi^2 / degrees of freedom; 1 if sigma and model error
-    /// were stated right, or if there is no degree of freedom. The covariance is scaled by it.
+    /// were stated right, or if there is no degree of freedom. The covariance is scaled by it,
+    /// unless there is a prior.
     double variance_factor = 0;
     Index degrees_of_freedom = 0;
     Metrics fit;        ///< all samples

@@ -11,7 +11,10 @@ struct LevenbergMarquardtOptions {
 };
 
 /// Joint identification of base, robot and targets by Levenberg-Marquardt on whitened means, with
-/// the analytic Jacobian and QR factorisations (never normal equations), from `start`.
+/// the analytic Jacobian and QR factorisations (never normal equations), from `start`. Where the
+/// campaign's spread is a prior, the maximum a posteriori: each error of the robot counts as
+/// observed to be 0 with its scale as standard deviation, and the covariance is that of the stated
+/// noise and prior (else it is multiplied by the variance factor).
 /// Throws InputError if there are fewer equations than parameters, or if a direction of parameter
 /// space is not identifiable from these poses: the message names the parameters in it.
 Estimate identify(const Campaign& campaign, const Measurements& measurements,

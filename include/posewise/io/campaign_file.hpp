@@ -37,8 +37,6 @@ struct CampaignFile {
     std::optional<UrdfSource> urdf;  ///< where the robot comes from, if from a URDF
     Criterion criterion = Criterion::D;
     std::uint64_t seed = 1;
-    /// Whether the spread of the robot's errors is also their prior standard deviation.
-    bool prior = false;
     MatMapping mat;
     Cell cell;  ///< empty if the file does not describe one
 };

@@ -24,6 +24,7 @@ struct ParameterSpread {
     double length = 1e-3;
     double angle = 1e-3;
     std::map<std::string, double> by_name;  ///< exceptions, by parameter name
+    bool is_prior = false;  ///< whether it is also the prior standard deviation of robot errors
 };
 
 /// Everything about a measurement campaign that is known before measuring: the robot, the sensor,
@@ -58,6 +59,10 @@ std::vector<bool> parameter_is_angle(const Campaign& campaign);
 /// Expected error of each parameter (m or rad): the column scale. Throws InputError if `spread`
 /// names a parameter the campaign does not have.
 VectorXd parameter_scale(const Campaign& campaign);
+
+/// What is known before measuring, in scaled parameters (parameter_count() square): 1 for each of
+/// the robot's errors if the spread is their prior, 0 for base and sensor.
+MatrixXd prior_information(const Campaign& campaign);
 
 /// Parameters moved by a small step (parameter_count(), m and rad): the base turns by exp([phi]x)
 /// about its own origin in world axes and is translated along world axes; the rest is added.

@@ -38,7 +38,9 @@ struct SelectOptions {
     std::vector<std::string> column_names;  ///< for messages; empty: columns are numbered from 1
 
     Index starts = 20;  ///< independent searches
-    Index kicks = 20;   ///< perturbations of each start's plan without success until it ends
+    /// Perturbations of each start's plan without success until it ends; ten times as many where
+    /// the shortlist is at most 64 candidates.
+    Index kicks = 20;
     /// Candidates searched; all are looked at in the last sweeps. 0: from 800 for large blocks to
     /// 5000 for small ones.
     Index shortlist = 0;
@@ -53,11 +55,12 @@ struct SelectOptions {
 /// The best K of the candidates, and a proven bound. The continuous relaxation gives the bound, a
 /// shortlist and the starts; block exchange with kicks (iterated local search) improves each start,
 /// over OpenMP threads whose number does not matter; last sweeps over all candidates end where no
-/// exchange improves. If the bound leaves few enough other choices they are tried, and the plan is
-/// optimal.
-/// Throws InputError if K is not in [1, candidates x repeats], if the limits leave fewer than K, if
-/// all candidates together do not identify the parameters (naming the columns of the unseen
-/// directions), if no start found K poses that do, or for options that contradict the candidates.
+/// exchange improves (for O5 and parameters of interest: none of those estimated to be good, but
+/// all in the last sweeps). If the bound leaves few enough other choices they are tried, and the
+/// plan is optimal. Throws InputError if K is not in [1, candidates x repeats], if the limits leave
+/// fewer than K, if all candidates together do not identify the parameters (naming the columns of
+/// the unseen directions), if no start found K poses that do, or for options that contradict the
+/// candidates.
 Plan select_poses(const Blocks& candidates, const SelectOptions& options);
 
 }  // namespace posewise
