@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <string>
 
 #include "exchange_references.hpp"
@@ -10,8 +11,9 @@
 
 /// select_poses on single rows beside the textbook exchanges, which restart on the same threads for
 /// the time that it took. Counters: D-efficiency of each relative to the best value anyone found
-/// (mean over the seeds), and what select_poses' bound proves. Label: how many seeds ended at that
-/// best value.
+/// (mean over the seeds), what select_poses' bound proves, and the CPU time of a reference relative
+/// to that of select_poses, which is 1 where other load on the machine favoured none. Label: how
+/// many seeds ended at that best value.
 namespace posewise {
 namespace {
 
@@ -89,18 +91,24 @@ void compare(benchmark::State& state, const Blocks& candidates, Index n) {
     options.seed = 0;
     std::vector<Values> runs;
     Plan plan;
+    std::array<double, 2> cpu{};  // of select_poses and the references
     for (auto _ : state) {
         ++options.seed;
+        const std::clock_t cpu_begin = std::clock();
         const auto begin = std::chrono::steady_clock::now();
         plan = select_poses(candidates, options);
         const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
         state.SetIterationTime(taken.count());
         Values& values = runs.emplace_back();
         values[Select] = plan.value;
+        const std::clock_t cpu_middle = std::clock();
         run_references(candidates, n, taken.count(), options.seed, values);
+        cpu[0] += static_cast<double>(cpu_middle - cpu_begin);
+        cpu[1] += static_cast<double>(std::clock() - cpu_middle) / (MethodCount - 1);
     }
     report(state, runs, candidates.parameter_count());
     state.counters["proven"] = plan.efficiency;
+    state.counters["cpu_ratio"] = cpu[1] / cpu[0];
 }
 
 void BM_QuadraticGrid(benchmark::State& state) {
