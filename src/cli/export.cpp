@@ -24,7 +24,8 @@ Example:
 
 The estimate is what calibrate --out wrote. The URDF is the one the campaign's robot comes from, and
 stays as it is (names, order, comments, layout) but for the numbers of joint origins: between base
-link and tip link it then predicts exactly what the estimate does. The base as the instrument sees it
+link and tip link it then predicts exactly what the estimate does, but for errors that depend on the
+configuration (gravity, harmonics), which a URDF cannot have; they are listed. The base as the instrument sees it
 and the targets are not part of the robot, and not of the URDF.)";
 
 struct Arguments {
@@ -60,10 +61,17 @@ void print_export(const Arguments& arguments, const io::CampaignFile& file,
         fmt::format("\nnot in the URDF: where the instrument sees base link {} ({}), and the "
                     "targets\n",
                     quote(file.urdf->base_link), describe_base(parameters.world_from_base)));
-    if (urdf.not_expressed.empty()) return;
-    print("not in the URDF: ");
-    for (const std::string& name : urdf.not_expressed) print(name + ' ');
-    print("act behind the last joint, where no fixed joint is that could take them\n");
+    const auto print_missing = [](const std::vector<std::string>& names, const char* reason) {
+        if (names.empty()) return;
+        print("not in the URDF: ");
+        for (const std::string& name : names) print(name + ' ');
+        print(reason);
+    };
+    print_missing(urdf.not_expressed,
+                  "act behind the last joint, where no fixed joint is that could take them\n");
+    print_missing(urdf.terms,
+                  "depend on the configuration, and no URDF can express that: without them the "
+                  "URDF is less accurate than the estimate\n");
 }
 
 void export_estimate(const Arguments& arguments) {

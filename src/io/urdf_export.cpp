@@ -16,7 +16,7 @@ Isometry3d product_of(const std::vector<Element>& elements, const VectorXd& para
 
 /// What is constant before, between and behind the joints of a chain: base_from_flange(q) =
 /// C_0 M_1(q_1) C_1 ... M_n(q_n) C_n. The constant part of a joint's element counts to what is
-/// before it.
+/// before it, error terms to none.
 std::vector<Isometry3d> constants_of(const Chain& robot, const VectorXd& parameters) {
     std::vector<Isometry3d> constants;
     std::vector<Element> elements;
@@ -32,7 +32,9 @@ std::vector<Isometry3d> constants_of(const Chain& robot, const VectorXd& paramet
     for (Element element : robot.elements()) {
         const bool is_driven = !element.joints.empty();
         if (!element.parameter.empty()) values.push_back(parameters[next++]);
+        next += static_cast<Index>(element.terms.size());
         element.joints.clear();
+        element.terms.clear();
         elements.push_back(std::move(element));
         if (is_driven) finish();
     }
@@ -162,9 +164,21 @@ std::vector<std::string> errors_behind(const Chain& robot, const VectorXd& param
     Index next = 0;
     for (const Element& element : robot.elements()) {
         if (!element.joints.empty()) names.clear();
-        if (element.parameter.empty()) continue;
-        if (element.joints.empty() && parameters[next] != 0) names.push_back(element.parameter);
-        ++next;
+        if (!element.parameter.empty()) {
+            if (element.joints.empty() && parameters[next] != 0) names.push_back(element.parameter);
+            ++next;
+        }
+        next += static_cast<Index>(element.terms.size());
+    }
+    return names;
+}
+
+/// Names of the terms that are not zero.
+std::vector<std::string> terms_of(const Chain& robot, const VectorXd& parameters) {
+    std::vector<std::string> names;
+    for (Index k = 0; k < robot.parameter_count(); ++k) {
+        const ErrorTerm* const term = robot.parameter_term(k);
+        if (term != nullptr && parameters[k] != 0) names.push_back(term->parameter);
     }
     return names;
 }
@@ -195,6 +209,7 @@ CalibratedUrdf make_calibrated_urdf(const UrdfSource& source, const Chain& robot
     if (corrections.size() < nominal.size()) {
         result.not_expressed = errors_behind(robot, parameters);
     }
+    result.terms = terms_of(robot, parameters);
     result.text = apply(document.content(), std::move(edits));
     return result;
 }

@@ -22,12 +22,13 @@ VectorXd residual_outside(const Eigen::Ref<const MatrixXd>& Q, VectorXd column) 
     return column;
 }
 
-/// Base and sensor first, then joint offsets, translations, other rotations: what comes early is
-/// kept, so a link error is dropped in favour of an offset, a base or a target it equals.
+/// Base and sensor first, then joint offsets, translations, other rotations, terms: what comes
+/// early is kept, so a link error is dropped in favour of an offset, a base or a target it equals.
 std::vector<Index> make_priority(const Campaign& campaign) {
     const Index robot = campaign.robot.parameter_count();
     const auto rank = [&](Index k) {
         if (k < 6 || k >= 6 + robot) return 0;
+        if (campaign.robot.parameter_term(k - 6) != nullptr) return 4;
         const Element& element = campaign.robot.parameter_element(k - 6);
         if (!element.joints.empty()) return 1;
         return element.motion == Motion::Translation ? 2 : 3;
@@ -116,15 +117,16 @@ Identifiability find_identifiable(const Campaign& campaign) {
 }
 
 Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names) {
+    const auto is_dropped = [&names](const std::string& name) {
+        return std::find(names.begin(), names.end(), name) == names.end();
+    };
     std::vector<Element> elements;
     for (Element element : chain.elements()) {
-        const bool dropped =
-            !element.parameter.empty() &&
-            std::find(names.begin(), names.end(), element.parameter) == names.end();
-        if (dropped) element.parameter.clear();
+        if (is_dropped(element.parameter)) element.parameter.clear();
+        std::erase_if(element.terms, [&](const ErrorTerm& t) { return is_dropped(t.parameter); });
         // An element that was there only for its error is gone with it.
-        const bool empty =
-            element.value == 0 && element.joints.empty() && element.parameter.empty();
+        const bool empty = element.value == 0 && element.joints.empty() &&
+                           element.parameter.empty() && element.terms.empty();
         if (!empty) elements.push_back(std::move(element));
     }
     return Chain(chain.joints(), std::move(elements));

@@ -60,9 +60,31 @@ Twist lie_bracket(const Twist& a, const Twist& b) {
     return result;
 }
 
-double drive(const Element& element, const VectorXd& q) {
-    double amount = element.value;
-    for (const JointTerm& term : element.joints) amount += term.coefficient * q[term.joint];
+double sum_of(double start, const std::vector<JointTerm>& joints, const VectorXd& q) {
+    for (const JointTerm& term : joints) start += term.coefficient * q[term.joint];
+    return start;
+}
+
+/// A joint function and its derivatives by u.
+struct FunctionValue {
+    double value, slope, curvature;
+};
+
+FunctionValue evaluate(const JointFunction& function, const VectorXd& q) {
+    const double u = sum_of(function.phase, function.joints, q);
+    if (function.shape == JointFunction::Shape::Linear) return {u, 1, 0};
+    const double sine = std::sin(u);
+    return {sine, std::cos(u), -sine};
+}
+
+/// E's amount; `next` is the number of the element's first error parameter, then behind its last.
+double amount_of(const Element& element, const VectorXd& q, const VectorXd& parameters,
+                 Index& next) {
+    double amount = sum_of(element.value, element.joints, q);
+    if (!element.parameter.empty()) amount += parameters[next++];
+    for (const ErrorTerm& term : element.terms) {
+        amount += parameters[next++] * evaluate(term.function, q).value;
+    }
     return amount;
 }
 
@@ -78,12 +100,12 @@ void check_joint(const Joint& joint) {
     }
 }
 
-void check_element(const Element& element, std::size_t number, Index joint_count) {
-    const auto fail = [number](const std::string& what) {
-        throw InputError("element " + std::to_string(number + 1) + " of the chain " + what);
-    };
-    if (!std::isfinite(element.value)) fail("has a value that is not a finite number");
-    for (const JointTerm& term : element.joints) {
+/// `subject` is "element 3 of the chain" or one of its terms.
+void check_sum(const std::string& subject, double start, const std::vector<JointTerm>& joints,
+               Index joint_count) {
+    const auto fail = [&](const std::string& what) { throw InputError(subject + ' ' + what); };
+    if (!std::isfinite(start)) fail("has a value that is not a finite number");
+    for (const JointTerm& term : joints) {
         if (term.joint < 0 || term.joint >= joint_count) {
             fail("is driven by joint index " + std::to_string(term.joint) + ", the robot has " +
                  std::to_string(joint_count) + " joints");
@@ -91,6 +113,33 @@ void check_element(const Element& element, std::size_t number, Index joint_count
         if (!std::isfinite(term.coefficient) || term.coefficient == 0) {
             fail("has a joint coefficient that is zero or not a finite number");
         }
+    }
+}
+
+void check_element(const Element& element, std::size_t number, Index joint_count) {
+    const std::string subject = "element " + std::to_string(number + 1) + " of the chain";
+    check_sum(subject, element.value, element.joints, joint_count);
+    for (const ErrorTerm& term : element.terms) {
+        if (term.parameter.empty()) throw InputError(subject + " has an error term without name");
+        const std::string its_term = "term '" + term.parameter + "' of " + subject;
+        if (term.function.joints.empty()) throw InputError(its_term + " depends on no joint");
+        check_sum(its_term, term.function.phase, term.function.joints, joint_count);
+    }
+}
+
+/// What term k of an element adds to the rate by joint j: the element's twist, which changes at
+/// rate `change`, is multiplied by f(q) in the term's column and by pi df/dq_i in that of joint i.
+void add_rate(const ErrorTerm& term, Index k, double pi, const VectorXd& q, const Twist& twist,
+              const Twist& change, Index j, FlangeMotionRate& rate) {
+    const FunctionValue f = evaluate(term.function, q);
+    double du_dqj = 0;
+    for (const JointTerm& by : term.function.joints) {
+        if (by.joint == j) du_dqj += by.coefficient;
+    }
+    rate.twists.col(6 + k) = f.value * change + f.slope * du_dqj * twist;
+    for (const JointTerm& by : term.function.joints) {
+        rate.joint_twists.col(by.joint) +=
+            pi * by.coefficient * (f.slope * change + f.curvature * du_dqj * twist);
     }
 }
 
@@ -117,10 +166,14 @@ Chain::Chain(std::vector<Joint> joints, std::vector<Element> elements)
             }
             motion = element.motion;
         }
-        if (!element.parameter.empty()) {
-            check_unique(names, element.parameter, "parameter");
-            names.insert(element.parameter);
-            parameter_elements_.push_back(static_cast<Index>(k));
+        const auto add_parameter = [&](const std::string& name, Index term) {
+            check_unique(names, name, "parameter");
+            names.insert(name);
+            parameter_places_.push_back({static_cast<Index>(k), term});
+        };
+        if (!element.parameter.empty()) add_parameter(element.parameter, -1);
+        for (std::size_t i = 0; i < element.terms.size(); ++i) {
+            add_parameter(element.terms[i].parameter, static_cast<Index>(i));
         }
     }
     for (std::size_t j = 0; j < joints_.size(); ++j) {
@@ -137,13 +190,21 @@ Motion Chain::joint_motion(Index joint) const {
 }
 
 const Element& Chain::parameter_element(Index parameter) const {
-    return elements_[static_cast<std::size_t>(
-        parameter_elements_[static_cast<std::size_t>(parameter)])];
+    const Place& place = parameter_places_[static_cast<std::size_t>(parameter)];
+    return elements_[static_cast<std::size_t>(place.element)];
+}
+
+const ErrorTerm* Chain::parameter_term(Index parameter) const {
+    const Index term = parameter_places_[static_cast<std::size_t>(parameter)].term;
+    return term < 0 ? nullptr : &parameter_element(parameter).terms[static_cast<std::size_t>(term)];
 }
 
 std::vector<std::string> Chain::parameter_names() const {
     std::vector<std::string> names;
-    for (Index k = 0; k < parameter_count(); ++k) names.push_back(parameter_element(k).parameter);
+    for (Index k = 0; k < parameter_count(); ++k) {
+        const ErrorTerm* const term = parameter_term(k);
+        names.push_back(term == nullptr ? parameter_element(k).parameter : term->parameter);
+    }
     return names;
 }
 
@@ -165,16 +226,14 @@ Isometry3d Chain::base_from_flange(const VectorXd& q, const VectorXd& parameters
     RunningProduct product{Matrix3d::Identity(), Vector3d::Zero()};
     Index k = 0;
     for (const Element& element : elements_) {
-        double amount = drive(element, q);
-        if (!element.parameter.empty()) amount += parameters[k++];
-        product.append(element.motion, element.axis, amount);
+        product.append(element.motion, element.axis, amount_of(element, q, parameters, k));
     }
     return product.pose();
 }
 
 /// One pass over the elements. After an element that moves something has added its twist to its
-/// columns of `motion`, visit(element, twist, column) is called; the column is that of its error
-/// parameter, or -1.
+/// columns of `motion`, visit(element, twist, parameter) is called with the number of its first
+/// error parameter.
 template <typename Visit>
 void Chain::walk(const Isometry3d& world_from_base, const VectorXd& q, const VectorXd& parameters,
                  FlangeMotion& motion, const Visit& visit) const {
@@ -187,18 +246,27 @@ void Chain::walk(const Isometry3d& world_from_base, const VectorXd& q, const Vec
         motion.twists.col(3 + axis) << unit, base.cross(unit);
     }
     RunningProduct product{world_from_base.linear(), base};
-    Index next_column = 6;
+    Index next = 0;
     for (const Element& element : elements_) {
-        double amount = drive(element, q);
-        const Index column = element.parameter.empty() ? -1 : next_column++;
-        if (column >= 0) amount += parameters[column - 6];
-        if (column >= 0 || !element.joints.empty()) {
+        const Index first = next;
+        double amount = sum_of(element.value, element.joints, q);
+        if (!element.parameter.empty()) amount += parameters[next++];
+        if (next > first || !element.joints.empty() || !element.terms.empty()) {
             const Twist twist = product.twist(element.motion, element.axis);
-            if (column >= 0) motion.twists.col(column) = twist;
+            if (next > first) motion.twists.col(6 + first) = twist;
             for (const JointTerm& term : element.joints) {
                 motion.joint_twists.col(term.joint) += term.coefficient * twist;
             }
-            visit(element, twist, column);
+            for (const ErrorTerm& term : element.terms) {
+                const FunctionValue f = evaluate(term.function, q);
+                motion.twists.col(6 + next) = f.value * twist;
+                for (const JointTerm& by : term.function.joints) {
+                    motion.joint_twists.col(by.joint) +=
+                        parameters[next] * f.slope * by.coefficient * twist;
+                }
+                amount += parameters[next++] * f.value;
+            }
+            visit(element, twist, first);
         }
         product.append(element.motion, element.axis, amount);
     }
@@ -212,9 +280,7 @@ std::vector<Isometry3d> Chain::base_from_links(const VectorXd& q,
     RunningProduct product{Matrix3d::Identity(), Vector3d::Zero()};
     Index k = 0;
     for (const Element& element : elements_) {
-        double amount = drive(element, q);
-        if (!element.parameter.empty()) amount += parameters[k++];
-        product.append(element.motion, element.axis, amount);
+        product.append(element.motion, element.axis, amount_of(element, q, parameters, k));
         for (const JointTerm& term : element.joints) {
             const auto joint = static_cast<std::size_t>(term.joint);
             if (!is_found[joint]) links[joint + 1] = product.pose();
@@ -238,23 +304,45 @@ void Chain::differentiate_twice(const Isometry3d& world_from_base, const VectorX
         rate.twists.setZero(6, 6 + parameter_count());
         rate.joint_twists.setZero(6, joint_count());
     }
-    const auto visit = [&](const Element& element, const Twist& twist, Index column) {
+    const auto visit = [&](const Element& element, const Twist& twist, Index first) {
         for (Index j = 0; j < joint_count(); ++j) {
             // So far motion.joint_twists holds what joint j moves up to this element.
             const Twist change = lie_bracket(motion.joint_twists.col(j), twist);
             FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
-            if (column >= 0) rate.twists.col(column) = change;
+            if (!element.parameter.empty()) rate.twists.col(6 + first) = change;
             for (const JointTerm& term : element.joints) {
                 rate.joint_twists.col(term.joint) += term.coefficient * change;
+            }
+            Index k = element.parameter.empty() ? first : first + 1;
+            for (const ErrorTerm& term : element.terms) {
+                add_rate(term, k, parameters[k], q, twist, change, j, rate);
+                ++k;
             }
         }
     };
     walk(world_from_base, q, parameters, motion, visit);
 }
 
+std::vector<Index> element_owners(const Chain& chain) {
+    std::vector<Index> owners;
+    std::vector<bool> seen(chain.joints().size(), false);
+    for (const Element& element : chain.elements()) {
+        Index owner = -1;
+        for (const JointTerm& term : element.joints) {
+            if (owner < 0 && !seen[static_cast<std::size_t>(term.joint)]) owner = term.joint;
+        }
+        if (owner >= 0) seen[static_cast<std::size_t>(owner)] = true;
+        owners.push_back(owner);
+    }
+    return owners;
+}
+
 Chain without_parameters(const Chain& chain) {
     std::vector<Element> elements = chain.elements();
-    for (Element& element : elements) element.parameter.clear();
+    for (Element& element : elements) {
+        element.parameter.clear();
+        element.terms.clear();
+    }
     return Chain(chain.joints(), std::move(elements));
 }
 

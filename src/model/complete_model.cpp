@@ -16,20 +16,15 @@ std::string suffix(const std::string& joint) {
 
 Chain complete_model(const Chain& chain) {
     std::vector<Element> elements;
-    std::vector<bool> seen(chain.joints().size(), false);
-    for (Element element : chain.elements()) {
+    const std::vector<Index> owners = element_owners(chain);
+    for (std::size_t k = 0; k < owners.size(); ++k) {
+        Element element = chain.elements()[k];
         element.parameter.clear();
-        // Of several elements on one joint (a coupling) the errors belong to the one it is first
-        // named by; a later one gets errors only if it is the first of another joint.
-        Index owner = -1;
-        for (const JointTerm& term : element.joints) {
-            if (owner < 0 && !seen[static_cast<std::size_t>(term.joint)]) owner = term.joint;
-        }
+        const Index owner = owners[k];
         if (owner < 0) {
             elements.push_back(element);
             continue;
         }
-        seen[static_cast<std::size_t>(owner)] = true;
         const std::string name = chain.joints()[static_cast<std::size_t>(owner)].name;
         element.parameter = "d" + (name[0] == 'q' ? name : "_" + name);
         elements.push_back(element);

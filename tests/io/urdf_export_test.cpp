@@ -9,6 +9,7 @@
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/model/complete_model.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "posewise/model/sampling.hpp"
 #include "support/sweep.hpp"
 #include "support/temporary_folder.hpp"
@@ -208,6 +209,29 @@ TEST(CalibratedUrdf, PutsInOriginsThatWereNotThere) {
                           "type=\"revolute\">\n    <origin xyz=\"0 0.5 0\"/>\n"),
                  "<origin xyz='0 0 1'/>", "<origin rpy=\"0.25 0 0\" xyz='0 0 1'/>");
     EXPECT_EQ(urdf.text, expected);
+}
+
+TEST(CalibratedUrdf, LeavesOutAndNamesTermsThatDependOnTheConfiguration) {
+    const TemporaryFolder folder;
+    const std::string text = urdf_text({{"revolute", "", "0 0 1"},
+                                        {"revolute", "xyz='0 0 1'", "1 0 0"},
+                                        {"fixed", "xyz='0 0 0.5'", ""}});
+    const UrdfSource source{folder.write("a.urdf", text), "", ""};
+    const Chain geometric = complete_model(make_chain(read_urdf(source)));
+    const Chain robot = with_harmonics(geometric, {1});
+    ASSERT_EQ(robot.parameter_count(), 10 + 4);
+    RandomStream stream(24);
+    VectorXd errors = random_vector(stream, 14, 1e-2);
+    errors[1] = 0;  // of the four terms: behind dq1 and dq2 each two
+    VectorXd constant(10);
+    constant << errors[0], errors.segment(3, 5), errors.segment(10, 4);
+    const auto expected = make_calibrated_urdf(source, geometric, constant);
+    const auto urdf = make_calibrated_urdf(source, robot, errors);
+    EXPECT_EQ(urdf.text, expected.text);
+    const auto names = robot.parameter_names();
+    EXPECT_EQ(urdf.terms, (std::vector<std::string>{names[2], names[8], names[9]}));
+    EXPECT_TRUE(urdf.not_expressed.empty());
+    EXPECT_TRUE(expected.terms.empty());
 }
 
 TEST(CalibratedUrdf, IsOfTheRobotItself) {

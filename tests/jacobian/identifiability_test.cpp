@@ -7,6 +7,7 @@
 
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/model/complete_model.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 
@@ -133,6 +134,35 @@ TEST(IrreducibleModel, OfTheFanucIsTheEighteenOfTheRules) {
     std::sort(names.begin(), names.end());
     std::sort(expected.begin(), expected.end());
     EXPECT_EQ(names, expected);
+}
+
+TEST(IrreducibleModel, KeepsTermsBesideTheWholeGeometry) {
+    const Chain with_terms = with_harmonics(with_gravity_terms(testing::fanuc()), {1}, {3});
+    const Chain irreducible = irreducible_model(tracked_campaign(with_terms));
+    auto names = irreducible.parameter_names();
+    auto expected = with_terms.parameter_names();
+    std::sort(names.begin(), names.end());
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(names, expected);
+}
+
+TEST(IrreducibleModel, DropsTheTermThatGeometryExpresses) {
+    const auto linear = JointFunction::Shape::Linear;
+    std::vector<Element> elements = testing::fanuc().elements();
+    elements[4].terms = {{"ratio", {linear, {{1, 1}}, 0}},
+                         {"ratio_about_1", {linear, {{1, 1}}, 1}}};
+    const Campaign campaign = tracked_campaign(Chain(testing::fanuc().joints(), elements));
+    const Identifiability found = find_identifiable(campaign);
+    ASSERT_EQ(found.dropped.size(), 1U);
+    EXPECT_EQ(names_of(campaign, {found.dropped[0].parameter}),
+              (std::vector<std::string>{"ratio_about_1"}));
+    std::vector<Index> absorbing;
+    for (const ParameterTerm& term : found.dropped[0].absorbed_by)
+        absorbing.push_back(term.parameter);
+    EXPECT_EQ(names_of(campaign, absorbing), (std::vector<std::string>{"dq2", "ratio"}));
+    const Chain kept = keep_parameters(campaign.robot, {"dq2", "ratio"});
+    EXPECT_EQ(kept.parameter_names(), (std::vector<std::string>{"dq2", "ratio"}));
+    EXPECT_EQ(irreducible_model(campaign).parameter_count(), 19);
 }
 
 TEST(IrreducibleModel, PredictsAsTheStatedChainDoes) {

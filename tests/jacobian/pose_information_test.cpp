@@ -6,6 +6,7 @@
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/noise.hpp"
 #include "posewise/model/complete_model.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 #include "support/derivative_check.hpp"
@@ -71,7 +72,9 @@ TEST(PoseInformation, IsThatOfItsBlock) {
 }
 
 TEST(PoseInformation, DerivativeAgreesWithDifferencesForEveryElementAndNoise) {
-    for (const Chain& chain : {fanuc(), every_element(), complete_model(gantry_with_wrist())}) {
+    const Chain with_terms = with_harmonics(with_gravity_terms(fanuc()), {1, 2});
+    for (const Chain& chain :
+         {fanuc(), every_element(), complete_model(gantry_with_wrist()), with_terms}) {
         for (const Campaign& campaign : campaigns_of_every_noise(chain)) {
             const PoseInformation pose(campaign, campaign.nominal, 3);
             for (std::uint64_t item = 0; item < static_cast<std::uint64_t>(sweep_count() / 200);

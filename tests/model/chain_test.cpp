@@ -177,6 +177,78 @@ TEST(Chain, KnowsHowItsTwistsChangeWithTheJoints) {
     }
 }
 
+/// Sine, cosine, coupling and transmission ratio as errors, beside a constant one and alone.
+Chain with_every_term() {
+    using Shape = JointFunction::Shape;
+    Element shoulder = driven(Motion::Rotation, Axis::Y, 0, "a", -0.8);
+    shoulder.terms = {{"sine", {Shape::Sine, {{0, 1}, {1, -2}}, 0}},
+                      {"cosine", {Shape::Sine, {{1, 1.5}}, pi / 2}}};
+    Element slide = driven(Motion::Translation, Axis::X, 2);
+    slide.terms = {{"coupling", {Shape::Linear, {{0, 0.7}, {2, 1}}, 0.2}}};
+    Element link = translation(Axis::Z, 0.5);
+    link.terms = {{"sag", {Shape::Sine, {{0, 2}}, 0.3}}, {"ratio", {Shape::Linear, {{1, 1}}, 0}}};
+    return Chain({{"q1", -3, 3}, {"q2", -3, 3}, {"s", -1, 1}},
+                 {rotation(Axis::X, 0.3, "b"), shoulder, link, driven(Motion::Rotation, Axis::Z, 1),
+                  slide, translation(Axis::Y, 0.2, "c")});
+}
+
+TEST(Chain, DifferentiatesErrorsThatDependOnTheConfiguration) {
+    const Chain chain = with_every_term();
+    ASSERT_EQ(chain.parameter_names(), (std::vector<std::string>{"b", "a", "sine", "cosine", "sag",
+                                                                 "ratio", "coupling", "c"}));
+    EXPECT_EQ(chain.parameter_term(1), nullptr);
+    EXPECT_EQ(chain.parameter_term(3)->parameter, "cosine");
+    EXPECT_EQ(chain.parameter_element(6).motion, Motion::Translation);
+    RandomStream stream(45);
+    for (Index sweep = 0; sweep < sweep_count() / 50; ++sweep) {
+        for (const double magnitude : {0.0, 1e-3, 0.3}) {
+            const Isometry3d base = random_pose(stream);
+            const VectorXd q = random_vector(stream, 3, 2);
+            const VectorXd errors = random_vector(stream, 8, magnitude);
+            expect_right_twists(chain, base, q, errors);
+            expect_right_rates(chain, base, q, errors);
+            EXPECT_TRUE(chain.base_from_links(q, errors).back().isApprox(
+                chain.base_from_flange(q, errors), 1e-15));
+        }
+    }
+}
+
+TEST(Chain, AddsATermToItsElement) {
+    const VectorXd q = Eigen::Vector3d(0.4, -0.7, 0.1);
+    const Chain chain = with_every_term();
+    VectorXd errors = VectorXd::Zero(8), same = errors;
+    errors[2] = 0.02;
+    same[1] = 0.02 * std::sin(0.4 + 2 * 0.7);
+    EXPECT_TRUE(chain.base_from_flange(q, errors).isApprox(chain.base_from_flange(q, same), 1e-15));
+    errors[3] = -0.03;
+    same[1] += -0.03 * std::cos(1.5 * -0.7);
+    EXPECT_TRUE(chain.base_from_flange(q, errors).isApprox(chain.base_from_flange(q, same), 1e-15));
+}
+
+TEST(Chain, RefusesTermsThatMakeNoSense) {
+    using Shape = JointFunction::Shape;
+    const auto error_of = [](const ErrorTerm& term) -> std::string {
+        Element turn = driven(Motion::Rotation, Axis::Z, 0, "dq1");
+        turn.terms = {term};
+        try {
+            Chain({{"q1", -1, 1}}, {turn});
+        } catch (const InputError& problem) {
+            return problem.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(error_of({"k", {Shape::Sine, {{0, 1}}, 0}}), "");
+    EXPECT_EQ(error_of({"", {Shape::Sine, {{0, 1}}, 0}}),
+              "element 1 of the chain has an error term without name");
+    EXPECT_EQ(error_of({"k", {Shape::Sine, {}, 0}}),
+              "term 'k' of element 1 of the chain depends on no joint");
+    EXPECT_EQ(
+        error_of({"k", {Shape::Sine, {{1, 1}}, 0}}),
+        "term 'k' of element 1 of the chain is driven by joint index 1, the robot has 1 joints");
+    EXPECT_EQ(error_of({"dq1", {Shape::Sine, {{0, 1}}, 0}}), "parameter 'dq1' occurs twice");
+    EXPECT_NE(error_of({"k", {Shape::Sine, {{0, 1}}, std::nan("")}}), "");
+}
+
 TEST(Chain, MovesWithItsBase) {
     RandomStream stream(23);
     const Chain robot = fanuc();

@@ -77,12 +77,14 @@ struct CalibratedUrdf {
     /// Parameters whose errors no origin between base and tip link can express: those behind the
     /// last joint if no fixed joint follows it.
     std::vector<std::string> not_expressed;
+    /// Error terms that are not zero: a URDF has no errors that depend on the configuration.
+    std::vector<std::string> terms;
 };
 
 /// The URDF that predicts the pose of the tip link as `robot` does with error parameters
-/// `parameters`. `robot` is make_chain() of the source, with error parameters. Each constant
-/// transform between two moving joints goes into the origin of the second one, that behind the last
-/// into the first fixed joint there.
+/// `parameters`, its error terms left out. `robot` is make_chain() of the source, with error
+/// parameters. Each constant transform between two moving joints goes into the origin of the second
+/// one, that behind the last into the first fixed joint there.
 CalibratedUrdf make_calibrated_urdf(const UrdfSource& source, const Chain& robot,
                                     const VectorXd& parameters);
 

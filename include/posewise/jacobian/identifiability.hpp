@@ -40,9 +40,9 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
 
 /// What a campaign can identify at best: its Jacobian at nominal parameters over random
 /// configurations within the limits (as many as twice the parameters). Priority: base, sensor,
-/// joint offsets, translations, other rotations, each from base to flange. The test is at nominal
-/// values because off nominal a lost rank is only nearly lost. Targets and base that the campaign
-/// does not state are put at generic places.
+/// joint offsets, translations, other rotations, error terms, each from base to flange. The test is
+/// at nominal values because off nominal a lost rank is only nearly lost. Targets and base that the
+/// campaign does not state are put at generic places.
 Identifiability find_identifiable(const Campaign& campaign);
 
 /// The same robot with only the kept error parameters.

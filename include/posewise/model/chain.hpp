@@ -21,13 +21,40 @@ struct JointTerm {
     double coefficient = 1;
 };
 
-/// One elementary transform E(value + sum of joint terms + error parameter).
+/// f(q) of an error that depends on the configuration; u = phase + sum of joint terms.
+struct JointFunction {
+    enum class Shape {
+        Linear,  ///< u: coupling of joints, transmission ratio
+        Sine,    ///< sin(u); a cosine has phase pi/2
+    };
+    Shape shape = Shape::Linear;
+    std::vector<JointTerm> joints;
+    double phase = 0;
+};
+
+/// What a term is for, which says how large it is expected to be.
+enum class TermKind {
+    Free,      ///< written by hand; as large as a constant error
+    Gravity,   ///< torque of the weight on a compliant joint
+    Harmonic,  ///< periodic error of an encoder or a gear
+};
+
+/// An error of an element that depends on the configuration: its amount gains parameter * f(q).
+struct ErrorTerm {
+    std::string parameter;  ///< name of the error parameter, in rad or m as the element's amount
+    JointFunction function;
+    TermKind kind = TermKind::Free;
+};
+
+/// One elementary transform
+/// E(value + sum of joint terms + error parameter + sum of error terms).
 struct Element {
     Motion motion = Motion::Translation;
     Axis axis = Axis::X;
-    double value = 0;               ///< nominal, m or rad
-    std::vector<JointTerm> joints;  ///< empty: a fixed element
-    std::string parameter;          ///< name of its error parameter; empty: none
+    double value = 0;                   ///< nominal, m or rad
+    std::vector<JointTerm> joints;      ///< empty: a fixed element
+    std::string parameter = {};         ///< name of its constant error; empty: none
+    std::vector<ErrorTerm> terms = {};  ///< errors that depend on the configuration
 };
 
 /// A joint with its limits in rad (revolute) or m (prismatic).
@@ -56,25 +83,29 @@ struct FlangeMotionRate {
 };
 
 /// A serial robot as a product of elementary transforms from base to flange:
-/// base_from_flange(q) = prod_k E_k(v_k + c_k . q + pi_k).
+/// base_from_flange(q) = prod_k E_k(v_k + c_k . q + pi_k + sum_i pi_ki f_ki(q)). Error parameters
+/// stand in the order of the elements, of one element first its constant error, then its terms.
 class Chain {
   public:
     Chain() = default;
 
     /// Throws InputError if a joint drives no element or both a rotation and a translation, if its
-    /// limits are not finite or out of order, if two parameters (or joints) share a name, or if an
-    /// element names a joint that does not exist or has a number that is not finite.
+    /// limits are not finite or out of order, if two parameters (or joints) share a name, if an
+    /// element names a joint that does not exist or has a number that is not finite, or if an error
+    /// term has no name or no joint.
     Chain(std::vector<Joint> joints, std::vector<Element> elements);
 
     const std::vector<Joint>& joints() const { return joints_; }
     const std::vector<Element>& elements() const { return elements_; }
     Index joint_count() const { return static_cast<Index>(joints_.size()); }
-    Index parameter_count() const { return static_cast<Index>(parameter_elements_.size()); }
+    Index parameter_count() const { return static_cast<Index>(parameter_places_.size()); }
 
     /// Whether joint j turns (else it slides).
     Motion joint_motion(Index joint) const;
-    /// The element that carries error parameter k, in the order of the elements.
+    /// The element that carries error parameter k.
     const Element& parameter_element(Index parameter) const;
+    /// The term whose error parameter k is; nullptr if it is an element's constant error.
+    const ErrorTerm* parameter_term(Index parameter) const;
     std::vector<std::string> parameter_names() const;
 
     /// Throws InputError (naming the joint, value and rule) if q has the wrong size or a value
@@ -104,14 +135,24 @@ class Chain {
                              std::vector<FlangeMotionRate>& rates) const;
 
   private:
+    /// Where an error parameter stands: an element, and one of its terms (-1: its constant error).
+    struct Place {
+        Index element;
+        Index term;
+    };
+
     template <typename Visit>
     void walk(const Isometry3d& world_from_base, const VectorXd& q, const VectorXd& parameters,
               FlangeMotion& motion, const Visit& visit) const;
 
     std::vector<Joint> joints_;
     std::vector<Element> elements_;
-    std::vector<Index> parameter_elements_;  // parameter -> its element
+    std::vector<Place> parameter_places_;
 };
+
+/// For each element the joint whose errors it carries, -1 if none's: the first of its joints that
+/// no element before it carries.
+std::vector<Index> element_owners(const Chain& chain);
 
 /// The same robot without error parameters: calibrating it fits base and targets only.
 Chain without_parameters(const Chain& chain);

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "posewise/model/chain.hpp"
+
+/// Error terms that every robot of a kind has, made from its axes.
+namespace posewise {
+
+/// The function in words: "sin(q2-q3)", "cos(2q4)", "lin(q3)" for a linear one, with the phase in
+/// rad if it has another than those of sine and cosine.
+std::string describe_function(const JointFunction& function, const std::vector<Joint>& joints);
+
+/// The robot with the gravity terms of compliant joints: a weight turned by an angle about a level
+/// axis pulls with the sine and cosine of that angle. Concerned are the joints of the first run of
+/// consecutive parallel revolute axes that stay perpendicular to `direction` (gravity in the base
+/// frame, of any length), because all joints before them slide or turn about `direction`; within
+/// 1 deg. With the run's angles added up from its first joint to joint k, signs as the chain turns,
+/// joint j gets a sine and a cosine of each of these sums from k = j on: a 6R arm on the floor 4 on
+/// joint 2 and 2 on joint 3, a UR 6, 4 and 2. Parameters are named `q2.sin(q2)`, `q2.cos(q2+q3)`.
+/// Only `joints` get terms (indices from 0; empty: all); one that an element has already is not
+/// added. Throws InputError if there is no such run, if a joint is not in it, or for a zero
+/// direction.
+Chain with_gravity_terms(const Chain& chain, const Vector3d& direction = -Vector3d::UnitZ(),
+                         const std::vector<Index>& joints = {});
+
+/// The robot with periodic errors of encoders and gears: on each of `joints` (empty: all revolute
+/// ones) a sine and a cosine of order * q for each order, in turns of the error per turn of the
+/// joint: `q4.sin(q4)`, `q4.cos(2q4)`. Those that the joint has already are not added. Throws
+/// InputError for a prismatic joint or an order that is not positive and finite.
+Chain with_harmonics(const Chain& chain, const std::vector<double>& orders,
+                     const std::vector<Index>& joints = {});
+
+}  // namespace posewise

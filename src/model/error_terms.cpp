@@ -1,0 +1,186 @@
+#include "posewise/model/error_terms.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+constexpr double parallel_tolerance = std::numbers::pi / 180;
+
+const std::string& joint_name(const Chain& chain, Index joint) {
+    return chain.joints()[static_cast<std::size_t>(joint)].name;
+}
+
+bool is_wanted(const std::vector<Index>& joints, Index joint) {
+    return joints.empty() || std::find(joints.begin(), joints.end(), joint) != joints.end();
+}
+
+/// A sine and a cosine of the sum of `joints`, as errors of an element that belongs to `owner`.
+void add_waves(const Chain& chain, Index owner, const std::vector<JointTerm>& joints, TermKind kind,
+               Element& element) {
+    for (const double phase : {0.0, std::numbers::pi / 2}) {
+        const JointFunction wave{JointFunction::Shape::Sine, joints, phase};
+        const std::string name =
+            joint_name(chain, owner) + '.' + describe_function(wave, chain.joints());
+        const auto is_same = [&](const ErrorTerm& term) { return term.parameter == name; };
+        if (std::none_of(element.terms.begin(), element.terms.end(), is_same)) {
+            element.terms.push_back({name, wave, kind});
+        }
+    }
+}
+
+void check_joints(const Chain& chain, const std::vector<Index>& joints) {
+    for (const Index joint : joints) {
+        if (joint < 0 || joint >= chain.joint_count()) {
+            throw InputError("joint index " + std::to_string(joint) + " must be below " +
+                             std::to_string(chain.joint_count()));
+        }
+    }
+}
+
+/// What each driven element turns about (zero: it slides) or 0 0 0 for a fixed one; in the base
+/// frame, all joints at zero.
+std::vector<Vector3d> axes_at_zero(const Chain& chain) {
+    std::vector<Element> elements = without_parameters(chain).elements();
+    for (std::size_t k = 0; k < elements.size(); ++k) {
+        elements[k].parameter = "element " + std::to_string(k);
+    }
+    const Chain probe(chain.joints(), std::move(elements));
+    FlangeMotion motion;
+    probe.differentiate(Isometry3d::Identity(), VectorXd::Zero(probe.joint_count()),
+                        VectorXd::Zero(probe.parameter_count()), motion);
+    std::vector<Vector3d> axes;
+    for (Index k = 0; k < probe.parameter_count(); ++k) {
+        const bool is_fixed = probe.parameter_element(k).joints.empty();
+        axes.push_back(is_fixed ? Vector3d::Zero() : Vector3d(motion.twists.col(6 + k).head<3>()));
+    }
+    return axes;
+}
+
+bool is_parallel(const Vector3d& a, const Vector3d& b) {
+    return a.cross(b).norm() <= parallel_tolerance;
+}
+
+/// The elements of the run; see with_gravity_terms(). `down` has length 1.
+std::vector<std::size_t> find_level_run(const std::vector<Vector3d>& axes, const Vector3d& down) {
+    std::vector<std::size_t> run;
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+        if (axes[k].isZero(0)) continue;
+        if (run.empty() && is_parallel(axes[k], down)) continue;
+        const bool is_level = std::abs(axes[k].dot(down)) <= parallel_tolerance;
+        if (!is_level || (!run.empty() && !is_parallel(axes[k], axes[run.front()]))) break;
+        run.push_back(k);
+    }
+    return run;
+}
+
+void add_to(std::vector<JointTerm>& sum, const std::vector<JointTerm>& joints, double sign) {
+    for (const JointTerm& term : joints) {
+        const auto same = std::find_if(sum.begin(), sum.end(),
+                                       [&](const JointTerm& t) { return t.joint == term.joint; });
+        if (same == sum.end()) {
+            sum.push_back({term.joint, sign * term.coefficient});
+        } else {
+            same->coefficient += sign * term.coefficient;
+        }
+    }
+    std::erase_if(sum, [](const JointTerm& term) { return term.coefficient == 0; });
+}
+
+/// Angle about the run's axis of what each of its elements carries.
+std::vector<std::vector<JointTerm>> partial_sums(const Chain& chain,
+                                                 const std::vector<Vector3d>& axes,
+                                                 const std::vector<std::size_t>& run) {
+    std::vector<std::vector<JointTerm>> sums;
+    std::vector<JointTerm> sum;
+    for (const std::size_t k : run) {
+        add_to(sum, chain.elements()[k].joints, axes[k].dot(axes[run.front()]) < 0 ? -1 : 1);
+        sums.push_back(sum);
+    }
+    return sums;
+}
+
+}  // namespace
+
+std::string describe_function(const JointFunction& function, const std::vector<Joint>& joints) {
+    const bool is_sine = function.shape == JointFunction::Shape::Sine;
+    const bool is_cosine = is_sine && function.phase == std::numbers::pi / 2;
+    std::string sum;
+    for (const JointTerm& term : function.joints) {
+        if (term.coefficient < 0) sum += '-';
+        if (term.coefficient > 0 && !sum.empty()) sum += '+';
+        const double size = std::abs(term.coefficient);
+        if (size != 1) sum += fmt::format("{:.9g}", size);
+        sum += joints[static_cast<std::size_t>(term.joint)].name;
+    }
+    if (!is_cosine && function.phase != 0) sum += fmt::format("{:+.6g}", function.phase);
+    return (is_cosine ? "cos(" : is_sine ? "sin(" : "lin(") + sum + ')';
+}
+
+Chain with_gravity_terms(const Chain& chain, const Vector3d& direction,
+                         const std::vector<Index>& joints) {
+    check_joints(chain, joints);
+    if (!direction.allFinite() || direction.isZero(0)) {
+        throw InputError("direction of gravity must be finite and not zero");
+    }
+    const std::vector<Vector3d> axes = axes_at_zero(chain);
+    const std::vector<std::size_t> run = find_level_run(axes, direction.normalized());
+    if (run.empty()) {
+        throw InputError(
+            "no joint turns about an axis that stays perpendicular to gravity: there are no "
+            "gravity "
+            "terms");
+    }
+    const auto sums = partial_sums(chain, axes, run);
+    const std::vector<Index> owners = element_owners(chain);
+    std::vector<Element> elements = chain.elements();
+    std::vector<Index> level;
+    for (std::size_t j = 0; j < run.size(); ++j) {
+        const Index owner = owners[run[j]];
+        if (owner < 0 || !is_wanted(joints, owner)) continue;
+        level.push_back(owner);
+        for (std::size_t k = j; k < run.size(); ++k) {
+            if (sums[k].empty()) continue;
+            add_waves(chain, owner, sums[k], TermKind::Gravity, elements[run[j]]);
+        }
+    }
+    for (const Index joint : joints) {
+        if (is_wanted(level, joint) && !level.empty()) continue;
+        throw InputError("joint '" + joint_name(chain, joint) +
+                         "' does not turn about an axis that stays perpendicular to gravity");
+    }
+    return Chain(chain.joints(), std::move(elements));
+}
+
+Chain with_harmonics(const Chain& chain, const std::vector<double>& orders,
+                     const std::vector<Index>& joints) {
+    check_joints(chain, joints);
+    for (const double order : orders) {
+        if (!std::isfinite(order) || order <= 0) {
+            throw InputError("order " + std::to_string(order) + " of a harmonic must be positive");
+        }
+    }
+    for (const Index joint : joints) {
+        if (chain.joint_motion(joint) == Motion::Rotation) continue;
+        throw InputError("joint '" + joint_name(chain, joint) +
+                         "' slides; harmonics need one that turns");
+    }
+    const std::vector<Index> owners = element_owners(chain);
+    std::vector<Element> elements = chain.elements();
+    for (std::size_t k = 0; k < elements.size(); ++k) {
+        const bool turns = elements[k].motion == Motion::Rotation;
+        if (owners[k] < 0 || !turns || !is_wanted(joints, owners[k])) continue;
+        for (const double order : orders) {
+            add_waves(chain, owners[k], {{owners[k], order}}, TermKind::Harmonic, elements[k]);
+        }
+    }
+    return Chain(chain.joints(), std::move(elements));
+}
+
+}  // namespace posewise

@@ -1,0 +1,111 @@
+#include "posewise/model/error_terms.hpp"
+
+#include <gtest/gtest.h>
+
+#include "posewise/core/errors.hpp"
+#include "support/robots.hpp"
+
+namespace posewise {
+namespace {
+
+using namespace testing;
+using Names = std::vector<std::string>;
+
+constexpr auto R = Motion::Rotation;
+
+/// UR-type arm: axes z, then three parallel about -y (alpha 90), then the wrist.
+Chain ur_type() {
+    std::vector<Joint> joints;
+    for (int j = 1; j <= 6; ++j) joints.push_back({"q" + std::to_string(j), -3, 3});
+    return Chain(
+        joints,
+        {driven(R, Axis::Z, 0), translation(Axis::Z, 0.127), rotation(Axis::X, 90 * degree),
+         driven(R, Axis::Z, 1), translation(Axis::X, -0.612), driven(R, Axis::Z, 2),
+         translation(Axis::X, -0.572), driven(R, Axis::Z, 3), rotation(Axis::X, 90 * degree),
+         driven(R, Axis::Z, 4), rotation(Axis::X, -90 * degree), driven(R, Axis::Z, 5)});
+}
+
+Names terms_of(const Chain& chain) { return chain.parameter_names(); }
+
+TEST(GravityTerms, OfASixAxisArmAreSixWithTheSignsOfItsElements) {
+    EXPECT_EQ(terms_of(with_gravity_terms(without_parameters(fanuc()))),
+              (Names{"q2.sin(q2)", "q2.cos(q2)", "q2.sin(q2-q3)", "q2.cos(q2-q3)", "q3.sin(q2-q3)",
+                     "q3.cos(q2-q3)"}));
+}
+
+TEST(GravityTerms, OfAUrAreTwelve) {
+    const Names names = terms_of(with_gravity_terms(ur_type()));
+    ASSERT_EQ(names.size(), 12U);
+    EXPECT_EQ(names[5], "q2.cos(q2+q3+q4)");
+    EXPECT_EQ(names[6], "q3.sin(q2+q3)");
+    EXPECT_EQ(names[11], "q4.cos(q2+q3+q4)");
+}
+
+TEST(GravityTerms, FollowTheWeightNotTheJointOfAParallelogram) {
+    Element elbow = driven(R, Axis::Y, 2);
+    elbow.joints.push_back({1, -1});
+    const Chain arm({{"q1", -1, 1}, {"q2", -1, 1}, {"q3", -1, 1}},
+                    {driven(R, Axis::Z, 0), driven(R, Axis::Y, 1), translation(Axis::Z, 1), elbow,
+                     translation(Axis::X, 1)});
+    EXPECT_EQ(terms_of(with_gravity_terms(arm)), (Names{"q2.sin(q2)", "q2.cos(q2)", "q2.sin(q3)",
+                                                        "q2.cos(q3)", "q3.sin(q3)", "q3.cos(q3)"}));
+}
+
+TEST(GravityTerms, AreThePhysicsOfAnArmThatBends) {
+    // Forearm pitch of q2 - q3: what the weight of the forearm does to joint 2 is some
+    // a cos(pitch), so amounts of joint 2 at equal pitch are the same whatever q2 alone is.
+    const Chain arm = with_gravity_terms(without_parameters(fanuc()));
+    VectorXd errors = VectorXd::Zero(6);
+    errors[3] = 1e-2;  // q2.cos(q2-q3)
+    VectorXd q = VectorXd::Zero(6);
+    q[1] = 0.4;
+    q[2] = 0.1;
+    VectorXd shifted = q;
+    shifted[1] += 1e-2 * std::cos(0.3);
+    EXPECT_TRUE(arm.base_from_flange(q, errors).isApprox(
+        arm.base_from_flange(shifted, VectorXd::Zero(6)), 1e-15));
+}
+
+TEST(GravityTerms, DependOnHowTheRobotStands) {
+    // On a wall gravity is along x: joint 1 turns about a level axis, joint 2 not always.
+    EXPECT_EQ(terms_of(with_gravity_terms(without_parameters(fanuc()), Vector3d::UnitX())),
+              (Names{"q1.sin(q1)", "q1.cos(q1)"}));
+    // Upside down all is the same.
+    EXPECT_EQ(with_gravity_terms(fanuc(), Vector3d(0, 0, 9.81)).parameter_count(), 18 + 6);
+    EXPECT_THROW(with_gravity_terms(scara()), InputError);
+    EXPECT_THROW(with_gravity_terms(fanuc(), Vector3d::Zero()), InputError);
+}
+
+TEST(GravityTerms, AreOnTheChosenJointsOnly) {
+    EXPECT_EQ(terms_of(with_gravity_terms(without_parameters(fanuc()), -Vector3d::UnitZ(), {2})),
+              (Names{"q3.sin(q2-q3)", "q3.cos(q2-q3)"}));
+    EXPECT_THROW(with_gravity_terms(fanuc(), -Vector3d::UnitZ(), {1, 4}), InputError);
+    EXPECT_THROW(with_gravity_terms(fanuc(), -Vector3d::UnitZ(), {4}), InputError);
+    EXPECT_THROW(with_gravity_terms(fanuc(), -Vector3d::UnitZ(), {6}), InputError);
+}
+
+TEST(GravityTerms, OfAGantryAreThoseOfTheFirstLevelAxis) {
+    EXPECT_EQ(terms_of(with_gravity_terms(gantry_with_wrist())), (Names{"b.sin(b)", "b.cos(b)"}));
+}
+
+TEST(Harmonics, AreSinesAndCosinesOfOrders) {
+    EXPECT_EQ(terms_of(with_harmonics(without_parameters(fanuc()), {1, 2.5}, {3})),
+              (Names{"q4.sin(q4)", "q4.cos(q4)", "q4.sin(2.5q4)", "q4.cos(2.5q4)"}));
+    EXPECT_EQ(with_harmonics(gantry_with_wrist(), {1}).parameter_count(), 6);
+    EXPECT_THROW(with_harmonics(gantry_with_wrist(), {1}, {0}), InputError);
+    EXPECT_THROW(with_harmonics(fanuc(), {0}), InputError);
+}
+
+TEST(Harmonics, AreNotAddedWhereGravityHasThem) {
+    const Chain both = with_harmonics(with_gravity_terms(without_parameters(fanuc())), {1});
+    EXPECT_EQ(both.parameter_count(), 6 + 12 - 2);
+    EXPECT_EQ(both.parameter_term(2)->parameter, "q2.sin(q2)");
+    EXPECT_EQ(both.parameter_term(2)->kind, TermKind::Gravity);
+}
+
+TEST(ErrorTerms, AreRemovedWithTheOtherParameters) {
+    EXPECT_EQ(without_parameters(with_gravity_terms(fanuc())).parameter_count(), 0);
+}
+
+}  // namespace
+}  // namespace posewise
