@@ -143,6 +143,16 @@ std::string describe_scaling(const Campaign& campaign, double repeats) {
         format_short(mm_per_m * campaign.model_error),
         format_short(mm_per_m * campaign.spread.length),
         format_short(mrad_per_rad * campaign.spread.angle));
+    const auto add = [&](TermKind kind, const char* what, double size) {
+        for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
+            const ErrorTerm* const term = campaign.robot.parameter_term(k);
+            if (term == nullptr || term->kind != kind) continue;
+            text += fmt::format(", {} mrad a {} term", format_short(mrad_per_rad * size), what);
+            return;
+        }
+    };
+    add(TermKind::Gravity, "gravity", campaign.spread.gravity);
+    add(TermKind::Harmonic, "harmonic", campaign.spread.harmonic);
     if (!campaign.spread.by_name.empty()) text += ", others by name in the campaign file";
     return text + '\n';
 }

@@ -98,8 +98,14 @@ std::string describe_formula(const Campaign& campaign) {
         revolute += campaign.robot.joint_motion(j) == Motion::Rotation ? 1 : 0;
     }
     const Index prismatic = campaign.robot.joint_count() - revolute;
-    return fmt::format("; by the formula 4R + 2P + 3n = 4*{} + 2*{} + 3*{} = {}", revolute,
-                       prismatic, targets, 4 * revolute + 2 * prismatic + 3 * targets);
+    Index terms = 0;
+    for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
+        terms += campaign.robot.parameter_term(k) != nullptr ? 1 : 0;
+    }
+    return fmt::format("; by the formula 4R + 2P + 3n{} = 4*{} + 2*{} + 3*{}{} = {}",
+                       terms > 0 ? " + terms" : "", revolute, prismatic, targets,
+                       terms > 0 ? fmt::format(" + {}", terms) : "",
+                       4 * revolute + 2 * prismatic + 3 * targets + terms);
 }
 
 /// The campaign with every error a rigid link can have.

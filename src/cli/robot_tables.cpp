@@ -25,6 +25,13 @@ std::string format_terms(const std::vector<JointTerm>& terms, const Chain& robot
     return text;
 }
 
+/// "dq2, q2.sin(q2)".
+std::string format_parameters(const Element& element) {
+    std::string text = element.parameter;
+    for (const ErrorTerm& term : element.terms) text += (text.empty() ? "" : ", ") + term.parameter;
+    return text;
+}
+
 FlangeMotion motion_at_zero(const Chain& robot) {
     FlangeMotion motion;
     robot.differentiate(Isometry3d::Identity(), VectorXd::Zero(robot.joint_count()),
@@ -42,7 +49,8 @@ Table element_table(const Chain& robot) {
         table.rows.push_back(
             {std::to_string(table.rows.size() + 1), fmt::format("{}{}", turns ? 'R' : 'T', axis),
              format_short(turns ? to_degrees(element.value) : mm_per_m * element.value, 9),
-             turns ? "deg" : "mm", format_terms(element.joints, robot), element.parameter});
+             turns ? "deg" : "mm", format_terms(element.joints, robot),
+             format_parameters(element)});
     }
     return table;
 }

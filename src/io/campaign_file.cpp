@@ -20,10 +20,16 @@ Isometry3d read_base(const YamlValue& value) {
 }
 
 ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign) {
-    const YamlMap map(value, {"length_<length>", "angle_<angle>", "parameters"});
+    const YamlMap map(value, {"length_<length>", "angle_<angle>", "gravity_<angle>",
+                              "harmonic_<angle>", "parameters"});
     ParameterSpread spread;
-    if (const auto length = map.find_measure("length")) spread.length = read_positive(*length);
-    if (const auto angle = map.find_measure("angle")) spread.angle = read_positive(*angle);
+    const auto read = [&map](std::string_view key, double& size) {
+        if (const auto measure = map.find_measure(key)) size = read_positive(*measure);
+    };
+    read("length", spread.length);
+    read("angle", spread.angle);
+    read("gravity", spread.gravity);
+    read("harmonic", spread.harmonic);
     const auto parameters = map.find("parameters");
     if (!parameters) return spread;
     const std::vector<std::string> names = parameter_names(campaign);

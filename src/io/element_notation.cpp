@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 
 #include "text.hpp"
 #include "units.hpp"
@@ -57,6 +58,15 @@ class ElementParser::Cursor {
         return word;
     }
 
+    /// The name of a function in front of its '('; goes to that.
+    bool accept_function(std::string_view name) {
+        skip_blanks();
+        const std::size_t start = position_;
+        if (read_word() == name && peek() == '(') return true;
+        position_ = start;
+        return false;
+    }
+
     double read_number() {
         double number = 0;
         const char* const first = text_.data() + position_;
@@ -71,6 +81,15 @@ class ElementParser::Cursor {
     std::string_view text_;
     FileLocation start_;
     std::size_t position_ = 0;
+};
+
+/// Amounts and joints added up: what drives an element, or u of a JointFunction.
+struct ElementParser::Sum {
+    Motion motion;        ///< of the amounts
+    std::string subject;  ///< "Tx is a translation"
+    bool drives = true;   ///< joints move by it
+    double value = 0;
+    std::vector<JointTerm> joints = {};
 };
 
 namespace {
@@ -107,8 +126,11 @@ Element ElementParser::parse(std::string_view text, const FileLocation& start) {
     Element element;
     element.motion = kind[0] == 'R' ? Motion::Rotation : Motion::Translation;
     element.axis = static_cast<Axis>(kind[1] - 'x');
-    parse_sum(cursor, element);
-    if (cursor.peek() == '[') parse_parameter(cursor, element);
+    Sum sum{element.motion, describe(element)};
+    parse_sum(cursor, sum);
+    element.value = sum.value;
+    element.joints = std::move(sum.joints);
+    while (cursor.peek() == '[') parse_error(cursor, element);
     if (cursor.peek() != '\0') {
         throw cursor.error(cursor.position(), quote(cursor.character()) +
                                                   " is not expected here; an element " + example);
@@ -125,8 +147,10 @@ std::vector<JointTerm> ElementParser::parse_drive(std::string_view text, const F
     element.axis = Axis::Z;
     cursor.skip_blanks();
     const std::size_t first = cursor.position();
-    parse_sum(cursor, element);
-    if (cursor.peek() != '\0' || element.value != 0 || element.joints.empty()) {
+    Sum sum{motion, describe(element)};
+    parse_sum(cursor, sum);
+    element.joints = std::move(sum.joints);
+    if (cursor.peek() != '\0' || sum.value != 0 || element.joints.empty()) {
         throw cursor.error(first,
                            quote(text) + " is no sum of joints; must be like '-q3 + 0.5*q2'");
     }
@@ -140,11 +164,11 @@ void ElementParser::note_driven(const Element& element) {
     }
 }
 
-void ElementParser::parse_sum(Cursor& cursor, Element& element) const {
+void ElementParser::parse_sum(Cursor& cursor, Sum& sum) const {
     double sign = cursor.accept('-') ? -1 : 1;
     if (sign > 0) cursor.accept('+');
     for (;;) {
-        parse_term(cursor, sign, element);
+        parse_term(cursor, sign, sum);
         if (cursor.accept('+')) {
             sign = 1;
         } else if (cursor.accept('-')) {
@@ -155,10 +179,10 @@ void ElementParser::parse_sum(Cursor& cursor, Element& element) const {
     }
 }
 
-void ElementParser::parse_term(Cursor& cursor, double sign, Element& element) const {
+void ElementParser::parse_term(Cursor& cursor, double sign, Sum& sum) const {
     const char next = cursor.peek();
     if (is_identifier(std::string(1, next))) {
-        add_joint(cursor, sign, element);
+        add_joint(cursor, sign, sum);
         return;
     }
     const std::size_t start = cursor.position();
@@ -167,19 +191,18 @@ void ElementParser::parse_term(Cursor& cursor, double sign, Element& element) co
     }
     const double number = sign * cursor.read_number();
     if (!cursor.accept('*')) {
-        add_nominal(cursor, number, start, element);
+        add_nominal(cursor, number, start, sum);
     } else if (number == 0) {
         throw cursor.error(start, "a joint's coefficient is 0; must not be, leave the joint out");
     } else if (!(std::abs(number) >= 1e-6 && std::abs(number) <= 1e6)) {
         throw cursor.error(start, "a joint's coefficient must be from 1e-6 to 1e6 in magnitude");
     } else {
-        add_joint(cursor, number, element);
+        add_joint(cursor, number, sum);
     }
 }
 
-void ElementParser::add_nominal(Cursor& cursor, double number, std::size_t start,
-                                Element& element) const {
-    const Quantity quantity = quantity_of(element.motion);
+void ElementParser::add_nominal(Cursor& cursor, double number, std::size_t start, Sum& sum) const {
+    const Quantity quantity = quantity_of(sum.motion);
     const std::string units = list_words(unit_names(quantity));
     cursor.skip_blanks();
     const std::size_t unit_position = cursor.position();
@@ -194,16 +217,16 @@ void ElementParser::add_nominal(Cursor& cursor, double number, std::size_t start
                                               "; must be like -1.5*" + name);
     }
     if (unit == nullptr || unit->quantity != quantity) {
-        throw cursor.error(unit_position, describe(element) + ", its amount cannot be in " +
-                                              quote(name) + "; must be in " + units);
+        throw cursor.error(unit_position, sum.subject + ", its amount cannot be in " + quote(name) +
+                                              "; must be in " + units);
     }
-    element.value += unit->to_si(number);
-    if (!is_plausible(element.value, quantity)) {
+    sum.value += unit->to_si(number);
+    if (!is_plausible(sum.value, quantity)) {
         throw cursor.error(start, "the amount is too large; must be " + plausible(quantity));
     }
 }
 
-void ElementParser::add_joint(Cursor& cursor, double coefficient, Element& element) const {
+void ElementParser::add_joint(Cursor& cursor, double coefficient, Sum& sum) const {
     cursor.skip_blanks();
     const std::size_t position = cursor.position();
     const std::string name = cursor.read_word();
@@ -214,33 +237,50 @@ void ElementParser::add_joint(Cursor& cursor, double coefficient, Element& eleme
     }
     const Index joint = found - joint_names_.begin();
     const auto same = [joint](const JointTerm& term) { return term.joint == joint; };
-    if (std::any_of(element.joints.begin(), element.joints.end(), same)) {
+    if (std::any_of(sum.joints.begin(), sum.joints.end(), same)) {
         throw cursor.error(position, "joint " + quote(name) +
                                          " occurs twice in one element; write it "
                                          "once with a coefficient, like 2*" +
                                          name);
     }
     const auto driven = joint_motion(joint);
-    if (driven && *driven != element.motion) {
-        throw cursor.error(position, describe(element) + " but joint " + quote(name) +
+    if (sum.drives && driven && *driven != sum.motion) {
+        throw cursor.error(position, sum.subject + " but joint " + quote(name) +
                                          " drives the other kind before; must drive one kind, "
                                          "since its unit is either rad or m");
     }
-    element.joints.push_back({joint, coefficient});
+    sum.joints.push_back({joint, coefficient});
 }
 
-void ElementParser::parse_parameter(Cursor& cursor, Element& element) {
+/// One bracket: `[name]`, or `[name * f]` with f a JointFunction.
+void ElementParser::parse_error(Cursor& cursor, Element& element) {
     cursor.accept('[');
     cursor.skip_blanks();
+    const std::size_t position = cursor.position();
+    const std::string name = parse_parameter(cursor);
+    if (cursor.accept('*')) {
+        element.terms.push_back({name, parse_function(cursor)});
+    } else if (element.parameter.empty()) {
+        element.parameter = name;
+    } else {
+        throw cursor.error(position, "parameter " + quote(name) +
+                                         " is a second constant error of the element, beside " +
+                                         quote(element.parameter) +
+                                         "; must be one, or depend on joints like [" + name +
+                                         "*sin(" + joint_names_.front() + ")]");
+    }
+    if (!cursor.accept(']')) {
+        throw cursor.error(cursor.position(), "a ']' must stand behind parameter " + quote(name));
+    }
+}
+
+std::string ElementParser::parse_parameter(Cursor& cursor) {
     const std::size_t position = cursor.position();
     const std::string name = cursor.read_word();
     if (!is_identifier(name)) {
         throw cursor.error(position,
                            "the brackets must hold the name of one error parameter: "
                            "letters, digits and underscores, like [Tx1]");
-    }
-    if (!cursor.accept(']')) {
-        throw cursor.error(cursor.position(), "a ']' must stand behind parameter " + quote(name));
     }
     if (std::find(joint_names_.begin(), joint_names_.end(), name) != joint_names_.end()) {
         throw cursor.error(position, "parameter " + quote(name) +
@@ -254,7 +294,32 @@ void ElementParser::parse_parameter(Cursor& cursor, Element& element) {
                                          std::to_string(first->second) +
                                          "; must have a name of its own");
     }
-    element.parameter = name;
+    return name;
+}
+
+/// `sin(sum)`, `cos(sum)`, `(sum of joints)` or one joint.
+JointFunction ElementParser::parse_function(Cursor& cursor) const {
+    cursor.skip_blanks();
+    const std::size_t position = cursor.position();
+    Sum sum{Motion::Rotation, "the argument of a sine is an angle", false};
+    JointFunction function;
+    const bool is_cosine = cursor.accept_function("cos");
+    if (is_cosine || cursor.accept_function("sin")) function.shape = JointFunction::Shape::Sine;
+    if (cursor.accept('(')) {
+        parse_sum(cursor, sum);
+        if (!cursor.accept(')')) throw cursor.error(cursor.position(), "a ')' is missing here");
+    } else {
+        parse_term(cursor, cursor.accept('-') ? -1 : 1, sum);
+    }
+    const bool is_sine = function.shape == JointFunction::Shape::Sine;
+    if (sum.joints.empty() || (!is_sine && sum.value != 0)) {
+        throw cursor.error(position,
+                           "an error's function must depend on joints, like sin(q2 + 30 "
+                           "deg), cos(2*q2), q3 or (q3 - 0.5*q2)");
+    }
+    function.joints = std::move(sum.joints);
+    function.phase = sum.value + (is_cosine ? std::numbers::pi / 2 : 0);
+    return function;
 }
 
 }  // namespace posewise::io

@@ -33,12 +33,15 @@ class ElementParser {
 
   private:
     class Cursor;
+    struct Sum;
 
-    void parse_sum(Cursor& cursor, Element& element) const;
-    void parse_term(Cursor& cursor, double sign, Element& element) const;
-    void add_nominal(Cursor& cursor, double number, std::size_t start, Element& element) const;
-    void add_joint(Cursor& cursor, double coefficient, Element& element) const;
-    void parse_parameter(Cursor& cursor, Element& element);
+    void parse_sum(Cursor& cursor, Sum& sum) const;
+    void parse_term(Cursor& cursor, double sign, Sum& sum) const;
+    void add_nominal(Cursor& cursor, double number, std::size_t start, Sum& sum) const;
+    void add_joint(Cursor& cursor, double coefficient, Sum& sum) const;
+    void parse_error(Cursor& cursor, Element& element);
+    std::string parse_parameter(Cursor& cursor);
+    JointFunction parse_function(Cursor& cursor) const;
     void note_driven(const Element& element);
 
     std::vector<std::string> joint_names_;

@@ -35,4 +35,7 @@ RobotSection read_dh(const YamlValue& dh);
 /// `urdf`, `base_link`, `tip_link` and perhaps `joints`.
 RobotSection read_urdf_robot(const YamlMap& robot);
 
+/// `gravity` and `harmonics`: the chain with the terms they state.
+Chain add_stated_terms(const YamlMap& robot, const Chain& chain);
+
 }  // namespace posewise::io

@@ -35,6 +35,7 @@ class YamlValue {
     std::uint64_t natural_number() const;
     bool boolean() const;
     bool is_list() const { return node_.IsSequence(); }
+    bool is_map() const { return node_.IsMap(); }
     /// Items of a list.
     std::vector<YamlValue> list() const;
     /// A list of exactly `count` numbers.

@@ -35,6 +35,12 @@ VectorXd parameter_scale(const Campaign& campaign) {
     for (std::size_t k = 0; k < names.size(); ++k) {
         scale[static_cast<Index>(k)] = is_angle[k] ? campaign.spread.angle : campaign.spread.length;
     }
+    for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
+        const ErrorTerm* const term = campaign.robot.parameter_term(k);
+        if (term == nullptr || term->kind == TermKind::Free) continue;
+        const bool is_gravity = term->kind == TermKind::Gravity;
+        scale[6 + k] = is_gravity ? campaign.spread.gravity : campaign.spread.harmonic;
+    }
     for (const auto& [name, size] : campaign.spread.by_name) {
         const auto found = std::find(names.begin(), names.end(), name);
         if (found == names.end()) {

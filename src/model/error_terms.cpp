@@ -93,14 +93,16 @@ void add_to(std::vector<JointTerm>& sum, const std::vector<JointTerm>& joints, d
     std::erase_if(sum, [](const JointTerm& term) { return term.coefficient == 0; });
 }
 
-/// Angle about the run's axis of what each of its elements carries.
+/// Angle about the run's axis, positive with its first joint, of what each of its elements carries.
 std::vector<std::vector<JointTerm>> partial_sums(const Chain& chain,
                                                  const std::vector<Vector3d>& axes,
                                                  const std::vector<std::size_t>& run) {
     std::vector<std::vector<JointTerm>> sums;
     std::vector<JointTerm> sum;
+    const double first = chain.elements()[run.front()].joints.front().coefficient;
+    const Vector3d axis = (first < 0 ? -1 : 1) * axes[run.front()];
     for (const std::size_t k : run) {
-        add_to(sum, chain.elements()[k].joints, axes[k].dot(axes[run.front()]) < 0 ? -1 : 1);
+        add_to(sum, chain.elements()[k].joints, axes[k].dot(axis) < 0 ? -1 : 1);
         sums.push_back(sum);
     }
     return sums;

@@ -32,6 +32,26 @@ TEST_F(Fanuc, CalibrationReachesTheKnownFigures) {
     }
 }
 
+TEST_F(Fanuc, GravityTermsReachTheKnownFigures) {
+    const std::string design =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    const std::string measured = csv_.substr(fanuc_design.size());
+    std::string text = design;
+    write_text("six.yaml", text.insert(text.find("  elements:"), "  gravity: true\n"));
+    const std::string six = run_well("calibrate six.yaml" + measured);
+    EXPECT_NEAR(number_behind(six, "distance RMS", 2), 0.0964, 0.0005);
+    EXPECT_NEAR(number_behind(six, "distance RMS", 4), 0.173, 0.002);
+    // The weights of arm and forearm on joint 2 alone, in the notation of elements.
+    text = design;
+    const std::string shoulder = "Ry q2 [dq2]";
+    text.insert(text.find(shoulder) + shoulder.size(),
+                " [arm*sin(q2)] [forearm*cos(q2 - q3 - 28.19 deg)]");
+    write_text("two.yaml", text);
+    const std::string two = run_well("calibrate two.yaml" + measured);
+    EXPECT_NEAR(number_behind(two, "distance RMS", 1), 0.1316, 0.0005);
+    EXPECT_NEAR(number_behind(two, "distance RMS", 2), 0.1003, 0.0003);
+}
+
 TEST_F(Fanuc, TwoStepComesNearTheSameOptimumAndSaysSo) {
     const std::string text =
         run_well("calibrate " + csv_ + "--method two-step --max-iterations 200 --folds 0");

@@ -321,5 +321,29 @@ TEST(BadCampaign, MatMappingWithTheWrongUnit) {
               "campaign.yaml:24:68: measurements.mat.length_unit is 'deg'; must be mm, m or um");
 }
 
+std::string error_with_terms(const std::string& keys) {
+    return error_with("  elements:\n", keys + "\n  elements:\n");
+}
+
+TEST(BadCampaign, GravityAndHarmonicsThatCannotBe) {
+    EXPECT_EQ(error_with_terms("  gravity: maybe").substr(0, 22), "campaign.yaml:7:12: ro");
+    EXPECT_EQ(
+        error_with_terms("  gravity: {direction: [0, 1, 0], joints: [q2]}"),
+        "campaign.yaml:7:12: robot.gravity is not possible: joint 'q2' does not turn about an "
+        "axis that stays perpendicular to gravity");
+    EXPECT_EQ(error_with_terms("  gravity: {direction: [0, 0, 0]}"),
+              "campaign.yaml:7:12: robot.gravity is not possible: direction of gravity must be "
+              "finite and not zero");
+    EXPECT_EQ(error_with_terms("  gravity: {joints: [q4]}").substr(0, 61),
+              "campaign.yaml:7:22: robot.gravity.joints[1] is 'q4', no joint");
+    EXPECT_EQ(
+        error_with_terms("  harmonics: {orders: [1, 0]}"),
+        "campaign.yaml:7:27: robot.harmonics.orders[2] is '0'; must be from 1e-3 to 1e4 a turn");
+    EXPECT_EQ(error_with_terms("  harmonics: {orders: []}").substr(0, 19), "campaign.yaml:7:23:");
+    EXPECT_EQ(error_with_terms("  harmonics: {orders: [1], joints: [lift]}"),
+              "campaign.yaml:7:14: robot.harmonics is not possible: joint 'lift' slides; harmonics "
+              "need one that turns");
+}
+
 }  // namespace
 }  // namespace posewise::io

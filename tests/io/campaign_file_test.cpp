@@ -64,6 +64,62 @@ TEST(ReadCampaign, DoesNotMindBlanksInElements) {
     }
 }
 
+TEST(ReadCampaign, TakesErrorsThatDependOnTheConfiguration) {
+    const Chain robot =
+        read(replaced(campaign_text, "90 deg [dq2]",
+                      "90 deg [dq2] [k1 * sin(q2)] [k2*cos(2*q1 - q2 + 30 deg)] [ratio*0.5*q2] "
+                      "[coupling*(q1-q2)]"))
+            .campaign.robot;
+    EXPECT_EQ(robot.parameter_names(), (std::vector<std::string>{"dq1", "Tx1", "dq2", "k1", "k2",
+                                                                 "ratio", "coupling", "Ty2"}));
+    VectorXd errors = VectorXd::Zero(8), same = errors;
+    errors.segment<4>(3) << 0.1, 0.2, 0.3, 0.4;
+    const Vector3d q(0.3, -0.5, 0.1);
+    same[2] = 0.1 * std::sin(-0.5) + 0.2 * std::cos(1.1 + pi / 6) + 0.3 * 0.5 * -0.5 + 0.4 * 0.8;
+    EXPECT_TRUE(robot.base_from_flange(q, errors).isApprox(robot.base_from_flange(q, same), 1e-14));
+    EXPECT_EQ(robot.parameter_term(3)->kind, TermKind::Free);
+}
+
+/// The crane with its second joint level, and these keys beside its elements.
+CampaignFile read_level(const std::string& keys, const std::string& spread = "length_mm: 2") {
+    auto text = replaced(campaign_text, "Ry -q2 + 0.5*q1", "Ry -q2");
+    text = replaced(text, "length_mm: 2", spread);
+    return read(replaced(text, "  elements:\n", keys + "  elements:\n"));
+}
+
+TEST(ReadCampaign, TakesGravityAndHarmonics) {
+    const CampaignFile file =
+        read_level("  gravity: true\n  harmonics: {orders: [2, 40.5], joints: [q1]}\n",
+                   "gravity_mrad: 0.7, harmonic_mrad: 0.2");
+    const auto names = parameter_names(file.campaign);
+    const VectorXd scale = parameter_scale(file.campaign);
+    const auto size_of = [&](const std::string& name) {
+        return scale[std::find(names.begin(), names.end(), name) - names.begin()];
+    };
+    EXPECT_EQ(file.campaign.robot.parameter_count(), 4 + 2 + 4);
+    EXPECT_DOUBLE_EQ(size_of("q2.sin(q2)"), 0.7e-3);
+    EXPECT_DOUBLE_EQ(size_of("q1.cos(40.5q1)"), 0.2e-3);
+    EXPECT_DOUBLE_EQ(size_of("dq1"), 3e-3);
+    EXPECT_EQ(read_level("  gravity: false\n").campaign.robot.parameter_count(), 4);
+    EXPECT_EQ(read_level("  harmonics: {orders: [1]}\n").campaign.robot.parameter_count(), 4 + 4);
+    const CampaignFile on_wall = read_level("  gravity: {direction: [0, 9.8, 0], joints: [q1]}\n");
+    EXPECT_EQ(on_wall.campaign.robot.parameter_names()[1], "q1.sin(q1)");
+    EXPECT_EQ(parameter_scale(on_wall.campaign)[7], 1e-3);
+}
+
+TEST(ReadCampaign, ReducesGeometryBesideTerms) {
+    auto text = campaign_text;
+    for (const char* const name : {" [dq1]", " [Tx1]", " [dq2]", " [Ty2]"})
+        text = replaced(text, name, "");
+    text = replaced(text, ", parameters: {dq2: 0.5 mrad, Tx1: 4 mm}", "");
+    const CampaignFile geometric = read(text);
+    const CampaignFile file =
+        read(replaced(text, "  elements:\n", "  harmonics: {orders: [2]}\n  elements:\n"));
+    EXPECT_EQ(file.error_model, ErrorModel::Complete);
+    EXPECT_EQ(file.campaign.robot.parameter_count(),
+              geometric.campaign.robot.parameter_count() + 4);
+}
+
 TEST(ReadCampaign, TakesSensorBaseSpreadAndDefaults) {
     const CampaignFile file = read(campaign_text);
     const Campaign& campaign = file.campaign;

@@ -59,6 +59,30 @@ TEST(BadElement, CoefficientOfZero) {
               "4: a joint's coefficient is 0; must not be, leave the joint out");
 }
 
+TEST(BadElement, ErrorThatDependsOnNothingKnown) {
+    const std::string shape =
+        "an error's function must depend on joints, like sin(q2 + 30 deg), cos(2*q2), q3 or (q3 - "
+        "0.5*q2)";
+    EXPECT_EQ(error_of("Rx 0 [k*sin(30 deg)]"), "9: " + shape);
+    EXPECT_EQ(error_of("Rx 0 [k*(q1 + 30 deg)]"), "9: " + shape);
+    EXPECT_EQ(error_of("Rx 0 [k*sin(3 mm)]").substr(0, 68),
+              "15: the argument of a sine is an angle, its amount cannot be in 'mm'");
+    EXPECT_EQ(error_of("Rx 0 [k*sin(q9)]").substr(0, 37), "13: 'q9' is no joint of the robot; di");
+    EXPECT_EQ(error_of("Rx 0 [k*sin(q1]"), "15: a ')' is missing here");
+    EXPECT_EQ(error_of("Rx 0 [k*tan(q1)]").substr(0, 33), "9: 'tan' is no joint of the robot");
+    EXPECT_EQ(error_of("Rx 0 [k*sin q1]").substr(0, 33), "9: 'sin' is no joint of the robot");
+    EXPECT_EQ(error_of("Rx 0 [k*]").substr(0, 36), "9: an amount or a joint is missing; ");
+    EXPECT_EQ(error_of("Rx 0 [k*sin(q1)"), "16: a ']' must stand behind parameter 'k'");
+}
+
+TEST(BadElement, TwoConstantErrors) {
+    EXPECT_EQ(
+        error_of("Tx 0 [Tx1] [Tx9]"),
+        "13: parameter 'Tx9' is a second constant error of the element, beside 'Tx1'; must be "
+        "one, or depend on joints like [Tx9*sin(q1)]");
+    EXPECT_EQ(error_of("Tx 0 [Tx1] [Tx1*q1]").substr(0, 32), "13: parameter 'Tx1' occurs twice");
+}
+
 TEST(BadElement, UnknownJoint) {
     EXPECT_EQ(error_of("Rx q1 + 2*p2"), "11: 'p2' is no joint of the robot; did you mean 'q2'?");
 }

@@ -47,7 +47,14 @@ struct CampaignFile {
 /// An element of the robot is written `kind amount [parameter]`: the kind is T or R and an axis,
 /// the amount a sum of lengths or angles with their unit and of joints, each with an optional
 /// coefficient, the bracket names its error parameter and may be missing:
-/// `Rz q1`, `Tx 312 mm [Tx1]`, `Ry q2 + 0.5 deg [dq2]`, `Ry -q3 + 0.98*q2`, `Ty 0 [Ty1]`.
+/// `Rz q1`, `Tx 312 mm [Tx1]`, `Ry q2 + 0.5 deg [dq2]`, `Ry -q3 + 0.98*q2`, `Ty 0 [Ty1]`. Further
+/// brackets hold errors that depend on the configuration, a parameter times a function of joints:
+/// `Ry q2 [dq2] [k1*sin(q2)] [k2*cos(q2 - q3 + 28 deg)]`, `Ry -q3 [coupling*(q2 - 0.5*q4)]`.
+///
+/// `gravity: true` adds the terms of with_gravity_terms(); `gravity: {direction: [0, 0, -1],
+/// joints: [q2]}` says which way gravity acts in the base frame and on which joints. `harmonics:
+/// {orders: [1, 2], joints: [q4]}` adds those of with_harmonics(). Their sizes in `spread` are
+/// `gravity_mrad` and `harmonic_mrad`.
 ///
 /// Instead of elements and joints the robot may have a Denavit-Hartenberg table, `dh`, with its
 /// `convention` (standard or modified) and `rows` from base to flange:

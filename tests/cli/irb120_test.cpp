@@ -1,0 +1,42 @@
+#include "program.hpp"
+
+/// The published campaign on the ABB IRB 120, through the program; the figures are those of
+/// independent fits. The data are not ours to ship.
+namespace posewise::testing {
+namespace {
+
+class Irb120 : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        const std::string csv = std::string(POSEWISE_REAL_DATA) + "/abb_irb120/measurements.csv";
+        if (!std::filesystem::exists(csv)) {
+            GTEST_SKIP() << "no real campaign at POSEWISE_REAL_DATA = " << POSEWISE_REAL_DATA;
+        }
+        measured_ = " -m '" + csv + "' --folds 0";
+    }
+
+    const std::string design_ =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/abb_irb120/campaign.yaml");
+    std::string measured_;
+};
+
+TEST_F(Irb120, CalibratesWithGravityTermsFromTheNominalRobotAlone) {
+    write_text("c.yaml", design_);
+    const std::string text = run_well("calibrate c.yaml" + measured_);
+    EXPECT_NE(text.find("lm: converged"), std::string::npos);
+    EXPECT_NEAR(number_behind(text, "distance RMS", 1), 0.1381, 0.0014);
+    EXPECT_NEAR(number_behind(text, "q3.cos(q2+q3)"), 1.57, 0.05);  // mrad
+    EXPECT_NEAR(number_behind(text, "q2.sin(q2)"), 1.19, 0.05);
+}
+
+TEST_F(Irb120, CalibratesGeometricallyAsFarAsGeometryGoes) {
+    std::string text = design_;
+    text.erase(text.find("  gravity: true"), std::string("  gravity: true").size());
+    write_text("c.yaml", text);
+    const std::string report = run_well("calibrate c.yaml" + measured_);
+    EXPECT_NEAR(number_behind(report, "distance RMS", 1), 0.2637, 0.0005);
+}
+
+}  // namespace
+}  // namespace posewise::testing
