@@ -127,19 +127,48 @@ void check_element(const Element& element, std::size_t number, Index joint_count
     }
 }
 
-/// What term k of an element adds to the rate by joint j: the element's twist, which changes at
-/// rate `change`, is multiplied by f(q) in the term's column and by pi df/dq_i in that of joint i.
-void add_rate(const ErrorTerm& term, Index k, double pi, const VectorXd& q, const Twist& twist,
-              const Twist& change, Index j, FlangeMotionRate& rate) {
-    const FunctionValue f = evaluate(term.function, q);
-    double du_dqj = 0;
-    for (const JointTerm& by : term.function.joints) {
-        if (by.joint == j) du_dqj += by.coefficient;
+/// What the terms of an element, error parameters `next` on, add to `motion`; returns what they add
+/// to its amount. Out of line, as add_term_rates() is, so that elements without terms stay fast.
+[[gnu::noinline]] double add_terms(const Element& element, const VectorXd& q,
+                                   const VectorXd& parameters, const Twist& twist, Index& next,
+                                   FlangeMotion& motion) {
+    double amount = 0;
+    for (const ErrorTerm& term : element.terms) {
+        const FunctionValue f = evaluate(term.function, q);
+        motion.twists.col(6 + next) = f.value * twist;
+        for (const JointTerm& by : term.function.joints) {
+            motion.joint_twists.col(by.joint) +=
+                parameters[next] * f.slope * by.coefficient * twist;
+        }
+        amount += parameters[next++] * f.value;
     }
-    rate.twists.col(6 + k) = f.value * change + f.slope * du_dqj * twist;
-    for (const JointTerm& by : term.function.joints) {
-        rate.joint_twists.col(by.joint) +=
-            pi * by.coefficient * (f.slope * change + f.curvature * du_dqj * twist);
+    return amount;
+}
+
+/// What the terms of an element, error parameters k on, add to the rates: the element's twist,
+/// which joint j changes by its Lie bracket, is multiplied by f(q) in the term's column and by pi
+/// df/dq_i in that of joint i.
+[[gnu::noinline]] void add_term_rates(const Element& element, const VectorXd& q,
+                                      const VectorXd& parameters, const Twist& twist, Index k,
+                                      const TwistMatrix& joint_twists,
+                                      std::vector<FlangeMotionRate>& rates) {
+    for (const ErrorTerm& term : element.terms) {
+        const FunctionValue f = evaluate(term.function, q);
+        for (Index j = 0; j < joint_twists.cols(); ++j) {
+            const Twist change = lie_bracket(joint_twists.col(j), twist);
+            FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
+            double du_dqj = 0;
+            for (const JointTerm& by : term.function.joints) {
+                if (by.joint == j) du_dqj += by.coefficient;
+            }
+            rate.twists.col(6 + k) = f.value * change + f.slope * du_dqj * twist;
+            for (const JointTerm& by : term.function.joints) {
+                rate.joint_twists.col(by.joint) +=
+                    parameters[k] * by.coefficient *
+                    (f.slope * change + f.curvature * du_dqj * twist);
+            }
+        }
+        ++k;
     }
 }
 
@@ -257,14 +286,8 @@ void Chain::walk(const Isometry3d& world_from_base, const VectorXd& q, const Vec
             for (const JointTerm& term : element.joints) {
                 motion.joint_twists.col(term.joint) += term.coefficient * twist;
             }
-            for (const ErrorTerm& term : element.terms) {
-                const FunctionValue f = evaluate(term.function, q);
-                motion.twists.col(6 + next) = f.value * twist;
-                for (const JointTerm& by : term.function.joints) {
-                    motion.joint_twists.col(by.joint) +=
-                        parameters[next] * f.slope * by.coefficient * twist;
-                }
-                amount += parameters[next++] * f.value;
+            if (!element.terms.empty()) {
+                amount += add_terms(element, q, parameters, twist, next, motion);
             }
             visit(element, twist, first);
         }
@@ -305,20 +328,19 @@ void Chain::differentiate_twice(const Isometry3d& world_from_base, const VectorX
         rate.joint_twists.setZero(6, joint_count());
     }
     const auto visit = [&](const Element& element, const Twist& twist, Index first) {
+        const bool is_error = !element.parameter.empty();
         for (Index j = 0; j < joint_count(); ++j) {
             // So far motion.joint_twists holds what joint j moves up to this element.
             const Twist change = lie_bracket(motion.joint_twists.col(j), twist);
             FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
-            if (!element.parameter.empty()) rate.twists.col(6 + first) = change;
+            if (is_error) rate.twists.col(6 + first) = change;
             for (const JointTerm& term : element.joints) {
                 rate.joint_twists.col(term.joint) += term.coefficient * change;
             }
-            Index k = element.parameter.empty() ? first : first + 1;
-            for (const ErrorTerm& term : element.terms) {
-                add_rate(term, k, parameters[k], q, twist, change, j, rate);
-                ++k;
-            }
         }
+        if (element.terms.empty()) return;
+        const Index next = element.parameter.empty() ? first : first + 1;
+        add_term_rates(element, q, parameters, twist, next, motion.joint_twists, rates);
     };
     walk(world_from_base, q, parameters, motion, visit);
 }
