@@ -23,10 +23,10 @@ struct Parameters {
 struct ParameterSpread {
     double length = 1e-3;
     double angle = 1e-3;
-    double gravity = 1e-3;                  ///< of terms of TermKind::Gravity
-    double harmonic = 0.15e-3;              ///< of terms of TermKind::Harmonic
     std::map<std::string, double> by_name;  ///< exceptions, by parameter name
-    bool is_prior = false;  ///< whether it is also the prior standard deviation of robot errors
+    bool is_prior = false;      ///< whether it is also the prior standard deviation of robot errors
+    double gravity = 1e-3;      ///< of terms of TermKind::Gravity
+    double harmonic = 0.15e-3;  ///< of terms of TermKind::Harmonic
 };
 
 /// Everything about a measurement campaign that is known before measuring: the robot, the sensor,
