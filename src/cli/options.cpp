@@ -55,9 +55,15 @@ CLI::Validator file_name() {
 
 void add_prior_option(CLI::App& command, std::optional<bool>& prior,
                       const std::string& consequence) {
-    command.add_flag("--prior,!--no-prior", prior,
-                     "The expected size of each robot error is also its prior standard deviation" +
-                         consequence + " (default: the campaign's)");
+    // Callbacks, since a flag that is not given would set an optional, too.
+    CLI::Option* const with = command.add_flag_callback(
+        "--prior", [&prior] { prior = true; },
+        "The expected size of each robot error is also its prior standard deviation" + consequence +
+            " (default: the campaign's)");
+    command
+        .add_flag_callback(
+            "--no-prior", [&prior] { prior = false; }, "Whatever the campaign says")
+        ->excludes(with);
 }
 
 }  // namespace posewise::cli

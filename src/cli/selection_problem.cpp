@@ -43,14 +43,19 @@ Blocks read_blocks(const io::CandidateSource& source, const std::string& path) {
     }
 }
 
-void hold_plain_blocks(SelectionProblem& problem) {
-    const std::string& path = problem.request.augment;
-    const Blocks measured = read_blocks(problem.request.source, path);
-    if (measured.parameter_count() != problem.blocks.parameter_count()) {
+/// Blocks beside the candidates, of as many columns.
+Blocks read_more_blocks(const SelectionProblem& problem, const std::string& path) {
+    Blocks blocks = read_blocks(problem.request.source, path);
+    if (blocks.parameter_count() != problem.blocks.parameter_count()) {
         throw input_error_at(
-            {path}, "has " + std::to_string(measured.parameter_count()) + " columns, must have " +
+            {path}, "has " + std::to_string(blocks.parameter_count()) + " columns, must have " +
                         std::to_string(problem.blocks.parameter_count()) + " as the candidates");
     }
+    return blocks;
+}
+
+void hold_plain_blocks(SelectionProblem& problem) {
+    const Blocks measured = read_more_blocks(problem, problem.request.augment);
     held(problem) += information(measured);
     problem.options.held_pose_count = measured.count();
     for (Index i = 0; i < problem.blocks.count(); ++i) {
@@ -71,7 +76,7 @@ void state_plain(SelectionProblem& problem) {
     if (!request.augment.empty()) hold_plain_blocks(problem);
     if (!request.test_poses.empty()) {
         problem.test_poses =
-            std::make_unique<Blocks>(read_blocks(request.source, request.test_poses));
+            std::make_unique<Blocks>(read_more_blocks(problem, request.test_poses));
     }
 }
 

@@ -105,6 +105,13 @@ void validate(const Blocks& candidates, const SelectOptions& options) {
                          ", must be one for each of " +
                          std::to_string(candidates.parameter_count()) + " columns");
     }
+    if (options.test_poses != nullptr &&
+        options.test_poses->parameter_count() != candidates.parameter_count()) {
+        throw InputError("test poses have " +
+                         std::to_string(options.test_poses->parameter_count()) +
+                         " columns, must have " + std::to_string(candidates.parameter_count()) +
+                         " as the candidates");
+    }
     require_at_least("starts", options.starts, 1);
     require_at_least("kicks", options.kicks, 0);
     require_at_least("shortlist", options.shortlist, 0);

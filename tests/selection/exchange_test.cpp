@@ -73,6 +73,16 @@ Blocks random_edges(Index nodes, Index count, std::uint64_t seed) {
     return make_equal_blocks(rows, 1);
 }
 
+TEST(SelectPoses, RefusesTestPosesOfOtherParameters) {
+    const Blocks candidates = test::random_blocks(10, 3, 5, 1);
+    const Blocks other = test::random_blocks(4, 3, 2, 2);
+    for (const Criterion criterion : {Criterion::G, Criterion::V}) {
+        SelectOptions options = make_options(criterion, 4);
+        options.test_poses = &other;
+        expect_refusal(candidates, options, "test poses have 2 columns, must have 5");
+    }
+}
+
 TEST(SelectPoses, FindsAnIdentifyingChoiceWhereFewAreWhateverTheCriterion) {
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
         const Blocks edges = random_edges(8, 40, seed);
