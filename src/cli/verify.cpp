@@ -60,7 +60,8 @@ class Findings {
 /// To rounding, which differs between processors; D is a logarithm, so its zero means nothing.
 bool agree(Criterion criterion, double a, double b) {
     const double least = criterion == Criterion::D ? 1 : 0;
-    return a == b || std::abs(a - b) <= 1e-8 * std::max({least, std::abs(a), std::abs(b)});
+    if (!std::isfinite(a) || !std::isfinite(b)) return a == b;
+    return std::abs(a - b) <= 1e-8 * std::max({least, std::abs(a), std::abs(b)});
 }
 
 void check_candidates(const io::PlanFile& file, const SelectionProblem& problem,
