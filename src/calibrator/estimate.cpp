@@ -50,10 +50,11 @@ RowMatrixXd residuals(const Campaign& campaign, const Parameters& parameters,
         const VectorXd predicted = campaign.sensor->predict(flange, parameters.sensor);
         const Index first = measurements.first_sample[static_cast<std::size_t>(i)];
         for (Index k = first; k < first + measurements.sample_count(i); ++k) {
+            const VectorXd deviation =
+                campaign.sensor->deviation(measurements.observations.row(k).transpose(), predicted);
             for (Index j = 0; j < measurements.is_seen.cols(); ++j) {
                 if (!measurements.is_seen(k, j)) continue;
-                r.row(row++) = measurements.observation(k, j) -
-                               predicted.segment(width * j, width).transpose();
+                r.row(row++) = deviation.segment(width * j, width).transpose();
             }
         }
     }
@@ -62,26 +63,32 @@ RowMatrixXd residuals(const Campaign& campaign, const Parameters& parameters,
 
 RowMatrixXd mean_residuals(const Campaign& campaign, const Parameters& parameters,
                            const Measurements& measurements) {
-    return residuals(campaign, parameters, mean_measurements(measurements));
+    return residuals(campaign, parameters, mean_measurements(*campaign.sensor, measurements));
 }
 
 Metrics make_metrics(const RowMatrixXd& residuals) {
     Metrics metrics;
-    metrics.point_count = residuals.size() / 3;
+    metrics.point_count = residuals.rows();
+    metrics.coordinate_count = std::min<Index>(residuals.cols(), 3);
+    metrics.has_orientation = residuals.cols() > 3;
     if (metrics.point_count == 0) return metrics;
-    // Row-major rows of x, y, z triples: one point after another in memory.
-    const Eigen::Map<const Eigen::Matrix3Xd> points(residuals.data(), 3, metrics.point_count);
-    VectorXd distances = points.colwise().norm().transpose();
+    const auto points = residuals.leftCols(metrics.coordinate_count);
+    VectorXd distances = points.rowwise().norm();
     std::sort(distances.begin(), distances.end());
     const auto count = static_cast<double>(metrics.point_count);
     metrics.distance_rms = distances.norm() / std::sqrt(count);
     metrics.distance_max = distances[metrics.point_count - 1];
     metrics.distance_mean = distances.mean();
     metrics.distance_p95 = distances[static_cast<Index>(std::ceil(0.95 * count)) - 1];
-    for (Index axis = 0; axis < 3; ++axis) {
+    for (Index axis = 0; axis < metrics.coordinate_count; ++axis) {
         const auto i = static_cast<std::size_t>(axis);
-        metrics.coordinate_rms[i] = points.row(axis).norm() / std::sqrt(count);
-        metrics.coordinate_max[i] = points.row(axis).cwiseAbs().maxCoeff();
+        metrics.coordinate_rms[i] = points.col(axis).norm() / std::sqrt(count);
+        metrics.coordinate_max[i] = points.col(axis).cwiseAbs().maxCoeff();
+    }
+    if (metrics.has_orientation) {
+        const VectorXd angles = residuals.rightCols(3).rowwise().norm();
+        metrics.orientation_rms = angles.norm() / std::sqrt(count);
+        metrics.orientation_max = angles.maxCoeff();
     }
     return metrics;
 }

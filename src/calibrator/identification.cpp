@@ -44,7 +44,8 @@ struct LevenbergMarquardt {
         }
         for (; damping < 1e12; damping *= 10) {
             const VectorXd step = damped_step(triangle, damping);
-            const Parameters moved = advance(estimate.parameters, problem.scale.cwiseProduct(step));
+            const Parameters moved =
+                advance(problem.campaign, estimate.parameters, problem.scale.cwiseProduct(step));
             const double moved_cost = sum_of_squares(problem, moved);
             if (moved_cost < cost) {
                 estimate.parameters = moved;

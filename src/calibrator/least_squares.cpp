@@ -45,7 +45,8 @@ RowMatrixXd whiten_seen(const IdentificationProblem& problem, Index i, const Fla
 
 /// The robot's errors in units of their expected size.
 VectorXd scaled_errors(const IdentificationProblem& problem, const Parameters& parameters) {
-    return parameters.robot.cwiseQuotient(problem.scale.segment(6, parameters.robot.size()));
+    return parameters.robot.cwiseQuotient(
+        problem.scale.segment(base_parameter_count(problem.campaign), parameters.robot.size()));
 }
 
 }  // namespace
@@ -53,7 +54,7 @@ VectorXd scaled_errors(const IdentificationProblem& problem, const Parameters& p
 void check_all_seen(const Campaign& campaign, const Measurements& measurements) {
     const auto* points = dynamic_cast<const PointSensor*>(campaign.sensor.get());
     for (Index j = 0; points != nullptr && j < points->target_count(); ++j) {
-        if (points->is_known(j) || measurements.is_seen.col(j).any()) continue;
+        if (points->targets().is_known(j) || measurements.is_seen.col(j).any()) continue;
         throw InputError(fmt::format(
             "target {} is seen in no sample of these {} configurations, so its position cannot be "
             "found; measure it, or leave it out of the campaign's targets",
@@ -65,7 +66,8 @@ IdentificationProblem make_problem(const Campaign& campaign, const Measurements&
     check_noise(campaign);
     check_size(campaign, measurements);
     check_all_seen(campaign, measurements);
-    IdentificationProblem problem{campaign, measurements, mean_measurements(measurements),
+    IdentificationProblem problem{campaign, measurements,
+                                  mean_measurements(*campaign.sensor, measurements),
                                   times_seen(measurements), parameter_scale(campaign)};
     if (problem.equation_count() < problem.scale.size()) {
         throw InputError(fmt::format(
@@ -88,8 +90,9 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
     for (Index i = 0; i < problem.means.configuration_count(); ++i) {
         q = problem.means.configurations.row(i).transpose();
         differentiate_pose(campaign, parameters, q, motion, augmented.leftCols(size));
-        augmented.col(size) = problem.means.observations.row(i).transpose() -
-                              campaign.sensor->predict(motion.world_from_flange, parameters.sensor);
+        augmented.col(size) = campaign.sensor->deviation(
+            problem.means.observations.row(i).transpose(),
+            campaign.sensor->predict(motion.world_from_flange, parameters.sensor));
         const RowMatrixXd seen = whiten_seen(problem, i, motion, parameters, augmented);
         system.J.middleRows(row, seen.rows()) = seen.leftCols(size) * problem.scale.asDiagonal();
         system.r.segment(row, seen.rows()) = seen.col(size);
@@ -97,7 +100,10 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
     }
     if (problem.prior_count() > 0) {
         system.J.bottomRows(problem.prior_count()).setZero();
-        system.J.block(row, 6, problem.prior_count(), problem.prior_count()).setIdentity();
+        system.J
+            .block(row, base_parameter_count(campaign), problem.prior_count(),
+                   problem.prior_count())
+            .setIdentity();
         system.r.tail(problem.prior_count()) = -scaled_errors(problem, parameters);
     }
     return system;
@@ -110,9 +116,10 @@ double sum_of_squares(const IdentificationProblem& problem, const Parameters& pa
     VectorXd q(campaign.robot.joint_count());
     for (Index i = 0; i < problem.means.configuration_count(); ++i) {
         q = problem.means.configurations.row(i).transpose();
-        campaign.robot.differentiate(parameters.world_from_base, q, parameters.robot, motion);
-        const VectorXd r = problem.means.observations.row(i).transpose() -
-                           campaign.sensor->predict(motion.world_from_flange, parameters.sensor);
+        differentiate_flange(campaign, parameters, q, motion);
+        const VectorXd r = campaign.sensor->deviation(
+            problem.means.observations.row(i).transpose(),
+            campaign.sensor->predict(motion.world_from_flange, parameters.sensor));
         sum += whiten_seen(problem, i, motion, parameters, r).squaredNorm();
     }
     if (problem.prior_count() > 0) sum += scaled_errors(problem, parameters).squaredNorm();

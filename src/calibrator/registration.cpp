@@ -7,6 +7,8 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/point_sensor.hpp"
+#include "posewise/measurement/pose_sensor.hpp"
+#include "posewise/model/transforms.hpp"
 
 namespace posewise {
 namespace {
@@ -18,11 +20,17 @@ Matrix3d project_on_rotations(const Matrix3d& X) {
     return svd.matrixU() * D * svd.matrixV().transpose();
 }
 
-/// Least squares for (rows of X, c, unknown targets) of X p_ij + c - R_i t_j = p_i.
-VectorXd solve_linear(const Campaign& campaign, const PointSensor& sensor,
-                      const Measurements& measurements) {
-    const Measurements means = mean_measurements(measurements);
-    const auto unknowns = static_cast<Index>(sensor.unknown_names().size());
+/// Base and targets that solve the linear equations.
+struct LinearSolution {
+    Isometry3d world_from_base = Isometry3d::Identity();
+    VectorXd targets;  ///< the unknown coordinates
+};
+
+/// Least squares for (rows of X, c, unknown targets) of X p_ij + c - R_i t_j = p_i, X projected on
+/// the rotations.
+LinearSolution solve_linear(const Campaign& campaign, const Targets& targets,
+                            const Measurements& means) {
+    const Index unknowns = targets.unknown_count();
     const Index point_count = means.is_seen.count();
     MatrixXd A = MatrixXd::Zero(3 * point_count, 12 + unknowns);
     VectorXd b(A.rows());
@@ -30,17 +38,16 @@ VectorXd solve_linear(const Campaign& campaign, const PointSensor& sensor,
     for (Index i = 0; i < means.configuration_count(); ++i) {
         const Isometry3d flange = campaign.robot.base_from_flange(
             means.configurations.row(i).transpose(), campaign.nominal.robot);
-        for (Index j = 0; j < sensor.target_count(); ++j) {
+        for (Index j = 0; j < targets.count(); ++j) {
             if (!means.is_seen(i, j)) continue;
             for (Index axis = 0; axis < 3; ++axis) {
                 A.block<1, 3>(row + axis, 3 * axis) = means.observation(i, j);
             }
             A.block<3, 3>(row, 9).setIdentity();
-            b.segment<3>(row) = flange.translation();
-            if (sensor.is_known(j)) {
-                b.segment<3>(row) += flange.linear() * sensor.target(j, VectorXd());
-            } else {
-                A.block<3, 3>(row, 12 + sensor.unknown_offset(j)) = -flange.linear();
+            b.segment<3>(row) = flange * targets.position(j, VectorXd::Zero(unknowns));
+            for (Index axis = 0; axis < 3; ++axis) {
+                const Index k = targets.unknown_index(j, axis);
+                if (k >= 0) A.block<3, 1>(row, 12 + k) = -flange.linear().col(axis);
             }
             row += 3;
         }
@@ -53,28 +60,91 @@ VectorXd solve_linear(const Campaign& campaign, const PointSensor& sensor,
                          " points do not determine base and targets; more configurations "
                          "that turn the tool in different ways are needed");
     }
-    return qr.solve(b);
+    const VectorXd solution = qr.solve(b);
+    LinearSolution found;
+    const Matrix3d R =
+        project_on_rotations(
+            Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(solution.data()))
+            .transpose();
+    found.world_from_base.linear() = R;
+    found.world_from_base.translation() = -R * solution.segment<3>(9);
+    found.targets = solution.tail(unknowns);
+    return found;
+}
+
+// ---- Poses, as four points of the body: its origin and one on each axis ----
+
+constexpr double along_axis = 0.3;  // m
+
+Eigen::Matrix3Xd points_of(const Isometry3d& frame) {
+    Eigen::Matrix3Xd points = frame.translation().replicate<1, 4>();
+    points.rightCols<3>() += along_axis * frame.linear();
+    return points;
+}
+
+Isometry3d frame_of(const VectorXd& points) {
+    Isometry3d frame = Isometry3d::Identity();
+    frame.translation() = points.head<3>();
+    const Eigen::Map<const Matrix3d> tips(points.data() + 3);
+    frame.linear() = project_on_rotations((tips.colwise() - points.head<3>()) / along_axis);
+    return frame;
+}
+
+Measurements as_points(const Measurements& poses) {
+    Measurements points = poses;
+    points.observations.resize(poses.observations.rows(), 12);
+    points.is_seen = poses.is_seen.replicate(1, 4);
+    for (Index i = 0; i < poses.observations.rows(); ++i) {
+        Isometry3d body = Isometry3d::Identity();
+        body.translation() = poses.observations.row(i).head<3>();
+        body.linear() = rotation_from_vector(poses.observations.row(i).tail<3>());
+        points.observations.row(i) = points_of(body).reshaped().transpose();
+    }
+    return points;
+}
+
+LinearSolution solve_linear(const Campaign& campaign, const PoseSensor& sensor,
+                            const Measurements& means) {
+    const bool is_known = sensor.unknown_names().empty();
+    std::vector<std::optional<Vector3d>> points(4);
+    const Eigen::Matrix3Xd known = points_of(is_known ? sensor.tool({}) : Isometry3d::Identity());
+    for (Index k = 0; k < 4 && is_known; ++k) points[static_cast<std::size_t>(k)] = known.col(k);
+    LinearSolution found = solve_linear(campaign, Targets(points), as_points(means));
+    if (!is_known) found.targets = tool_unknowns(frame_of(found.targets));
+    return found;
+}
+
+/// Where the polish begins; the robot has no parameters.
+Parameters find_start(const Campaign& campaign, const Measurements& measurements) {
+    Parameters start = campaign.nominal;
+    const Sensor& sensor = *campaign.sensor;
+    const auto* const points = dynamic_cast<const PointSensor*>(&sensor);
+    const auto* const poses = dynamic_cast<const PoseSensor*>(&sensor);
+    const bool is_base_free = base_parameter_count(campaign) == 6;
+    if (is_base_free && (points != nullptr || poses != nullptr)) {
+        const Measurements means = mean_measurements(sensor, measurements);
+        const LinearSolution found = points != nullptr
+                                         ? solve_linear(campaign, points->targets(), means)
+                                         : solve_linear(campaign, *poses, means);
+        start.world_from_base = found.world_from_base;
+        start.sensor = found.targets;
+        return start;
+    }
+    if (!campaign.has_nominal_base || !campaign.has_nominal_targets) {
+        throw InputError(
+            "base and targets cannot be found from nothing by lengths alone or beside a base that "
+            "is partly known; the campaign must state base and targets, if only roughly");
+    }
+    return start;
 }
 
 }  // namespace
 
 Parameters register_base_and_targets(const Campaign& campaign, const Measurements& measurements) {
-    const auto* sensor = dynamic_cast<const PointSensor*>(campaign.sensor.get());
-    if (sensor == nullptr) throw InputError("registration needs a sensor that measures points");
     const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
     check_all_seen(nominal, measurements);
-    const VectorXd solution = solve_linear(nominal, *sensor, measurements);
-
-    Parameters start = nominal.nominal;
-    const Matrix3d R_base =
-        project_on_rotations(
-            Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(solution.data()))
-            .transpose();
-    start.world_from_base.linear() = R_base;
-    start.world_from_base.translation() = -R_base * solution.segment<3>(9);
-    start.sensor = solution.tail(solution.size() - 12);
-
-    Parameters registered = identify(nominal, measurements, start).parameters;
+    Parameters registered =
+        identify(nominal, measurements, find_start(nominal, measurements)).parameters;
     registered.robot = VectorXd::Zero(campaign.robot.parameter_count());
     return registered;
 }

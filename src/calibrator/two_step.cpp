@@ -9,23 +9,24 @@ namespace {
 
 /// Splits the unknowns as the two steps do: base and targets, and the robot's parameters between.
 struct Split {
+    Index base;
     Index robot;
     Index sensor;
 
     MatrixXd base_and_targets(const MatrixXd& J) const {
-        MatrixXd columns(J.rows(), 6 + sensor);
-        columns << J.leftCols(6), J.rightCols(sensor);
+        MatrixXd columns(J.rows(), base + sensor);
+        columns << J.leftCols(base), J.rightCols(sensor);
         return columns;
     }
     VectorXd base_and_target_step(const VectorXd& d) const {
-        VectorXd step = VectorXd::Zero(6 + robot + sensor);
-        step.head<6>() = d.head<6>();
+        VectorXd step = VectorXd::Zero(base + robot + sensor);
+        step.head(base) = d.head(base);
         step.tail(sensor) = d.tail(sensor);
         return step;
     }
     VectorXd robot_step(const VectorXd& d) const {
-        VectorXd step = VectorXd::Zero(6 + robot + sensor);
-        step.segment(6, robot) = d;
+        VectorXd step = VectorXd::Zero(base + robot + sensor);
+        step.segment(base, robot) = d;
         return step;
     }
 };
@@ -37,13 +38,15 @@ Parameters cycle(const IdentificationProblem& problem, const Split& split, Param
                  double alpha) {
     if (split.robot > 0) {
         const LinearisedSystem system = linearise(problem, parameters);
-        const VectorXd step = system.J.middleCols(6, split.robot).householderQr().solve(system.r);
-        parameters =
-            advance(parameters, problem.scale.cwiseProduct(split.robot_step(alpha * step)));
+        const VectorXd step =
+            system.J.middleCols(split.base, split.robot).householderQr().solve(system.r);
+        parameters = advance(problem.campaign, parameters,
+                             problem.scale.cwiseProduct(split.robot_step(alpha * step)));
     }
     const LinearisedSystem system = linearise(problem, parameters);
     const VectorXd step = split.base_and_targets(system.J).householderQr().solve(system.r);
-    return advance(parameters, problem.scale.cwiseProduct(split.base_and_target_step(step)));
+    return advance(problem.campaign, parameters,
+                   problem.scale.cwiseProduct(split.base_and_target_step(step)));
 }
 
 }  // namespace
@@ -55,7 +58,7 @@ Estimate identify_two_step(const Campaign& campaign, const Measurements& measure
     }
     const IdentificationProblem problem = make_problem(campaign, measurements);
     check_identifiable(problem, start);
-    const Split split{start.robot.size(), start.sensor.size()};
+    const Split split{base_parameter_count(campaign), start.robot.size(), start.sensor.size()};
     Estimate estimate;
     estimate.parameters = start;
     double cost = sum_of_squares(problem, start);

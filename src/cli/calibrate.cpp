@@ -108,6 +108,17 @@ std::string describe_ending(const Arguments& arguments, const Estimate& estimate
                       format_short(estimate.variance_factor, 4), estimate.degrees_of_freedom);
 }
 
+std::string describe_noise_floor(const io::CalibrationReport& report) {
+    if (!report.repeatability) return "noise floor: unknown, no configuration was repeated\n";
+    std::string text = fmt::format("noise floor from repeats: {} mm per coordinate",
+                                   format_mm(report.repeatability->length, 5));
+    if (report.nominal.has_orientation) {
+        text += fmt::format(", {} mrad per angle",
+                            format_fixed(mrad_per_rad * report.repeatability->orientation, 5));
+    }
+    return text + '\n';
+}
+
 void print_accuracy(const io::CalibrationReport& report) {
     std::vector<std::pair<std::string, Metrics>> columns{{"nominal", report.nominal},
                                                          {"calibrated", report.estimate.fit},
@@ -124,9 +135,7 @@ void print_accuracy(const io::CalibrationReport& report) {
         print(fmt::format("held out: {} folds, {} of them not identifiable\n",
                           report.held_out->folds, report.held_out->failures.size()));
     }
-    print(report.repeatability ? fmt::format("noise floor from repeats: {} mm per coordinate\n",
-                                             format_mm(*report.repeatability, 5))
-                               : "noise floor: unknown, no configuration was repeated\n");
+    print(describe_noise_floor(report));
 }
 
 Metrics metrics_of(const Campaign& campaign, const Measurements& measurements,
@@ -144,7 +153,7 @@ io::CalibrationReport make_report(const Arguments& arguments, const Campaign& ca
     report.measurements = arguments.paths.measurements;
     report.estimate = identify_by_method(arguments, campaign, used, start);
     report.nominal = fit_nominal(campaign, used);
-    report.repeatability = repeatability(used);
+    report.repeatability = repeatability(*campaign.sensor, used);
     report.held_out = hold_out(arguments, campaign, used, start);
     if (split.left_out) {
         report.left_out = metrics_of(campaign, *split.left_out, report.estimate);
@@ -160,6 +169,18 @@ void warn_about_units(const std::string& path, const Metrics& nominal) {
         "posewise: warning: {}: the nominal robot misses the points by {} m (RMS); are the units "
         "of the columns right?\n",
         escape_controls(path), format_short(nominal.distance_rms, 3));
+    std::fwrite(warning.data(), 1, warning.size(), stderr);
+}
+
+/// Nor does it miss orientations by 10 deg, unless they are read in another order.
+void warn_about_orientation(const std::string& path, const Metrics& nominal) {
+    constexpr double suspicious = 0.2;  // rad
+    if (nominal.orientation_rms <= suspicious) return;
+    const std::string warning = fmt::format(
+        "posewise: warning: {}: the nominal robot misses the orientations by {} deg (RMS); is qw "
+        "the real part of the quaternion, are roll, pitch and yaw about the fixed axes x, y and "
+        "z?\n",
+        escape_controls(path), format_short(to_degrees(nominal.orientation_rms), 3));
     std::fwrite(warning.data(), 1, warning.size(), stderr);
 }
 
@@ -195,6 +216,7 @@ void calibrate(const Arguments& arguments) {
     }
     if (!arguments.out.empty()) io::write_estimate(arguments.out, file.campaign, report);
     warn_about_units(paths.measurements, report.nominal);
+    warn_about_orientation(paths.measurements, report.nominal);
     print_report(arguments, file.campaign, split.used, report);
 }
 void add_options(CLI::App& command, Arguments& arguments) {

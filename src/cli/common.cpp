@@ -11,6 +11,8 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/io/plan_file.hpp"
 #include "posewise/measurement/point_sensor.hpp"
+#include "posewise/measurement/pose_sensor.hpp"
+#include "posewise/measurement/scalar_sensor.hpp"
 #include "posewise/report/units.hpp"
 
 namespace posewise::cli {
@@ -104,6 +106,13 @@ std::string describe_noise(const LaserTrackerNoise& noise) {
                        format_short(1e6 * noise.angle_sigma));
 }
 
+std::string describe(const Targets& targets) {
+    Index known = 0;
+    for (Index j = 0; j < targets.count(); ++j) known += targets.is_known(j) ? 1 : 0;
+    return fmt::format("{} targets ({} known, {} to be identified)", targets.count(), known,
+                       targets.count() - known);
+}
+
 /// ", joints repeat to 0.01 mrad"; nothing if they repeat exactly. Several values as a range.
 std::string describe_repeatability(const Campaign& campaign) {
     std::string text;
@@ -126,21 +135,34 @@ std::string describe_repeatability(const Campaign& campaign) {
 }  // namespace
 
 std::string describe(const Sensor& sensor) {
-    const auto* points = dynamic_cast<const PointSensor*>(&sensor);
-    if (points == nullptr) return fmt::format("{} numbers a pose", sensor.row_count());
-    Index known = 0;
-    for (Index j = 0; j < points->target_count(); ++j) known += points->is_known(j) ? 1 : 0;
-    return fmt::format(
-        "points of {} targets ({} known, {} to be identified), {}", points->target_count(), known,
-        points->target_count() - known,
-        std::visit([](const auto& noise) { return describe_noise(noise); }, points->noise()));
+    const auto noise = [](const PointNoise& of_point) {
+        return std::visit([](const auto& each) { return describe_noise(each); }, of_point);
+    };
+    if (const auto* const points = dynamic_cast<const PointSensor*>(&sensor)) {
+        return "points of " + describe(points->targets()) + ", " + noise(points->noise());
+    }
+    if (const auto* const poses = dynamic_cast<const PoseSensor*>(&sensor)) {
+        return fmt::format("poses of a tool ({}), {} and {} mrad in orientation",
+                           sensor.unknown_names().empty() ? "known" : "to be identified",
+                           noise(poses->noise()),
+                           format_short(mrad_per_rad * poses->sigma_orientation()));
+    }
+    const auto& lengths = dynamic_cast<const ScalarSensor&>(sensor);
+    return fmt::format("{} lengths a pose at {}, sigma {} mm", sensor.row_count(),
+                       describe(lengths.targets()), format_short(mm_per_m * lengths.sigma()));
+}
+
+std::string describe_model_error(const Campaign& campaign) {
+    const std::string text = format_short(mm_per_m * campaign.model_error) + " mm";
+    if (!campaign.sensor->is_angle(campaign.sensor->row_count() - 1)) return text;
+    return text + " and " + format_short(mrad_per_rad * campaign.model_error_orientation) + " mrad";
 }
 
 std::string describe_scaling(const Campaign& campaign, double repeats) {
     std::string text = fmt::format(
-        "noise: {}, mean of {} samples{}, model error {} mm\nscale: {} mm and {} mrad a parameter",
+        "noise: {}, mean of {} samples{}, model error {}\nscale: {} mm and {} mrad a parameter",
         describe(*campaign.sensor), format_short(repeats), describe_repeatability(campaign),
-        format_short(mm_per_m * campaign.model_error),
+        describe_model_error(campaign),
         format_short(mm_per_m * campaign.spread.length),
         format_short(mrad_per_rad * campaign.spread.angle));
     const auto add = [&](TermKind kind, const char* what, double size) {

@@ -31,9 +31,11 @@ std::vector<Index> find_planned(const Measurements& measurements, const std::str
 void print(const std::string& text);
 void print_section(const std::string& title, const Table& table);
 
-/// One sentence each: "3 targets at unknown places, sigma 0.05 mm", and the noise and column scales
-/// that whitened, scaled numbers rest on.
+/// One sentence each: "3 targets at unknown places, sigma 0.05 mm", the model error (that of
+/// orientations if they are measured), and the noise and column scales that whitened, scaled
+/// numbers rest on.
 std::string describe(const Sensor& sensor);
+std::string describe_model_error(const Campaign& campaign);
 std::string describe_scaling(const Campaign& campaign, double repeats);
 
 /// "1 mm", "-0.5 mrad": a small error with its unit.

@@ -14,6 +14,7 @@
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/point_sensor.hpp"
+#include "posewise/measurement/pose_sensor.hpp"
 #include "posewise/model/complete_model.hpp"
 #include "posewise/report/units.hpp"
 #include "robot_tables.hpp"
@@ -80,19 +81,21 @@ Table parameter_table(const Campaign& campaign, const Identifiability& identifia
     return table;
 }
 
-/// Number of targets if all are unknown: the case the formula 4R + 2P + 3n counts.
-Index unknown_target_count(const Sensor& sensor) {
+/// "3n" with as many targets, all unknown, or "6" for an unknown tool: the cases formulas count.
+/// Empty for others.
+std::pair<std::string, Index> count_unknowns(const Campaign& campaign) {
+    if (base_parameter_count(campaign) < 6) return {};
+    const Sensor& sensor = *campaign.sensor;
+    const auto unknowns = static_cast<Index>(sensor.unknown_names().size());
+    if (dynamic_cast<const PoseSensor*>(&sensor) != nullptr && unknowns == 6) return {"6", 6};
     const auto* points = dynamic_cast<const PointSensor*>(&sensor);
-    if (points == nullptr) return 0;
-    for (Index j = 0; j < points->target_count(); ++j) {
-        if (points->is_known(j)) return 0;
-    }
-    return points->target_count();
+    if (points == nullptr || unknowns < 3 * points->target_count()) return {};
+    return {"3n", unknowns};
 }
 
 std::string describe_formula(const Campaign& campaign) {
-    const Index targets = unknown_target_count(*campaign.sensor);
-    if (targets == 0) return "";
+    const auto [letters, unknowns] = count_unknowns(campaign);
+    if (unknowns == 0) return "";
     Index revolute = 0;
     for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
         revolute += campaign.robot.joint_motion(j) == Motion::Rotation ? 1 : 0;
@@ -102,10 +105,11 @@ std::string describe_formula(const Campaign& campaign) {
     for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
         terms += campaign.robot.parameter_term(k) != nullptr ? 1 : 0;
     }
-    return fmt::format("; by the formula 4R + 2P + 3n{} = 4*{} + 2*{} + 3*{}{} = {}",
-                       terms > 0 ? " + terms" : "", revolute, prismatic, targets,
+    const std::string own = letters == "3n" ? fmt::format("3*{}", unknowns / 3) : letters;
+    return fmt::format("; by the formula 4R + 2P + {}{} = 4*{} + 2*{} + {}{} = {}", letters,
+                       terms > 0 ? " + terms" : "", revolute, prismatic, own,
                        terms > 0 ? fmt::format(" + {}", terms) : "",
-                       4 * revolute + 2 * prismatic + 3 * targets + terms);
+                       4 * revolute + 2 * prismatic + unknowns + terms);
 }
 
 /// The campaign with every error a rigid link can have.
@@ -149,8 +153,8 @@ void print_reduced(const io::CampaignFile& file) {
 
 void print_campaign(const io::CampaignFile& file) {
     const Campaign& campaign = file.campaign;
-    print(fmt::format("{}\nsensor: {}; model error {} mm\n", campaign.name,
-                      describe(*campaign.sensor), format_short(mm_per_m * campaign.model_error)));
+    print(fmt::format("{}\nsensor: {}; model error {}\n", campaign.name,
+                      describe(*campaign.sensor), describe_model_error(campaign)));
     if (file.urdf) {
         print(fmt::format("robot: {}, from base link {} to tip link {}\n",
                           escape_controls(file.urdf->path), quote(file.urdf->base_link),

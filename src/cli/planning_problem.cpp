@@ -40,7 +40,9 @@ void check_is_of_robot(const Campaign& campaign, const Measurements& measured,
     const Blocks blocks = make_prediction_blocks(campaign, fitted, measured.configurations);
     const auto points = static_cast<double>(blocks.matrix.rows()) / 3;
     const double expected =
-        std::sqrt(blocks.matrix.middleCols(6, campaign.robot.parameter_count()).squaredNorm() /
+        std::sqrt(blocks.matrix
+                      .middleCols(base_parameter_count(campaign), campaign.robot.parameter_count())
+                      .squaredNorm() /
                   points) +
         campaign.model_error;
     if (error <= credible_errors * expected) return;
@@ -119,7 +121,7 @@ void hold_kept(PlanningProblem& problem, std::vector<io::ContinuousPose> poses) 
     std::vector<std::vector<bool>> is_visible;
     for (io::ContinuousPose& pose : poses) {
         pose.is_kept = true;
-        is_visible.emplace_back(static_cast<std::size_t>(campaign.sensor->row_count() / 3));
+        is_visible.emplace_back(static_cast<std::size_t>(campaign.sensor->target_count()));
         for (const Index target : pose.visible) {
             is_visible.back()[static_cast<std::size_t>(target)] = true;
         }
@@ -235,7 +237,7 @@ PlanningProblem read_planning_problem(const PlanningArguments& arguments) {
 std::vector<Index> visible_targets(const PlanningProblem& problem, const VectorXd& q) {
     const std::vector<bool> is_visible = problem.constraints.check(q).is_visible;
     std::vector<Index> visible;
-    for (Index target = 0; target < problem.campaign.sensor->row_count() / 3; ++target) {
+    for (Index target = 0; target < problem.campaign.sensor->target_count(); ++target) {
         if (is_visible.empty() || is_visible[static_cast<std::size_t>(target)]) {
             visible.push_back(target);
         }

@@ -11,6 +11,7 @@
 #include "posewise/io/matrix_file.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/model/halton.hpp"
+#include "posewise/planner/planning.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -153,10 +154,7 @@ void hold_measured(SelectionProblem& problem, const Parameters& parameters,
 }
 
 void focus_on_robot(SelectionProblem& problem) {
-    const Index robot_end = 6 + problem.campaign->campaign.robot.parameter_count();
-    for (Index k = 0; k < problem.blocks.parameter_count(); ++k) {
-        if (k < 6 || k >= robot_end) problem.options.nuisance.push_back(k);
-    }
+    problem.options.nuisance = nuisance_of_robot(problem.campaign->campaign);
 }
 
 /// Angles of the joints that turn: what distances between poses are taken of.

@@ -1,5 +1,7 @@
 #include "posewise/io/campaign_file.hpp"
 
+#include <algorithm>
+
 #include "campaign_sections.hpp"
 #include "posewise/io/atomic_file.hpp"
 #include "posewise/jacobian/identifiability.hpp"
@@ -10,13 +12,14 @@
 namespace posewise::io {
 namespace {
 
-Isometry3d read_base(const YamlValue& value) {
-    const YamlMap base(value, {"position_<length>", "rpy_<angle>"});
-    const Vector3d rpy = base.require_measure("rpy").vector_to_si();
-    Isometry3d world_from_base = Isometry3d::Identity();
-    world_from_base.translation() = base.require_measure("position").vector_to_si();
-    world_from_base.linear() = rotation_from_rpy(rpy);
-    return world_from_base;
+void read_base(const YamlValue& value, Campaign& campaign) {
+    const YamlMap base(value, {"position_<length>", "rpy_<angle>", "known"});
+    campaign.nominal.world_from_base = read_frame(base);
+    campaign.has_nominal_base = true;
+    const auto known = base.find("known");
+    if (!known) return;
+    const auto marks = read_known(*known, {"x", "y", "z", "rx", "ry", "rz"});
+    std::copy(marks.begin(), marks.end(), campaign.base_is_known.begin());
 }
 
 ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign) {
@@ -109,6 +112,26 @@ std::string read_name(const YamlValue& value) {
 
 }  // namespace
 
+Isometry3d read_frame(const YamlMap& map) {
+    Isometry3d frame = Isometry3d::Identity();
+    frame.linear() = rotation_from_rpy(map.require_measure("rpy").vector_to_si());
+    frame.translation() = map.require_measure("position").vector_to_si();
+    return frame;
+}
+
+std::vector<bool> read_known(const YamlValue& known, const std::vector<std::string>& names) {
+    if (!known.is_list()) return std::vector<bool>(names.size(), known.boolean());
+    std::vector<bool> marks(names.size(), false);
+    for (const YamlValue& item : known.list()) {
+        const std::string name = item.text();
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end())
+            throw item.error("is " + quote(name) + "; " + suggest(name, names));
+        marks[static_cast<std::size_t>(found - names.begin())] = true;
+    }
+    return marks;
+}
+
 double read_positive(const YamlMeasure& measure, bool zero_allowed) {
     const double value = measure.to_si();
     const std::string stated = "is " + quote(measure.value.text());
@@ -148,9 +171,10 @@ CampaignFile read_campaign(const std::string& path) {
 }
 
 CampaignFile parse_campaign(const std::string& content, const std::string& path) {
-    const YamlMap map(parse_yaml(content, path),
-                      {"name", "robot", "sensor", "model_error_<length>", "base", "spread", "prior",
-                       "criterion", "seed", "measurements", "cell"});
+    const YamlMap map(
+        parse_yaml(content, path),
+        {"name", "robot", "sensor", "model_error_<length>", "model_error_orientation_<angle>",
+         "base", "spread", "prior", "criterion", "seed", "measurements", "cell"});
     CampaignFile file;
     file.path = path;
     Campaign& campaign = file.campaign;
@@ -165,16 +189,16 @@ CampaignFile parse_campaign(const std::string& content, const std::string& path)
     campaign.sensor = sensor.sensor;
     campaign.nominal.sensor = sensor.unknowns;
     campaign.has_nominal_targets = sensor.has_positions;
-    if (const auto base = map.find("base")) {
-        campaign.nominal.world_from_base = read_base(*base);
-        campaign.has_nominal_base = true;
-    }
+    if (const auto base = map.find("base")) read_base(*base, campaign);
     campaign = with_robot(campaign, robot.declared);
     if (robot.error_model == ErrorModel::Complete) {
         campaign = make_complete(campaign, map.require("robot"));
     }
     if (const auto error = map.find_measure("model_error")) {
         campaign.model_error = read_positive(*error, true);
+    }
+    if (const auto error = map.find_measure("model_error_orientation")) {
+        campaign.model_error_orientation = read_positive(*error, true);
     }
     if (const auto spread = map.find("spread")) campaign.spread = read_spread(*spread, campaign);
     if (const auto prior = map.find("prior")) file.campaign.spread.is_prior = prior->boolean();

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/measurement/point_sensor.hpp"
+#include "posewise/measurement/sensor.hpp"
 #include "yaml_reader.hpp"
 
 /// The sections of a campaign file, one function each.
@@ -20,14 +20,20 @@ struct RobotSection {
 RobotSection read_robot(const YamlValue& robot);
 
 struct SensorSection {
-    std::shared_ptr<const PointSensor> sensor;
-    VectorXd unknowns;  ///< nominal target positions, those that are not known; m
-    bool has_positions = false;
+    std::shared_ptr<const Sensor> sensor;
+    VectorXd unknowns;          ///< nominal values of the sensor's unknowns, m or rad
+    bool has_positions = true;  ///< whether they were stated, not made up
 };
 SensorSection read_sensor(const YamlValue& sensor);
 
 /// `robot` gives the joints' names and limits.
 Cell read_cell(const YamlValue& cell, const Chain& robot, Index target_count);
+
+/// Position and `rpy` of a frame.
+Isometry3d read_frame(const YamlMap& map);
+
+/// `true`, `false` or the names of those known, out of `names`: one mark each.
+std::vector<bool> read_known(const YamlValue& known, const std::vector<std::string>& names);
 
 /// A measure that must be positive, or with `zero_allowed` not negative; m or rad.
 double read_positive(const YamlMeasure& measure, bool zero_allowed = false);

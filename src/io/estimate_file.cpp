@@ -15,13 +15,20 @@ Json metrics_to_json(const Metrics& metrics) {
     const auto millimetres = [](const std::array<double, 3>& xyz) {
         return Json{{"x", mm * xyz[0]}, {"y", mm * xyz[1]}, {"z", mm * xyz[2]}};
     };
-    return {{"point_count", metrics.point_count},
-            {"distance_rms_mm", mm * metrics.distance_rms},
-            {"distance_max_mm", mm * metrics.distance_max},
-            {"distance_mean_mm", mm * metrics.distance_mean},
-            {"distance_p95_mm", mm * metrics.distance_p95},
-            {"coordinate_rms_mm", millimetres(metrics.coordinate_rms)},
-            {"coordinate_max_mm", millimetres(metrics.coordinate_max)}};
+    Json json = {{"point_count", metrics.point_count},
+                 {"distance_rms_mm", mm * metrics.distance_rms},
+                 {"distance_max_mm", mm * metrics.distance_max},
+                 {"distance_mean_mm", mm * metrics.distance_mean},
+                 {"distance_p95_mm", mm * metrics.distance_p95}};
+    if (metrics.coordinate_count == 3) {
+        json["coordinate_rms_mm"] = millimetres(metrics.coordinate_rms);
+        json["coordinate_max_mm"] = millimetres(metrics.coordinate_max);
+    }
+    if (metrics.has_orientation) {
+        json["orientation_rms_mrad"] = 1e3 * metrics.orientation_rms;
+        json["orientation_max_mrad"] = 1e3 * metrics.orientation_max;
+    }
+    return json;
 }
 
 Json base_to_json(const Isometry3d& world_from_base) {
@@ -37,21 +44,33 @@ Json targets_to_json(const PointSensor& sensor, const VectorXd& unknowns) {
     Json targets = Json::object();
     for (Index j = 0; j < sensor.target_count(); ++j) {
         targets["target" + std::to_string(j + 1)] = {
-            {"position_m", vector_to_json(sensor.target(j, unknowns))},
-            {"known", sensor.is_known(j)}};
+            {"position_m", vector_to_json(sensor.target_position(j, unknowns))},
+            {"known", sensor.targets().is_known(j)}};
     }
     return targets;
+}
+
+/// Values of the unknowns, by name and unit.
+Json unknowns_to_json(const Sensor& sensor, const VectorXd& unknowns) {
+    const std::vector<std::string> names = sensor.unknown_names();
+    const std::vector<bool> is_angle = sensor.unknown_is_angle();
+    Json json = Json::object();
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        json[names[k] + si_suffix(is_angle[k])] = unknowns[static_cast<Index>(k)];
+    }
+    return json;
 }
 
 /// The robot's error parameters: value (added to the nominal one) and standard deviation.
 Json robot_to_json(const Campaign& campaign, const Estimate& estimate, const VectorXd& sigmas) {
     const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const Index robot_begin = base_parameter_count(campaign);
     Json robot = Json::object();
     for (Index k = 0; k < estimate.parameters.robot.size(); ++k) {
-        const auto i = static_cast<std::size_t>(6 + k);
+        const auto i = static_cast<std::size_t>(robot_begin + k);
         const std::string unit = si_suffix(is_angle[i]);
         robot[estimate.names[i]] = {{"value" + unit, estimate.parameters.robot[k]},
-                                    {"sigma" + unit, sigmas[6 + k]}};
+                                    {"sigma" + unit, sigmas[robot_begin + k]}};
     }
     return robot;
 }
@@ -60,10 +79,11 @@ Json robot_to_json(const Campaign& campaign, const Estimate& estimate, const Vec
 Json other_sigmas_to_json(const Campaign& campaign, const Estimate& estimate,
                           const VectorXd& sigmas) {
     const std::vector<bool> is_angle = parameter_is_angle(campaign);
-    const auto robot_end = static_cast<std::size_t>(6 + estimate.parameters.robot.size());
+    const auto robot_begin = static_cast<std::size_t>(base_parameter_count(campaign));
+    const auto robot_end = robot_begin + static_cast<std::size_t>(estimate.parameters.robot.size());
     Json others = Json::object();
     for (std::size_t i = 0; i < estimate.names.size(); ++i) {
-        if (i >= 6 && i < robot_end) continue;
+        if (i >= robot_begin && i < robot_end) continue;
         others[estimate.names[i] + si_suffix(is_angle[i])] = sigmas[static_cast<Index>(i)];
     }
     return others;
@@ -91,7 +111,12 @@ Json accuracy_to_json(const CalibrationReport& report) {
     Json accuracy = {{"nominal", metrics_to_json(report.nominal)},
                      {"fit", metrics_to_json(report.estimate.fit)},
                      {"fit_means", metrics_to_json(report.estimate.fit_means)}};
-    if (report.repeatability) accuracy["repeatability_mm"] = mm * *report.repeatability;
+    if (report.repeatability) {
+        accuracy["repeatability_mm"] = mm * report.repeatability->length;
+        if (report.nominal.has_orientation) {
+            accuracy["repeatability_mrad"] = 1e3 * report.repeatability->orientation;
+        }
+    }
     if (report.held_out) accuracy["held_out"] = held_out_to_json(*report.held_out);
     if (report.left_out) accuracy["left_out"] = metrics_to_json(*report.left_out);
     if (report.validation) accuracy["validation"] = metrics_to_json(*report.validation);
@@ -116,6 +141,8 @@ void write_estimate(const std::string& path, const Campaign& campaign,
     document["robot"] = robot_to_json(campaign, estimate, sigmas);
     if (const auto* const points = dynamic_cast<const PointSensor*>(campaign.sensor.get())) {
         document["targets"] = targets_to_json(*points, estimate.parameters.sensor);
+    } else {
+        document["sensor"] = unknowns_to_json(*campaign.sensor, estimate.parameters.sensor);
     }
     document["sigma"] = other_sigmas_to_json(campaign, estimate, sigmas);
     document["strongest_correlations"] = correlations_to_json(estimate);

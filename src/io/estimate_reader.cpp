@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "json.hpp"
 #include "json_reader.hpp"
 #include "posewise/core/text.hpp"
 #include "posewise/io/estimate_file.hpp"
@@ -59,9 +60,23 @@ VectorXd read_robot(const JsonValue& robot, const Campaign& campaign) {
 VectorXd read_targets(const JsonValue& targets, const PointSensor& sensor) {
     VectorXd unknowns(static_cast<Index>(sensor.unknown_names().size()));
     for (Index j = 0; j < sensor.target_count(); ++j) {
-        if (sensor.is_known(j)) continue;
-        unknowns.segment<3>(sensor.unknown_offset(j)) =
+        if (sensor.targets().is_known(j)) continue;
+        const Vector3d position =
             read_vector(targets["target" + std::to_string(j + 1)]["position_m"]);
+        for (Index axis = 0; axis < 3; ++axis) {
+            const Index k = sensor.targets().unknown_index(j, axis);
+            if (k >= 0) unknowns[k] = position[axis];
+        }
+    }
+    return unknowns;
+}
+
+VectorXd read_unknowns(const JsonValue& values, const Sensor& sensor) {
+    const std::vector<std::string> names = sensor.unknown_names();
+    const std::vector<bool> is_angle = sensor.unknown_is_angle();
+    VectorXd unknowns(static_cast<Index>(names.size()));
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        unknowns[static_cast<Index>(k)] = values[names[k] + si_suffix(is_angle[k])].number();
     }
     return unknowns;
 }
@@ -76,6 +91,8 @@ Parameters read_estimate(const std::string& path, const Campaign& campaign) {
     parameters.robot = read_robot(root["robot"], campaign);
     if (const auto* const points = dynamic_cast<const PointSensor*>(campaign.sensor.get())) {
         parameters.sensor = read_targets(root["targets"], *points);
+    } else {
+        parameters.sensor = read_unknowns(root["sensor"], *campaign.sensor);
     }
     return parameters;
 }

@@ -6,6 +6,8 @@
 #include "posewise/core/version.hpp"
 #include "posewise/io/atomic_file.hpp"
 #include "posewise/measurement/point_sensor.hpp"
+#include "posewise/measurement/pose_sensor.hpp"
+#include "posewise/measurement/scalar_sensor.hpp"
 
 namespace posewise::io {
 namespace {
@@ -106,6 +108,12 @@ Json assumptions_to_json(const Campaign& campaign) {
     Json assumptions;
     if (const auto* const points = dynamic_cast<const PointSensor*>(campaign.sensor.get())) {
         std::visit([&](const auto& noise) { add_noise(assumptions, noise); }, points->noise());
+    } else if (const auto* const poses = dynamic_cast<const PoseSensor*>(campaign.sensor.get())) {
+        std::visit([&](const auto& noise) { add_noise(assumptions, noise); }, poses->noise());
+        assumptions["sigma_orientation_rad"] = poses->sigma_orientation();
+        assumptions["model_error_orientation_rad"] = campaign.model_error_orientation;
+    } else {
+        assumptions["sigma_m"] = dynamic_cast<const ScalarSensor&>(*campaign.sensor).sigma();
     }
     assumptions["model_error_m"] = campaign.model_error;
     for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {

@@ -10,7 +10,8 @@ std::vector<WantedColumn> wanted_columns(const Campaign& campaign) {
     }
     Index k = 0;
     for (const std::string& name : campaign.sensor->observation_names()) {
-        wanted.push_back({name, Role::Observation, k++, Quantity::Length});
+        const Quantity quantity = campaign.sensor->is_angle(k) ? Quantity::Angle : Quantity::Length;
+        wanted.push_back({name, Role::Observation, k++, quantity});
     }
     return wanted;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +14,16 @@ namespace posewise::io {
 /// Of a configuration: the numbers of the targets it shows, from 1, separated by blanks.
 inline constexpr std::string_view visible_targets = "visible_targets";
 
-enum class Role { Configuration, Sample, VisibleTargets, Joint, Observation };
+enum class Role { Configuration, Sample, VisibleTargets, Joint, Observation, Orientation };
+
+/// Other columns for an orientation than its rotation vector: a quaternion without units, or turns
+/// about the fixed axes x, y and z.
+struct OrientationForm {
+    std::vector<std::string> stems;
+    bool has_unit;
+};
+inline const std::array<OrientationForm, 2> orientation_forms{
+    {{{"qw", "qx", "qy", "qz"}, false}, {{"roll", "pitch", "yaw"}, true}}};
 
 /// A column with a unit that a campaign's measurements must have.
 struct WantedColumn {

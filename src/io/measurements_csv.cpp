@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <unordered_set>
 
 #include "csv_reader.hpp"
 #include "measurement_columns.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/model/transforms.hpp"
 #include "sample_collector.hpp"
 #include "text.hpp"
 #include "units.hpp"
@@ -16,8 +18,9 @@ namespace {
 
 struct Column {
     Role role = Role::Sample;
-    Index index = 0;             ///< of the joint or of the number in an observation
+    Index index = 0;             ///< of the joint, of the number in an observation or in its form
     const Unit* unit = nullptr;  ///< of joints and observations
+    std::size_t form = 0;        ///< of orientation_forms
 };
 
 /// What of a row is read: observations, or without them (their columns may be missing or hold
@@ -31,6 +34,7 @@ class HeaderReader {
         : csv_(csv),
           content_(content),
           wanted_(wanted_columns(campaign)),
+          has_orientation_(campaign.sensor->is_angle(campaign.sensor->row_count() - 1)),
           examples_{"config", "sample"} {
         for (const WantedColumn& column : wanted_) examples_.push_back(column.example());
     }
@@ -40,7 +44,8 @@ class HeaderReader {
         for (std::size_t field = 0; field < csv_.fields().size(); ++field) {
             columns.push_back(read_column(field));
             const auto is_same = [&columns](const Column& other) {
-                return other.role == columns.back().role && other.index == columns.back().index;
+                return other.role == columns.back().role && other.index == columns.back().index &&
+                       other.form == columns.back().form;
             };
             if (std::any_of(columns.begin(), columns.end() - 1, is_same)) {
                 throw error(field, "occurs twice; keep one");
@@ -71,6 +76,9 @@ class HeaderReader {
         const auto found = std::find_if(wanted_.begin(), wanted_.end(), [&](const auto& column) {
             return column.stem == name || column.stem == with_unit.stem;
         });
+        if (found == wanted_.end() && has_orientation_) {
+            if (const auto column = find_orientation(field, with_unit)) return *column;
+        }
         if (found == wanted_.end()) throw unknown(field);
         if (with_unit.unit == nullptr || found->stem == name) {
             throw error(field, "has no unit; must be like " + found->example());
@@ -81,7 +89,45 @@ class HeaderReader {
         return {found->role, found->index, with_unit.unit};
     }
 
+    /// A column of another form of an orientation.
+    std::optional<Column> find_orientation(std::size_t field, const NameWithUnit& name) const {
+        for (std::size_t form = 0; form < orientation_forms.size(); ++form) {
+            const auto& [stems, has_unit] = orientation_forms[form];
+            const auto found = std::find(stems.begin(), stems.end(), name.stem);
+            if (found == stems.end()) continue;
+            const bool is_angle = name.unit != nullptr && name.unit->quantity == Quantity::Angle;
+            if (has_unit && !is_angle) {
+                throw error(field, "has no unit of angle; must be like " + *found + "_deg");
+            }
+            if (!has_unit && name.unit != nullptr) throw error(field, "must have no unit");
+            return Column{Role::Orientation, found - stems.begin(), name.unit, form};
+        }
+        return std::nullopt;
+    }
+
+    /// Whether all columns of one form stand in for the rotation vector. Throws if there are some
+    /// of it only, or others beside it.
+    bool has_form(const std::vector<Column>& columns) const {
+        const auto first = std::find_if(columns.begin(), columns.end(), [](const Column& column) {
+            return column.role == Role::Orientation;
+        });
+        if (first == columns.end()) return false;
+        const auto& stems = orientation_forms[first->form].stems;
+        const auto count = std::count_if(columns.begin(), columns.end(), [&](const Column& column) {
+            return column.role == Role::Orientation && column.form == first->form;
+        });
+        const bool has_others = std::any_of(columns.begin(), columns.end(), [&](const Column& c) {
+            return (c.role == Role::Orientation && c.form != first->form) ||
+                   (c.role == Role::Observation && c.index >= 3);
+        });
+        if (count == static_cast<std::ptrdiff_t>(stems.size()) && !has_others) return true;
+        throw error(static_cast<std::size_t>(first - columns.begin()),
+                    fmt::format("is one of {}; must come with all of them and no other orientation",
+                                fmt::join(stems, ", ")));
+    }
+
     void check_complete(const std::vector<Column>& columns) const {
+        const bool is_replaced = has_form(columns);
         const auto has = [&columns](Role role, Index index) {
             return std::any_of(columns.begin(), columns.end(), [&](const Column& column) {
                 return column.role == role && column.index == index;
@@ -92,6 +138,7 @@ class HeaderReader {
         for (const WantedColumn& column : wanted_) {
             if (column.role == Role::Observation && content_ == Content::JointsAndVisibleTargets)
                 continue;
+            if (is_replaced && column.role == Role::Observation && column.index >= 3) continue;
             if (!has(column.role, column.index)) missing.push_back(column.example());
         }
         if (missing.empty()) return;
@@ -104,6 +151,7 @@ class HeaderReader {
     const CsvReader& csv_;
     Content content_;
     std::vector<WantedColumn> wanted_;
+    bool has_orientation_;
     std::vector<std::string> examples_;
 };
 
@@ -122,7 +170,12 @@ class RowReader {
             const auto index = static_cast<std::size_t>(columns_[field].index);
             if (columns_[field].role == Role::Joint) field_of_joint_[index] = field;
             if (columns_[field].role == Role::Observation) field_of_observation_[index] = field;
+            if (columns_[field].role == Role::Orientation) {
+                orientation_fields_.resize(orientation_forms[columns_[field].form].stems.size());
+                orientation_fields_[index] = field;
+            }
         }
+        if (!orientation_fields_.empty()) field_of_observation_.resize(3);
         row_.joints.resize(campaign.robot.joint_count());
         row_.is_seen.assign(static_cast<std::size_t>(campaign.sensor->target_count()), true);
         if (content == Content::JointsAndObservations) {
@@ -175,10 +228,12 @@ class RowReader {
                 }
                 return;
             case Role::Observation:
+            case Role::Orientation:
                 return;  // by read_targets()
         }
     }
 
+    /// In SI units, or as it is if its column has no unit.
     double read_number(std::size_t field) const {
         const std::string_view text = csv_.fields()[field];
         const ParsedNumber number = parse_number(text);
@@ -188,6 +243,7 @@ class RowReader {
                                              "point",
                                              quote(text), number.problem));
         }
+        if (columns_[field].unit == nullptr) return number.value;
         const Unit& unit = *columns_[field].unit;
         const double si = unit.to_si(number.value);
         if (!is_plausible(si, unit.quantity)) {
@@ -228,25 +284,54 @@ class RowReader {
 
     /// The cells of a target that was not seen are empty, all of them.
     void read_target(std::size_t target) {
-        const auto width = static_cast<std::size_t>(campaign_.sensor->rows_per_target());
+        const auto width = orientation_fields_.empty()
+                               ? static_cast<std::size_t>(campaign_.sensor->rows_per_target())
+                               : field_of_observation_.size();
         const std::size_t first = width * target;
-        const auto is_empty = [&](std::size_t k) {
-            return csv_.fields()[field_of_observation_[k]].empty();
-        };
-        std::size_t empty_count = 0;
-        for (std::size_t k = first; k < first + width; ++k) empty_count += is_empty(k) ? 1 : 0;
-        row_.is_seen[target] = empty_count < width;
-        if (!row_.is_seen[target]) return;
+        std::vector<std::size_t> fields(orientation_fields_);
         for (std::size_t k = first; k < first + width; ++k) {
-            if (is_empty(k)) {
-                throw input_error_at(
-                    csv_.locate(field_of_observation_[k]),
-                    fmt::format("{} is empty, but not all cells of target {} are; must be a "
-                                "number, or all empty if it was not seen",
-                                campaign_.sensor->observation_names()[k], target + 1));
-            }
+            fields.push_back(field_of_observation_[k]);
+        }
+        const auto is_empty = [&](std::size_t field) { return csv_.fields()[field].empty(); };
+        row_.is_seen[target] = !std::all_of(fields.begin(), fields.end(), is_empty);
+        if (!row_.is_seen[target]) return;
+        const auto gap = std::find_if(fields.begin(), fields.end(), is_empty);
+        if (gap != fields.end()) {
+            throw input_error_at(
+                csv_.locate(*gap),
+                fmt::format("{} is empty, but not all cells of target {} are; must be a "
+                            "number, or all empty if it was not seen",
+                            name_of(*gap), target + 1));
+        }
+        for (std::size_t k = first; k < first + width; ++k) {
             row_.observation[static_cast<Index>(k)] = read_number(field_of_observation_[k]);
         }
+        if (!orientation_fields_.empty()) row_.observation.tail<3>() = read_orientation();
+    }
+
+    /// The name of an observation's column, without unit.
+    std::string name_of(std::size_t field) const {
+        const Column& column = columns_[field];
+        const auto index = static_cast<std::size_t>(column.index);
+        return column.role == Role::Orientation ? orientation_forms[column.form].stems[index]
+                                                : campaign_.sensor->observation_names()[index];
+    }
+
+    /// The rotation vector of an orientation in another form.
+    Vector3d read_orientation() const {
+        VectorXd values(static_cast<Index>(orientation_fields_.size()));
+        for (Index k = 0; k < values.size(); ++k) {
+            values[k] = read_number(orientation_fields_[static_cast<std::size_t>(k)]);
+        }
+        if (values.size() == 3) return vector_from_rotation(rotation_from_rpy(values));
+        constexpr double tolerance = 1e-3;
+        const Eigen::Quaterniond q(values[0], values[1], values[2], values[3]);
+        if (!(std::abs(q.norm() - 1) <= tolerance)) {
+            throw input_error_at(
+                csv_.locate(orientation_fields_.front()),
+                fmt::format("the quaternion has length {:g}; must be 1 within 0.001", q.norm()));
+        }
+        return vector_from_rotation(q.normalized().toRotationMatrix());
     }
 
     /// The same sample of the same configuration twice is a file joined with itself.
@@ -263,6 +348,7 @@ class RowReader {
     std::vector<Column> columns_;
     std::vector<std::size_t> field_of_joint_;
     std::vector<std::size_t> field_of_observation_;
+    std::vector<std::size_t> orientation_fields_;  ///< if it is not a rotation vector
     std::unordered_set<std::string> seen_;
     std::string sample_;
     Sample row_;

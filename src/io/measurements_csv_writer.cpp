@@ -25,12 +25,15 @@ std::string joint_cells(const Measurements& measurements, Index configuration,
 }
 
 /// The observation of a sample, empty where it does not show a target.
-std::string observation_cells(const Measurements& measurements, Index sample) {
+std::string observation_cells(const Sensor& sensor, const Measurements& measurements,
+                              Index sample) {
     std::string cells;
+    Index row = 0;
     for (Index target = 0; target < measurements.is_seen.cols(); ++target) {
         const bool is_seen = measurements.is_seen(sample, target);
         for (const double value : measurements.observation(sample, target)) {
-            cells += is_seen ? fmt::format(",{}", 1e3 * value) : ",";
+            const double factor = sensor.is_angle(row++) ? 1 : 1e3;
+            cells += is_seen ? fmt::format(",{}", factor * value) : ",";
         }
     }
     return cells;
@@ -78,7 +81,8 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
         const std::string joints = joint_cells(measurements, i, joint_factors);
         for (Index sample = 0; sample < measurements.sample_count(i); ++sample) {
             fmt::format_to(out, "{},{}{}{}\n", csv_field(measurements.ids[k]), sample, joints,
-                           observation_cells(measurements, measurements.first_sample[k] + sample));
+                           observation_cells(*campaign.sensor, measurements,
+                                             measurements.first_sample[k] + sample));
         }
     }
     write_file(path, text);

@@ -4,6 +4,7 @@
 
 #include "mat_reader.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/measurement/point_sensor.hpp"
 #include "sample_collector.hpp"
 
 namespace posewise::io {
@@ -40,6 +41,11 @@ void take_seen(const VectorXd& points, Sample& sample) {
 
 Measurements read_measurements_mat(const std::string& path, const Campaign& campaign,
                                    const MatMapping& mapping) {
+    if (dynamic_cast<const PointSensor*>(campaign.sensor.get()) == nullptr) {
+        throw input_error_at({path},
+                             "is a MATLAB file, which is read for sensors of points only; "
+                             "must be CSV");
+    }
     const Index rows = campaign.sensor->row_count();
     if (static_cast<Index>(mapping.points.size()) * 3 != rows) {
         throw input_error_at({path}, "the campaign maps " + std::to_string(mapping.points.size()) +

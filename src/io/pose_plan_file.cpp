@@ -105,7 +105,7 @@ ContinuousPose read_pose(const JsonValue& json, const Campaign& campaign) {
         throw joints.error(fmt::format("has {} joints, the campaign's robot has {}",
                                        joints.values().size(), pose.joints.size()));
     }
-    const Index targets = campaign.sensor->row_count() / 3;
+    const Index targets = campaign.sensor->target_count();
     for (const JsonValue& target : json["visible_targets"].list()) {
         const Index number = target.count(1);
         if (number > targets) {

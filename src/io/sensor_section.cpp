@@ -1,6 +1,11 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "campaign_sections.hpp"
+#include "posewise/measurement/point_sensor.hpp"
+#include "posewise/measurement/pose_sensor.hpp"
+#include "posewise/measurement/scalar_sensor.hpp"
 #include "text.hpp"
 
 namespace posewise::io {
@@ -57,42 +62,155 @@ PointNoise read_noise(const YamlValue& value, const YamlMap& sensor) {
     return axes;
 }
 
-}  // namespace
+/// Standard deviation of a sensor that returns lengths.
+double read_sigma(const YamlMap& sensor) { return read_positive(sensor.require_measure("sigma")); }
 
-SensorSection read_sensor(const YamlValue& value) {
-    const YamlMap sensor(value, {"kind", "sigma_<length>", "noise", "targets"});
-    const YamlValue kind = sensor.require("kind");
-    if (kind.text() != "points") {
-        throw kind.error("is " + quote(kind.text()) + "; " + suggest(kind.text(), {"points"}));
-    }
-    const PointNoise noise = read_noise(value, sensor);
-    const YamlValue targets_value = sensor.require("targets");
-    const YamlMap targets(targets_value, {"count", "position_<length>", "known"});
+// ---- Targets ----
+
+struct TargetsSection {
+    Targets targets;
+    VectorXd unknowns;
+    bool has_positions;
+};
+
+std::array<bool, 3> read_known_axes(const std::optional<YamlValue>& known) {
+    if (!known) return {};
+    const std::vector<bool> marks = read_known(*known, {"x", "y", "z"});
+    return {marks[0], marks[1], marks[2]};
+}
+
+TargetsSection read_targets(const YamlValue& value) {
+    const YamlMap targets(value, {"count", "position_<length>", "known"});
     const auto positions = targets.find_measure("position");
     const auto count = targets.find("count");
     if (positions.has_value() == count.has_value()) {
-        throw targets_value.error("must have either count or position_mm");
+        throw value.error("must have either count or position_mm");
     }
     const auto known = targets.find("known");
-    const bool are_known = known && known->boolean();
-    if (are_known && !positions) throw known->error("is true; needs position_mm, not count");
-
+    const std::array<bool, 3> is_known = read_known_axes(known);
+    if (!positions && std::any_of(is_known.begin(), is_known.end(), [](bool b) { return b; })) {
+        throw known->error("says that positions are known; needs position_mm, not count");
+    }
     const std::vector<Vector3d> nominal =
         positions ? stated_targets(*positions) : generic_targets(*count);
-    SensorSection section;
-    section.has_positions = positions.has_value();
-    if (are_known) {
-        section.sensor = std::make_shared<PointSensor>(
-            std::vector<std::optional<Vector3d>>(nominal.begin(), nominal.end()), noise);
-        return section;
+    Targets found(nominal, std::vector<std::array<bool, 3>>(nominal.size(), is_known));
+    VectorXd unknowns(found.unknown_count());
+    for (Index j = 0; j < found.count(); ++j) {
+        for (Index axis = 0; axis < 3; ++axis) {
+            const Index k = found.unknown_index(j, axis);
+            if (k >= 0) unknowns[k] = nominal[static_cast<std::size_t>(j)][axis];
+        }
     }
-    section.sensor =
-        std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(nominal.size()), noise);
-    section.unknowns.resize(3 * static_cast<Index>(nominal.size()));
-    for (std::size_t j = 0; j < nominal.size(); ++j) {
-        section.unknowns.segment<3>(3 * static_cast<Index>(j)) = nominal[j];
+    return {std::move(found), std::move(unknowns), positions.has_value()};
+}
+
+// ---- Kinds of sensors ----
+
+SensorSection read_points(const YamlValue& value) {
+    const YamlMap sensor(value, {"kind", "sigma_<length>", "noise", "targets"});
+    const PointNoise noise = read_noise(value, sensor);
+    TargetsSection targets = read_targets(sensor.require("targets"));
+    return {std::make_shared<PointSensor>(std::move(targets.targets), noise), targets.unknowns,
+            targets.has_positions};
+}
+
+SensorSection read_poses(const YamlValue& value) {
+    const YamlMap sensor(value,
+                         {"kind", "sigma_<length>", "noise", "sigma_orientation_<angle>", "tool"});
+    const PointNoise noise = read_noise(value, sensor);
+    const double sigma = read_positive(sensor.require_measure("sigma_orientation"));
+    const auto tool_value = sensor.find("tool");
+    if (!tool_value) {
+        // Generic: its origin is on no axis.
+        Isometry3d somewhere = Isometry3d::Identity();
+        somewhere.translation() = generic_target(0);
+        return {std::make_shared<PoseSensor>(std::nullopt, noise, sigma), tool_unknowns(somewhere),
+                false};
     }
-    return section;
+    const YamlMap tool(*tool_value, {"position_<length>", "rpy_<angle>", "known"});
+    const Isometry3d nominal = read_frame(tool);
+    const auto known = tool.find("known");
+    if (known && known->boolean()) {
+        return {std::make_shared<PoseSensor>(nominal, noise, sigma), VectorXd(), true};
+    }
+    return {std::make_shared<PoseSensor>(std::nullopt, noise, sigma), tool_unknowns(nominal), true};
+}
+
+VectorXd join(const VectorXd& first, const VectorXd& second) {
+    VectorXd joined(first.size() + second.size());
+    joined << first, second;
+    return joined;
+}
+
+bool is_known(const YamlMap& map) {
+    const auto known = map.find("known");
+    return known && known->boolean();
+}
+
+SensorSection read_distances(const YamlValue& value) {
+    const YamlMap sensor(value, {"kind", "sigma_<length>", "anchors", "targets"});
+    const YamlMap anchors(sensor.require("anchors"), {"position_<length>", "known"});
+    const std::vector<Vector3d> positions = stated_targets(anchors.require_measure("position"));
+    TargetsSection targets = read_targets(sensor.require("targets"));
+    VectorXd own(is_known(anchors) ? 0 : 3 * static_cast<Index>(positions.size()));
+    for (Index k = 0; k < own.size(); ++k)
+        own[k] = positions[static_cast<std::size_t>(k / 3)][k % 3];
+    return {std::make_shared<DistanceSensor>(std::move(targets.targets), positions,
+                                             is_known(anchors), read_sigma(sensor)),
+            join(targets.unknowns, own), targets.has_positions};
+}
+
+Plane read_plane(const YamlValue& value) {
+    const YamlMap map(value, {"normal", "offset_<length>"});
+    const YamlValue normal = map.require("normal");
+    const std::vector<double> xyz = normal.numbers(3);
+    const Plane plane{{xyz[0], xyz[1], xyz[2]}, map.require_measure("offset").to_si()};
+    if (!(plane.normal.norm() > 1e-9)) throw normal.error("is zero; must point away from the face");
+    return plane;
+}
+
+SensorSection read_planes(const YamlValue& value) {
+    const YamlMap sensor(value, {"kind", "sigma_<length>", "planes", "known_planes", "targets"});
+    const YamlValue list = sensor.require("planes");
+    std::vector<Plane> planes;
+    for (const YamlValue& item : list.list()) planes.push_back(read_plane(item));
+    if (planes.empty()) throw list.error("is empty; must list at least one plane");
+    const auto known = sensor.find("known_planes");
+    const bool are_known = known && known->boolean();
+    TargetsSection targets = read_targets(sensor.require("targets"));
+    VectorXd own = VectorXd::Zero(are_known ? 0 : 3 * static_cast<Index>(planes.size()));
+    for (Index k = 2; k < own.size(); k += 3)
+        own[k] = planes[static_cast<std::size_t>(k / 3)].offset;
+    return {std::make_shared<PlaneSensor>(std::move(targets.targets), planes, are_known,
+                                          read_sigma(sensor)),
+            join(targets.unknowns, own), targets.has_positions};
+}
+
+/// A sensor by its kind; its keys depend on it.
+using ReadKind = SensorSection (*)(const YamlValue&);
+constexpr std::array<std::pair<std::string_view, ReadKind>, 4> kinds{{{"points", read_points},
+                                                                      {"poses", read_poses},
+                                                                      {"distances", read_distances},
+                                                                      {"planes", read_planes}}};
+
+YamlValue kind_of(const YamlValue& sensor) {
+    for (const YamlEntry& entry : sensor.entries()) {
+        if (entry.key == "kind") return entry.value;
+    }
+    throw sensor.error("has no key kind; must be points, poses, distances or planes");
+}
+
+}  // namespace
+
+SensorSection read_sensor(const YamlValue& value) {
+    const YamlValue kind = kind_of(value);
+    const std::string name = kind.text();
+    std::vector<std::string> names;
+    for (const auto& [known, read] : kinds) {
+        if (name == known) return read(value);
+        names.emplace_back(known);
+    }
+    throw kind.error("is " + quote(name) + "; " + suggest(name, names));
 }
 
 }  // namespace posewise::io

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "posewise/model/error_terms.hpp"
 #include "robot_parts.hpp"
@@ -63,9 +64,7 @@ Chain add_gravity(const YamlValue& value, const Chain& chain) {
     return add(value, [&] { return with_gravity_terms(chain, direction, joints); });
 }
 
-Chain add_harmonics(const YamlValue& value, const Chain& chain) {
-    const YamlMap map(value, {"orders", "joints"});
-    const YamlValue listed = map.require("orders");
+std::vector<double> read_list(const YamlValue& listed) {
     std::vector<double> orders;
     for (const YamlValue& item : listed.list()) {
         orders.push_back(item.number());
@@ -73,6 +72,35 @@ Chain add_harmonics(const YamlValue& value, const Chain& chain) {
             throw item.error("is " + quote(item.text()) + "; must be from 1e-3 to 1e4 a turn");
         }
     }
+    return orders;
+}
+
+/// "1..40": every whole number from the first to the last.
+std::vector<double> read_range(const YamlValue& value) {
+    const std::string text = value.text();
+    const auto dots = text.find("..");
+    const ParsedNumber first = parse_number(text.substr(0, dots));
+    const ParsedNumber last =
+        dots == std::string::npos ? ParsedNumber{} : parse_number(text.substr(dots + 2));
+    const auto is_whole = [](const ParsedNumber& number) {
+        return number.ok() && number.value >= 1 && number.value <= 1e4 &&
+               number.value == std::floor(number.value);
+    };
+    if (dots == std::string::npos || !is_whole(first) || !is_whole(last) ||
+        first.value > last.value) {
+        throw value.error("is " + quote(text) +
+                          "; must be a list of orders or a range of whole ones like 1..40");
+    }
+    std::vector<double> orders;
+    for (double order = first.value; order <= last.value && orders.size() <= most_orders; ++order)
+        orders.push_back(order);
+    return orders;
+}
+
+Chain add_harmonics(const YamlValue& value, const Chain& chain) {
+    const YamlMap map(value, {"orders", "joints"});
+    const YamlValue listed = map.require("orders");
+    const std::vector<double> orders = listed.is_list() ? read_list(listed) : read_range(listed);
     if (orders.empty() || orders.size() > most_orders) {
         throw listed.error("lists " + std::to_string(orders.size()) +
                            " orders; must be from 1 to 100");

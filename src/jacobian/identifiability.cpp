@@ -25,11 +25,12 @@ VectorXd residual_outside(const Eigen::Ref<const MatrixXd>& Q, VectorXd column) 
 /// Base and sensor first, then joint offsets, translations, other rotations, terms: what comes
 /// early is kept, so a link error is dropped in favour of an offset, a base or a target it equals.
 std::vector<Index> make_priority(const Campaign& campaign) {
-    const Index robot = campaign.robot.parameter_count();
+    const Index begin = base_parameter_count(campaign);
+    const Index end = begin + campaign.robot.parameter_count();
     const auto rank = [&](Index k) {
-        if (k < 6 || k >= 6 + robot) return 0;
-        if (campaign.robot.parameter_term(k - 6) != nullptr) return 4;
-        const Element& element = campaign.robot.parameter_element(k - 6);
+        if (k < begin || k >= end) return 0;
+        if (campaign.robot.parameter_term(k - begin) != nullptr) return 4;
+        const Element& element = campaign.robot.parameter_element(k - begin);
         if (!element.joints.empty()) return 1;
         return element.motion == Motion::Translation ? 2 : 3;
     };

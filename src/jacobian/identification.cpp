@@ -67,8 +67,7 @@ RowMatrixXd all_seen(const Campaign& campaign, const RowMatrixXd& configurations
 void differentiate_pose(const Campaign& campaign, const Parameters& parameters,
                         const VectorXd& configuration, FlangeMotion& motion,
                         Eigen::Ref<RowMatrixXd> J_measured_parameters) {
-    campaign.robot.differentiate(parameters.world_from_base, configuration, parameters.robot,
-                                 motion);
+    differentiate_flange(campaign, parameters, configuration, motion);
     campaign.sensor->differentiate(motion.world_from_flange, motion.twists, parameters.sensor,
                                    J_measured_parameters);
 }
@@ -83,6 +82,29 @@ Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
                          const RowMatrixXd& configurations) {
     return make_plain_blocks(campaign, parameters, configurations,
                              all_seen(campaign, configurations, 1));
+}
+
+Blocks make_position_blocks(const Campaign& campaign, const Parameters& parameters,
+                            const RowMatrixXd& configurations) {
+    const Index rows = 3 * campaign.sensor->target_count();
+    Blocks blocks;
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        campaign.robot.check_configuration(configurations.row(i).transpose());
+        blocks.first_row.push_back(blocks.first_row.back() + rows);
+    }
+    blocks.matrix.resize(blocks.first_row.back(), parameter_count(campaign));
+#pragma omp parallel
+    {
+        FlangeMotion motion;
+#pragma omp for schedule(static)
+        for (Index i = 0; i < configurations.rows(); ++i) {
+            differentiate_flange(campaign, parameters, configurations.row(i).transpose(), motion);
+            campaign.sensor->differentiate_positions(motion.world_from_flange, motion.twists,
+                                                     parameters.sensor,
+                                                     blocks.matrix.middleRows(rows * i, rows));
+        }
+    }
+    return blocks;
 }
 
 Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,

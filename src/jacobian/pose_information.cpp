@@ -51,8 +51,7 @@ VectorXd PoseInformation::differentiate(const VectorXd& q, const MatrixXd& Z,
     const Sensor& sensor = *campaign_.sensor;
     FlangeMotion motion;
     std::vector<FlangeMotionRate> rates;
-    campaign_.robot.differentiate_twice(parameters_.world_from_base, q, parameters_.robot, motion,
-                                        rates);
+    differentiate_flange_twice(campaign_, parameters_, q, motion, rates);
     RowMatrixXd P(sensor.row_count(), parameter_count());
     sensor.differentiate(motion.world_from_flange, motion.twists, parameters_.sensor, P);
     P *= scale_.asDiagonal();

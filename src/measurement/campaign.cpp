@@ -3,34 +3,68 @@
 #include <algorithm>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/model/transforms.hpp"
 
 namespace posewise {
+namespace {
+
+constexpr std::array<const char*, 6> base_names{"base.x",  "base.y",  "base.z",
+                                                "base.rx", "base.ry", "base.rz"};
+
+/// Which of the base's six are parameters, in their order.
+std::vector<Index> unknown_of_base(const Campaign& campaign) {
+    std::vector<Index> unknown;
+    for (Index k = 0; k < 6; ++k) {
+        if (!campaign.base_is_known[static_cast<std::size_t>(k)]) unknown.push_back(k);
+    }
+    return unknown;
+}
+
+/// Removes the twists of what is known of the base.
+void drop_known_of_base(const Campaign& campaign, TwistMatrix& twists) {
+    if (base_parameter_count(campaign) == 6) return;
+    std::vector<Index> kept = unknown_of_base(campaign);
+    for (Index k = 6; k < twists.cols(); ++k) kept.push_back(k);
+    twists = twists(Eigen::all, kept).eval();
+}
+
+}  // namespace
+
+Index base_parameter_count(const Campaign& campaign) {
+    const auto& known = campaign.base_is_known;
+    return std::count(known.begin(), known.end(), false);
+}
 
 Index parameter_count(const Campaign& campaign) {
-    return 6 + campaign.robot.parameter_count() +
+    return base_parameter_count(campaign) + campaign.robot.parameter_count() +
            static_cast<Index>(campaign.sensor->unknown_names().size());
 }
 
 std::vector<std::string> parameter_names(const Campaign& campaign) {
-    std::vector<std::string> names{"base.x", "base.y", "base.z", "base.rx", "base.ry", "base.rz"};
+    std::vector<std::string> names;
+    for (const Index k : unknown_of_base(campaign)) {
+        names.emplace_back(base_names[static_cast<std::size_t>(k)]);
+    }
     for (const auto& name : campaign.robot.parameter_names()) names.push_back(name);
     for (const auto& name : campaign.sensor->unknown_names()) names.push_back(name);
     return names;
 }
 
 std::vector<bool> parameter_is_angle(const Campaign& campaign) {
-    std::vector<bool> is_angle(static_cast<std::size_t>(parameter_count(campaign)), false);
-    std::fill_n(is_angle.begin() + 3, 3, true);
+    std::vector<bool> is_angle(static_cast<std::size_t>(parameter_count(campaign)));
+    std::size_t next = 0;
+    for (const Index k : unknown_of_base(campaign)) is_angle[next++] = k >= 3;
     for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
-        is_angle[static_cast<std::size_t>(6 + k)] =
-            campaign.robot.parameter_element(k).motion == Motion::Rotation;
+        is_angle[next++] = campaign.robot.parameter_element(k).motion == Motion::Rotation;
     }
+    for (const bool of_sensor : campaign.sensor->unknown_is_angle()) is_angle[next++] = of_sensor;
     return is_angle;
 }
 
 VectorXd parameter_scale(const Campaign& campaign) {
     const auto names = parameter_names(campaign);
     const auto is_angle = parameter_is_angle(campaign);
+    const Index robot_begin = base_parameter_count(campaign);
     VectorXd scale(static_cast<Index>(names.size()));
     for (std::size_t k = 0; k < names.size(); ++k) {
         scale[static_cast<Index>(k)] = is_angle[k] ? campaign.spread.angle : campaign.spread.length;
@@ -39,7 +73,7 @@ VectorXd parameter_scale(const Campaign& campaign) {
         const ErrorTerm* const term = campaign.robot.parameter_term(k);
         if (term == nullptr || term->kind == TermKind::Free) continue;
         const bool is_gravity = term->kind == TermKind::Gravity;
-        scale[6 + k] = is_gravity ? campaign.spread.gravity : campaign.spread.harmonic;
+        scale[robot_begin + k] = is_gravity ? campaign.spread.gravity : campaign.spread.harmonic;
     }
     for (const auto& [name, size] : campaign.spread.by_name) {
         const auto found = std::find(names.begin(), names.end(), name);
@@ -55,24 +89,26 @@ VectorXd parameter_scale(const Campaign& campaign) {
 MatrixXd prior_information(const Campaign& campaign) {
     VectorXd information = VectorXd::Zero(parameter_count(campaign));
     if (campaign.spread.is_prior)
-        information.segment(6, campaign.robot.parameter_count()).setOnes();
+        information.segment(base_parameter_count(campaign), campaign.robot.parameter_count())
+            .setOnes();
     return information.asDiagonal();
 }
 
-Parameters advance(const Parameters& parameters, const VectorXd& step) {
+Parameters advance(const Campaign& campaign, const Parameters& parameters, const VectorXd& step) {
     Parameters moved = parameters;
-    const Vector3d phi = step.segment<3>(3);
-    const double angle = phi.norm();
-    if (angle > 0) {
-        const Matrix3d turn = Eigen::AngleAxisd(angle, phi / angle).toRotationMatrix();
+    Twist base = Twist::Zero();  // translation, turn
+    Index next = 0;
+    for (const Index k : unknown_of_base(campaign)) base[k] = step[next++];
+    const Vector3d phi = base.tail<3>();
+    if (phi.squaredNorm() > 0) {
         // Through a unit quaternion, so that rounding never accumulates into a non-rotation.
         moved.world_from_base.linear() =
-            Eigen::Quaterniond(turn * parameters.world_from_base.linear())
+            Eigen::Quaterniond(rotation_from_vector(phi) * parameters.world_from_base.linear())
                 .normalized()
                 .toRotationMatrix();
     }
-    moved.world_from_base.translation() += step.head<3>();
-    moved.robot += step.segment(6, parameters.robot.size());
+    moved.world_from_base.translation() += base.head<3>();
+    moved.robot += step.segment(next, parameters.robot.size());
     moved.sensor += step.tail(parameters.sensor.size());
     return moved;
 }
@@ -81,6 +117,22 @@ Isometry3d world_from_flange(const Campaign& campaign, const Parameters& paramet
                              const VectorXd& configuration) {
     return parameters.world_from_base *
            campaign.robot.base_from_flange(configuration, parameters.robot);
+}
+
+void differentiate_flange(const Campaign& campaign, const Parameters& parameters,
+                          const VectorXd& configuration, FlangeMotion& motion) {
+    campaign.robot.differentiate(parameters.world_from_base, configuration, parameters.robot,
+                                 motion);
+    drop_known_of_base(campaign, motion.twists);
+}
+
+void differentiate_flange_twice(const Campaign& campaign, const Parameters& parameters,
+                                const VectorXd& configuration, FlangeMotion& motion,
+                                std::vector<FlangeMotionRate>& rates) {
+    campaign.robot.differentiate_twice(parameters.world_from_base, configuration, parameters.robot,
+                                       motion, rates);
+    drop_known_of_base(campaign, motion.twists);
+    for (FlangeMotionRate& rate : rates) drop_known_of_base(campaign, rate.twists);
 }
 
 Campaign with_robot(const Campaign& campaign, Chain robot) {

@@ -1,27 +1,33 @@
 #include "posewise/measurement/measurements.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace posewise {
 
 namespace {
 
-/// The observations, with row i of `by` where a sample of configuration i does not show a target.
-RowMatrixXd fill_unseen(const Measurements& measurements, const RowMatrixXd& by) {
-    RowMatrixXd filled = measurements.observations;
-    const Index targets = measurements.is_seen.cols();
+/// Calls visit(configuration, target, samples that show it) for each that is seen at all.
+template <typename Visit>
+void for_each_seen(const Measurements& measurements, const Visit& visit) {
+    std::vector<Index> samples;
     for (Index i = 0; i < measurements.configuration_count(); ++i) {
         const Index first = measurements.first_sample[static_cast<std::size_t>(i)];
-        for (Index k = first; k < first + measurements.sample_count(i); ++k) {
-            for (Index j = 0; j < targets; ++j) {
-                const Index width = filled.cols() / targets;
-                if (measurements.is_seen(k, j)) continue;
-                filled.row(k).segment(width * j, width) = by.row(i).segment(width * j, width);
+        for (Index j = 0; j < measurements.is_seen.cols(); ++j) {
+            samples.clear();
+            for (Index k = first; k < first + measurements.sample_count(i); ++k) {
+                if (measurements.is_seen(k, j)) samples.push_back(k);
             }
+            if (!samples.empty()) visit(i, j, samples);
         }
     }
-    return filled;
+}
+
+/// Deviations of whole observations from others, of which only one target's part means anything.
+VectorXd deviation(const Sensor& sensor, const Measurements& measurements, Index sample,
+                   const VectorXd& reference) {
+    return sensor.deviation(measurements.observations.row(sample).transpose(), reference);
 }
 
 }  // namespace
@@ -47,23 +53,20 @@ RowMatrixXd share_seen(const Measurements& measurements) {
     return share;
 }
 
-Measurements mean_measurements(const Measurements& measurements) {
+Measurements mean_measurements(const Sensor& sensor, const Measurements& measurements) {
     const RowMatrixXd times = times_seen(measurements);
     Measurements means{measurements.configurations, measurements.ids, {}, times.array() > 0, {0}};
     means.observations.setZero(times.rows(), measurements.observations.cols());
-    const RowMatrixXd seen = fill_unseen(measurements, means.observations);
-    for (Index i = 0; i < times.rows(); ++i) {
-        means.observations.row(i) =
-            seen.middleRows(measurements.first_sample[static_cast<std::size_t>(i)],
-                            measurements.sample_count(i))
-                .colwise()
-                .sum();
-        for (Index j = 0; j < times.cols(); ++j) {
-            const Index width = seen.cols() / times.cols();
-            means.observations.row(i).segment(width * j, width) /= std::max(times(i, j), 1.0);
-        }
-        means.first_sample.push_back(i + 1);
-    }
+    const Index width = sensor.rows_per_target();
+    for_each_seen(measurements, [&](Index i, Index j, const std::vector<Index>& samples) {
+        const VectorXd first = measurements.observations.row(samples.front()).transpose();
+        VectorXd sum = VectorXd::Zero(first.size());
+        for (const Index k : samples) sum += deviation(sensor, measurements, k, first);
+        const VectorXd mean = sensor.deviate(first, sum / static_cast<double>(samples.size()));
+        means.observations.row(i).segment(width * j, width) =
+            mean.segment(width * j, width).transpose();
+    });
+    for (Index i = 0; i < times.rows(); ++i) means.first_sample.push_back(i + 1);
     return means;
 }
 
@@ -100,21 +103,30 @@ std::vector<Index> all_but(Index count, const std::vector<Index>& left_out) {
     return others;
 }
 
-std::optional<double> repeatability(const Measurements& measurements) {
-    const RowMatrixXd means = mean_measurements(measurements).observations;
-    const RowMatrixXd times = times_seen(measurements);
-    const RowMatrixXd observations = fill_unseen(measurements, means);  // no deviation there
-    double sum_of_squares = 0;
-    double degrees_of_freedom = 0;
-    for (Index i = 0; i < means.rows(); ++i) {
-        const auto samples = observations.middleRows(
-            measurements.first_sample[static_cast<std::size_t>(i)], measurements.sample_count(i));
-        sum_of_squares += (samples.rowwise() - means.row(i)).squaredNorm();
-        const auto width = static_cast<double>(means.cols() / times.cols());
-        degrees_of_freedom += width * (times.row(i).array() - 1).max(0).sum();
+std::optional<Repeatability> repeatability(const Sensor& sensor, const Measurements& measurements) {
+    const Measurements means = mean_measurements(sensor, measurements);
+    const Index width = sensor.rows_per_target();
+    // Of lengths, then of angles.
+    std::array<double, 2> sum_of_squares{};
+    std::array<double, 2> degrees_of_freedom{};
+    for_each_seen(measurements, [&](Index i, Index j, const std::vector<Index>& samples) {
+        const VectorXd mean = means.observations.row(i).transpose();
+        for (Index row = width * j; row < width * (j + 1); ++row) {
+            degrees_of_freedom[sensor.is_angle(row)] += static_cast<double>(samples.size()) - 1;
+        }
+        for (const Index k : samples) {
+            const VectorXd d = deviation(sensor, measurements, k, mean);
+            for (Index row = width * j; row < width * (j + 1); ++row) {
+                sum_of_squares[sensor.is_angle(row)] += d[row] * d[row];
+            }
+        }
+    });
+    if (degrees_of_freedom[0] == 0) return std::nullopt;
+    Repeatability result{std::sqrt(sum_of_squares[0] / degrees_of_freedom[0])};
+    if (degrees_of_freedom[1] > 0) {
+        result.orientation = std::sqrt(sum_of_squares[1] / degrees_of_freedom[1]);
     }
-    if (degrees_of_freedom == 0) return std::nullopt;
-    return std::sqrt(sum_of_squares / degrees_of_freedom);
+    return result;
 }
 
 }  // namespace posewise

@@ -23,10 +23,13 @@ bool is_sigma(double value) { return std::isfinite(value) && value >= 0; }
 }  // namespace
 
 void check_noise(const Campaign& campaign) {
-    if (!is_sigma(campaign.model_error)) {
-        throw InputError("model error is " + std::to_string(campaign.model_error) +
-                         " m, must be finite and not negative");
-    }
+    const auto check_model_error = [](double value, const char* unit) {
+        if (is_sigma(value)) return;
+        throw InputError("model error is " + std::to_string(value) + ' ' + unit +
+                         ", must be finite and not negative");
+    };
+    check_model_error(campaign.model_error, "m");
+    check_model_error(campaign.model_error_orientation, "rad");
     const VectorXd& s = campaign.joint_repeatability;
     if (s.size() != 0 && s.size() != campaign.robot.joint_count()) {
         throw InputError("joint repeatability has " + std::to_string(s.size()) +
@@ -39,6 +42,15 @@ void check_noise(const Campaign& campaign) {
                          campaign.robot.joints()[static_cast<std::size_t>(j)].name + "' is " +
                          std::to_string(s[j]) + ", must be finite and not negative");
     }
+}
+
+VectorXd model_error_of_rows(const Campaign& campaign) {
+    VectorXd errors(campaign.sensor->row_count());
+    for (Index row = 0; row < errors.size(); ++row) {
+        errors[row] = campaign.sensor->is_angle(row) ? campaign.model_error_orientation
+                                                     : campaign.model_error;
+    }
+    return errors;
 }
 
 std::vector<Index> seen_rows(const Sensor& sensor, const VectorXd& repeats) {
@@ -58,7 +70,7 @@ MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
     for (Index k = 0; k < covariance.rows(); ++k) {  // targets are independent of each other
         covariance.row(k) /= repeats[rows[static_cast<std::size_t>(k)] / sensor.rows_per_target()];
     }
-    covariance.diagonal().array() += campaign.model_error * campaign.model_error;
+    covariance.diagonal() += model_error_of_rows(campaign)(rows).cwiseAbs2();
     if (campaign.joint_repeatability.size() > 0) {
         const RowMatrixXd effect =
             joint_noise_effect(campaign, motion, sensor_unknowns)(rows, Eigen::all);

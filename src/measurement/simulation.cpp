@@ -20,7 +20,7 @@ Parameters draw_truth(const Campaign& campaign, std::uint64_t seed) {
     RandomStream stream(seed);
     const VectorXd errors =
         parameter_scale(campaign).cwiseProduct(draw_normal(stream, parameter_count(campaign)));
-    return advance(campaign.nominal, errors);
+    return advance(campaign, campaign.nominal, errors);
 }
 
 Measurements simulate_measurements(const Campaign& campaign, const Parameters& truth,
@@ -29,6 +29,7 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
     check_noise(campaign);
     const Sensor& sensor = *campaign.sensor;
     const Index rows = sensor.row_count();
+    const VectorXd model_error = model_error_of_rows(campaign);
     Measurements measurements;
     measurements.configurations = configurations;
     measurements.observations.resize(configurations.rows() * repeats, rows);
@@ -41,11 +42,13 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
         }
         const Isometry3d flange = world_from_flange(campaign, truth, q);
         const VectorXd expected =
-            sensor.predict(flange, truth.sensor) + campaign.model_error * draw_normal(stream, rows);
+            sensor.deviate(sensor.predict(flange, truth.sensor),
+                           model_error.cwiseProduct(draw_normal(stream, rows)));
         const MatrixXd noise_factor = cholesky_factor(sensor.covariance(flange, truth.sensor));
         for (Index k = 0; k < repeats; ++k) {
             const VectorXd noise = noise_factor * draw_normal(stream, rows);
-            measurements.observations.row(i * repeats + k) = (expected + noise).transpose();
+            measurements.observations.row(i * repeats + k) =
+                sensor.deviate(expected, noise).transpose();
         }
         measurements.ids.push_back(std::to_string(i));
         measurements.first_sample.push_back((i + 1) * repeats);

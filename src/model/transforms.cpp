@@ -18,6 +18,37 @@ Matrix3d rotation_from_rpy(const Vector3d& rpy) {
         .toRotationMatrix();
 }
 
+Matrix3d rotation_from_vector(const Vector3d& vector) {
+    const double angle = vector.norm();
+    if (angle == 0) return Matrix3d::Identity();
+    return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
+}
+
+Vector3d vector_from_rotation(const Matrix3d& R) {
+    const Eigen::AngleAxisd turn(R);
+    return turn.angle() * turn.axis();
+}
+
+Matrix3d rotation_vector_rate(const Vector3d& vector) {
+    const double angle = vector.norm();
+    const Matrix3d X = cross_matrix(vector);
+    // (1 - cos t) / t^2 and (t - sin t) / t^3, by their series where the differences cancel.
+    double a = 0.5 - angle * angle / 24;
+    double b = 1.0 / 6 - angle * angle / 120;
+    if (angle > 1e-3) {
+        const double half = std::sin(angle / 2);
+        a = 2 * half * half / (angle * angle);
+        b = (angle - std::sin(angle)) / (angle * angle * angle);
+    }
+    return Matrix3d::Identity() + a * X + b * X * X;
+}
+
+Matrix3d cross_matrix(const Vector3d& vector) {
+    Matrix3d X;
+    X << 0, -vector.z(), vector.y(), vector.z(), 0, -vector.x(), -vector.y(), vector.x(), 0;
+    return X;
+}
+
 Vector3d rpy_from_rotation(const Matrix3d& R) {
     const double cos_pitch = std::hypot(R(2, 1), R(2, 2));
     const double roll = cos_pitch > 1e-15 ? std::atan2(R(2, 1), R(2, 2)) : 0;

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/point_sensor.hpp"
 
 namespace posewise::planner {
 namespace {
@@ -119,9 +118,7 @@ std::size_t elements_before(const Chain& robot, Index frame) {
 }  // namespace
 
 std::vector<Vector3d> nominal_targets(const Campaign& campaign, const Cell& cell) {
-    const auto* const sensor = dynamic_cast<const PointSensor*>(campaign.sensor.get());
     if (cell.sight || !cell.target_boxes.empty()) {
-        require(sensor != nullptr, "sight and target_boxes need a sensor that measures targets");
         require(campaign.has_nominal_targets,
                 "sight and target_boxes need to know where the targets are; the sensor must state "
                 "targets.position_mm");
@@ -129,9 +126,9 @@ std::vector<Vector3d> nominal_targets(const Campaign& campaign, const Cell& cell
                 "sight needs to know where the tracker is; the campaign must state its base");
     }
     std::vector<Vector3d> targets;
-    if (sensor == nullptr || !campaign.has_nominal_targets) return targets;
-    for (Index j = 0; j < sensor->target_count(); ++j) {
-        targets.push_back(sensor->target(j, campaign.nominal.sensor));
+    if (!campaign.has_nominal_targets) return targets;
+    for (Index j = 0; j < campaign.sensor->target_count(); ++j) {
+        targets.push_back(campaign.sensor->target_position(j, campaign.nominal.sensor));
     }
     return targets;
 }

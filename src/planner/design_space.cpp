@@ -5,13 +5,13 @@
 namespace posewise {
 namespace {
 
-/// Sensor rows of the targets a pose shows, three each.
-std::vector<Index> seen_rows(const Constraints& constraints, const VectorXd& q) {
+/// Sensor rows of the targets a pose shows, `width` each.
+std::vector<Index> seen_rows(const Constraints& constraints, Index width, const VectorXd& q) {
     const std::vector<bool> is_visible = constraints.check(q).is_visible;
     std::vector<Index> rows;
     for (std::size_t target = 0; target < is_visible.size(); ++target) {
-        const auto first = 3 * static_cast<Index>(target);
-        if (is_visible[target]) rows.insert(rows.end(), {first, first + 1, first + 2});
+        const Index first = width * static_cast<Index>(target);
+        for (Index k = 0; k < width && is_visible[target]; ++k) rows.push_back(first + k);
     }
     return rows;
 }
@@ -22,6 +22,7 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
                               double repeats, const Constraints* constraints) {
     const auto pose = std::make_shared<PoseInformation>(campaign, parameters, repeats);
     const Chain& robot = constraints == nullptr ? campaign.robot : constraints->robot();
+    const Index width = campaign.sensor->rows_per_target();
     DesignSpace space;
     space.parameter_count = pose->parameter_count();
     space.lower.resize(robot.joint_count());
@@ -37,14 +38,14 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
             return pose->differentiate(q, Z);
         };
     } else {
-        space.information = [pose, constraints](const VectorXd& q) -> MatrixXd {
-            const auto rows = seen_rows(*constraints, q);
+        space.information = [pose, constraints, width](const VectorXd& q) -> MatrixXd {
+            const auto rows = seen_rows(*constraints, width, q);
             const Index size = pose->parameter_count();
             return rows.empty() ? MatrixXd(MatrixXd::Zero(size, size)) : pose->evaluate(q, rows);
         };
-        space.information_gradient = [pose, constraints](const VectorXd& q,
-                                                         const MatrixXd& Z) -> VectorXd {
-            const auto rows = seen_rows(*constraints, q);
+        space.information_gradient = [pose, constraints, width](const VectorXd& q,
+                                                                const MatrixXd& Z) -> VectorXd {
+            const auto rows = seen_rows(*constraints, width, q);
             return rows.empty() ? VectorXd(VectorXd::Zero(q.size()))
                                 : pose->differentiate(q, Z, rows);
         };

@@ -224,10 +224,11 @@ PlannedPoses plan_poses(const Campaign& campaign, const Constraints& constraints
 }
 
 std::vector<Index> nuisance_of_robot(const Campaign& campaign) {
-    const Index robot_end = 6 + campaign.robot.parameter_count();
+    const Index robot_begin = base_parameter_count(campaign);
+    const Index robot_end = robot_begin + campaign.robot.parameter_count();
     std::vector<Index> nuisance;
     for (Index k = 0; k < parameter_count(campaign); ++k) {
-        if (k < 6 || k >= robot_end) nuisance.push_back(k);
+        if (k < robot_begin || k >= robot_end) nuisance.push_back(k);
     }
     return nuisance;
 }

@@ -12,12 +12,12 @@ namespace posewise {
 
 Blocks make_prediction_blocks(const Campaign& campaign, const Parameters& parameters,
                               const RowMatrixXd& workspace, Index target) {
-    const Index targets = campaign.sensor->row_count() / 3;
+    const Index targets = campaign.sensor->target_count();
     if (target < -1 || target >= targets) {
         throw InputError("target " + std::to_string(target + 1) + " to predict: the sensor has " +
                          std::to_string(targets));
     }
-    Blocks blocks = make_plain_blocks(campaign, parameters, workspace);
+    Blocks blocks = make_position_blocks(campaign, parameters, workspace);
     blocks.matrix *= parameter_scale(campaign).asDiagonal();
     if (target < 0) return blocks;
     Blocks one;

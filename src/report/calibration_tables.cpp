@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "posewise/model/transforms.hpp"
 #include "posewise/report/units.hpp"
 
 namespace posewise {
@@ -9,27 +10,37 @@ namespace {
 
 using MetricRow = std::pair<std::string, std::function<double(const Metrics&)>>;
 
-std::vector<MetricRow> list_metric_rows() {
+std::vector<MetricRow> list_metric_rows(const Metrics& example) {
     std::vector<MetricRow> rows{
         {"distance RMS", [](const Metrics& m) { return m.distance_rms; }},
         {"distance max", [](const Metrics& m) { return m.distance_max; }},
         {"distance mean", [](const Metrics& m) { return m.distance_mean; }},
         {"distance 95 %", [](const Metrics& m) { return m.distance_p95; }},
     };
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Index axes = example.coordinate_count == 3 ? 3 : 0;
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(axes); ++axis) {
         const std::string name(1, static_cast<char>('x' + axis));
         rows.push_back({name + " RMS", [=](const Metrics& m) { return m.coordinate_rms[axis]; }});
         rows.push_back({name + " max", [=](const Metrics& m) { return m.coordinate_max[axis]; }});
+    }
+    if (example.has_orientation) {
+        rows.push_back({"turn RMS/mrad", [](const Metrics& m) { return m.orientation_rms; }});
+        rows.push_back({"turn max/mrad", [](const Metrics& m) { return m.orientation_max; }});
     }
     return rows;
 }
 
 /// The numbers parameter_names() names, in SI units; the base's turn as a rotation vector.
-VectorXd flatten(const Parameters& parameters) {
-    const Eigen::AngleAxisd turn(parameters.world_from_base.linear());
-    VectorXd values(6 + parameters.robot.size() + parameters.sensor.size());
-    values << parameters.world_from_base.translation(), turn.angle() * turn.axis(),
-        parameters.robot, parameters.sensor;
+VectorXd flatten(const Campaign& campaign, const Parameters& parameters) {
+    VectorXd base(6);
+    base << parameters.world_from_base.translation(),
+        vector_from_rotation(parameters.world_from_base.linear());
+    std::vector<Index> unknown;
+    for (Index k = 0; k < 6; ++k) {
+        if (!campaign.base_is_known[static_cast<std::size_t>(k)]) unknown.push_back(k);
+    }
+    VectorXd values(parameter_count(campaign));
+    values << base(unknown), parameters.robot, parameters.sensor;
     return values;
 }
 
@@ -39,7 +50,7 @@ Table metrics_table(const std::vector<std::pair<std::string, Metrics>>& columns)
     Table table;
     table.header = {"error/mm"};
     for (const auto& [name, metrics] : columns) table.header.push_back(name);
-    for (const auto& [name, value] : list_metric_rows()) {
+    for (const auto& [name, value] : list_metric_rows(columns.front().second)) {
         std::vector<std::string> row{name};
         for (const auto& [unused, metrics] : columns) {
             row.push_back(metrics.point_count > 0 ? format_mm(value(metrics)) : "-");
@@ -50,13 +61,14 @@ Table metrics_table(const std::vector<std::pair<std::string, Metrics>>& columns)
 }
 
 Table parameter_table(const Campaign& campaign, const Estimate& estimate) {
-    const VectorXd values = flatten(estimate.parameters);
+    const VectorXd values = flatten(campaign, estimate.parameters);
     const VectorXd deviations = standard_deviations(estimate);
     const auto is_angle = parameter_is_angle(campaign);
     Table table{{"parameter", "value", "", "std. dev.", ""}, {}};
     for (Index k = 0; k < values.size(); ++k) {
         const auto i = static_cast<std::size_t>(k);
-        const bool in_degrees = k >= 3 && k < 6;
+        // The base's turn is no small error.
+        const bool in_degrees = k < base_parameter_count(campaign) && is_angle[i];
         const double value = in_degrees ? to_degrees(values[k]) : mm_per_m * values[k];
         table.rows.push_back({estimate.names[i], format_fixed(value, 4),
                               in_degrees ? "deg" : std::string(error_unit(is_angle[i])),

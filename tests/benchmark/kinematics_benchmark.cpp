@@ -52,7 +52,7 @@ void BM_jacobian_by_central_differences(benchmark::State& state) {
     for (auto _ : state) {
         const VectorXd& q = scene.poses[i++ % scene.poses.size()];
         const auto predict = [&](const VectorXd& step) {
-            const Parameters moved = advance(campaign.nominal, step);
+            const Parameters moved = advance(campaign, campaign.nominal, step);
             return campaign.sensor->predict(world_from_flange(campaign, moved, q), moved.sensor);
         };
         for (Index k = 0; k < 33; ++k) {

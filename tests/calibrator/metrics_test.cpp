@@ -8,7 +8,7 @@ namespace posewise {
 namespace {
 
 TEST(MakeMetrics, KnowsAFewPoints) {
-    RowMatrixXd residuals(2, 6);  // four points: lengths 3, 5, 0, 13
+    RowMatrixXd residuals(4, 3);  // lengths 3, 5, 0, 13
     residuals << 1, 2, 2, 0, -3, 4, 0, 0, 0, 12, 4, -3;
     const Metrics metrics = make_metrics(residuals);
     EXPECT_EQ(metrics.point_count, 4);
@@ -21,8 +21,27 @@ TEST(MakeMetrics, KnowsAFewPoints) {
     EXPECT_DOUBLE_EQ(metrics.coordinate_max[2], 4);
 }
 
+TEST(MakeMetrics, TellOrientationsFromPositions) {
+    RowMatrixXd residuals(2, 6);
+    residuals << 1, 2, 2, 0, 3e-3, 4e-3, 0, 0, 0, 0, 0, 0;
+    const Metrics metrics = make_metrics(residuals);
+    EXPECT_EQ(metrics.point_count, 2);
+    EXPECT_TRUE(metrics.has_orientation);
+    EXPECT_DOUBLE_EQ(metrics.distance_max, 3);
+    EXPECT_DOUBLE_EQ(metrics.orientation_max, 5e-3);
+    EXPECT_DOUBLE_EQ(metrics.orientation_rms, 5e-3 / std::sqrt(2));
+}
+
+TEST(MakeMetrics, OfLengthsHaveNoAxes) {
+    const Metrics metrics = make_metrics(RowMatrixXd{{3}, {-4}});
+    EXPECT_EQ(metrics.coordinate_count, 1);
+    EXPECT_FALSE(metrics.has_orientation);
+    EXPECT_DOUBLE_EQ(metrics.distance_rms, std::sqrt(12.5));
+    EXPECT_DOUBLE_EQ(metrics.distance_max, 4);
+}
+
 TEST(MakeMetrics, OfNothingAreZero) {
-    const Metrics metrics = make_metrics(RowMatrixXd(0, 9));
+    const Metrics metrics = make_metrics(RowMatrixXd(0, 3));
     EXPECT_EQ(metrics.point_count, 0);
     EXPECT_EQ(metrics.distance_rms, 0);
 }

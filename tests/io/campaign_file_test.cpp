@@ -126,7 +126,7 @@ TEST(ReadCampaign, TakesSensorBaseSpreadAndDefaults) {
     EXPECT_EQ(campaign.name, "crane");
     const auto& sensor = dynamic_cast<const PointSensor&>(*campaign.sensor);
     EXPECT_EQ(sensor.target_count(), 2);
-    EXPECT_FALSE(sensor.is_known(0));
+    EXPECT_FALSE(sensor.targets().is_known(0));
     EXPECT_DOUBLE_EQ(sensor.sigma(), 5e-5);
     EXPECT_TRUE(campaign.has_nominal_targets);
     EXPECT_EQ(campaign.nominal.sensor[4], 0.2);
@@ -175,7 +175,7 @@ TEST(ReadCampaign, TakesKnownTargets) {
     const Campaign campaign = read(text).campaign;
     EXPECT_EQ(campaign.nominal.sensor.size(), 0);
     const auto& sensor = dynamic_cast<const PointSensor&>(*campaign.sensor);
-    EXPECT_EQ(sensor.target(1, VectorXd()), Vector3d(0, 0.2, -0.01));
+    EXPECT_EQ(sensor.target_position(1, VectorXd()), Vector3d(0, 0.2, -0.01));
 }
 
 TEST(ReadCampaign, HasTheStatedErrorsIfAnyIsStated) {

@@ -24,7 +24,7 @@ class EstimateFile : public ::testing::Test {
         estimate.ending = Ending::Converged;
         estimate.names = parameter_names(campaign_);
         estimate.parameters =
-            advance(campaign_.nominal,
+            advance(campaign_, campaign_.nominal,
                     1e-3 / 3 * VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1)));
         estimate.covariance = 1e-8 * MatrixXd::Identity(count, count);
         estimate.covariance(0, 1) = estimate.covariance(1, 0) = -0.9e-8;
@@ -89,7 +89,7 @@ TEST_F(EstimateFile, LeavesOutWhatWasNotComputed) {
     EXPECT_FALSE(written().at("accuracy").contains("held_out"));
     EXPECT_FALSE(written().at("accuracy").contains("repeatability_mm"));
     EXPECT_FALSE(written().at("accuracy").contains("left_out"));
-    report_.repeatability = 5e-5;
+    report_.repeatability = Repeatability{5e-5};
     report_.held_out = CrossValidation{};
     report_.held_out->failures = {"fold 3: too few", "fold 4: too few"};
     report_.left_out = Metrics{};

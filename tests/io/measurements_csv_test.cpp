@@ -78,7 +78,7 @@ TEST(ReadMeasurementsCsv, EmptyCellsAreATargetThatWasNotSeen) {
     EXPECT_EQ(measurements.observations.row(1).tail(3), Eigen::RowVector3d(4, 5, 6));
     EXPECT_EQ(measurements.observations.row(2).head(3), Eigen::RowVector3d(7, 8, 9));
     EXPECT_TRUE(measurements.observations.allFinite());
-    const Measurements means = mean_measurements(measurements);
+    const Measurements means = mean_measurements(*crane().sensor, measurements);
     EXPECT_EQ(means.observations(0, 0), 1);
     EXPECT_EQ(means.observations(0, 3), 4);
 }

@@ -34,7 +34,7 @@ TEST_F(FanucMeasurements, AreTenSamplesOfEachOf24Configurations) {
     EXPECT_EQ(measurements.observations.rows(), 240);
     EXPECT_EQ(measurements.observations.cols(), 9);
     for (Index i = 0; i < 24; ++i) EXPECT_EQ(measurements.sample_count(i), 10);
-    EXPECT_NEAR(repeatability(measurements).value(), 0.05185e-3, 0.00001e-3);
+    EXPECT_NEAR(repeatability(*file_.campaign.sensor, measurements)->length, 0.05185e-3, 0.00001e-3);
 }
 
 TEST_F(FanucMeasurements, AreTheSameInCsvAndMatlab) {

@@ -27,11 +27,11 @@ TEST(DifferentiatePose, AgreesWithDifferencesInAll33ColumnsOfTheFanuc) {
         RandomStream stream(62, static_cast<std::uint64_t>(i));
         const double magnitudes[] = {0, 1e-9, 1e-3, 0.2};
         const VectorXd errors = random_vector(stream, 33, magnitudes[i % 4]);
-        const Parameters parameters = advance(campaign.nominal, errors);
+        const Parameters parameters = advance(campaign, campaign.nominal, errors);
         const VectorXd q = poses.row(i).transpose();
         differentiate_pose(campaign, parameters, q, motion, J);
         const auto predict = [&](const VectorXd& step) {
-            const Parameters moved = advance(parameters, step);
+            const Parameters moved = advance(campaign, parameters, step);
             return campaign.sensor->predict(world_from_flange(campaign, moved, q), moved.sensor);
         };
         expect_is_jacobian(J, predict, VectorXd::Zero(33));

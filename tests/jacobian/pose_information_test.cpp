@@ -10,6 +10,7 @@
 #include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 #include "support/derivative_check.hpp"
+#include "support/sensors.hpp"
 #include "support/sweep.hpp"
 
 namespace posewise {
@@ -89,6 +90,27 @@ TEST(PoseInformation, DerivativeAgreesWithDifferencesForEveryElementAndNoise) {
                 const VectorXd gradient = pose.differentiate(q, Z);
                 const VectorXd expected = numerical_jacobian(trace, q).transpose();
                 EXPECT_LE((gradient - expected).norm(), 1e-8 * expected.norm());
+            }
+        }
+    }
+}
+
+TEST(PoseInformation, DerivativeAgreesWithDifferencesForEverySensor) {
+    for (const auto& [name, plain] : campaigns_of_every_sensor(fanuc())) {
+        SCOPED_TRACE(name);
+        for (const double repeatability : {0.0, 5e-5}) {
+            Campaign campaign = plain;
+            campaign.joint_repeatability = VectorXd::Constant(6, repeatability);
+            const PoseInformation pose(campaign, campaign.nominal, 3);
+            for (std::uint64_t item = 0; item < 5; ++item) {
+                RandomStream stream(84, item);
+                const VectorXd q = random_vector(stream, pose.joint_count(), 1);
+                const MatrixXd Z = random_symmetric(stream, pose.parameter_count());
+                const auto trace = [&](const VectorXd& joints) -> VectorXd {
+                    return VectorXd::Constant(1, Z.cwiseProduct(pose.evaluate(joints)).sum());
+                };
+                const VectorXd expected = numerical_jacobian(trace, q).transpose();
+                EXPECT_LE((pose.differentiate(q, Z) - expected).norm(), 1e-8 * expected.norm());
             }
         }
     }

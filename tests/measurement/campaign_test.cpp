@@ -45,7 +45,7 @@ TEST(Advance, TurnsTheBaseAboutItsOwnOriginInWorldAxes) {
     step.head<6>() << 0.1, 0.2, 0.3, 0, 0, 0.5;
     step[7] = 4e-3;
     step[18] = 5e-3;
-    const Parameters moved = advance(campaign.nominal, step);
+    const Parameters moved = advance(campaign, campaign.nominal, step);
     const Isometry3d& base = campaign.nominal.world_from_base;
     const Matrix3d turn = Eigen::AngleAxisd(0.5, Vector3d::UnitZ()).toRotationMatrix();
     EXPECT_TRUE(moved.world_from_base.linear().isApprox(turn * base.linear(), 1e-14));
@@ -60,7 +60,7 @@ TEST(Advance, KeepsTheBaseARotationForever) {
     const Campaign campaign = tracked_campaign(planar_arm({1, 1}));
     Parameters parameters = campaign.nominal;
     for (Index k = 0; k < sweep_count() * 10; ++k) {
-        parameters = advance(parameters, random_vector(stream, 19, 1));
+        parameters = advance(campaign, parameters, random_vector(stream, 19, 1));
     }
     const Matrix3d R = parameters.world_from_base.linear();
     EXPECT_LT((R * R.transpose() - Matrix3d::Identity()).norm(), 1e-14);

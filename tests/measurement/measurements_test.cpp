@@ -5,9 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "posewise/measurement/scalar_sensor.hpp"
+
 namespace posewise {
 namespace {
 
+const DistanceSensor two_lengths(Targets({std::nullopt, std::nullopt}), {Vector3d::Zero()}, true,
+                                 1e-5);
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Configurations a (2 samples), b (1), c (3) of one joint; two targets of one number each.
@@ -38,7 +42,7 @@ Measurements with_gaps() {
 TEST(MeanMeasurements, AverageTheSamplesOfEachConfiguration) {
     RowMatrixXd expected(3, 2);
     expected << 2, 10, 5, 20, 3, 1;
-    const Measurements means = mean_measurements(small_campaign());
+    const Measurements means = mean_measurements(two_lengths, small_campaign());
     EXPECT_EQ(means.observations, expected);
     EXPECT_TRUE(means.is_seen.all());
     EXPECT_EQ(means.first_sample, (std::vector<Index>{0, 1, 2, 3}));
@@ -47,7 +51,7 @@ TEST(MeanMeasurements, AverageTheSamplesOfEachConfiguration) {
 }
 
 TEST(MeanMeasurements, AverageEachTargetOverTheSamplesThatShowIt) {
-    const Measurements means = mean_measurements(with_gaps());
+    const Measurements means = mean_measurements(two_lengths, with_gaps());
     EXPECT_EQ(means.observations, (RowMatrixXd{{2, 10}, {5, 0}, {4.5, 0}}));
     EXPECT_TRUE((means.is_seen == RowArrayXb{{true, true}, {true, false}, {true, true}}).all());
 }
@@ -60,20 +64,20 @@ TEST(TimesSeen, CountTheSamplesThatShowEachTarget) {
 
 TEST(Repeatability, PoolsTheScatterAboutEachMean) {
     // a: 1 + 1; c: 9 + 9 and 1 + 1 + 4; degrees of freedom 2 (1 + 2).
-    EXPECT_DOUBLE_EQ(repeatability(small_campaign()).value(), std::sqrt(26.0 / 6.0));
+    EXPECT_DOUBLE_EQ(repeatability(two_lengths, small_campaign())->length, std::sqrt(26.0 / 6.0));
 }
 
 TEST(Repeatability, PoolsWhatWasSeenOnly) {
     // a: 1 + 1, 2 degrees of freedom; c: 1.5^2 twice, 1 of the first target, none of the second.
-    EXPECT_DOUBLE_EQ(repeatability(with_gaps()).value(), std::sqrt(6.5 / 3));
+    EXPECT_DOUBLE_EQ(repeatability(two_lengths, with_gaps())->length, std::sqrt(6.5 / 3));
 }
 
 TEST(Repeatability, IsUnknownWithoutRepeats) {
     Measurements in_turns = take(small_campaign(), {0});  // each target once
     in_turns.is_seen << true, false, false, true;
-    EXPECT_FALSE(repeatability(in_turns).has_value());
-    EXPECT_FALSE(repeatability(take(small_campaign(), {1})).has_value());
-    EXPECT_FALSE(repeatability(Measurements{}).has_value());
+    EXPECT_FALSE(repeatability(two_lengths, in_turns).has_value());
+    EXPECT_FALSE(repeatability(two_lengths, take(small_campaign(), {1})).has_value());
+    EXPECT_FALSE(repeatability(two_lengths, Measurements{}).has_value());
 }
 
 TEST(TakeMeasurements, KeepsTheOrderAskedFor) {

@@ -20,7 +20,7 @@ void expect_variance(double mean_square, Index degrees_of_freedom, double varian
 
 /// Observed minus expected, of every configuration's mean.
 RowMatrixXd mean_errors(const Campaign& campaign, const Simulation& simulation) {
-    RowMatrixXd errors = mean_measurements(simulation.measurements).observations;
+    RowMatrixXd errors = mean_measurements(*campaign.sensor, simulation.measurements).observations;
     for (Index i = 0; i < errors.rows(); ++i) {
         const VectorXd q = simulation.measurements.configurations.row(i).transpose();
         errors.row(i) -=
@@ -45,7 +45,7 @@ TEST(Simulate, ALongerCampaignBeginsWithTheShorterOne) {
 TEST(Simulate, SensorNoiseHasTheStatedVariance) {
     const Campaign campaign = tracked_campaign(fanuc());
     const Simulation simulation = simulate(campaign, {.pose_count = 300, .repeats = 5});
-    const double sigma = repeatability(simulation.measurements).value();
+    const double sigma = repeatability(*campaign.sensor, simulation.measurements)->length;
     expect_variance(sigma * sigma, 300 * 4 * 9, 5e-5 * 5e-5);
 }
 

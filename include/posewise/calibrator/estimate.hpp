@@ -19,15 +19,21 @@ enum class Ending {
 };
 std::string_view ending_name(Ending ending);
 
-/// Residual metrics over points, m. The ten numbers of the seed report.
+/// Residual metrics over targets seen: distances between observed and predicted points, or by how
+/// much measured lengths are off (m), and by how much orientations are (rad). For points the ten
+/// numbers of the seed report.
 struct Metrics {
     Index point_count = 0;
+    Index coordinate_count = 3;  ///< 1: a length each
+    bool has_orientation = false;
     double distance_rms = 0;
     double distance_max = 0;
     double distance_mean = 0;
     double distance_p95 = 0;
     std::array<double, 3> coordinate_rms{};
     std::array<double, 3> coordinate_max{};
+    double orientation_rms = 0;  ///< of the angle of the rotation that is left
+    double orientation_max = 0;
 };
 
 /// Identified parameters and how sure they are.
@@ -58,14 +64,16 @@ struct Correlation {
 /// The `count` strongest correlations between two parameters, strongest first.
 std::vector<Correlation> strongest_correlations(const Estimate& estimate, Index count);
 
-/// observed - predicted, of every target seen in every sample, one a row: points x 3, m.
+/// Deviations of the observed from the predicted, of every target seen in every sample, one a row:
+/// targets seen x rows_per_target(), m or rad.
 RowMatrixXd residuals(const Campaign& campaign, const Parameters& parameters,
                       const Measurements& measurements);
 /// The same of the means of each configuration.
 RowMatrixXd mean_residuals(const Campaign& campaign, const Parameters& parameters,
                            const Measurements& measurements);
 
-/// Metrics of residual rows whose columns are x, y, z of one point (or of one after another).
+/// Metrics of residuals as residuals() returns them: of 1 column (lengths), 3 (points) or 6 (poses:
+/// position, orientation).
 Metrics make_metrics(const RowMatrixXd& residuals);
 
 }  // namespace posewise

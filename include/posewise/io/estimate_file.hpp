@@ -12,8 +12,8 @@ struct CalibrationReport {
     std::string method;        ///< "lm" or "two-step"
     std::string measurements;  ///< path they came from
     Estimate estimate;
-    Metrics nominal;                      ///< base and targets fitted only, all samples
-    std::optional<double> repeatability;  ///< m
+    Metrics nominal;  ///< base and targets fitted only, all samples
+    std::optional<Repeatability> repeatability;
     std::optional<CrossValidation> held_out;
     std::optional<Metrics> left_out;    ///< on the measured configurations not in the plan
     std::optional<Metrics> validation;  ///< on a separate file

@@ -23,6 +23,11 @@ Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
 Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
                          const RowMatrixXd& configurations);
 
+/// Derivative of all targets' positions in the world, whatever of them is measured, in SI units:
+/// blocks of 3 rows a target. Throws InputError as make_plain_blocks() does.
+Blocks make_position_blocks(const Campaign& campaign, const Parameters& parameters,
+                            const RowMatrixXd& configurations);
+
 /// make_plain_blocks() whitened by the noise of means (see mean_covariance()) over so many
 /// `repeats` of each target (m x targets) and scaled by parameter_scale(): without units, ready
 /// for criteria and selection.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <string>
@@ -11,7 +12,7 @@
 namespace posewise {
 
 /// Values of everything a calibration identifies. As a vector (names: parameter_names()) the order
-/// is base 6, robot, sensor; see advance() for what the six of the base mean.
+/// is base (6, less those known), robot, sensor; see advance() for what those of the base mean.
 struct Parameters {
     Isometry3d world_from_base = Isometry3d::Identity();
     VectorXd robot;   ///< the chain's error parameters, m or rad; zero is nominal
@@ -39,9 +40,13 @@ struct Campaign {
     /// Standard deviation (m) of what the model cannot express; acts like noise that repeats do
     /// not reduce.
     double model_error = 1e-4;
+    /// The same of measured orientations (rad).
+    double model_error_orientation = 1e-4;
     /// Standard deviation of each joint about where it was sent (rad or m): one error a
     /// configuration, the same for all its repeats. Empty: none.
     VectorXd joint_repeatability;
+    /// Which of base.x .. base.z, base.rx .. base.rz are as stated, so that none is identified.
+    std::array<bool, 6> base_is_known{};
     /// Expected base and targets, for planning and simulation; robot errors are zero.
     Parameters nominal;
     /// Whether base and targets in `nominal` were stated, not made up.
@@ -49,7 +54,10 @@ struct Campaign {
     bool has_nominal_targets = false;
 };
 
-/// Number of identified parameters: 6 + robot + sensor unknowns.
+/// Number of identified parameters of the base: 6 less those known.
+Index base_parameter_count(const Campaign& campaign);
+
+/// Number of identified parameters: of the base, the robot, the sensor's unknowns.
 Index parameter_count(const Campaign& campaign);
 
 /// base.x .. base.z, base.rx .. base.rz, the chain's, the sensor's.
@@ -68,11 +76,20 @@ MatrixXd prior_information(const Campaign& campaign);
 
 /// Parameters moved by a small step (parameter_count(), m and rad): the base turns by exp([phi]x)
 /// about its own origin in world axes and is translated along world axes; the rest is added.
-Parameters advance(const Parameters& parameters, const VectorXd& step);
+Parameters advance(const Campaign& campaign, const Parameters& parameters, const VectorXd& step);
 
 /// world_from_flange at a configuration.
 Isometry3d world_from_flange(const Campaign& campaign, const Parameters& parameters,
                              const VectorXd& configuration);
+
+/// Chain::differentiate() at these parameters; of the base's twists only those of parameters.
+void differentiate_flange(const Campaign& campaign, const Parameters& parameters,
+                          const VectorXd& configuration, FlangeMotion& motion);
+
+/// Chain::differentiate_twice() likewise.
+void differentiate_flange_twice(const Campaign& campaign, const Parameters& parameters,
+                                const VectorXd& configuration, FlangeMotion& motion,
+                                std::vector<FlangeMotionRate>& rates);
 
 /// The same campaign with another robot model (and so other error parameters, at zero).
 Campaign with_robot(const Campaign& campaign, Chain robot);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "posewise/core/types.hpp"
+#include "posewise/measurement/sensor.hpp"
 
 namespace posewise {
 
@@ -12,7 +13,7 @@ namespace posewise {
 struct Measurements {
     RowMatrixXd configurations;    ///< m x joints, rad or m
     std::vector<std::string> ids;  ///< m names of the configurations, as in the file
-    RowMatrixXd observations;      ///< samples x sensor rows, m; grouped by configuration
+    RowMatrixXd observations;      ///< samples x sensor rows, m or rad; grouped by configuration
     /// samples x targets: which targets each sample shows. What stands in `observations` for the
     /// others is never looked at.
     RowArrayXb is_seen;
@@ -37,8 +38,9 @@ RowMatrixXd times_seen(const Measurements& measurements);
 RowMatrixXd share_seen(const Measurements& measurements);
 
 /// The means of each configuration as its only sample: of each target over the samples that show
-/// it, which may be fewer than there are.
-Measurements mean_measurements(const Measurements& measurements);
+/// it, which may be fewer than there are. A mean orientation is the first sample's, turned by the
+/// mean of the deviations from it.
+Measurements mean_measurements(const Sensor& sensor, const Measurements& measurements);
 
 /// The measurements of some configurations, in the order asked for.
 Measurements take(const Measurements& measurements, const std::vector<Index>& configurations);
@@ -46,8 +48,14 @@ Measurements take(const Measurements& measurements, const std::vector<Index>& co
 /// The other ones: all but those listed.
 std::vector<Index> all_but(Index count, const std::vector<Index>& left_out);
 
-/// Standard deviation of one observed coordinate about its configuration's mean, pooled over all
-/// samples (m); nothing if no target was seen twice at one configuration.
-std::optional<double> repeatability(const Measurements& measurements);
+/// Standard deviation of one observed number about its configuration's mean, pooled over all
+/// samples.
+struct Repeatability {
+    double length = 0;       ///< m
+    double orientation = 0;  ///< rad; 0 if the sensor does not measure it
+};
+
+/// Nothing if no target was seen twice at one configuration.
+std::optional<Repeatability> repeatability(const Sensor& sensor, const Measurements& measurements);
 
 }  // namespace posewise

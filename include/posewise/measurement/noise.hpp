@@ -7,8 +7,11 @@
 namespace posewise {
 
 /// Throws InputError if joint_repeatability has another size than the joints (and is not empty) or
-/// a value that is negative or not finite, or if model_error is.
+/// a value that is negative or not finite, or if a model error is.
 void check_noise(const Campaign& campaign);
+
+/// What repeats do not reduce: the model error of each of the sensor's rows (m or rad).
+VectorXd model_error_of_rows(const Campaign& campaign);
 
 /// Rows of the sensor that belong to the targets seen: those with repeats above 0. Ascending.
 std::vector<Index> seen_rows(const Sensor& sensor, const VectorXd& repeats);

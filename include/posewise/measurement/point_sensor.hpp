@@ -5,34 +5,34 @@
 
 #include "posewise/measurement/point_noise.hpp"
 #include "posewise/measurement/sensor.hpp"
+#include "posewise/measurement/targets.hpp"
 
 namespace posewise {
 
 /// An instrument that returns the position of n targets fixed to the flange, in its own frame
-/// (laser tracker with SMRs, stereo camera). Each target's position in the flange frame is either
-/// known or three unknowns.
+/// (laser tracker with SMRs, stereo camera).
 class PointSensor final : public Sensor {
   public:
+    /// Throws InputError as check_noise() does.
+    PointSensor(Targets targets, PointNoise noise);
     /// `known_targets[i]` is target i's position in the flange frame (m), or nothing if it is
-    /// unknown. Throws InputError if there is no target, one is not finite, or as check_noise().
-    PointSensor(std::vector<std::optional<Vector3d>> known_targets, PointNoise noise);
+    /// unknown. Throws InputError as Targets does.
+    PointSensor(const std::vector<std::optional<Vector3d>>& known_targets, PointNoise noise);
     /// With isotropic noise of standard deviation sigma (m).
-    PointSensor(std::vector<std::optional<Vector3d>> known_targets, double sigma);
+    PointSensor(const std::vector<std::optional<Vector3d>>& known_targets, double sigma);
 
     const PointNoise& noise() const { return noise_; }
     /// Standard deviation of one coordinate of one observation, m (root mean square over the axes;
     /// a laser tracker's at 3 m).
     double sigma() const { return coordinate_sigma(noise_, 3); }
-    bool is_known(Index target) const;
-    /// Position of a target in the flange frame, from the known ones or from the unknowns.
-    Vector3d target(Index target, const VectorXd& unknowns) const;
-    /// Index of a target's x among the unknowns; -1 if it is known.
-    Index unknown_offset(Index target) const;
+    const Targets& targets() const { return targets_; }
 
     Index row_count() const override { return 3 * target_count(); }
-    Index target_count() const override { return static_cast<Index>(known_targets_.size()); }
+    Index target_count() const override { return targets_.count(); }
     std::vector<std::string> observation_names() const override;
-    std::vector<std::string> unknown_names() const override;
+    bool is_angle(Index) const override { return false; }
+    std::vector<std::string> unknown_names() const override { return targets_.unknown_names(); }
+    std::vector<bool> unknown_is_angle() const override;
     VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const override;
     void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                        const VectorXd& unknowns,
@@ -41,6 +41,10 @@ class PointSensor final : public Sensor {
                              const Twist& direction, const TwistMatrix& twist_rates,
                              const VectorXd& unknowns,
                              Eigen::Ref<RowMatrixXd> J_rate) const override;
+    Vector3d target_position(Index target, const VectorXd& unknowns) const override;
+    void differentiate_positions(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                                 const VectorXd& unknowns,
+                                 Eigen::Ref<RowMatrixXd> J_positions_parameters) const override;
     MatrixXd covariance(const Isometry3d& world_from_flange,
                         const VectorXd& unknowns) const override;
     MatrixXd covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
@@ -48,8 +52,7 @@ class PointSensor final : public Sensor {
     bool has_constant_covariance() const override;
 
   private:
-    std::vector<std::optional<Vector3d>> known_targets_;
-    std::vector<Index> unknown_offset_;  // -1: known
+    Targets targets_;
     PointNoise noise_;
 };
 

@@ -10,6 +10,19 @@ namespace posewise {
 /// Rz(yaw) Ry(pitch) Rx(roll) of (roll, pitch, yaw): turns about the fixed x, y and z axes, rad.
 Matrix3d rotation_from_rpy(const Vector3d& rpy);
 
+/// The rotation about `vector` by its norm, rad.
+Matrix3d rotation_from_vector(const Vector3d& vector);
+
+/// The rotation vector of a rotation matrix, its norm at most pi.
+Vector3d vector_from_rotation(const Matrix3d& R);
+
+/// The left Jacobian of the rotations [Barfoot 2017, (7.77)]: while a rotation vector changes at
+/// the rate r, its rotation turns with the angular velocity (this matrix) r.
+Matrix3d rotation_vector_rate(const Vector3d& vector);
+
+/// [vector]x: what the cross product with it does.
+Matrix3d cross_matrix(const Vector3d& vector);
+
 /// (roll, pitch, yaw) of a rotation matrix, pitch within +-pi/2. They give the matrix back to
 /// rounding, also where the pitch is so near to +-pi/2 that roll and yaw are one turn.
 Vector3d rpy_from_rotation(const Matrix3d& R);

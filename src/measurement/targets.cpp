@@ -1,0 +1,139 @@
+#include "posewise/measurement/targets.hpp"
+
+#include <algorithm>
+
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+/// The three rows of one target, filled through plain pointers because this is the hot loop of
+/// planning. A twist is six numbers: w, v.
+struct PointRows {
+    double* x;
+    double* y;
+    double* z;
+
+    PointRows(Eigen::Ref<RowMatrixXd> J, Index target)
+        : x(&J(3 * target, 0)), y(&J(3 * target + 1, 0)), z(&J(3 * target + 2, 0)) {}
+
+    /// Column k becomes v + w cross point.
+    void set(Index k, const double* twist, const Vector3d& point) {
+        x[k] = twist[3];
+        y[k] = twist[4];
+        z[k] = twist[5];
+        add_turn(k, twist, point);
+    }
+    /// Adds w cross point to column k.
+    void add_turn(Index k, const double* twist, const Vector3d& point) {
+        x[k] += twist[1] * point.z() - twist[2] * point.y();
+        y[k] += twist[2] * point.x() - twist[0] * point.z();
+        z[k] += twist[0] * point.y() - twist[1] * point.x();
+    }
+};
+
+std::vector<Vector3d> values_of(const std::vector<std::optional<Vector3d>>& positions) {
+    std::vector<Vector3d> values;
+    for (const auto& position : positions) values.push_back(position.value_or(Vector3d::Zero()));
+    return values;
+}
+
+std::vector<std::array<bool, 3>> marks_of(const std::vector<std::optional<Vector3d>>& positions) {
+    std::vector<std::array<bool, 3>> marks;
+    for (const auto& position : positions) {
+        const bool is_known = position.has_value();
+        marks.push_back({is_known, is_known, is_known});
+    }
+    return marks;
+}
+
+}  // namespace
+
+Targets::Targets(const std::vector<std::optional<Vector3d>>& known_positions)
+    : Targets(values_of(known_positions), marks_of(known_positions)) {}
+
+Targets::Targets(std::vector<Vector3d> positions, std::vector<std::array<bool, 3>> is_known)
+    : known_(std::move(positions)) {
+    if (known_.empty()) throw InputError("a sensor needs at least one target");
+    for (std::size_t j = 0; j < known_.size(); ++j) {
+        std::array<Index, 3> indices{-1, -1, -1};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            double& coordinate = known_[j][static_cast<Index>(axis)];
+            if (!is_known[j][axis]) {
+                indices[axis] = unknown_count_++;
+                coordinate = 0;
+            } else if (!std::isfinite(coordinate)) {
+                throw InputError(
+                    "a known target's position has a value that is not a finite number");
+            }
+        }
+        unknown_index_.push_back(indices);
+    }
+}
+
+std::vector<std::string> Targets::unknown_names() const {
+    std::vector<std::string> names;
+    for (Index j = 0; j < count(); ++j) {
+        for (Index axis = 0; axis < 3; ++axis) {
+            if (unknown_index(j, axis) < 0) continue;
+            names.push_back("target" + std::to_string(j + 1) + '.' + "xyz"[axis]);
+        }
+    }
+    return names;
+}
+
+bool Targets::is_known(Index target) const {
+    const auto& indices = unknown_index_[static_cast<std::size_t>(target)];
+    return std::all_of(indices.begin(), indices.end(), [](Index index) { return index < 0; });
+}
+
+Vector3d Targets::position(Index target, const VectorXd& unknowns) const {
+    Vector3d position = known_[static_cast<std::size_t>(target)];
+    for (Index axis = 0; axis < 3; ++axis) {
+        const Index index = unknown_index(target, axis);
+        if (index >= 0) position[axis] = unknowns[index];
+    }
+    return position;
+}
+
+void Targets::differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                            const VectorXd& unknowns,
+                            Eigen::Ref<RowMatrixXd> J_positions_parameters) const {
+    auto J_unknowns =
+        J_positions_parameters.rightCols(J_positions_parameters.cols() - twists.cols());
+    J_unknowns.setZero();
+    for (Index j = 0; j < count(); ++j) {
+        const Vector3d x = world_from_flange * position(j, unknowns);
+        PointRows rows(J_positions_parameters, j);
+        for (Index k = 0; k < twists.cols(); ++k) rows.set(k, &twists(0, k), x);
+        for (Index axis = 0; axis < 3 && J_unknowns.cols() > 0; ++axis) {
+            const Index index = unknown_index(j, axis);
+            if (index < 0) continue;
+            J_unknowns.block<3, 1>(3 * j, index) = world_from_flange.linear().col(axis);
+        }
+    }
+}
+
+void Targets::differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                                  const Twist& direction, const TwistMatrix& twist_rates,
+                                  const VectorXd& unknowns, Eigen::Ref<RowMatrixXd> J_rate) const {
+    auto J_unknowns = J_rate.rightCols(J_rate.cols() - twists.cols());
+    J_unknowns.setZero();
+    const Vector3d w = direction.head<3>();
+    for (Index j = 0; j < count(); ++j) {
+        const Vector3d x = world_from_flange * position(j, unknowns);
+        const Vector3d velocity = velocity_of(x, direction);
+        PointRows rows(J_rate, j);
+        for (Index k = 0; k < twists.cols(); ++k) {
+            rows.set(k, &twist_rates(0, k), x);
+            rows.add_turn(k, &twists(0, k), velocity);
+        }
+        for (Index axis = 0; axis < 3 && J_unknowns.cols() > 0; ++axis) {
+            const Index index = unknown_index(j, axis);
+            if (index < 0) continue;
+            J_unknowns.block<3, 1>(3 * j, index) = w.cross(world_from_flange.linear().col(axis));
+        }
+    }
+}
+
+}  // namespace posewise

@@ -1,0 +1,105 @@
+#include "support/sensors.hpp"
+
+#include <gtest/gtest.h>
+
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "posewise/model/sampling.hpp"
+#include "support/sweep.hpp"
+
+namespace posewise {
+namespace {
+
+using namespace testing;
+
+/// The campaign with what it can identify of the FANUC's geometry.
+Campaign irreducible(const Campaign& campaign) {
+    return with_robot(campaign, irreducible_model(campaign));
+}
+
+TEST(EverySensor, CalibratesTheRobotToWhatItsNoiseAllows) {
+    for (const auto& [name, declared] : campaigns_of_every_sensor(fanuc())) {
+        SCOPED_TRACE(name);
+        Campaign campaign = irreducible(declared);
+        campaign.model_error = campaign.model_error_orientation = 0;
+        const Simulation simulated =
+            simulate(campaign, {.pose_count = 120, .repeats = 2, .truth_seed = 6, .seed = 5});
+        const Measurements& measured = simulated.measurements;
+        const Estimate estimate =
+            identify(campaign, measured, register_base_and_targets(campaign, measured));
+        EXPECT_EQ(estimate.ending, Ending::Converged);
+        // Its mean is 1; four standard deviations of chi-square over its degrees of freedom.
+        EXPECT_NEAR(estimate.variance_factor, 1,
+                    4 * std::sqrt(2.0 / static_cast<double>(estimate.degrees_of_freedom)));
+        const VectorXd robot_sigma = standard_deviations(estimate).segment(
+            base_parameter_count(campaign), campaign.robot.parameter_count());
+        const VectorXd error = estimate.parameters.robot - simulated.truth.robot;
+        EXPECT_LT(error.cwiseQuotient(robot_sigma).cwiseAbs().maxCoeff(), 5);
+    }
+}
+
+TEST(PoseSensor, IdentifiesFourARevoluteJointAndSix) {
+    for (const auto& [name, declared] : campaigns_of_every_sensor(fanuc())) {
+        if (name != "pose of an unknown tool") continue;
+        EXPECT_EQ(parameter_count(irreducible(declared)), 4 * 6 + 6);
+    }
+}
+
+TEST(PoseSensor, IsRegisteredFromNothing) {
+    for (const auto& [name, declared] : campaigns_of_every_sensor(fanuc())) {
+        if (name.find("pose of") != 0) continue;
+        SCOPED_TRACE(name);
+        for (Index i = 0; i < sweep_count() / 20; ++i) {
+            RandomStream stream(45, static_cast<std::uint64_t>(i));
+            Campaign campaign = declared;
+            campaign.nominal.world_from_base = random_pose(stream);
+            if (campaign.nominal.sensor.size() > 0) {
+                campaign.nominal.sensor = tool_unknowns(random_pose(stream));
+            }
+            Campaign blind = campaign;
+            blind.nominal.world_from_base.setIdentity();
+            blind.nominal.sensor.setZero();
+            const RowMatrixXd poses =
+                random_configurations(campaign.robot, 12, static_cast<std::uint64_t>(i));
+            const auto measured = simulate_measurements(campaign, campaign.nominal, poses, 1, 7);
+            const Parameters found = register_base_and_targets(blind, measured);
+            EXPECT_LT(make_metrics(residuals(campaign, found, measured)).distance_max, 2e-3);
+            EXPECT_LT(make_metrics(residuals(campaign, found, measured)).orientation_max, 2e-3);
+        }
+    }
+}
+
+TEST(KnownTargetCoordinate, LetsAScaraBeCalibrated) {
+    Campaign campaign = tracked_campaign(scara());
+    const std::vector<Vector3d> target{{0.1, 0.02, -0.05}};
+    campaign = with_sensor(campaign,
+                           std::make_shared<PointSensor>(Targets(target, {{false, false, true}}),
+                                                         IsotropicNoise{5e-5}),
+                           Eigen::Vector2d(0.1, 0.02));
+    campaign = with_robot(campaign, irreducible_model(with_robot(campaign, scara())));
+    const Simulation simulated = simulate(campaign, {.pose_count = 60, .truth_seed = 4, .seed = 3});
+    const Parameters start = register_base_and_targets(campaign, simulated.measurements);
+    const Estimate estimate = identify(campaign, simulated.measurements, start);
+    EXPECT_EQ(estimate.ending, Ending::Converged);
+    EXPECT_LT(estimate.fit.distance_rms, 3e-4);
+    EXPECT_NEAR(estimate.variance_factor, 1, 0.4);
+}
+
+TEST(KnownBase, IsLeftAsItIs) {
+    for (const auto& [name, declared] : campaigns_of_every_sensor(fanuc())) {
+        if (name != "points, base partly known") continue;
+        const Campaign campaign = irreducible(declared);
+        const Simulation simulated = simulate(campaign, {.pose_count = 40});
+        const Parameters start = register_base_and_targets(campaign, simulated.measurements);
+        const Estimate estimate = identify(campaign, simulated.measurements, start);
+        EXPECT_EQ(estimate.parameters.world_from_base.translation().z(),
+                  campaign.nominal.world_from_base.translation().z());
+        EXPECT_NE(estimate.parameters.world_from_base.translation().x(),
+                  campaign.nominal.world_from_base.translation().x());
+    }
+}
+
+}  // namespace
+}  // namespace posewise

@@ -1,0 +1,179 @@
+#include "posewise/measurement/sensor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "posewise/model/transforms.hpp"
+#include "support/derivative_check.hpp"
+#include "support/sensors.hpp"
+#include "support/sweep.hpp"
+
+namespace posewise {
+namespace {
+
+using namespace testing;
+
+/// Parameters somewhere about nominal ones.
+Parameters perturbed(const Campaign& campaign, RandomStream& stream, double magnitude) {
+    Parameters parameters = campaign.nominal;
+    parameters.robot = random_vector(stream, parameters.robot.size(), magnitude);
+    parameters.sensor += random_vector(stream, parameters.sensor.size(), magnitude);
+    return parameters;
+}
+
+TEST(EverySensor, HasTheJacobianOfItsPredictionAndOfItsPositions) {
+    for (const auto& [name, campaign] : campaigns_of_every_sensor(fanuc())) {
+        SCOPED_TRACE(name);
+        const Sensor& sensor = *campaign.sensor;
+        const Index L = parameter_count(campaign);
+        for (Index item = 0; item < std::max<Index>(1, sweep_count() / 100); ++item) {
+            RandomStream stream(41, static_cast<std::uint64_t>(item));
+            for (const double magnitude : {0.0, 1e-9, 0.1}) {
+                const Parameters at = perturbed(campaign, stream, magnitude);
+                const VectorXd q = random_vector(stream, 6, 3);
+                FlangeMotion motion;
+                differentiate_flange(campaign, at, q, motion);
+                RowMatrixXd J = RowMatrixXd::Constant(sensor.row_count(), L, 99.0);
+                sensor.differentiate(motion.world_from_flange, motion.twists, at.sensor, J);
+                const VectorXd reference = sensor.predict(motion.world_from_flange, at.sensor);
+                expect_is_jacobian(
+                    J,
+                    [&](const VectorXd& step) {
+                        const Parameters moved = advance(campaign, at, step);
+                        return sensor.deviation(
+                            sensor.predict(world_from_flange(campaign, moved, q), moved.sensor),
+                            reference);
+                    },
+                    VectorXd::Zero(L));
+
+                RowMatrixXd J_positions = RowMatrixXd::Constant(3 * sensor.target_count(), L, 99.0);
+                sensor.differentiate_positions(motion.world_from_flange, motion.twists, at.sensor,
+                                               J_positions);
+                const auto positions = [&](const VectorXd& step) {
+                    const Parameters moved = advance(campaign, at, step);
+                    const Isometry3d flange = world_from_flange(campaign, moved, q);
+                    VectorXd all(3 * sensor.target_count());
+                    for (Index j = 0; j < sensor.target_count(); ++j) {
+                        all.segment<3>(3 * j) = flange * sensor.target_position(j, moved.sensor);
+                    }
+                    return all;
+                };
+                expect_is_jacobian(J_positions, positions, VectorXd::Zero(L));
+            }
+        }
+    }
+}
+
+TEST(EverySensor, NamesItsNumbersAndUnknowns) {
+    for (const auto& [name, campaign] : campaigns_of_every_sensor(fanuc())) {
+        SCOPED_TRACE(name);
+        const Sensor& sensor = *campaign.sensor;
+        EXPECT_EQ(static_cast<Index>(sensor.observation_names().size()), sensor.row_count());
+        EXPECT_EQ(static_cast<Index>(sensor.unknown_names().size()),
+                  campaign.nominal.sensor.size());
+        EXPECT_EQ(sensor.unknown_is_angle().size(), sensor.unknown_names().size());
+        EXPECT_EQ(sensor.row_count() % sensor.target_count(), 0);
+    }
+}
+
+TEST(EverySensor, DeviatesByWhatItDeviated) {
+    for (const auto& [name, campaign] : campaigns_of_every_sensor(fanuc())) {
+        SCOPED_TRACE(name);
+        const Sensor& sensor = *campaign.sensor;
+        RandomStream stream(43);
+        const Isometry3d flange = random_pose(stream);
+        const VectorXd expected = sensor.predict(flange, campaign.nominal.sensor);
+        const VectorXd step = random_vector(stream, sensor.row_count(), 0.5);
+        const VectorXd observed = sensor.deviate(expected, step);
+        EXPECT_LT((sensor.deviation(observed, expected) - step).norm(), 1e-14);
+        EXPECT_LT(sensor.deviation(expected, expected).norm(), 1e-14);
+    }
+}
+
+TEST(PoseSensor, ObservesToolsPositionAndRotationVector) {
+    Isometry3d tool(Eigen::AngleAxisd(0.5, Vector3d::UnitX()));
+    tool.translation() = Vector3d(0, 0, 0.1);
+    const PoseSensor sensor(tool, IsotropicNoise{1e-5}, 1e-4);
+    Isometry3d flange(Eigen::AngleAxisd(std::numbers::pi / 2, Vector3d::UnitX()));
+    flange.translation() = Vector3d(1, 2, 3);
+    VectorXd expected(6);
+    expected << 1, 1.9, 3, std::numbers::pi / 2 + 0.5, 0, 0;
+    EXPECT_TRUE(sensor.predict(flange, VectorXd()).isApprox(expected, 1e-14));
+}
+
+TEST(PoseSensor, MeasuresTheShortWayRoundAtHalfATurn) {
+    const PoseSensor sensor(std::nullopt, IsotropicNoise{1e-5}, 1e-4);
+    VectorXd a = VectorXd::Zero(6);
+    VectorXd b = a;
+    a[5] = std::numbers::pi - 1e-3;
+    b[5] = -std::numbers::pi + 1e-3;
+    EXPECT_NEAR(sensor.deviation(b, a)[5], 2e-3, 1e-12);
+}
+
+TEST(PoseSensor, AveragesOrientationsAcrossHalfATurn) {
+    const PoseSensor sensor(std::nullopt, IsotropicNoise{1e-5}, 1e-4);
+    Measurements measurements;
+    measurements.configurations = RowMatrixXd::Zero(1, 1);
+    measurements.ids = {"a"};
+    measurements.first_sample = {0, 2};
+    measurements.observations = RowMatrixXd::Zero(2, 6);
+    measurements.observations(0, 0) = 2e-3;
+    measurements.observations(0, 5) = std::numbers::pi - 1e-3;
+    measurements.observations(1, 5) = -std::numbers::pi + 3e-3;
+    measurements.is_seen.setConstant(2, 1, true);
+    const auto means = mean_measurements(sensor, measurements);
+    EXPECT_NEAR(means.observations(0, 0), 1e-3, 1e-15);
+    EXPECT_NEAR(std::abs(means.observations(0, 5)), std::numbers::pi - 1e-3, 1e-12);
+    const auto spread = repeatability(sensor, measurements);
+    ASSERT_TRUE(spread.has_value());
+    EXPECT_NEAR(spread->length, std::sqrt(2e-6 / 3), 1e-12);
+    EXPECT_NEAR(spread->orientation, std::sqrt(8e-6 / 3), 1e-9);
+}
+
+TEST(DistanceSensor, MeasuresFromItsAnchor) {
+    const DistanceSensor sensor(Targets({Vector3d(0, 0, 0)}), {Vector3d(1, 0, 0), {0, 0, 5}}, true,
+                                1e-5);
+    Isometry3d flange = Isometry3d::Identity();
+    flange.translation() = Vector3d(1, 3, 4);
+    EXPECT_TRUE(sensor.predict(flange, VectorXd()).isApprox(Eigen::Vector2d(5, std::sqrt(11))));
+    EXPECT_EQ(sensor.observation_names(), (std::vector<std::string>{"p1_a1", "p1_a2"}));
+}
+
+TEST(PlaneSensor, IsPositiveWhereTheNormalPoints) {
+    const PlaneSensor sensor(Targets({Vector3d(0, 0, 0.5)}), {{{0, 0, 2}, 1}}, true, 1e-5);
+    Isometry3d flange = Isometry3d::Identity();
+    flange.translation() = Vector3d(1, 3, 4);
+    EXPECT_DOUBLE_EQ(sensor.predict(flange, VectorXd())[0], 3.5);
+}
+
+TEST(Sensors, RefuseWhatIsNoSensor) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const Targets one({std::nullopt});
+    EXPECT_THROW(PoseSensor(std::nullopt, IsotropicNoise{1e-5}, 0), InputError);
+    EXPECT_THROW(PoseSensor(std::nullopt, IsotropicNoise{nan}, 1e-4), InputError);
+    EXPECT_THROW(DistanceSensor(one, {}, true, 1e-5), InputError);
+    EXPECT_THROW(DistanceSensor(one, {Vector3d(0, nan, 0)}, true, 1e-5), InputError);
+    EXPECT_THROW(DistanceSensor(one, {Vector3d::Zero()}, true, nan), InputError);
+    EXPECT_THROW(PlaneSensor(one, {{Vector3d::Zero(), 0}}, true, 1e-5), InputError);
+}
+
+TEST(RotationVectors, AreThereAndBack) {
+    RandomStream stream(44);
+    for (Index i = 0; i < sweep_count(); ++i) {
+        const Matrix3d R = random_pose(stream).linear();
+        const Vector3d vector = vector_from_rotation(R);
+        EXPECT_LE(vector.norm(), std::numbers::pi);
+        EXPECT_LT((rotation_from_vector(vector) - R).norm(), 1e-14);
+        const Vector3d step = random_vector(stream, 3, 1e-6);
+        const Vector3d turned =
+            vector_from_rotation(rotation_from_vector(vector + step) * R.transpose());
+        EXPECT_LT((turned - rotation_vector_rate(vector) * step).norm(), 1e-11);
+    }
+}
+
+}  // namespace
+}  // namespace posewise

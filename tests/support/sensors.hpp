@@ -1,0 +1,71 @@
+#pragma once
+
+#include "posewise/measurement/pose_sensor.hpp"
+#include "posewise/measurement/scalar_sensor.hpp"
+#include "support/campaigns.hpp"
+
+namespace posewise::testing {
+
+/// One campaign for each kind of sensor and of what is known about it.
+struct SensorCampaign {
+    std::string name;
+    Campaign campaign;
+};
+
+inline Campaign with_sensor(const Campaign& from, std::shared_ptr<const Sensor> sensor,
+                            const VectorXd& unknowns, bool is_base_known = false) {
+    Campaign campaign = from;
+    campaign.sensor = std::move(sensor);
+    campaign.nominal.sensor = unknowns;
+    campaign.base_is_known.fill(is_base_known);
+    return campaign;
+}
+
+inline std::vector<SensorCampaign> campaigns_of_every_sensor(const Chain& robot) {
+    const Campaign points = tracked_campaign(robot);
+    const PointNoise tracker = LaserTrackerNoise{1e-5, 4e-5};
+    Isometry3d tool(Eigen::AngleAxisd(2.5, Vector3d(1, -2, 0.5).normalized()));
+    tool.translation() = Vector3d(0.1, -0.05, 0.2);
+    const std::vector<Vector3d> two{{0.28, 0.05, -0.11}, {0.26, -0.09, 0.12}};
+    const Targets partly(two, {{true, false, true}, {false, true, false}});
+    const Targets unknown(std::vector<std::optional<Vector3d>>(2));
+    VectorXd both(6);
+    both << two[0], two[1];
+    const std::vector<Vector3d> anchors{{1, 2, 0}, {-2, 1, 0.3}, {0.4, -2, 1}, {3, 0, 2}};
+    VectorXd anchored(9);
+    anchored << two[0], two[1], anchors[0];
+    const std::vector<Plane> planes{{{0, 0, 1}, -0.4}, {{1, 0.1, 0}, 3}, {{0.2, 1, -0.3}, -1.5}};
+    VectorXd on_planes = VectorXd::Zero(15);
+    on_planes.head<6>() = both;
+    for (Index k = 0; k < 3; ++k) {
+        on_planes.segment<3>(6 + 3 * k) << 0.02, -0.01, planes[static_cast<std::size_t>(k)].offset;
+    }
+    const auto pose = [&](std::optional<Isometry3d> known, const PointNoise& noise) {
+        return std::make_shared<PoseSensor>(known, noise, 1e-4);
+    };
+    std::vector<SensorCampaign> all{
+        {"points", points},
+        {"points, partly known", with_sensor(points, std::make_shared<PointSensor>(partly, tracker),
+                                             Vector3d(0.05, 0.26, 0.12))},
+        {"pose of an unknown tool",
+         with_sensor(points, pose(std::nullopt, IsotropicNoise{5e-5}), tool_unknowns(tool))},
+        {"pose of a known tool", with_sensor(points, pose(tool, tracker), VectorXd())},
+        {"distances from known anchors",
+         with_sensor(points, std::make_shared<DistanceSensor>(unknown, anchors, true, 5e-5), both)},
+        {"distances from an unknown anchor",
+         with_sensor(points,
+                     std::make_shared<DistanceSensor>(unknown, std::vector<Vector3d>{anchors[0]},
+                                                      false, 5e-5),
+                     anchored, true)},
+        {"known planes",
+         with_sensor(points, std::make_shared<PlaneSensor>(unknown, planes, true, 5e-5), both)},
+        {"unknown planes",
+         with_sensor(points, std::make_shared<PlaneSensor>(unknown, planes, false, 5e-5), on_planes,
+                     true)}};
+    Campaign base_partly_known = points;
+    base_partly_known.base_is_known = {false, false, true, true, true, false};
+    all.push_back({"points, base partly known", base_partly_known});
+    return all;
+}
+
+}  // namespace posewise::testing
