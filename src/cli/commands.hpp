@@ -13,6 +13,7 @@ void add_plan(CLI::App& program);
 void add_verify(CLI::App& program);
 void add_calibrate(CLI::App& program);
 void add_export(CLI::App& program);
+void add_correct(CLI::App& program);
 void add_study(CLI::App& program);
 void add_simulate(CLI::App& program);
 

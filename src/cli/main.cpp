@@ -25,6 +25,7 @@ Start with:
   posewise verify measurements.plan.json                     whether a plan is as good as it says
   posewise calibrate campaign.yaml -m measurements.csv       what came out, how sure
   posewise export campaign.yaml estimate.json --urdf out.urdf    the calibrated robot
+  posewise correct campaign.yaml estimate.json --poses p.csv     joint values that hit the poses
 
 posewise COMMAND --help explains each with an example.
 Exit code: 0 good, 1 unusable input (one line on standard error), 2 wrong usage.)";
@@ -68,7 +69,7 @@ void add_commands(CLI::App& program) {
     program.set_version_flag("--version", std::string("posewise ") + posewise::version);
     program.footer(footer);
     for (const auto add : {add_inspect, add_indices, add_select, add_plan, add_verify,
-                           add_calibrate, add_export, add_study, add_simulate}) {
+                           add_calibrate, add_export, add_correct, add_study, add_simulate}) {
         add(program);
     }
 }

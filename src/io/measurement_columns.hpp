@@ -38,4 +38,12 @@ struct WantedColumn {
 /// Joints, then observations.
 std::vector<WantedColumn> wanted_columns(const Campaign& campaign);
 
+/// A joint value in degrees or millimetres.
+double for_people(const Campaign& campaign, Index joint, double value);
+
+/// Columns of joints for people and controllers, each behind a comma: ",q1_deg,q2_mm", and the
+/// values of a configuration (rad or m) for them, digits enough to read them back exactly.
+std::string joint_header(const Campaign& campaign);
+std::string joint_cells(const Campaign& campaign, const VectorXd& q);
+
 }  // namespace posewise::io

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
+#include <iterator>
 
 #include "csv_reader.hpp"
 #include "json_reader.hpp"
@@ -21,11 +21,6 @@ bool turns(const Campaign& campaign, Index joint) {
 
 const std::string& joint_name(const Campaign& campaign, Index joint) {
     return campaign.robot.joints()[static_cast<std::size_t>(joint)].name;
-}
-
-/// Degrees or millimetres.
-double for_people(const Campaign& campaign, Index joint, double value) {
-    return turns(campaign, joint) ? value * 180 / std::numbers::pi : 1e3 * value;
 }
 
 Json optional_text(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
@@ -149,17 +144,10 @@ std::vector<ContinuousPose> read_planned_poses(const std::string& path, const Ca
 
 void write_configurations_csv(const std::string& path, const Campaign& campaign,
                               const std::vector<ContinuousPose>& poses) {
-    std::string text = "config";
+    std::string text = fmt::format("config{},{}\n", joint_header(campaign), visible_targets);
     const auto out = std::back_inserter(text);
-    for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
-        fmt::format_to(out, ",{}{}", joint_name(campaign, j), turns(campaign, j) ? "_deg" : "_mm");
-    }
-    fmt::format_to(out, ",{}\n", visible_targets);
     for (const ContinuousPose& pose : poses) {
-        text += csv_field(pose.id);
-        for (Index j = 0; j < pose.joints.size(); ++j) {
-            fmt::format_to(out, ",{}", for_people(campaign, j, pose.joints[j]));
-        }
+        text += csv_field(pose.id) + joint_cells(campaign, pose.joints);
         std::string targets;
         for (const Index target : pose.visible) {
             targets += (targets.empty() ? "" : " ") + std::to_string(target + 1);

@@ -7,8 +7,8 @@ namespace {
 
 class Usage : public Program {};
 
-const std::string commands[] = {"inspect",   "indices", "select", "verify",
-                                "calibrate", "export",  "study",  "simulate"};
+const std::string commands[] = {"inspect", "indices", "select", "verify",  "calibrate",
+                                "export",  "correct", "study",  "simulate"};
 
 TEST_F(Usage, VersionIsThatOfTheProject) {
     EXPECT_EQ(run_well("--version"), std::string("posewise ") + POSEWISE_VERSION + '\n');
@@ -51,6 +51,10 @@ TEST_F(Usage, WrongUsageExitsWithTwo) {
           "select a.yaml -m b.csv -k 6 --time 0",
           "verify",
           "export a.yaml b.json",
+          "correct a.yaml b.json",
+          "correct a.yaml b.json --poses c.csv --tool-mm 1 2",
+          "correct a.yaml b.json --poses c.csv --base robot",
+          "correct a.yaml b.json --poses c.csv --largest-change-deg 0",
           "calibrate a.yaml -m b.csv --method newton",
           "calibrate a.yaml -m b.csv --alpha 0",
           "study a.yaml -m b.csv --poses 5-9",

@@ -44,44 +44,6 @@ Chain seed_report_chain() {
     return Chain(fanuc.joints(), elements);
 }
 
-Chain ur_type() {
-    const auto R = Motion::Rotation;
-    const double quarter = 90 * testing::degree;
-    std::vector<Joint> joints;
-    for (const char* name : {"q1", "q2", "q3", "q4", "q5", "q6"}) joints.push_back({name, -3, 3});
-    return Chain(
-        joints,
-        {driven(R, Axis::Z, 0), translation(Axis::Z, 0.1273), rotation(Axis::X, quarter),
-         driven(R, Axis::Z, 1), translation(Axis::X, -0.612), driven(R, Axis::Z, 2),
-         translation(Axis::X, -0.5723), driven(R, Axis::Z, 3), translation(Axis::Z, 0.163941),
-         rotation(Axis::X, quarter), driven(R, Axis::Z, 4), translation(Axis::Z, 0.1157),
-         rotation(Axis::X, -quarter), driven(R, Axis::Z, 5), translation(Axis::Z, 0.0922)});
-}
-
-Chain seven_joint_arm() {
-    const auto R = Motion::Rotation;
-    std::vector<Joint> joints;
-    std::vector<Element> elements;
-    for (Index j = 0; j < 7; ++j) {
-        joints.push_back({"q" + std::to_string(j + 1), -2, 2});
-        elements.push_back(driven(R, j % 2 == 0 ? Axis::Z : Axis::Y, j));
-        if (j % 2 == 0) elements.push_back(translation(Axis::Z, 0.4));
-    }
-    return Chain(joints, elements);
-}
-
-Chain rail_with_fanuc() {
-    const Chain fanuc = testing::fanuc();
-    std::vector<Joint> joints{{"rail", 0, 4}};
-    std::vector<Element> elements{driven(Motion::Translation, Axis::Y, 0)};
-    for (const Joint& joint : fanuc.joints()) joints.push_back(joint);
-    for (Element element : fanuc.elements()) {
-        for (JointTerm& term : element.joints) ++term.joint;
-        elements.push_back(element);
-    }
-    return Chain(joints, elements);
-}
-
 TEST(FindIndependentColumns, ExpressesADroppedColumnByTheKeptOnes) {
     MatrixXd J(4, 4);
     J.leftCols<2>() << 1, 2, 0, 1, 3, -1, 1, 1;
@@ -114,15 +76,15 @@ TEST(FindIndependentColumns, PrefersWhatIsNotNearlyACombination) {
 
 /// Angles in files are often rounded: 1.5708 for a quarter turn.
 TEST(IrreducibleModel, OfAxesThatAreParallelButForRoundingIsThatOfParallelAxes) {
-    std::vector<Element> elements = ur_type().elements();
+    std::vector<Element> elements = testing::ur_type().elements();
     const auto elbow = std::find_if(elements.begin(), elements.end(), [](const Element& element) {
         return !element.joints.empty() && element.joints[0].joint == 2;
     });
     const auto forearm = elements.insert(elbow, rotation(Axis::X, 3.7e-6)) + 2;
     elements.insert(forearm, rotation(Axis::Y, -3.3e-7));
-    const Campaign rounded = tracked_campaign(Chain(ur_type().joints(), elements));
+    const Campaign rounded = tracked_campaign(Chain(testing::ur_type().joints(), elements));
     EXPECT_EQ(irreducible_model(rounded).parameter_names(),
-              irreducible_model(tracked_campaign(ur_type())).parameter_names());
+              irreducible_model(tracked_campaign(testing::ur_type())).parameter_names());
     const Campaign complete = tracked_campaign(complete_model(rounded.robot));
     EXPECT_GT(find_identifiable(complete).least_kept_residual, 1e-2);
 }
@@ -198,12 +160,12 @@ TEST(FindIdentifiable, SeedReportsSetLacksOneDirectionAndSaysWhich) {
 TEST(FindIdentifiable, CountIsFourRevoluteTwoPrismaticThreeTargets) {
     const Index targets = 3 * 3;
     EXPECT_EQ(irreducible_count(testing::fanuc()), 4 * 6 + targets);
-    EXPECT_EQ(irreducible_count(ur_type()), 4 * 6 + targets);
+    EXPECT_EQ(irreducible_count(testing::ur_type()), 4 * 6 + targets);
     EXPECT_EQ(irreducible_count(testing::planar_arm({1, 0.8, 0.5})), 4 * 3 + targets);
     EXPECT_EQ(irreducible_count(testing::scara()), 4 * 3 + 2 * 1 + targets);
     EXPECT_EQ(irreducible_count(testing::gantry_with_wrist()), 4 * 3 + 2 * 3 + targets);
-    EXPECT_EQ(irreducible_count(seven_joint_arm()), 4 * 7 + targets);
-    EXPECT_EQ(irreducible_count(rail_with_fanuc()), 4 * 6 + 2 * 1 + targets);
+    EXPECT_EQ(irreducible_count(testing::seven_joint_arm()), 4 * 7 + targets);
+    EXPECT_EQ(irreducible_count(testing::rail_with_fanuc()), 4 * 6 + 2 * 1 + targets);
 }
 
 TEST(FindIdentifiable, DroppedColumnIsTheStatedCombination) {

@@ -91,4 +91,45 @@ inline Chain scara() {
                   driven(R, Axis::Z, 3)});
 }
 
+/// Three parallel axes as a UR10 has them; no error parameters.
+inline Chain ur_type() {
+    const auto R = Motion::Rotation;
+    const double quarter = 90 * degree;
+    std::vector<Joint> joints;
+    for (const char* name : {"q1", "q2", "q3", "q4", "q5", "q6"}) joints.push_back({name, -3, 3});
+    return Chain(
+        joints,
+        {driven(R, Axis::Z, 0), translation(Axis::Z, 0.1273), rotation(Axis::X, quarter),
+         driven(R, Axis::Z, 1), translation(Axis::X, -0.612), driven(R, Axis::Z, 2),
+         translation(Axis::X, -0.5723), driven(R, Axis::Z, 3), translation(Axis::Z, 0.163941),
+         rotation(Axis::X, quarter), driven(R, Axis::Z, 4), translation(Axis::Z, 0.1157),
+         rotation(Axis::X, -quarter), driven(R, Axis::Z, 5), translation(Axis::Z, 0.0922)});
+}
+
+/// Seven joints in turn about z and y: redundant.
+inline Chain seven_joint_arm() {
+    const auto R = Motion::Rotation;
+    std::vector<Joint> joints;
+    std::vector<Element> elements;
+    for (Index j = 0; j < 7; ++j) {
+        joints.push_back({"q" + std::to_string(j + 1), -2, 2});
+        elements.push_back(driven(R, j % 2 == 0 ? Axis::Z : Axis::Y, j));
+        if (j % 2 == 0) elements.push_back(translation(Axis::Z, 0.4));
+    }
+    return Chain(joints, elements);
+}
+
+/// The FANUC on a rail.
+inline Chain rail_with_fanuc() {
+    const Chain arm = fanuc();
+    std::vector<Joint> joints{{"rail", 0, 4}};
+    std::vector<Element> elements{driven(Motion::Translation, Axis::Y, 0)};
+    for (const Joint& joint : arm.joints()) joints.push_back(joint);
+    for (Element element : arm.elements()) {
+        for (JointTerm& term : element.joints) ++term.joint;
+        elements.push_back(element);
+    }
+    return Chain(joints, elements);
+}
+
 }  // namespace posewise::testing

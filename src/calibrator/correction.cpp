@@ -1,0 +1,222 @@
+#include "posewise/calibrator/correction.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+/// What a change of joints by 1 rad or 1 m costs, m: next to nothing, so that it decides only
+/// between joint values that are equally good.
+constexpr double change_weight = 1e-5;
+
+/// Falls of the sum of squares below this are rounding, m^2.
+constexpr double negligible = 1e-26;
+
+/// Weighted errors below this do not make a pose singular, m.
+constexpr double attained = 1e-6;
+
+/// Angle times axis of the rotation that R lacks to be the wanted one, in the frame both are in.
+Vector3d missing_rotation(const Matrix3d& wanted, const Matrix3d& R) {
+    const Eigen::AngleAxisd turn(Matrix3d(wanted * R.transpose()));
+    return turn.angle() * turn.axis();
+}
+
+/// min |J d - r|^2, rows: position and weighted angle that are missing, change of each joint.
+struct Equations {
+    MatrixXd J;
+    VectorXd r;
+};
+
+class Search {
+  public:
+    Search(const Chain& robot, const VectorXd& parameters, const VectorXd& nominal,
+           const Isometry3d& wanted, const CorrectionOptions& options)
+        : robot_(robot),
+          parameters_(parameters),
+          nominal_(nominal),
+          wanted_(wanted),
+          options_(options),
+          lower_(nominal),
+          upper_(nominal) {
+        for (Index j = 0; j < nominal.size(); ++j) {
+            const bool turns = robot.joint_motion(j) == Motion::Rotation;
+            const double change = turns ? options.largest_turn : options.largest_slide;
+            lower_[j] = std::max(limits(j).lower, nominal[j] - change);
+            upper_[j] = std::min(limits(j).upper, nominal[j] + change);
+        }
+    }
+
+    Correction run() {
+        Correction correction;
+        correction.joints = nominal_.cwiseMax(lower_).cwiseMin(upper_);
+        correction.uncorrected = error_at(nominal_);
+        double damping = 1e-9;
+        for (Index k = 0; correction.ending == Ending::NotRun; ++k) {
+            correction.ending = k < options_.iteration_limit ? step(correction.joints, damping)
+                                                             : Ending::IterationLimit;
+        }
+        find_held(correction);
+        correction.residual = error_at(correction.joints);
+        correction.is_singular = is_singular(correction);
+        return correction;
+    }
+
+  private:
+    bool is_singular(const Correction& correction) const {
+        if (!correction.held_by_limit.empty() || !correction.held_by_change.empty()) return false;
+        const double weight = options_.length_per_angle;
+        const PoseError& left = correction.residual;
+        return nominal_.size() >= (weight > 0 ? 6 : 3) &&
+               std::hypot(left.position, weight * left.orientation) > attained;
+    }
+
+    void find_held(Correction& correction) {
+        const Equations system = equations(correction.joints);
+        const std::vector<Index> free = free_joints(correction.joints, system);
+        for (Index j = 0; j < nominal_.size(); ++j) {
+            if (std::find(free.begin(), free.end(), j) != free.end()) continue;
+            const double q = correction.joints[j];
+            const bool at_limit = q == limits(j).lower || q == limits(j).upper;
+            (at_limit ? correction.held_by_limit : correction.held_by_change).push_back(j);
+        }
+    }
+
+    const Joint& limits(Index joint) const {
+        return robot_.joints()[static_cast<std::size_t>(joint)];
+    }
+
+    PoseError error_at(const VectorXd& q) const {
+        const Isometry3d flange = robot_.base_from_flange(q, parameters_);
+        return {(wanted_ * options_.tool - flange * options_.tool).norm(),
+                missing_rotation(wanted_.linear(), flange.linear()).norm()};
+    }
+
+    Equations equations(const VectorXd& q) {
+        const Index count = q.size();
+        robot_.differentiate(Isometry3d::Identity(), q, parameters_, motion_);
+        const Isometry3d& flange = motion_.world_from_flange;
+        const Vector3d tool = flange * options_.tool;
+        const double weight = options_.length_per_angle;
+        Equations system{MatrixXd::Zero(6 + count, count), VectorXd(6 + count)};
+        for (Index j = 0; j < count; ++j) {
+            const Vector3d w = motion_.joint_twists.col(j).head<3>();
+            system.J.block<3, 1>(0, j) = motion_.joint_twists.col(j).tail<3>() + w.cross(tool);
+            system.J.block<3, 1>(3, j) = weight * w;
+        }
+        system.J.bottomRows(count).diagonal().setConstant(change_weight);
+        system.r << wanted_ * options_.tool - tool,
+            weight * missing_rotation(wanted_.linear(), flange.linear()),
+            change_weight * (nominal_ - q);
+        return system;
+    }
+
+    /// All joints but those at a bound beyond which the sum of squares would fall.
+    std::vector<Index> free_joints(const VectorXd& q, const Equations& system) const {
+        const VectorXd descent = system.J.transpose() * system.r;
+        std::vector<Index> free;
+        for (Index j = 0; j < q.size(); ++j) {
+            const bool is_held =
+                (q[j] <= lower_[j] && descent[j] < 0) || (q[j] >= upper_[j] && descent[j] > 0);
+            if (!is_held) free.push_back(j);
+        }
+        return free;
+    }
+
+    /// One accepted step, or an ending.
+    Ending step(VectorXd& q, double& damping) {
+        const Equations system = equations(q);
+        const std::vector<Index> free = free_joints(q, system);
+        if (free.empty()) return Ending::Converged;
+        const auto count = static_cast<Index>(free.size());
+        MatrixXd J = MatrixXd::Zero(system.J.rows() + count, count);
+        J.topRows(system.J.rows()) = system.J(Eigen::all, free);
+        VectorXd r = VectorXd::Zero(J.rows());
+        r.head(system.r.size()) = system.r;
+        const double cost = system.r.squaredNorm();
+        const VectorXd whole = J.householderQr().solve(r);
+        if ((J * whole).squaredNorm() <= negligible + 1e-12 * cost) return Ending::Converged;
+        for (; damping < 1e12; damping *= 10) {
+            J.bottomRows(count).diagonal().setConstant(std::sqrt(damping));
+            VectorXd moved = q;
+            moved(free) += J.householderQr().solve(r);
+            moved = moved.cwiseMax(lower_).cwiseMin(upper_);
+            if (equations(moved).r.squaredNorm() < cost) {
+                q = moved;
+                damping = std::max(damping / 100, 1e-15);
+                return Ending::NotRun;
+            }
+        }
+        return Ending::Stalled;
+    }
+
+    const Chain& robot_;
+    const VectorXd& parameters_;
+    const VectorXd& nominal_;
+    const Isometry3d& wanted_;
+    const CorrectionOptions& options_;
+    VectorXd lower_;
+    VectorXd upper_;
+    FlangeMotion motion_;
+};
+
+void check_options(const CorrectionOptions& options) {
+    const auto check = [](const char* name, double value, bool may_be_zero) {
+        if (std::isfinite(value) && (value > 0 || (may_be_zero && value == 0))) return;
+        throw InputError(fmt::format("{} is {}, must be a positive number{}", name, value,
+                                     may_be_zero ? " or 0" : ""));
+    };
+    check("length_per_angle", options.length_per_angle, true);
+    check("largest_turn", options.largest_turn, false);
+    check("largest_slide", options.largest_slide, false);
+    if (!options.tool.allFinite()) throw InputError("the tool point is not finite");
+}
+
+void check_limits(const Chain& robot, const VectorXd& nominal) {
+    robot.check_configuration(nominal);
+    for (Index j = 0; j < nominal.size(); ++j) {
+        const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
+        constexpr double rounding = 1e-9;  // of values that were converted, rad or m
+        if (nominal[j] >= joint.lower - rounding && nominal[j] <= joint.upper + rounding) continue;
+        const bool turns = robot.joint_motion(j) == Motion::Rotation;
+        const double factor = turns ? 180 / std::numbers::pi : 1e3;
+        throw InputError(fmt::format(
+            "joint '{}' is at {:.6g} {}; must be within its limits, {:.6g} to {:.6g}", joint.name,
+            factor * nominal[j], turns ? "deg" : "mm", factor * joint.lower, factor * joint.upper));
+    }
+}
+
+}  // namespace
+
+Correction correct_configuration(const Chain& robot, const VectorXd& parameters,
+                                 const VectorXd& nominal, const Isometry3d& base_from_flange,
+                                 const CorrectionOptions& options) {
+    check_options(options);
+    check_limits(robot, nominal);
+    return Search(robot, parameters, nominal, base_from_flange, options).run();
+}
+
+std::string describe_shortfall(const Chain& robot, const Correction& correction) {
+    std::string text;
+    const auto add = [&text](const std::string& what) {
+        text += (text.empty() ? "" : ", ") + what;
+    };
+    const auto add_joints = [&](const std::vector<Index>& joints, const char* where) {
+        for (const Index j : joints) {
+            add(robot.joints()[static_cast<std::size_t>(j)].name + where);
+        }
+    };
+    add_joints(correction.held_by_limit, " at its limit");
+    add_joints(correction.held_by_change, " at the largest change");
+    if (correction.is_singular) add("singular");
+    if (correction.ending == Ending::IterationLimit) add("not converged");
+    return text;
+}
+
+}  // namespace posewise

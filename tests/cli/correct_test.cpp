@@ -1,0 +1,75 @@
+#include "program.hpp"
+
+/// Nominal configurations corrected for the calibrated robot.
+namespace posewise::testing {
+namespace {
+
+class Correct : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        run_well("simulate " + fanuc_design + " --poses 40 --truth 5 -o m.csv");
+        run_well("calibrate " + fanuc_design + " -m m.csv --folds 0 -o e.json");
+    }
+    const std::string correct_ = "correct " + fanuc_design + " e.json --poses ";
+};
+
+TEST_F(Correct, LeavesLessThanAHundredthOfTheError) {
+    write_text("p.csv",
+               "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n"
+               "a,10,20,30,40,50,60\n"
+               "\"b,c\",-80,-20,0,-40,-70,0\n");
+    const std::string text = run_well(correct_ + "p.csv -o c.csv");
+    for (const char* const row : {"position RMS/mm", "position max/mm", "orientation RMS/mrad"}) {
+        EXPECT_GT(number_behind(text, row), 0.1) << row;
+        EXPECT_LT(number_behind(text, row, 1), 0.01 * number_behind(text, row)) << row;
+    }
+    EXPECT_EQ(text.find("Not corrected completely"), std::string::npos) << text;
+    const std::string csv = text_of("c.csv");
+    EXPECT_EQ(csv.rfind("config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,residual_mm,"
+                        "residual_mrad,uncorrected_mm,uncorrected_mrad,note\na,",
+                        0),
+              0U)
+        << csv;
+    EXPECT_NE(csv.find("\n\"b,c\",-"), std::string::npos) << csv;
+    EXPECT_NEAR(std::strtod(csv.c_str() + csv.find("\na,") + 3, nullptr), 10, 0.5);
+
+    // Another base turns and moves every pose; the correction brings them there all the same.
+    const std::string moved = run_well(correct_ + "p.csv --base campaign");
+    EXPECT_NE(number_behind(moved, "position RMS/mm"), number_behind(text, "position RMS/mm"));
+    EXPECT_LT(number_behind(moved, "position RMS/mm", 1), 1e-3);
+}
+
+TEST_F(Correct, NamesTheJointThatIsHeld) {
+    write_text("p.csv",
+               "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n"
+               "stretched,10,20,30,40,0.01,60\n");
+    const std::string text = run_well(correct_ + "p.csv -o c.csv");
+    EXPECT_NE(text.find("Not corrected completely: 1 of 1"), std::string::npos) << text;
+    EXPECT_NE(text.find("at the largest change"), std::string::npos) << text;
+    EXPECT_NE(text_of("c.csv").find("at the largest change"), std::string::npos);
+    const std::string placed = run_well(correct_ + "p.csv --mm-per-mrad 0 --tool-mm 100 0 50");
+    EXPECT_EQ(placed.find("Not corrected completely"), std::string::npos) << placed;
+    EXPECT_EQ(number_behind(placed, "position max/mm", 1), 0);
+}
+
+TEST_F(Correct, RefusesWhatItCannotUse) {
+    write_text("p.csv",
+               "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\na,10,20,30,40,50,60\n"
+               "b,10,120,30,40,50,60\n");
+    expect_input_error(correct_ + "p.csv -o c.csv",
+                       "p.csv: configuration 'b': joint 'q2' is at 120 deg; must be within its "
+                       "limits, -60 to 60");
+    expect_input_error(correct_ + "p.csv -o e.json", "is read and shall be written");
+    expect_input_error(correct_ + "absent.csv", "absent.csv");
+    expect_input_error("correct " + fanuc_design + " m.csv --poses m.csv", "m.csv");
+    std::string design =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    design.replace(design.find("\nbase:"), 6, "\n# ");
+    write_text("adrift.yaml", design);
+    expect_input_error("correct adrift.yaml e.json --poses m.csv --base campaign",
+                       "adrift.yaml: does not state a base; --base campaign needs it");
+}
+
+}  // namespace
+}  // namespace posewise::testing
