@@ -5,6 +5,7 @@
 
 #include "least_squares.hpp"
 #include "posewise/core/errors.hpp"
+#include "robust.hpp"
 
 namespace posewise {
 namespace {
@@ -26,27 +27,39 @@ VectorXd damped_step(const Triangle& triangle, double damping) {
 }
 
 struct LevenbergMarquardt {
-    const IdentificationProblem& problem;
+    IdentificationProblem& problem;
     const LevenbergMarquardtOptions& options;
     Estimate& estimate;
-    double cost = 0;
+    double cost = total_loss(problem, estimate.parameters);
     double damping = 1e-6;
+    Index deviations_open = problem.loss.kind == LossKind::Squares ? 0 : 50;
+
+    /// The unit of the loss follows the residuals until it stays; from then on all steps lower one
+    /// function.
+    void follow_deviation() {
+        const double before = problem.deviation;
+        problem.deviation = robust_deviation(problem, estimate.parameters);
+        const bool stays = std::abs(problem.deviation - before) <= 1e-6 * before;
+        deviations_open = stays ? 0 : deviations_open - 1;
+        cost = total_loss(problem, estimate.parameters);
+    }
 
     /// One accepted step, or an ending.
     void iterate() {
+        if (deviations_open > 0) follow_deviation();
         const Triangle triangle = triangularise(linearise(problem, estimate.parameters));
         const double negligible =
             negligible_per_equation * static_cast<double>(problem.equation_count()) +
             options.relative_tolerance * cost;
         if (triangle.c.squaredNorm() <= negligible) {  // what a full step could gain
-            estimate.ending = Ending::Converged;
+            if (deviations_open == 0) estimate.ending = Ending::Converged;
             return;
         }
         for (; damping < 1e12; damping *= 10) {
             const VectorXd step = damped_step(triangle, damping);
             const Parameters moved =
                 advance(problem.campaign, estimate.parameters, problem.scale.cwiseProduct(step));
-            const double moved_cost = sum_of_squares(problem, moved);
+            const double moved_cost = total_loss(problem, moved);
             if (moved_cost < cost) {
                 estimate.parameters = moved;
                 cost = moved_cost;
@@ -68,11 +81,12 @@ std::vector<Index> fold_members(Index count, Index folds, Index fold) {
 
 Estimate identify(const Campaign& campaign, const Measurements& measurements,
                   const Parameters& start, const LevenbergMarquardtOptions& options) {
-    const IdentificationProblem problem = make_problem(campaign, measurements);
+    IdentificationProblem problem = make_problem(campaign, measurements);
     check_identifiable(problem, start);
+    problem.loss = complete_loss(options.loss, campaign);
     Estimate estimate;
     estimate.parameters = start;
-    LevenbergMarquardt search{problem, options, estimate, sum_of_squares(problem, start)};
+    LevenbergMarquardt search{problem, options, estimate};
     while (estimate.ending == Ending::NotRun) {
         if (estimate.iterations >= options.iteration_limit) {
             estimate.ending = Ending::IterationLimit;

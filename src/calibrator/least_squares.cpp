@@ -10,6 +10,7 @@
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/noise.hpp"
 #include "posewise/measurement/point_sensor.hpp"
+#include "robust.hpp"
 
 namespace posewise {
 
@@ -41,6 +42,24 @@ RowMatrixXd whiten_seen(const IdentificationProblem& problem, Index i, const Fla
     RowMatrixXd seen = all(seen_rows(*problem.campaign.sensor, repeats), Eigen::all);
     whiten(mean_covariance(problem.campaign, motion, parameters.sensor, repeats), seen);
     return seen;
+}
+
+/// Lengths of the whitened residual, the last column of `seen`, of one target after another.
+VectorXd target_lengths(const IdentificationProblem& problem, const RowMatrixXd& seen) {
+    const Index width = problem.campaign.sensor->rows_per_target();
+    const VectorXd r = seen.col(seen.cols() - 1);
+    return r.reshaped(width, r.size() / width).colwise().norm().transpose();
+}
+
+/// Multiplies the rows of each target by the square root of its weight.
+void weigh_targets(const IdentificationProblem& problem, RowMatrixXd& seen) {
+    if (problem.loss.kind == LossKind::Squares) return;
+    const Index width = problem.campaign.sensor->rows_per_target();
+    const VectorXd lengths = target_lengths(problem, seen);
+    for (Index j = 0; j < lengths.size(); ++j) {
+        seen.middleRows(width * j, width) *=
+            std::sqrt(problem.loss.weight(lengths[j] / problem.deviation));
+    }
 }
 
 /// The robot's errors in units of their expected size.
@@ -93,7 +112,8 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
         augmented.col(size) = campaign.sensor->deviation(
             problem.means.observations.row(i).transpose(),
             campaign.sensor->predict(motion.world_from_flange, parameters.sensor));
-        const RowMatrixXd seen = whiten_seen(problem, i, motion, parameters, augmented);
+        RowMatrixXd seen = whiten_seen(problem, i, motion, parameters, augmented);
+        weigh_targets(problem, seen);
         system.J.middleRows(row, seen.rows()) = seen.leftCols(size) * problem.scale.asDiagonal();
         system.r.segment(row, seen.rows()) = seen.col(size);
         row += seen.rows();
@@ -109,9 +129,10 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
     return system;
 }
 
-double sum_of_squares(const IdentificationProblem& problem, const Parameters& parameters) {
+VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters& parameters) {
     const Campaign& campaign = problem.campaign;
-    double sum = 0;
+    VectorXd lengths(problem.means.is_seen.count());
+    Index count = 0;
     FlangeMotion motion;
     VectorXd q(campaign.robot.joint_count());
     for (Index i = 0; i < problem.means.configuration_count(); ++i) {
@@ -120,8 +141,20 @@ double sum_of_squares(const IdentificationProblem& problem, const Parameters& pa
         const VectorXd r = campaign.sensor->deviation(
             problem.means.observations.row(i).transpose(),
             campaign.sensor->predict(motion.world_from_flange, parameters.sensor));
-        sum += whiten_seen(problem, i, motion, parameters, r).squaredNorm();
+        const VectorXd of_pose =
+            target_lengths(problem, whiten_seen(problem, i, motion, parameters, r));
+        lengths.segment(count, of_pose.size()) = of_pose;
+        count += of_pose.size();
     }
+    return lengths;
+}
+
+double total_loss(const IdentificationProblem& problem, const Parameters& parameters) {
+    double sum = 0;
+    for (const double length : residual_lengths(problem, parameters)) {
+        sum += problem.loss.value(length / problem.deviation);
+    }
+    sum *= problem.deviation * problem.deviation;
     if (problem.prior_count() > 0) sum += scaled_errors(problem, parameters).squaredNorm();
     return sum;
 }
@@ -164,14 +197,20 @@ void finish(const IdentificationProblem& problem, Estimate& estimate) {
     const MatrixXd inverse = problem.scale.asDiagonal() *
                              R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(size, size));
     estimate.degrees_of_freedom = system.r.size() - size;
+    const bool is_robust = problem.loss.kind != LossKind::Squares;
     estimate.variance_factor =
-        estimate.degrees_of_freedom > 0
+        is_robust ? problem.deviation * problem.deviation
+        : estimate.degrees_of_freedom > 0
             ? system.r.squaredNorm() / static_cast<double>(estimate.degrees_of_freedom)
             : 1.0;
+    double factor = estimate.variance_factor;
+    if (is_robust) factor = robust_covariance_factor(problem, estimate);
     // A prior states the noise, too: residuals that are larger or smaller do not change it.
-    const double factor = problem.prior_count() > 0 ? 1.0 : estimate.variance_factor;
+    if (problem.prior_count() > 0) factor = 1;
     estimate.covariance = factor * inverse * inverse.transpose();
     estimate.names = parameter_names(problem.campaign);
+    estimate.loss = problem.loss;
+    if (is_robust) estimate.outliers = find_outliers(problem, estimate.parameters);
     estimate.fit =
         make_metrics(residuals(problem.campaign, estimate.parameters, problem.measurements));
     estimate.fit_means =

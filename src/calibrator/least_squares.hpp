@@ -1,11 +1,13 @@
 #pragma once
 
 #include "posewise/calibrator/estimate.hpp"
+#include "posewise/calibrator/loss.hpp"
 
 namespace posewise {
 
 /// The identification as a linearised least-squares problem, whitened and scaled: minimise
-/// |J d - r|^2 over the scaled step d, rows = equations: observations, then the prior's.
+/// |J d - r|^2 over the scaled step d, rows = equations: observations, then the prior's. The rows
+/// of a target are multiplied by the square root of its weight under the loss.
 struct LinearisedSystem {
     MatrixXd J;  ///< equations x L
     VectorXd r;  ///< observed means minus predicted
@@ -18,6 +20,8 @@ struct IdentificationProblem {
     Measurements means;   ///< one sample a configuration
     RowMatrixXd repeats;  ///< configurations x targets: samples behind each mean
     VectorXd scale;
+    Loss loss = {};
+    double deviation = 1;  ///< unit of the loss, in standard deviations as stated
 
     /// Numbers observed: those of the targets seen.
     Index observation_count() const {
@@ -40,8 +44,13 @@ void check_all_seen(const Campaign& campaign, const Measurements& measurements);
 
 LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters);
 
-/// chi^2: sum of squares of whitened mean residuals and of what the prior says.
-double sum_of_squares(const IdentificationProblem& problem, const Parameters& parameters);
+/// Length of the whitened mean residual of each target seen, one configuration after another: in
+/// standard deviations of one coordinate, as stated. Where errors of the joints correlate targets,
+/// a target's is what those before it leave open.
+VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters& parameters);
+
+/// The loss of all targets, with squares chi^2, and the sum of squares of what the prior says.
+double total_loss(const IdentificationProblem& problem, const Parameters& parameters);
 
 /// J reduced to its triangle by Householder QR: |J d - r|^2 = |R d - c|^2 + rest.
 struct Triangle {

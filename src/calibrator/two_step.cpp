@@ -61,11 +61,11 @@ Estimate identify_two_step(const Campaign& campaign, const Measurements& measure
     const Split split{base_parameter_count(campaign), start.robot.size(), start.sensor.size()};
     Estimate estimate;
     estimate.parameters = start;
-    double cost = sum_of_squares(problem, start);
+    double cost = total_loss(problem, start);
     estimate.ending = Ending::IterationLimit;
     while (estimate.iterations < options.iteration_limit) {
         const Parameters moved = cycle(problem, split, estimate.parameters, options.alpha);
-        const double moved_cost = sum_of_squares(problem, moved);
+        const double moved_cost = total_loss(problem, moved);
         if (!(moved_cost < cost)) {
             estimate.ending = Ending::Converged;
             break;

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "posewise/calibrator/loss.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 
@@ -36,6 +37,16 @@ struct Metrics {
     double orientation_max = 0;
 };
 
+/// A target of a configuration whose mean is too far from what the other points say.
+struct Outlier {
+    Index configuration = 0;
+    std::string id;  ///< of the configuration
+    Index target = 0;
+    double distance = 0;    ///< length of the residual, m
+    double deviations = 0;  ///< the same in robust standard deviations of one coordinate
+    double weight = 0;      ///< with which it counts, 0 to 1
+};
+
 /// Identified parameters and how sure they are.
 struct Estimate {
     Ending ending = Ending::NotRun;
@@ -46,11 +57,15 @@ struct Estimate {
     MatrixXd covariance;
     /// Residual variance of whitened means: chi^2 / degrees of freedom; 1 if sigma and model error
     /// were stated right, or if there is no degree of freedom. The covariance is scaled by it,
-    /// unless there is a prior.
+    /// unless there is a prior. Under a robust loss its robust counterpart, see robust losses at
+    /// LevenbergMarquardtOptions.
     double variance_factor = 0;
     Index degrees_of_freedom = 0;
     Metrics fit;        ///< all samples
     Metrics fit_means;  ///< means of each configuration
+    Loss loss;          ///< as used
+    /// Under a robust loss: targets farther off than outlier_length(), in the measurements' order.
+    std::vector<Outlier> outliers;
 };
 
 /// Standard deviations: sqrt of the covariance's diagonal (m, rad).

@@ -4,10 +4,18 @@
 
 namespace posewise {
 
+/// Under a robust loss each target of a configuration's mean counts as loss(u), u the length of its
+/// whitened residual in robust standard deviations: those stated times s, s = median length /
+/// median_length() * sqrt(equations / degrees of freedom), so that noise stated wrong does not make
+/// outliers. s is found together with the parameters; s^2 is the estimate's variance factor. The
+/// weighted least squares J^T W J of the optimum give the covariance f (J^T W J)^-1,
+/// f = sum |w r|^2 / dof * mean(w) / mean(((w u)' + (p - 1) w) / p)^2 for p rows a target
+/// [Huber & Ronchetti 2009, eq. 7.84, for vectors]; with a prior f = 1.
 struct LevenbergMarquardtOptions {
     Index iteration_limit = 100;
     double relative_tolerance =
-        1e-12;  ///< predicted relative fall of the sum of squares to stop at
+        1e-12;       ///< predicted relative fall of the sum of squares to stop at
+    Loss loss = {};  ///< width 0: default_width()
 };
 
 /// Joint identification of base, robot and targets by Levenberg-Marquardt on whitened means, with
