@@ -66,6 +66,21 @@ RowMatrixXd mean_residuals(const Campaign& campaign, const Parameters& parameter
     return residuals(campaign, parameters, mean_measurements(*campaign.sensor, measurements));
 }
 
+RowMatrixXd squared_distances(const Campaign& campaign, const Parameters& parameters,
+                              const Measurements& measurements) {
+    const Measurements means = mean_measurements(*campaign.sensor, measurements);
+    const RowMatrixXd r = residuals(campaign, parameters, means);
+    RowMatrixXd squares = RowMatrixXd::Zero(means.is_seen.rows(), means.is_seen.cols());
+    Index row = 0;
+    for (Index i = 0; i < squares.rows(); ++i) {
+        for (Index j = 0; j < squares.cols(); ++j) {
+            if (means.is_seen(i, j))
+                squares(i, j) = r.row(row++).head(std::min<Index>(r.cols(), 3)).squaredNorm();
+        }
+    }
+    return squares;
+}
+
 Metrics make_metrics(const RowMatrixXd& residuals) {
     Metrics metrics;
     metrics.point_count = residuals.rows();

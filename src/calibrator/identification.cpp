@@ -110,6 +110,7 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
     const auto fold_count = static_cast<std::size_t>(folds);
     std::vector<RowMatrixXd> samples(fold_count);
     std::vector<RowMatrixXd> means(fold_count);
+    RowMatrixXd distances = RowMatrixXd::Zero(count, measurements.is_seen.cols());
     std::vector<std::string> failures(fold_count);
 #pragma omp parallel for schedule(dynamic)
     for (Index fold = 0; fold < folds; ++fold) {
@@ -121,6 +122,8 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
             const Measurements judged = take(measurements, held_out);
             samples[f] = residuals(campaign, estimate.parameters, judged);
             means[f] = mean_residuals(campaign, estimate.parameters, judged);
+            distances(held_out, Eigen::all) =
+                squared_distances(campaign, estimate.parameters, judged);
         } catch (const InputError& error) {
             failures[f] = "fold " + std::to_string(fold + 1) + ": " + error.what();
         }
@@ -134,7 +137,7 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
         }
         return make_metrics(all);
     };
-    CrossValidation result{folds, join(samples), join(means), {}};
+    CrossValidation result{folds, join(samples), join(means), distances, {}};
     std::copy_if(failures.begin(), failures.end(), std::back_inserter(result.failures),
                  [](const std::string& failure) { return !failure.empty(); });
     return result;

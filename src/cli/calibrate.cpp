@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <cmath>
 #include <memory>
 #include <optional>
 
+#include "calibration_report.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
@@ -11,10 +12,7 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/text.hpp"
 #include "posewise/io/estimate_file.hpp"
-#include "posewise/report/calibration_tables.hpp"
-#include "posewise/report/units.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -31,12 +29,18 @@ Finds base and targets from nothing, then identifies all parameters together, an
   - every parameter with its standard deviation, the base as position and rotation vector;
   - the strongest correlations: what these poses can hardly tell apart.
 With --plan the calibration sees only the plan's configurations and is judged on the others too.
+With --loss huber or cauchy a target seen wrongly counts less (cauchy: hardly at all) and is listed:
+if its mean is farther off than 4.95 robust standard deviations (three coordinates), which come from
+the residuals' median, whatever sigma is stated. sqrt(variance factor) is their ratio to the stated.
+--model-selection calibrates and holds out base and targets alone, then with joint offsets, lengths,
+other geometric errors, gravity terms, free terms and harmonics, as far as the campaign has them, and
+recommends the smallest set within one standard error of the best. The calibration that follows is
+that of the whole campaign; state the recommended set in the campaign file to have it.
 The method two-step is that of Wu et al. 2015; it heads to the same optimum, slowly, and the output
 says whether it got there.)";
 
 constexpr Index leave_one_out_limit = 100;
 constexpr Index default_folds = 10;
-constexpr Index correlations_shown = 5;
 
 struct Arguments {
     InputPaths paths;
@@ -47,6 +51,9 @@ struct Arguments {
     std::string validate;
     std::optional<Index> folds;
     std::optional<bool> prior;
+    std::string loss = "squares";
+    double loss_width = 0;
+    bool model_selection = false;
     std::string out;
 };
 
@@ -66,6 +73,14 @@ Split read_split(const Arguments& arguments, const io::CampaignFile& file) {
     return split;
 }
 
+LevenbergMarquardtOptions with_loss(const Arguments& arguments) {
+    LevenbergMarquardtOptions options;
+    for (const LossKind kind : {LossKind::Huber, LossKind::Cauchy}) {
+        if (arguments.loss == loss_name(kind)) options.loss = {kind, arguments.loss_width};
+    }
+    return options;
+}
+
 Estimate identify_by_method(const Arguments& arguments, const Campaign& campaign,
                             const Measurements& measurements, const Parameters& start) {
     if (arguments.method == "two-step") {
@@ -73,69 +88,52 @@ Estimate identify_by_method(const Arguments& arguments, const Campaign& campaign
         options.iteration_limit = arguments.iteration_limit.value_or(options.iteration_limit);
         return identify_two_step(campaign, measurements, start, options);
     }
-    LevenbergMarquardtOptions options;
+    LevenbergMarquardtOptions options = with_loss(arguments);
     options.iteration_limit = arguments.iteration_limit.value_or(options.iteration_limit);
     return identify(campaign, measurements, start, options);
 }
 
 /// Base and targets fitted, the robot as its maker says.
-Metrics fit_nominal(const Campaign& campaign, const Measurements& measurements) {
+Metrics fit_nominal(const Arguments& arguments, const Campaign& campaign,
+                    const Measurements& measurements) {
     const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
-    return identify(nominal, measurements, register_base_and_targets(nominal, measurements)).fit;
+    const Parameters start = register_base_and_targets(nominal, measurements);
+    return identify(nominal, measurements, start, with_loss(arguments)).fit;
 }
 
-std::optional<CrossValidation> hold_out(const Arguments& arguments, const Campaign& campaign,
-                                        const Measurements& measurements, const Parameters& start) {
+/// Groups to hold out in turn, 0: none.
+Index choose_folds(const Arguments& arguments, const Measurements& measurements) {
     const Index count = measurements.configuration_count();
     const Index folds =
         arguments.folds.value_or(count <= leave_one_out_limit ? count : default_folds);
-    if (folds == 0) return std::nullopt;
-    if (folds < 2 || folds > count) {
+    if (folds != 0 && (folds < 2 || folds > count)) {
         throw InputError(
             fmt::format("--folds is {}, must be 0 or from 2 to the number of configurations, {}",
                         folds, count));
     }
-    return cross_validate(campaign, measurements, start, folds);
+    return folds;
 }
 
-std::string describe_ending(const Arguments& arguments, const Estimate& estimate) {
-    std::string text = fmt::format("{}: {} after {} iterations", arguments.method,
-                                   ending_name(estimate.ending), estimate.iterations);
-    if (estimate.ending != Ending::Converged) text += "; this is not the optimum";
-    return text + fmt::format(
-                      "\nvariance factor {} with {} degrees of freedom (1: noise and model "
-                      "error stated right)\n",
-                      format_short(estimate.variance_factor, 4), estimate.degrees_of_freedom);
-}
-
-std::string describe_noise_floor(const io::CalibrationReport& report) {
-    if (!report.repeatability) return "noise floor: unknown, no configuration was repeated\n";
-    std::string text = fmt::format("noise floor from repeats: {} mm per coordinate",
-                                   format_mm(report.repeatability->length, 5));
-    if (report.nominal.has_orientation) {
-        text += fmt::format(", {} mrad per angle",
-                            format_fixed(mrad_per_rad * report.repeatability->orientation, 5));
+/// How far the other points are off; nothing without outliers.
+std::optional<io::WithoutOutliers> judge_without_outliers(const Campaign& campaign,
+                                                          const Measurements& measurements,
+                                                          const io::CalibrationReport& report) {
+    const Estimate& estimate = report.estimate;
+    if (estimate.outliers.empty()) return std::nullopt;
+    RowArrayXb is_judged = times_seen(measurements).array() > 0;
+    for (const Outlier& outlier : estimate.outliers) {
+        is_judged(outlier.configuration, outlier.target) = false;
     }
-    return text + '\n';
-}
-
-void print_accuracy(const io::CalibrationReport& report) {
-    std::vector<std::pair<std::string, Metrics>> columns{{"nominal", report.nominal},
-                                                         {"calibrated", report.estimate.fit},
-                                                         {"means", report.estimate.fit_means}};
-    if (report.held_out) {
-        columns.emplace_back("held out", report.held_out->samples);
-        columns.emplace_back("held-out means", report.held_out->means);
+    const auto rms = [&](const RowMatrixXd& squares) {
+        return std::sqrt(is_judged.select(squares, 0).sum() /
+                         static_cast<double>(is_judged.count()));
+    };
+    io::WithoutOutliers result{rms(squared_distances(campaign, estimate.parameters, measurements)),
+                               std::nullopt};
+    if (report.held_out && report.held_out->failures.empty()) {
+        result.held_out_rms = rms(report.held_out->squared_distances);
     }
-    if (report.left_out) columns.emplace_back("not in plan", *report.left_out);
-    if (report.validation) columns.emplace_back("validation", *report.validation);
-    print_section("Accuracy", metrics_table(columns));
-    print("\n");
-    if (report.held_out) {
-        print(fmt::format("held out: {} folds, {} of them not identifiable\n",
-                          report.held_out->folds, report.held_out->failures.size()));
-    }
-    print(describe_noise_floor(report));
+    return result;
 }
 
 Metrics metrics_of(const Campaign& campaign, const Measurements& measurements,
@@ -152,55 +150,35 @@ io::CalibrationReport make_report(const Arguments& arguments, const Campaign& ca
     report.method = arguments.method;
     report.measurements = arguments.paths.measurements;
     report.estimate = identify_by_method(arguments, campaign, used, start);
-    report.nominal = fit_nominal(campaign, used);
+    report.nominal = fit_nominal(arguments, campaign, used);
     report.repeatability = repeatability(*campaign.sensor, used);
-    report.held_out = hold_out(arguments, campaign, used, start);
+    const Index folds = choose_folds(arguments, used);
+    if (folds > 0) {
+        report.held_out = cross_validate(campaign, used, start, folds, with_loss(arguments));
+    }
+    report.without_outliers = judge_without_outliers(campaign, used, report);
     if (split.left_out) {
         report.left_out = metrics_of(campaign, *split.left_out, report.estimate);
     }
     return report;
 }
 
-/// A robot's maker is rarely wrong by 10 cm, a column's unit easily by a factor of 1000.
-void warn_about_units(const std::string& path, const Metrics& nominal) {
-    constexpr double suspicious = 0.1;  // m
-    if (nominal.distance_rms <= suspicious) return;
-    const std::string warning = fmt::format(
-        "posewise: warning: {}: the nominal robot misses the points by {} m (RMS); are the units "
-        "of the columns right?\n",
-        escape_controls(path), format_short(nominal.distance_rms, 3));
-    std::fwrite(warning.data(), 1, warning.size(), stderr);
-}
-
-/// Nor does it miss orientations by 10 deg, unless they are read in another order.
-void warn_about_orientation(const std::string& path, const Metrics& nominal) {
-    constexpr double suspicious = 0.2;  // rad
-    if (nominal.orientation_rms <= suspicious) return;
-    const std::string warning = fmt::format(
-        "posewise: warning: {}: the nominal robot misses the orientations by {} deg (RMS); is qw "
-        "the real part of the quaternion, are roll, pitch and yaw about the fixed axes x, y and "
-        "z?\n",
-        escape_controls(path), format_short(to_degrees(nominal.orientation_rms), 3));
-    std::fwrite(warning.data(), 1, warning.size(), stderr);
-}
-
-void print_report(const Arguments& arguments, const Campaign& campaign, const Measurements& used,
-                  const io::CalibrationReport& report) {
-    print(fmt::format("{}: {} configurations, {} samples, {} parameters\n", campaign.name,
-                      used.configuration_count(), used.observations.rows(),
-                      parameter_count(campaign)));
-    if (!used.is_seen.all()) {
-        print(fmt::format("{} of {} points are missing: targets that were not seen\n",
-                          used.is_seen.size() - used.is_seen.count(), used.is_seen.size()));
-    }
-    print(describe_ending(arguments, report.estimate));
-    print_accuracy(report);
-    print_section("Parameters (errors of the robot, base, targets in the flange frame)",
-                  parameter_table(campaign, report.estimate));
-    print_section("Strongest correlations", correlation_table(report.estimate, correlations_shown));
+void check_usage(const Arguments& arguments) {
+    const auto require = [](bool is_right, const char* option, const char* rule) {
+        if (!is_right) throw CLI::ValidationError(option, rule);
+    };
+    const bool is_squares = arguments.loss == "squares";
+    const bool is_lm = arguments.method == "lm";
+    require(is_squares || is_lm, "--loss", "needs --method lm; two-step knows squares only");
+    require(!is_squares || arguments.loss_width == 0, "--loss-width",
+            "needs --loss huber or cauchy");
+    require(!arguments.model_selection || is_lm, "--model-selection", "needs --method lm");
+    require(!arguments.model_selection || arguments.folds != 0, "--model-selection",
+            "needs --folds of 2 or more");
 }
 
 void calibrate(const Arguments& arguments) {
+    check_usage(arguments);
     const InputPaths& paths = arguments.paths;
     check_outputs({paths.campaign, paths.measurements, arguments.plan, arguments.validate},
                   {arguments.out});
@@ -208,16 +186,24 @@ void calibrate(const Arguments& arguments) {
     bool& is_prior = file.campaign.spread.is_prior;
     is_prior = arguments.prior.value_or(is_prior);
     const Split split = read_split(arguments, file);
+    std::optional<ModelSelection> selection;
+    if (arguments.model_selection) {
+        selection = compute_from(paths.measurements, [&] {
+            return select_model(file.campaign, split.used, choose_folds(arguments, split.used),
+                                with_loss(arguments));
+        });
+        print_model_selection(*selection);
+    }
     io::CalibrationReport report = compute_from(
         paths.measurements, [&] { return make_report(arguments, file.campaign, split); });
+    report.selection = std::move(selection);
     if (!arguments.validate.empty()) {
         report.validation = metrics_of(
             file.campaign, io::read_measurements(arguments.validate, file), report.estimate);
     }
     if (!arguments.out.empty()) io::write_estimate(arguments.out, file.campaign, report);
-    warn_about_units(paths.measurements, report.nominal);
-    warn_about_orientation(paths.measurements, report.nominal);
-    print_report(arguments, file.campaign, split.used, report);
+    warn_about_calibration(paths.measurements, file.campaign, report);
+    print_calibration(file.campaign, split.used, report);
 }
 void add_options(CLI::App& command, Arguments& arguments) {
     command.add_option("--plan", arguments.plan, "Use only the configurations of this plan file")
@@ -242,6 +228,16 @@ void add_options(CLI::App& command, Arguments& arguments) {
                     "Groups to hold out in turn; 0: none (default: every configuration by "
                     "itself up to 100 of them, else 10)")
         ->check(whole_number(0, 1000000));
+    command.add_option("--loss", arguments.loss, "squares, huber or cauchy: robust to outliers")
+        ->check(CLI::IsMember({"squares", "huber", "cauchy"}))
+        ->capture_default_str();
+    command
+        .add_option("--loss-width", arguments.loss_width,
+                    "Where the loss leaves squares, in robust standard deviations (default: 95 % "
+                    "efficiency; three coordinates a target: huber 1.63, cauchy 2.67)")
+        ->check(real_number(0.1, 1e6));
+    command.add_flag("--model-selection", arguments.model_selection,
+                     "Compare nested parameter sets by their held-out error");
     add_prior_option(command, arguments.prior, ": fewer poses than parameters will do");
     command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
         ->check(file_name());

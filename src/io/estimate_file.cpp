@@ -120,7 +120,54 @@ Json accuracy_to_json(const CalibrationReport& report) {
     if (report.held_out) accuracy["held_out"] = held_out_to_json(*report.held_out);
     if (report.left_out) accuracy["left_out"] = metrics_to_json(*report.left_out);
     if (report.validation) accuracy["validation"] = metrics_to_json(*report.validation);
+    if (const auto& others = report.without_outliers) {
+        accuracy["without_outliers"] = {{"fit_means_rms_mm", mm * others->fit_rms}};
+        if (others->held_out_rms) {
+            accuracy["without_outliers"]["held_out_means_rms_mm"] = mm * *others->held_out_rms;
+        }
+    }
     return accuracy;
+}
+
+Json outliers_to_json(const Estimate& estimate) {
+    Json list = Json::array();
+    for (const Outlier& outlier : estimate.outliers) {
+        list.push_back({{"configuration", outlier.id},
+                        {"target", "target" + std::to_string(outlier.target + 1)},
+                        {"distance_mm", mm * outlier.distance},
+                        {"standard_deviations", outlier.deviations},
+                        {"weight", outlier.weight}});
+    }
+    return list;
+}
+
+Json trial_to_json(const ModelTrial& trial) {
+    Json json = {{"name", trial.set.name},
+                 {"parameters", trial.set.parameters},
+                 {"parameter_count", trial.parameter_count}};
+    if (!trial.failure.empty()) {
+        json["failure"] = trial.failure;
+        return json;
+    }
+    json["fit_rms_mm"] = mm * trial.fit_rms;
+    json["held_out_rms_mm"] = mm * trial.held_out_rms;
+    json["standard_error_mm"] = mm * trial.standard_error;
+    return json;
+}
+
+Json selection_to_json(const ModelSelection& selection) {
+    Json sets = Json::array();
+    for (const ModelTrial& trial : selection.trials) sets.push_back(trial_to_json(trial));
+    Json json = {{"folds", selection.folds},
+                 {"points_not_judged", selection.not_judged.size()},
+                 {"sets", std::move(sets)}};
+    if (selection.recommended < 0) return json;
+    const auto name = [&](Index k) {
+        return selection.trials[static_cast<std::size_t>(k)].set.name;
+    };
+    json["best"] = name(selection.best);
+    json["recommended"] = name(selection.recommended);
+    return json;
 }
 
 }  // namespace
@@ -147,6 +194,12 @@ void write_estimate(const std::string& path, const Campaign& campaign,
     document["sigma"] = other_sigmas_to_json(campaign, estimate, sigmas);
     document["strongest_correlations"] = correlations_to_json(estimate);
     document["accuracy"] = accuracy_to_json(report);
+    if (estimate.loss.kind != LossKind::Squares) {
+        document["loss"] = {{"kind", loss_name(estimate.loss.kind)},
+                            {"width_standard_deviations", estimate.loss.width}};
+        document["outliers"] = outliers_to_json(estimate);
+    }
+    if (report.selection) document["model_selection"] = selection_to_json(*report.selection);
     document["assumes"] = assumptions_to_json(campaign);
     write_json(path, document);
 }

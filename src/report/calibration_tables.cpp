@@ -1,5 +1,6 @@
 #include "posewise/report/calibration_tables.hpp"
 
+#include <algorithm>
 #include <functional>
 
 #include "posewise/model/transforms.hpp"
@@ -84,6 +85,36 @@ Table correlation_table(const Estimate& estimate, Index count) {
         table.rows.push_back({estimate.names[static_cast<std::size_t>(pair.first)],
                               estimate.names[static_cast<std::size_t>(pair.second)],
                               format_fixed(pair.coefficient, 3)});
+    }
+    return table;
+}
+
+Table outlier_table(const Estimate& estimate, Index count) {
+    std::vector<Outlier> outliers = estimate.outliers;
+    std::stable_sort(outliers.begin(), outliers.end(), [](const Outlier& a, const Outlier& b) {
+        return a.deviations > b.deviations;
+    });
+    outliers.resize(std::min(outliers.size(), static_cast<std::size_t>(std::max<Index>(count, 0))));
+    Table table{{"configuration", "target", "error/mm", "std. devs.", "weight"}, {}};
+    for (const Outlier& outlier : outliers) {
+        table.rows.push_back({outlier.id, std::to_string(outlier.target + 1),
+                              format_mm(outlier.distance), format_fixed(outlier.deviations, 1),
+                              format_fixed(outlier.weight, 3)});
+    }
+    return table;
+}
+
+Table model_table(const ModelSelection& selection) {
+    Table table{{"set", "parameters", "fit RMS/mm", "held-out RMS/mm", "std. error/mm", ""}, {}};
+    for (const ModelTrial& trial : selection.trials) {
+        const auto k = static_cast<Index>(table.rows.size());
+        const bool is_judged = trial.failure.empty();
+        const auto figure = [&](double metres) { return is_judged ? format_mm(metres) : "-"; };
+        std::string mark = k == selection.recommended ? "recommended" : "";
+        if (k == selection.best) mark += mark.empty() ? "best" : ", best";
+        table.rows.push_back({trial.set.name, std::to_string(trial.parameter_count),
+                              figure(trial.fit_rms), figure(trial.held_out_rms),
+                              figure(trial.standard_error), mark});
     }
     return table;
 }

@@ -52,6 +52,27 @@ TEST_F(Fanuc, GravityTermsReachTheKnownFigures) {
     EXPECT_NEAR(number_behind(two, "distance RMS", 2), 0.1003, 0.0003);
 }
 
+TEST_F(Fanuc, ModelSelectionTakesGravityTermsAndNoHarmonics) {
+    std::string text =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    text.insert(text.find("  elements:"),
+                "  gravity: true\n  harmonics: {orders: [1, 2], joints: [q4]}\n");
+    write_text("all.yaml", text);
+    const std::string report =
+        run_well("calibrate all.yaml --model-selection" + csv_.substr(fanuc_design.size()));
+    EXPECT_NEAR(number_behind(report, "+ joint offsets", 2), 0.560, 0.002);
+    EXPECT_NEAR(number_behind(report, "+ other geometric", 2), 0.2342, 5e-4);
+    EXPECT_NEAR(number_behind(report, "+ gravity terms", 2), 0.1731, 5e-4);
+    EXPECT_NEAR(number_behind(report, "+ gravity terms", 3), 0.023, 0.001);
+    const auto mark = report.find("recommended");
+    EXPECT_EQ(report.rfind("\n+ ", mark), report.find("\n+ gravity terms"));
+}
+
+TEST_F(Fanuc, HasNoOutliers) {
+    EXPECT_NE(run_well("calibrate " + csv_ + "--loss cauchy --folds 0").find(": 0 outliers"),
+              std::string::npos);
+}
+
 TEST_F(Fanuc, TwoStepComesNearTheSameOptimumAndSaysSo) {
     const std::string text =
         run_well("calibrate " + csv_ + "--method two-step --max-iterations 200 --folds 0");

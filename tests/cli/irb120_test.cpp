@@ -38,5 +38,21 @@ TEST_F(Irb120, CalibratesGeometricallyAsFarAsGeometryGoes) {
     EXPECT_NEAR(number_behind(report, "distance RMS", 1), 0.2637, 0.0005);
 }
 
+TEST_F(Irb120, ModelSelectionNeedsEveryStep) {
+    write_text("c.yaml", design_);
+    const std::string report =
+        run_well("calibrate c.yaml --model-selection" + measured_.substr(0, measured_.find(" --")));
+    double larger = 1;
+    for (const std::string set :
+         {"+ joint offsets", "+ lengths", "+ other geometric", "+ gravity terms"}) {
+        const double held_out = number_behind(report, set, 2);
+        EXPECT_LT(held_out, larger) << set;
+        larger = held_out;
+    }
+    EXPECT_NEAR(larger, 0.1393, 5e-4);
+    EXPECT_EQ(report.rfind("\n+ ", report.find("recommended, best")),
+              report.find("\n+ gravity terms"));
+}
+
 }  // namespace
 }  // namespace posewise::testing

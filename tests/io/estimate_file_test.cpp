@@ -101,6 +101,42 @@ TEST_F(EstimateFile, LeavesOutWhatWasNotComputed) {
     EXPECT_TRUE(accuracy.contains("validation"));
 }
 
+TEST_F(EstimateFile, ListsOutliersOfARobustLossOnly) {
+    EXPECT_FALSE(written().contains("loss"));
+    EXPECT_FALSE(written().contains("outliers"));
+    report_.estimate.loss = {LossKind::Huber, 1.5};
+    EXPECT_EQ(written().at("outliers"), Json::array());
+    report_.estimate.outliers = {{4, "e", 1, 2e-3, 12, 0.25}};
+    report_.without_outliers = WithoutOutliers{1e-4, std::nullopt};
+    const Json document = written();
+    EXPECT_EQ(document.at("loss"), (Json{{"kind", "huber"}, {"width_standard_deviations", 1.5}}));
+    EXPECT_EQ(document.at("outliers").at(0), (Json{{"configuration", "e"},
+                                                   {"target", "target2"},
+                                                   {"distance_mm", 2.0},
+                                                   {"standard_deviations", 12.0},
+                                                   {"weight", 0.25}}));
+    EXPECT_DOUBLE_EQ(
+        document.at("accuracy").at("without_outliers").at("fit_means_rms_mm").get<double>(), 0.1);
+}
+
+TEST_F(EstimateFile, GivesTheParameterSetsCompared) {
+    EXPECT_FALSE(written().contains("model_selection"));
+    report_.selection = ModelSelection{5, {}, -1, -1, {}};
+    report_.selection->trials = {{{"base and targets", {}}, 15, 6e-4, 7e-4, 9e-5},
+                                 {{"+ lengths", {"Tx1"}}, 16, 0, 0, 0, "too few"}};
+    EXPECT_FALSE(written().at("model_selection").contains("recommended"));
+    report_.selection->best = report_.selection->recommended = 0;
+    const Json selection = written().at("model_selection");
+    EXPECT_EQ(selection.at("recommended"), "base and targets");
+    const Json& first = selection.at("sets").at(0);
+    EXPECT_DOUBLE_EQ(first.at("held_out_rms_mm").get<double>(), 0.7);
+    EXPECT_DOUBLE_EQ(first.at("standard_error_mm").get<double>(), 0.09);
+    const Json& second = selection.at("sets").at(1);
+    EXPECT_EQ(second.at("failure"), "too few");
+    EXPECT_EQ(second.at("parameters"), Json{"Tx1"});
+    EXPECT_FALSE(second.contains("fit_rms_mm"));
+}
+
 TEST_F(EstimateFile, NamesTheStrongestCorrelation) {
     const Json strongest = written().at("strongest_correlations").at(0);
     EXPECT_EQ(strongest.at("first"), "base.x");

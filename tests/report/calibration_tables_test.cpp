@@ -55,5 +55,32 @@ TEST(CorrelationTable, NamesTheStrongest) {
     EXPECT_EQ(table.rows[0], (Row{"base.x", "dq1", "-0.500"}));
 }
 
+TEST(OutlierTable, ShowsTheFarthestFirst) {
+    Estimate estimate;
+    estimate.outliers = {{3, "left", 0, 1e-3, 6.04, 0.5}, {9, "up", 2, 5e-3, 50, 0.01}};
+    const Table table = outlier_table(estimate, 5);
+    ASSERT_EQ(table.rows.size(), 2u);
+    EXPECT_EQ(table.rows[0], (Row{"up", "3", "5.0000", "50.0", "0.010"}));
+    EXPECT_EQ(table.rows[1], (Row{"left", "1", "1.0000", "6.0", "0.500"}));
+    EXPECT_EQ(outlier_table(estimate, 1).rows.size(), 1u);
+}
+
+TEST(ModelTable, MarksTheBestAndTheRecommended) {
+    ModelSelection selection;
+    selection.trials = {{{"base and targets", {}}, 15, 6e-4, 7e-4, 9e-5},
+                        {{"+ joint offsets", {}}, 19, 3e-4, 4e-4, 1e-4},
+                        {{"+ lengths", {}}, 27, 0, 0, 0, "too few"},
+                        {{"+ harmonics", {}}, 30, 2e-4, 3.5e-4, 1e-4}};
+    selection.recommended = 1;
+    selection.best = 3;
+    const Table table = model_table(selection);
+    EXPECT_EQ(table.rows[0], (Row{"base and targets", "15", "0.6000", "0.7000", "0.0900", ""}));
+    EXPECT_EQ(table.rows[1][5], "recommended");
+    EXPECT_EQ(table.rows[2], (Row{"+ lengths", "27", "-", "-", "-", ""}));
+    EXPECT_EQ(table.rows[3][5], "best");
+    selection.recommended = 3;
+    EXPECT_EQ(model_table(selection).rows[3][5], "recommended, best");
+}
+
 }  // namespace
 }  // namespace posewise

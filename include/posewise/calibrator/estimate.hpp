@@ -87,6 +87,11 @@ RowMatrixXd residuals(const Campaign& campaign, const Parameters& parameters,
 RowMatrixXd mean_residuals(const Campaign& campaign, const Parameters& parameters,
                            const Measurements& measurements);
 
+/// Squared distances of the means from what is predicted, configurations x targets, m^2; 0 where a
+/// target was not seen. Orientations do not count.
+RowMatrixXd squared_distances(const Campaign& campaign, const Parameters& parameters,
+                              const Measurements& measurements);
+
 /// Metrics of residuals as residuals() returns them: of 1 column (lengths), 3 (points) or 6 (poses:
 /// position, orientation).
 Metrics make_metrics(const RowMatrixXd& residuals);

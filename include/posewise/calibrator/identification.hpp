@@ -10,7 +10,7 @@ namespace posewise {
 /// outliers. s is found together with the parameters; s^2 is the estimate's variance factor. The
 /// weighted least squares J^T W J of the optimum give the covariance f (J^T W J)^-1,
 /// f = sum |w r|^2 / dof * mean(w) / mean(((w u)' + (p - 1) w) / p)^2 for p rows a target
-/// [Huber & Ronchetti 2009, eq. 7.84, for vectors]; with a prior f = 1.
+/// [Huber & Ronchetti 2009, sec. 7.6, for vectors]; with a prior f = 1.
 struct LevenbergMarquardtOptions {
     Index iteration_limit = 100;
     double relative_tolerance =
@@ -48,6 +48,7 @@ struct CrossValidation {
     Index folds = 0;
     Metrics samples;  ///< over all samples of all groups
     Metrics means;
+    RowMatrixXd squared_distances;      ///< of the means, see squared_distances(); 0 in failures
     std::vector<std::string> failures;  ///< folds that could not be identified, and why
 };
 CrossValidation cross_validate(const Campaign& campaign, const Measurements& measurements,

@@ -66,6 +66,10 @@ struct CampaignFile {
 /// `tip_link`; `joints` may then replace limits and add repeatabilities. The speeds of the URDF are
 /// those of the cell unless that states its own.
 ///
+/// The sensor is of `kind: points` (with `targets`), `poses` (`tool`, `sigma_orientation_mrad`),
+/// `distances` (`anchors`, `targets`) or `planes` (`planes`, `known_planes`, `targets`). `known` of
+/// targets lists axes or is a boolean, that of the base lists x .. rz or is a boolean.
+///
 /// The sensor's noise is `sigma_mm` (one number, or three for x, y and z) or that of a laser
 /// tracker, `noise: {range_um: 10, angle_urad: 15}`. The section `cell` states the constraints of
 /// poses; designs/cell_demo/campaign.yaml has each of its keys.

@@ -3,9 +3,15 @@
 #include <optional>
 #include <string>
 
-#include "posewise/calibrator/identification.hpp"
+#include "posewise/calibrator/model_selection.hpp"
 
 namespace posewise::io {
+
+/// Distance RMS of the means that are no outliers, m.
+struct WithoutOutliers {
+    double fit_rms = 0;
+    std::optional<double> held_out_rms;
+};
 
 /// What `calibrate` reports beside the estimate itself.
 struct CalibrationReport {
@@ -17,6 +23,8 @@ struct CalibrationReport {
     std::optional<CrossValidation> held_out;
     std::optional<Metrics> left_out;    ///< on the measured configurations not in the plan
     std::optional<Metrics> validation;  ///< on a separate file
+    std::optional<WithoutOutliers> without_outliers;  ///< if there are some
+    std::optional<ModelSelection> selection;
 };
 
 /// Writes the report as JSON, units in the names (accuracy in mm, all else in m and rad), numbers

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "posewise/calibrator/estimate.hpp"
+#include "posewise/calibrator/model_selection.hpp"
 #include "posewise/report/table.hpp"
 
 namespace posewise {
@@ -19,5 +19,11 @@ Table parameter_table(const Campaign& campaign, const Estimate& estimate);
 
 /// The `count` strongest correlations between two parameters, by name.
 Table correlation_table(const Estimate& estimate, Index count);
+
+/// The `count` outliers that are farthest off, farthest first.
+Table outlier_table(const Estimate& estimate, Index count);
+
+/// Each parameter set with its errors in mm; the best and the recommended are marked.
+Table model_table(const ModelSelection& selection);
 
 }  // namespace posewise

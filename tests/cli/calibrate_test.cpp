@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "program.hpp"
+
+/// What calibrate says about its measurements and its model, on simulated ones with the FANUC's.
+namespace posewise::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+class Calibrate : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        run_well("simulate " + fanuc_design +
+                 " --truth 7 --seed 3 --poses 30 --repeats 3 -o s.csv");
+    }
+
+    /// s.csv with target 2 of these configurations 5 mm too high, as bad.csv.
+    void spoil(const std::vector<std::string>& ids) const {
+        std::istringstream lines(text_of("s.csv"));
+        std::string spoiled;
+        std::size_t column = 0;
+        for (std::string line; std::getline(lines, line);) {
+            std::vector<std::string> cells;
+            std::istringstream text(line);
+            for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
+            const auto found = std::find(cells.begin(), cells.end(), "p2_z_mm");
+            if (found != cells.end()) column = static_cast<std::size_t>(found - cells.begin());
+            if (column > 0 && std::find(ids.begin(), ids.end(), cells[0]) != ids.end()) {
+                cells[column] = std::to_string(std::stod(cells[column]) + 5);
+            }
+            for (const std::string& cell : cells)
+                spoiled += cell + (&cell == &cells.back() ? "\n" : ",");
+        }
+        ASSERT_GT(column, 0U);
+        write_text("bad.csv", spoiled);
+    }
+
+    std::string design_with(const std::string& part, const std::string& by) const {
+        std::string text = read_text(std::string(POSEWISE_SOURCE_DIR) +
+                                     "/designs/fanuc_r2000ic_165f/campaign.yaml");
+        EXPECT_NE(text.find(part), std::string::npos);
+        return text.replace(text.find(part), part.size(), by);
+    }
+
+    const std::string clean_ = "calibrate " + fanuc_design + " -m s.csv ";
+    const std::string bad_ = "calibrate " + fanuc_design + " -m bad.csv ";
+};
+
+TEST_F(Calibrate, ListsOutliersUnderARobustLossAndIsNotBentByThem) {
+    spoil({"4", "11", "27"});
+    const double clean = number_behind(run_well(clean_), "distance RMS", 4);
+    EXPECT_GT(number_behind(run_well(bad_), "distance RMS", 4), 3 * clean);
+    for (const std::string loss : {"huber", "cauchy"}) {
+        const std::string text = run_well(bad_ + "--loss " + loss + " --out e.json");
+        EXPECT_NE(text.find("standard deviations: 3 outliers\n"), std::string::npos) << text;
+        EXPECT_NEAR(number_behind(text, "11 ", 1), 5, 0.4);  // mm
+        EXPECT_LT(number_behind(text, "11 ", 3), 0.1);       // weight
+        EXPECT_NEAR(number_behind(text, "without them: means", 4), clean, 0.2 * clean) << text;
+        const Json estimate = Json::parse(text_of("e.json"));
+        EXPECT_EQ(estimate.at("loss").at("kind"), loss);
+        ASSERT_EQ(estimate.at("outliers").size(), 3U);
+        const Json& second = estimate.at("outliers").at(1);
+        EXPECT_EQ(second.at("configuration"), "11");
+        EXPECT_EQ(second.at("target"), "target2");
+        EXPECT_NEAR(second.at("distance_mm").get<double>(), 5, 0.4);
+        EXPECT_NEAR(estimate.at("accuracy")
+                        .at("without_outliers")
+                        .at("held_out_means_rms_mm")
+                        .get<double>(),
+                    clean, 0.2 * clean);
+    }
+    EXPECT_EQ(run_well(bad_).find("outliers\n"), std::string::npos);
+    EXPECT_NE(run_well(clean_ + "--loss cauchy").find(": 0 outliers"), std::string::npos);
+}
+
+TEST_F(Calibrate, TakesAWidthOfTheLoss) {
+    const std::string wide = run_well(clean_ + "--loss huber --loss-width 1000");
+    EXPECT_EQ(number_behind(wide, "distance RMS", 1),
+              number_behind(run_well(clean_), "distance RMS", 1));
+    EXPECT_NE(wide.find("loss huber with width 1000 standard deviations"), std::string::npos);
+}
+
+TEST_F(Calibrate, SaysInWordsThatTheResidualsAreNotAsStated) {
+    EXPECT_EQ(run_well(clean_).find("the residuals are"), std::string::npos);
+    spoil({"4", "11", "27"});
+    EXPECT_NE(run_well(bad_).find("times what sigma and model error say: state a larger"),
+              std::string::npos);
+    EXPECT_EQ(run_well(bad_ + "--loss cauchy").find("the residuals are"), std::string::npos);
+    write_text("wide.yaml", design_with("model_error_mm: 0.1", "model_error_mm: 1"));
+    EXPECT_NE(run_well("calibrate wide.yaml -m s.csv").find("a smaller model_error_mm or sigma"),
+              std::string::npos);
+}
+
+TEST_F(Calibrate, WarnsOfAJointWithTheWrongSign) {
+    write_text("sign.yaml", design_with("Rx -q4 [dq4]", "Rx q4 [dq4]"));
+    const Outcome outcome = run("calibrate sign.yaml -m s.csv --folds 0");
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.err.find("posewise: warning: far above the expected size: "),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_NE(outcome.err.find("dq4 ("), std::string::npos) << outcome.err;
+}
+
+TEST_F(Calibrate, RecommendsAParameterSet) {
+    const std::string text = run_well(clean_ + "--model-selection --out e.json");
+    const Json selection = Json::parse(text_of("e.json")).at("model_selection");
+    EXPECT_EQ(selection.at("recommended"), "+ other geometric");
+    EXPECT_EQ(selection.at("folds"), 30);
+    ASSERT_EQ(selection.at("sets").size(), 4U);
+    EXPECT_EQ(selection.at("sets").at(1).at("parameters"), (Json{"dq2", "dq3", "dq4", "dq5"}));
+    EXPECT_EQ(number_behind(text, "+ joint offsets"), 19);
+    // The whole set's figures are those of the calibration.
+    EXPECT_EQ(number_behind(text, "+ other geometric", 1), number_behind(text, "distance RMS", 2));
+    EXPECT_EQ(number_behind(text, "+ other geometric", 2), number_behind(text, "distance RMS", 4));
+    EXPECT_NE(text.find("recommended, best"), std::string::npos) << text;
+}
+
+TEST_F(Calibrate, ComparesSetsEvenIfTheWholeCannotBeIdentified) {
+    const Outcome outcome =
+        run("calibrate " + seed_design + " -m s.csv --model-selection --folds 5 -o e.json");
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("Tx2"), std::string::npos);
+    EXPECT_FALSE(has_file("e.json"));
+    EXPECT_NE(outcome.out.find("\n+ lengths: these 30 configurations cannot tell apart"),
+              std::string::npos)
+        << outcome.out;
+    EXPECT_NE(outcome.out.find("recommended, best"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace posewise::testing

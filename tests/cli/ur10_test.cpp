@@ -1,0 +1,44 @@
+#include "program.hpp"
+
+/// The published campaign on the UR10, full poses, through the program; the figures are those of
+/// independent fits. The data are not ours to ship.
+namespace posewise::testing {
+namespace {
+
+class Ur10 : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        csv_ = std::string(POSEWISE_REAL_DATA) + "/ur10_ipa/measurements.csv";
+        if (!std::filesystem::exists(csv_)) {
+            GTEST_SKIP() << "no real campaign at POSEWISE_REAL_DATA = " << POSEWISE_REAL_DATA;
+        }
+    }
+
+    const std::string design_ =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/ur10/campaign.yaml");
+    std::string csv_;
+};
+
+TEST_F(Ur10, CalibratesGeometricallyFromPositionsAndOrientations) {
+    write_text("c.yaml", design_);
+    const std::string report = run_well("calibrate c.yaml --folds 10 -m '" + csv_ + "'");
+    EXPECT_NE(report.find(" 30 parameters"), std::string::npos);
+    EXPECT_NEAR(number_behind(report, "distance RMS"), 1.085, 0.0005);
+    EXPECT_NEAR(number_behind(report, "distance RMS", 1), 0.4453, 0.0001);
+    EXPECT_NEAR(number_behind(report, "turn RMS/mrad", 1), 0.895, 0.0005);
+    EXPECT_LE(number_behind(report, "distance RMS", 3), 0.447 * 1.02);
+}
+
+TEST_F(Ur10, SaysThatTheOrderOfTheQuaternionIsWrong) {
+    write_text("c.yaml", design_);
+    std::string csv = read_text(csv_);
+    const std::string right = "qw,qx,qy,qz";
+    csv.replace(csv.find(right), right.size(), "qx,qy,qz,qw");
+    write_text("m.csv", csv);
+    const auto outcome = run("calibrate c.yaml --folds 0 -m m.csv");
+    EXPECT_NE(outcome.err.find("is qw the real part"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace posewise::testing

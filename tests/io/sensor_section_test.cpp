@@ -1,0 +1,167 @@
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "campaign_text.hpp"
+#include "posewise/io/measurements_file.hpp"
+#include "posewise/measurement/point_sensor.hpp"
+#include "posewise/measurement/pose_sensor.hpp"
+#include "posewise/measurement/scalar_sensor.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace posewise::io {
+namespace {
+
+using testing::input_error_of;
+using testing::replaced;
+using testing::TemporaryFolder;
+
+const std::string head =
+    "name: arm\n"
+    "robot:\n"
+    "  joints:\n"
+    "    q1: {limits_deg: [-170, 170]}\n"
+    "    q2: {limits_deg: [-90, 90]}\n"
+    "  elements: [Rz q1, Tx 400 mm, Ry q2, Tx 300 mm]\n"
+    "base: {position_mm: [10, 20, 30], rpy_deg: [0, 0, 90], known: [z, rx]}\n";
+
+const std::string poses =
+    "sensor:\n"
+    "  kind: poses\n"
+    "  sigma_mm: 0.05\n"
+    "  sigma_orientation_mrad: 0.2\n"
+    "  tool: {position_mm: [0, 0, 120], rpy_deg: [0, 0, 180]}\n"
+    "model_error_orientation_mrad: 0.3\n";
+
+const std::string distances =
+    "sensor:\n"
+    "  kind: distances\n"
+    "  sigma_mm: 0.02\n"
+    "  anchors: {position_mm: [[1000, 2000, 0], [-500, 800, 300]]}\n"
+    "  targets: {position_mm: [[0, 0, 50]], known: [x, y]}\n";
+
+const std::string planes =
+    "sensor:\n"
+    "  kind: planes\n"
+    "  sigma_mm: 0.01\n"
+    "  planes: [{normal: [0, 0, 2], offset_mm: 300}, {normal: [1, 0, 0], offset_mm: 900}]\n"
+    "  targets: {position_mm: [[0, 0, 150]], known: true}\n";
+
+CampaignFile read(const std::string& sensor) { return parse_campaign(head + sensor, "c.yaml"); }
+
+Measurements read_csv(const std::string& sensor, const std::string& text) {
+    const TemporaryFolder folder;
+    return read_measurements_csv(folder.write("m.csv", text), read(sensor).campaign);
+}
+
+std::string csv_error(const std::string& header, const std::string& cells) {
+    return input_error_of(
+        [&] { read_csv(poses, "config,q1_deg,q2_deg," + header + "\na,10,20," + cells + "\n"); });
+}
+
+TEST(ReadSensor, TakesPosesWithTheirTool) {
+    const Campaign campaign = read(poses).campaign;
+    const auto& sensor = dynamic_cast<const PoseSensor&>(*campaign.sensor);
+    EXPECT_DOUBLE_EQ(sensor.sigma_orientation(), 2e-4);
+    EXPECT_DOUBLE_EQ(campaign.model_error_orientation, 3e-4);
+    ASSERT_EQ(campaign.nominal.sensor.size(), 6);
+    EXPECT_DOUBLE_EQ(campaign.nominal.sensor[2], 0.12);
+    EXPECT_NEAR(campaign.nominal.sensor[5], std::numbers::pi, 1e-15);
+    EXPECT_TRUE(campaign.has_nominal_targets);
+    const std::string fixed = replaced(poses, "180]}", "180], known: true}");
+    EXPECT_EQ(read(fixed).campaign.nominal.sensor.size(), 0);
+}
+
+TEST(ReadSensor, TakesWhatIsKnownOfTheBase) {
+    const Campaign campaign = read(poses).campaign;
+    EXPECT_EQ(base_parameter_count(campaign), 4);
+    const auto names = parameter_names(campaign);
+    EXPECT_EQ(std::vector<std::string>(names.begin(), names.begin() + 4),
+              (std::vector<std::string>{"base.x", "base.y", "base.ry", "base.rz"}));
+}
+
+TEST(ReadSensor, TakesDistancesAndPartlyKnownTargets) {
+    const Campaign campaign = read(distances).campaign;
+    EXPECT_EQ(campaign.sensor->observation_names(), (std::vector<std::string>{"p1_a1", "p1_a2"}));
+    EXPECT_EQ(campaign.sensor->unknown_names().front(), "target1.z");
+    VectorXd expected(7);
+    expected << 0.05, 1, 2, 0, -0.5, 0.8, 0.3;
+    EXPECT_TRUE(campaign.nominal.sensor.isApprox(expected, 1e-15));
+    const std::string fixed = replaced(distances, "300]]}", "300]], known: true}");
+    EXPECT_EQ(read(fixed).campaign.nominal.sensor.size(), 1);
+}
+
+TEST(ReadSensor, TakesPlanes) {
+    const Campaign campaign = read(planes).campaign;
+    EXPECT_EQ(campaign.sensor->unknown_names(),
+              (std::vector<std::string>{"plane1.tilt1", "plane1.tilt2", "plane1.offset",
+                                        "plane2.tilt1", "plane2.tilt2", "plane2.offset"}));
+    EXPECT_DOUBLE_EQ(campaign.nominal.sensor[2], 0.3);
+    const std::string fixed = replaced(planes, "  targets", "  known_planes: true\n  targets");
+    EXPECT_EQ(read(fixed).campaign.nominal.sensor.size(), 0);
+}
+
+TEST(ReadSensor, TellsWhatIsWrongAndWhere) {
+    const auto error = [](const std::string& sensor, const std::string& part,
+                          const std::string& by) {
+        return input_error_of([&] { read(replaced(sensor, part, by)); });
+    };
+    EXPECT_EQ(error(poses, "kind: poses", "kind: pose"),
+              "c.yaml:9:9: sensor.kind is 'pose'; did you mean 'poses'?");
+    EXPECT_NE(error(poses, "  kind: poses\n", "").find("c.yaml:"), std::string::npos);
+    EXPECT_NE(error(poses, "  sigma_orientation_mrad: 0.2\n", "").find("sigma_orientation"),
+              std::string::npos);
+    EXPECT_NE(error(distances, "[x, y]", "[x, w]").find("'w'"), std::string::npos);
+    EXPECT_NE(error(planes, "[0, 0, 2]", "[0, 0, 0]").find("is zero"), std::string::npos);
+    EXPECT_NE(error(distances, "[[1000, 2000, 0], [-500, 800, 300]]", "[]").find("is empty"),
+              std::string::npos);
+}
+
+TEST(ReadMeasurementsCsv, TakesOrientationsInEveryForm) {
+    const double half = std::sqrt(0.5);
+    const auto columns = [&](const std::string& header, const std::string& cells) {
+        return read_csv(poses, "config,q1_deg,q2_deg,x_mm,y_mm,z_mm," + header +
+                                   "\na,10,20,1,2,3," + cells + "\n")
+            .observations;
+    };
+    RowMatrixXd expected(1, 6);
+    expected << 1e-3, 2e-3, 3e-3, 0, 0, std::numbers::pi / 2;
+    const std::string root = std::to_string(half);
+    EXPECT_TRUE(columns("rx_deg,ry_deg,rz_deg", "0,0,90").isApprox(expected, 1e-14));
+    EXPECT_TRUE(columns("roll_deg,pitch_deg,yaw_deg", "0,0,90").isApprox(expected, 1e-14));
+    EXPECT_TRUE(columns("qw,qx,qy,qz", root + ",0,0," + root).isApprox(expected, 1e-14));
+    EXPECT_TRUE(columns("qw,qx,qy,qz", '-' + root + ",0,0,-" + root).isApprox(expected, 1e-14));
+}
+
+TEST(ReadMeasurementsCsv, RefusesHalfAnOrientation) {
+    const std::string xyz = "x_mm,y_mm,z_mm,";
+    EXPECT_NE(csv_error(xyz + "qw,qx,qy,qz", "1,2,3,1,0.1,0,0").find("the quaternion has length"),
+              std::string::npos);
+    EXPECT_NE(csv_error(xyz + "qw,qx,qy", "1,2,3,1,0,0").find("must come with all of them"),
+              std::string::npos);
+    EXPECT_NE(csv_error(xyz + "qw,qx,qy,qz,rx_deg", "1,2,3,1,0,0,0,0").find("no other orientation"),
+              std::string::npos);
+    EXPECT_NE(csv_error(xyz + "roll,pitch,yaw", "1,2,3,0,0,0").find("has no unit of angle"),
+              std::string::npos);
+    EXPECT_NE(csv_error(xyz + "qw,qx,qy,qz", "1,2,3,1,0,,0").find("qy is empty"),
+              std::string::npos);
+    EXPECT_NE(csv_error(xyz + "rx_deg,ry_deg", "1,2,3,1,0").find("missing column rz_rad"),
+              std::string::npos);
+}
+
+TEST(WriteMeasurementsCsv, KeepsEveryKindOfNumber) {
+    for (const std::string& sensor : {poses, distances, planes}) {
+        const CampaignFile file = read(sensor);
+        const Campaign& campaign = file.campaign;
+        const Simulation simulated = simulate(campaign, {.pose_count = 4, .repeats = 2});
+        const TemporaryFolder folder;
+        const std::string path = folder.path("m.csv");
+        write_measurements_csv(path, campaign, simulated.measurements);
+        const Measurements back = read_measurements_csv(path, campaign);
+        EXPECT_TRUE(back.observations.isApprox(simulated.measurements.observations, 1e-15));
+    }
+}
+
+}  // namespace
+}  // namespace posewise::io
