@@ -13,7 +13,7 @@ Loss complete_loss(const Loss& loss, const Campaign& campaign) {
                          ", must be finite and not negative");
     }
     Loss complete = loss;
-    if (loss.width == 0) {
+    if (loss.width == 0 && loss.kind != LossKind::Squares) {
         complete.width = default_width(loss.kind, campaign.sensor->rows_per_target());
     }
     return complete;
