@@ -140,11 +140,18 @@ Parameters find_start(const Campaign& campaign, const Measurements& measurements
 
 }  // namespace
 
-Parameters register_base_and_targets(const Campaign& campaign, const Measurements& measurements) {
+Parameters register_roughly(const Campaign& campaign, const Measurements& measurements) {
     const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
     check_all_seen(nominal, measurements);
+    Parameters start = find_start(nominal, measurements);
+    start.robot = VectorXd::Zero(campaign.robot.parameter_count());
+    return start;
+}
+
+Parameters register_base_and_targets(const Campaign& campaign, const Measurements& measurements) {
+    const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
     Parameters registered =
-        identify(nominal, measurements, find_start(nominal, measurements)).parameters;
+        identify(nominal, measurements, register_roughly(nominal, measurements)).parameters;
     registered.robot = VectorXd::Zero(campaign.robot.parameter_count());
     return registered;
 }

@@ -8,9 +8,12 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
+#include "joint_directions.hpp"
 #include "options.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/core/text.hpp"
 #include "posewise/io/atomic_file.hpp"
+#include "posewise/io/measurements_file.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/point_sensor.hpp"
@@ -36,6 +39,10 @@ has the complete model (every error a rigid link can have), less those marked "n
 compare with the formula for what is identifiable; a stated set that spans less leaves errors of the
 real robot uncorrected.
 
+With --measurements the directions of the joints are checked, too: the robot is registered (base and
+targets fitted, nothing else) with every choice of joints reversed. The right one misses the points by
+what the robot's errors are, any other by far more.
+
 A robot can be inspected before there is a campaign, straight from its URDF; --write-campaign then
 makes a file to begin with, which says what is left to fill in.)";
 
@@ -44,6 +51,7 @@ struct Arguments {
     std::string base_link;
     std::string tip_link;
     std::string written;
+    std::string measurements;
 };
 
 /// "1 mm Tx2 = 1 mm Tx1 - 0.78 mrad dq2". Both units are a thousandth of SI, so coefficients stay.
@@ -180,6 +188,9 @@ bool is_urdf(const Arguments& arguments) {
 /// The campaign that --write-campaign would write.
 void inspect_urdf(const Arguments& arguments) {
     const std::string& urdf = arguments.file;
+    if (!arguments.measurements.empty()) {
+        throw input_error_at({urdf}, "is a robot alone; --measurements needs a campaign file");
+    }
     const std::string& written = arguments.written;
     check_outputs({urdf}, {written});
     if (std::filesystem::exists(written)) {
@@ -199,7 +210,15 @@ void inspect_urdf(const Arguments& arguments) {
 
 void inspect(const Arguments& arguments) {
     if (is_urdf(arguments)) return inspect_urdf(arguments);
-    print_campaign(io::read_campaign(arguments.file));
+    const io::CampaignFile file = io::read_campaign(arguments.file);
+    std::vector<SignPattern> patterns;
+    if (!arguments.measurements.empty()) {
+        const Measurements measurements = io::read_measurements(arguments.measurements, file);
+        patterns = compute_from(arguments.measurements,
+                                [&] { return fit_joint_signs(file.campaign, measurements); });
+    }
+    print_campaign(file);
+    if (!patterns.empty()) print_joint_directions(file, patterns);
 }
 
 }  // namespace
@@ -223,6 +242,10 @@ void add_inspect(CLI::App& program) {
     command
         ->add_option("--write-campaign", arguments->written,
                      "URDF: write a campaign file to begin with")
+        ->check(file_name());
+    command
+        ->add_option("-m,--measurements", arguments->measurements,
+                     "Measured configurations (CSV, or MATLAB .mat): check the joints' directions")
         ->check(file_name());
     command->footer(footer);
     command->callback([arguments] { inspect(*arguments); });

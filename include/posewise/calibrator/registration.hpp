@@ -14,4 +14,7 @@ namespace posewise {
 /// and not stated.
 Parameters register_base_and_targets(const Campaign& campaign, const Measurements& measurements);
 
+/// The same without the polish.
+Parameters register_roughly(const Campaign& campaign, const Measurements& measurements);
+
 }  // namespace posewise

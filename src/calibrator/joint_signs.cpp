@@ -1,0 +1,89 @@
+#include "posewise/calibrator/joint_signs.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+constexpr Index most_joints = 12;
+
+/// So many patterns, the best of the quick registration, are registered properly.
+constexpr std::size_t polished_count = 64;
+
+/// Means of evenly spaced configurations, or of all where a target is seen only in the others.
+Measurements thin_out(const Campaign& campaign, const Measurements& measurements, Index most) {
+    const Measurements means = mean_measurements(*campaign.sensor, measurements);
+    const Index count = means.configuration_count();
+    if (count <= most) return means;
+    std::vector<Index> taken;
+    for (Index k = 0; k < most; ++k) taken.push_back(k * count / most);
+    const Measurements some = take(means, taken);
+    const auto shown = [](const Measurements& all) { return all.is_seen.colwise().any().count(); };
+    return shown(some) < shown(means) ? means : some;
+}
+
+using Registration = Parameters (&)(const Campaign&, const Measurements&);
+
+double registered_rms(const Campaign& campaign, const Measurements& measurements,
+                      Registration registration) {
+    const Parameters registered = registration(campaign, measurements);
+    return make_metrics(residuals(campaign, registered, measurements)).distance_rms;
+}
+
+/// Fits the first `count` patterns anew and sorts them.
+void fit(std::vector<SignPattern>& patterns, std::size_t count, const Campaign& campaign,
+         const Measurements& measurements, Registration registration) {
+#pragma omp parallel for schedule(dynamic)
+    for (std::size_t k = 0; k < count; ++k) {
+        Measurements turned = measurements;
+        for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
+            const bool is_reversed = patterns[k].is_reversed[static_cast<std::size_t>(j)];
+            if (is_reversed) turned.configurations.col(j) *= -1;
+        }
+        try {
+            patterns[k].distance_rms = registered_rms(campaign, turned, registration);
+        } catch (const InputError&) {  // turned so, the tool does not turn in enough ways
+            patterns[k].distance_rms = std::numeric_limits<double>::infinity();
+        }
+    }
+    const auto end = patterns.begin() + static_cast<std::ptrdiff_t>(count);
+    std::stable_sort(patterns.begin(), end,
+                     [](const auto& a, const auto& b) { return a.distance_rms < b.distance_rms; });
+}
+
+/// Every choice of joints, none first.
+std::vector<SignPattern> all_patterns(Index joints) {
+    std::vector<SignPattern> patterns;
+    for (Index bits = 0; bits < Index{1} << joints; ++bits) {
+        SignPattern pattern;
+        for (Index j = 0; j < joints; ++j) pattern.is_reversed.push_back((bits >> j & 1) != 0);
+        patterns.push_back(pattern);
+    }
+    return patterns;
+}
+
+}  // namespace
+
+std::vector<SignPattern> fit_joint_signs(const Campaign& campaign, const Measurements& measurements,
+                                         Index most_configurations) {
+    const Index joints = campaign.robot.joint_count();
+    if (joints > most_joints) {
+        throw InputError("the robot has " + std::to_string(joints) +
+                         " joints; joint directions can be tried for at most " +
+                         std::to_string(most_joints));
+    }
+    const Measurements thinned = thin_out(campaign, measurements, most_configurations);
+    register_roughly(campaign, thinned);  // throws what is wrong with the measurements themselves
+    std::vector<SignPattern> patterns = all_patterns(joints);
+    fit(patterns, patterns.size(), campaign, thinned, register_roughly);
+    fit(patterns, std::min(polished_count, patterns.size()), campaign, thinned,
+        register_base_and_targets);
+    return patterns;
+}
+
+}  // namespace posewise

@@ -1,0 +1,73 @@
+#include "program.hpp"
+
+/// inspect --measurements: which joints the campaign file has reversed.
+namespace posewise::testing {
+namespace {
+
+class Directions : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        design_ = read_text(std::string(POSEWISE_SOURCE_DIR) +
+                            "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    }
+    void replace(const std::string& part, const std::string& by) {
+        ASSERT_NE(design_.find(part), std::string::npos) << part;
+        design_.replace(design_.find(part), part.size(), by);
+    }
+    std::string design_;
+};
+
+TEST_F(Directions, AsStatedAreOneLine) {
+    run_well("simulate " + fanuc_design + " --poses 80 --truth 3 -o m.csv");
+    const std::string text = run_well("inspect " + fanuc_design + " -m m.csv");
+    EXPECT_NE(text.find("joint directions: as stated; the registered robot misses the points by"),
+              std::string::npos)
+        << text;
+    EXPECT_EQ(text.find("Joint directions that fit best"), std::string::npos);
+}
+
+TEST_F(Directions, ThatAreReversedAreNamed) {
+    run_well("simulate " + fanuc_design + " --poses 80 --truth 3 -o m.csv");
+    replace("Ry q2", "Ry -q2");
+    replace("Rx -q6", "Rx q6");
+    write_text("c.yaml", design_);
+    const std::string text = run_well("inspect c.yaml -m m.csv");
+    EXPECT_NE(text.find("joint directions: reversed are q2, q6; write each with the opposite sign"),
+              std::string::npos)
+        << text;
+    EXPECT_GT(number_behind(text, "as stated:"), 10 * number_behind(text, "q2, q6"));
+}
+
+TEST_F(Directions, OfAWrongRobotAreNotGuessed) {
+    run_well("simulate " + fanuc_design + " --poses 80 --truth 3 -o m.csv");
+    replace("Tx 1280 mm", "Tx 200 mm");
+    replace("Ry q2", "Ry q2 + 70 deg");
+    write_text("c.yaml", design_);
+    const std::string text = run_well("inspect c.yaml -m m.csv");
+    EXPECT_EQ(text.find("reversed are"), std::string::npos) << text;
+}
+
+TEST_F(Directions, OfThePublishedCampaignFitTenTimesBetterThanAnyOther) {
+    const std::string csv =
+        std::string(POSEWISE_REAL_DATA) + "/fanuc_r2000ic_165f/measurements.csv";
+    if (!std::filesystem::exists(csv)) {
+        GTEST_SKIP() << "no real campaign at POSEWISE_REAL_DATA = " << POSEWISE_REAL_DATA;
+    }
+    replace("Rx -q4", "Rx q4");
+    write_text("c.yaml", design_);
+    const std::string text = run_well("inspect c.yaml -m '" + csv + "'");
+    EXPECT_NE(text.find("reversed are q4;"), std::string::npos) << text;
+    const std::string table = text.substr(text.find("Joint directions that fit best"));
+    EXPECT_NEAR(number_behind(table, "q4 "), 0.615, 0.001);
+    EXPECT_NEAR(number_behind(table, "q4, q6 "), 50.15, 0.01);
+}
+
+TEST_F(Directions, NeedACampaignAndMeasurements) {
+    expect_input_error("inspect robot.urdf -m m.csv",
+                       "robot.urdf: is a robot alone; --measurements needs a campaign file");
+    expect_input_error("inspect " + fanuc_design + " -m absent.csv", "absent.csv");
+}
+
+}  // namespace
+}  // namespace posewise::testing
