@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "posewise/calibrator/estimate.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/model/sampling.hpp"
@@ -37,6 +38,37 @@ TEST(Registration, FindsAnyBaseAndTargetsFromNothing) {
         EXPECT_LT((found.world_from_base.matrix() - truth.world_from_base.matrix()).norm(), 1e-9);
         EXPECT_LT((found.sensor - truth.sensor).norm(), 1e-9);
     }
+}
+
+/// Any robot anywhere, its errors not known, measured as instruments do.
+TEST(Registration, SucceedsForRandomRobots) {
+    double worst = 0;
+    for (Index i = 0; i < testing::sweep_count(); ++i) {
+        RandomStream stream(83, static_cast<std::uint64_t>(i));
+        Campaign campaign = tracked_campaign(testing::random_robot(stream));
+        Parameters truth = campaign.nominal;
+        truth.world_from_base = testing::random_pose(stream);
+        truth.sensor = testing::random_vector(stream, 9, 0.4);
+        campaign.nominal = {};
+        campaign.nominal.robot = VectorXd::Zero(0);
+        campaign.nominal.sensor = VectorXd::Zero(9);
+        campaign.has_nominal_base = campaign.has_nominal_targets = false;
+        const auto seed = static_cast<std::uint64_t>(i);
+        const auto configurations = random_configurations(campaign.robot, 20, seed);
+        const Measurements measurements =
+            simulate_measurements(campaign, truth, configurations, 1, seed);
+        const Parameters found = register_base_and_targets(campaign, measurements);
+        const double miss = make_metrics(residuals(campaign, found, measurements)).distance_rms;
+        EXPECT_LT(miss, 4e-4) << i;  // noise 0.05 and model error 0.1 mm a coordinate
+        const Matrix3d R = found.world_from_base.linear();
+        EXPECT_NEAR(R.determinant(), 1, 1e-9) << i;
+        const double turned =
+            Eigen::AngleAxisd(Matrix3d(R * truth.world_from_base.linear().transpose())).angle();
+        worst = std::max(worst, turned);
+        EXPECT_LT(turned, 2e-3) << i;
+        EXPECT_LT((found.sensor - truth.sensor).cwiseAbs().maxCoeff(), 2e-3) << i;
+    }
+    RecordProperty("largest_turn_of_the_base_rad", std::to_string(worst));
 }
 
 TEST(Registration, WithKnownTargetsFindsTheBase) {

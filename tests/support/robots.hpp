@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "posewise/core/random.hpp"
 #include "posewise/model/chain.hpp"
 
 /// Robots in code, so that tests of the lower modules need no files.
@@ -130,6 +131,30 @@ inline Chain rail_with_fanuc() {
         elements.push_back(element);
     }
     return Chain(joints, elements);
+}
+
+/// A serial robot of four to seven joints about or along random axes, each link of up to half a
+/// metre; no error parameters. The last three joints turn, about different axes, so that the tool
+/// comes into every orientation.
+inline Chain random_robot(RandomStream& stream) {
+    const Index count = 4 + stream.index(4);
+    std::vector<Joint> joints;
+    std::vector<Element> elements;
+    Index axis = stream.index(3);
+    for (Index j = 0; j < count; ++j) {
+        const bool turns = j + 3 >= count || stream.uniform() < 0.8;
+        // Another axis than before, so that no two joints do the same.
+        axis = (axis + 1 + stream.index(2)) % 3;
+        joints.push_back({"q" + std::to_string(j + 1), turns ? -2.0 : -0.5, turns ? 2.0 : 0.5});
+        elements.push_back(driven(turns ? Motion::Rotation : Motion::Translation,
+                                  static_cast<Axis>(axis), j, "",
+                                  stream.uniform() < 0.5 ? -1.0 : 1.0));
+        for (const Axis along : {Axis::X, Axis::Y, Axis::Z}) {
+            elements.push_back(translation(along, stream.uniform(-0.5, 0.5)));
+        }
+        elements.push_back(rotation(Axis::X, stream.uniform(-0.3, 0.3)));
+    }
+    return Chain(std::move(joints), std::move(elements));
 }
 
 }  // namespace posewise::testing
