@@ -179,6 +179,14 @@ std::string describe_scaling(const Campaign& campaign, double repeats) {
     return text + '\n';
 }
 
+std::string describe_looseness(double efficiency, Index starts_at_best, Index starts) {
+    constexpr double loose_efficiency = 0.9;
+    if (efficiency >= loose_efficiency) return "";
+    return fmt::format(
+        "the bound is loose at so few poses: {} of {} independent starts ended at this value",
+        starts_at_best, starts);
+}
+
 std::string format_error(double si_value, bool is_angle) {
     return format_short(mm_per_m * si_value, 4) + ' ' + std::string(error_unit(is_angle));
 }

@@ -38,6 +38,9 @@ std::string describe(const Sensor& sensor);
 std::string describe_model_error(const Campaign& campaign);
 std::string describe_scaling(const Campaign& campaign, double repeats);
 
+/// Says, where little is proven about a choice, what tells more; empty where it is nearly optimal.
+std::string describe_looseness(double efficiency, Index starts_at_best, Index starts);
+
 /// "1 mm", "-0.5 mrad": a small error with its unit.
 std::string format_error(double si_value, bool is_angle);
 

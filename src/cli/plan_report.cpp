@@ -25,6 +25,12 @@ std::string indent_lines(const std::string& text) {
     return indented.substr(0, indented.find_last_not_of(" \n") + 1);
 }
 
+/// A criterion's value; V and G are inverse mean and worst squares of position errors.
+std::string format_value(Criterion criterion, double value) {
+    const bool has_unit = criterion == Criterion::V || criterion == Criterion::G;
+    return format_short(value, 8) + (has_unit ? " /m^2" : "");
+}
+
 std::string describe_pool(const Pool& pool) {
     std::string text = fmt::format("{} of {} candidates are feasible", pool.configurations.rows(),
                                    pool.candidate_count);
@@ -49,7 +55,7 @@ std::string describe_searched_bound(const io::PosePlanFile& file) {
                                    : "not searched, there is no such bound for this criterion";
     }
     return fmt::format("{}, efficiency {}: by a search, not a proof",
-                       format_short(file.searched_bound, 8),
+                       format_value(file.request.criterion, file.searched_bound),
                        format_fixed(file.searched_efficiency, 4));
 }
 
@@ -161,15 +167,18 @@ void print_pose_plan(const PlanningProblem& problem, const io::PosePlanFile& fil
                      const Tour& tour) {
     print(fmt::format("pool:        {}\nposes:       {}\ncriterion:   {}\nvalue:       {}\n",
                       describe_pool(problem.pool), describe_counts(problem),
-                      criterion_name(file.request.criterion), format_short(file.value, 8)));
+                      criterion_name(file.request.criterion), format_value(file.request.criterion, file.value)));
     print(fmt::format(
         "predicted:   position error {} mm RMS, 95 % are below {} mm, over {} workspace poses\n",
         format_mm(file.predicted_rms), format_mm(file.predicted_p95), problem.workspace_count));
     print(
         fmt::format("pool bound:  {}, proven: no choice from the pool has a larger value\n"
                     "best choice: {} from the pool, efficiency {} proven\n",
-                    format_short(file.pool_bound, 8), format_short(file.pool_value, 8),
+                    format_value(file.request.criterion, file.pool_bound), format_value(file.request.criterion, file.pool_value),
                     format_fixed(file.pool_efficiency, 4)));
+    const std::string looseness =
+        describe_looseness(file.pool_efficiency, file.starts_at_best, file.request.starts);
+    if (!looseness.empty()) print("note:        " + looseness + '\n');
     print(fmt::format("searched:    {}\nstarts:      {} of {} ended at the best\norder:       {}\n",
                       describe_searched_bound(file), file.starts_at_best, file.request.starts,
                       describe_order(tour)));

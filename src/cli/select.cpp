@@ -60,8 +60,6 @@ struct Arguments {
     SelectOptions search;  ///< how hard to try
 };
 
-constexpr double loose_efficiency = 0.9;
-
 // ---- From arguments to a request ----
 
 void require_usage(bool is_right, const char* option, const std::string& rule) {
@@ -141,11 +139,9 @@ std::string describe_proof(const Plan& plan) {
     if (plan.stop_reason == StopReason::Optimal) {
         return "proof:      optimal: every other choice is ruled out by the bound or was tried\n";
     }
-    if (plan.efficiency >= loose_efficiency) return "";
-    return fmt::format(
-        "note:       the bound is loose at so few poses: {} of {} independent starts ended at this "
-        "value\n",
-        plan.starts_at_best, plan.starts);
+    const std::string looseness =
+        describe_looseness(plan.efficiency, plan.starts_at_best, plan.starts);
+    return looseness.empty() ? "" : "note:       " + looseness + '\n';
 }
 
 void print_plan(const io::PlanFile& file) {

@@ -1,6 +1,9 @@
 #include "posewise/core/text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace posewise {
@@ -73,6 +76,29 @@ std::string list_words(const std::vector<std::string>& words) {
         list += words[i];
     }
     return shown < words.size() ? list + ", ..." : list;
+}
+
+std::string describe_combination(const VectorXd& coefficients,
+                                 const std::vector<std::string>& names) {
+    constexpr std::size_t most = 4;
+    std::vector<Index> order(static_cast<std::size_t>(coefficients.size()));
+    std::iota(order.begin(), order.end(), Index{0});
+    // Equal to rounding: by place, so that the text is the same on every machine.
+    const auto size = [&](Index i) { return std::round(1e6 * std::abs(coefficients[i])); };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return size(a) > size(b); });
+    const double largest = coefficients[order.front()];
+    const double factor = (largest < 0 ? -1 : 1) / coefficients.norm();
+    std::string text;
+    for (std::size_t k = 0; k < std::min(most, order.size()); ++k) {
+        const Index i = order[k];
+        if (std::abs(coefficients[i]) < 0.1 * std::abs(largest)) break;
+        const double share = factor * coefficients[i];
+        const char* const sign = share < 0 ? " - " : k > 0 ? " + " : "";
+        text += fmt::format("{}{:.2g} ", sign, std::abs(share));
+        text += names.empty() ? fmt::format("column {}", i + 1) : names[static_cast<std::size_t>(i)];
+    }
+    return text;
 }
 
 std::string suggest(std::string_view unknown, const std::vector<std::string>& known) {

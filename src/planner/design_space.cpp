@@ -25,6 +25,7 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
     const Index width = campaign.sensor->rows_per_target();
     DesignSpace space;
     space.parameter_count = pose->parameter_count();
+    space.parameter_names = parameter_names(campaign);
     space.lower.resize(robot.joint_count());
     space.upper.resize(robot.joint_count());
     for (Index j = 0; j < robot.joint_count(); ++j) {

@@ -1,5 +1,8 @@
 #include "posewise/planner/planning.hpp"
 
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -7,6 +10,7 @@
 
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
+#include "posewise/core/text.hpp"
 #include "posewise/planner/searched_bound.hpp"
 #include "posewise/selection/bound.hpp"
 
@@ -14,6 +18,8 @@ namespace posewise {
 namespace {
 
 constexpr Index test_pose_limit = 500;
+/// A plan that leaves a direction less sure than so many expected errors is no plan.
+constexpr double largest_deviation = 1000;
 
 /// What the starts share.
 struct Problem {
@@ -47,6 +53,7 @@ SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
     select.nuisance = options.nuisance;
     select.held = options.held.information;
     select.held_pose_count = options.held_pose_count;
+    select.column_names = space.parameter_names;
     select.seed = options.seed;
     select.interrupted = options.interrupted;
     // Refinement mends what a short selection leaves; exchange by the worst of many test poses is
@@ -99,12 +106,13 @@ RowMatrixXd choose_from_part(const Problem& problem, Index start) {
     return candidates(select_poses(take(problem.blocks, part), select).poses, Eigen::all);
 }
 
-/// Refinements of all starts; those whose part of the pool identifies too little are left empty.
+/// Refinements of all starts; those whose choice identifies too little are left empty.
 std::vector<Refinement> refine_starts(const Problem& problem, const Plan& pool_plan) {
     const RowMatrixXd first = problem.pool(pool_plan.poses, Eigen::all);
     const Index starts = problem.options.starts;
     std::vector<Refinement> results(static_cast<std::size_t>(starts));
     std::vector<std::exception_ptr> errors(results.size());
+    std::exception_ptr first_error;
     PlanProgress progress;
     progress.starts = starts;
     RefineOptions refine;
@@ -120,7 +128,7 @@ std::vector<Refinement> refine_starts(const Problem& problem, const Plan& pool_p
             results[s] = refine_poses(problem.space, problem.objective, problem.options.held,
                                       chosen, refine);
         } catch (const InputError&) {
-            if (start == 0) errors[s] = std::current_exception();
+            if (start == 0) first_error = std::current_exception();  // others may do better
         } catch (...) {
             errors[s] = std::current_exception();
         }
@@ -137,6 +145,10 @@ std::vector<Refinement> refine_starts(const Problem& problem, const Plan& pool_p
     for (const std::exception_ptr& error : errors) {
         if (error) std::rethrow_exception(error);
     }
+    const bool is_any_usable = std::any_of(results.begin(), results.end(), [](const auto& result) {
+        return std::isfinite(result.value);
+    });
+    if (!is_any_usable && first_error) std::rethrow_exception(first_error);
     return results;
 }
 
@@ -152,6 +164,23 @@ void report(const Problem& problem, Refinement best, PlannedPoses& planned) {
     for (Index i = 0; i < planned.configurations.rows(); ++i) {
         planned.information += space.information(planned.configurations.row(i).transpose());
     }
+}
+
+/// The criterion's value alone does not tell that a direction is seen by rounding only.
+void check_all_is_seen(const DesignSpace& space, const MatrixXd& M) {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(M);
+    const double least = eigen.eigenvalues()[0];
+    if (least >= 1 / (largest_deviation * largest_deviation)) return;
+    const double rounding = std::numeric_limits<double>::epsilon() * eigen.eigenvalues().tail(1)[0];
+    const std::string deviation =
+        least > 100 * rounding
+            ? fmt::format("known to {:.2g} times its expected size", 1 / std::sqrt(least))
+            : "unknown";
+    throw InputError(fmt::format(
+        "the best plan found leaves the parameter direction {} (in expected errors) {}, must be {} "
+        "times at most; take more poses, more starts or a prior (--poses, --starts, --prior)",
+        describe_combination(eigen.eigenvectors().col(0), space.parameter_names), deviation,
+        largest_deviation));
 }
 
 }  // namespace
@@ -199,6 +228,7 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     finish.sharpness = {256};
     best = refine_poses(space, problem.objective, options.held, best.configurations, finish);
     report(problem, std::move(best), planned);
+    check_all_is_seen(space, planned.information);
 
     // The relaxed optimum over the pool, with the smoothing it was found by, bounds best.
     const Certificate& certificate = planned.pool_plan.certificate;

@@ -7,6 +7,7 @@
 #include "limits.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/text.hpp"
 
 namespace posewise {
 namespace {
@@ -61,15 +62,18 @@ void validate_held(const SelectOptions& options, Index L) {
     }
 }
 
-/// The columns that make up a direction, e.g. "3 + 7" (counted from 1) or "Tx1 + base.x".
-std::string columns_of(const VectorXd& direction, const std::vector<std::string>& names) {
-    std::string text;
-    for (Index i = 0; i < direction.size(); ++i) {
-        if (std::abs(direction[i]) < 0.1 * direction.cwiseAbs().maxCoeff()) continue;
-        text += (text.empty() ? "" : " + ") +
-                (names.empty() ? std::to_string(i + 1) : names[static_cast<std::size_t>(i)]);
+/// Another basis of the space that the columns of V span: each has a row to itself, so that no two
+/// read alike.
+MatrixXd separate(MatrixXd V) {
+    for (Index k = 0; k < V.cols(); ++k) {
+        Index row = 0;
+        V.col(k).cwiseAbs().maxCoeff(&row);
+        V.col(k) /= V(row, k);
+        for (Index other = 0; other < V.cols(); ++other) {
+            if (other != k) V.col(other) -= V(row, other) * V.col(k);
+        }
     }
-    return text;
+    return V;
 }
 
 void validate_rank(const Blocks& candidates, const SelectOptions& options) {
@@ -80,16 +84,16 @@ void validate_rank(const Blocks& candidates, const SelectOptions& options) {
     const Index L = M.rows();
     const Index missing = (eigen.eigenvalues().array() <= 1e-12).count();
     if (missing == 0) return;
-    std::string columns;
+    const MatrixXd unseen = scale.asDiagonal() * separate(eigen.eigenvectors().leftCols(missing));
+    std::string directions;
     for (Index k = 0; k < std::min<Index>(missing, 3); ++k) {
-        columns +=
-            (k > 0 ? "; " : "") + columns_of(eigen.eigenvectors().col(k), options.column_names);
+        directions += (k > 0 ? "; " : "") +
+                      describe_combination(unseen.col(k).stableNormalized(), options.column_names);
     }
-    throw InputError(
-        "all " + std::to_string(candidates.count()) + " candidates together leave " +
-        std::to_string(missing) + " of " + std::to_string(L) + " parameter directions unseen (" +
-        (options.column_names.empty() ? "columns " : "parameters ") + columns +
-        (missing > 3 ? "; ..." : "") + "); drop redundant parameters, add poses or state a prior");
+    throw InputError("all " + std::to_string(candidates.count()) + " candidates together leave " +
+                     std::to_string(missing) + " of " + std::to_string(L) +
+                     " parameter directions unseen (" + directions + (missing > 3 ? "; ..." : "") +
+                     "); drop redundant parameters, add poses or state a prior");
 }
 
 }  // namespace

@@ -127,6 +127,21 @@ TEST_F(PlanCommand, RefusesFewerPosesThanIdentify) {
     run_well("plan " + fanuc_design + " -k 5 --prior" + quick + "-o p.json");
 }
 
+TEST_F(PlanCommand, RefusesAPlanThatSeesADirectionByRoundingOnly) {
+    expect_input_error("plan " + cell_design + " -k 5 --pool 1500 --starts 1 -o p.json",
+                       "leaves the parameter direction 0.43 base.x + 0.42 target1.x");
+    expect_input_error("plan " + seed_design + " -k 12" + quick,
+                       "unseen (0.61 Tx2 - 0.56 dq2 + 0.56 dq3)");
+}
+
+TEST_F(PlanCommand, SaysThatTheBoundIsLooseAtFewPoses) {
+    const std::string few = run_well("plan " + fanuc_design + " -k 5 -c a" + quick + "-o p.json");
+    EXPECT_NE(few.find("note:        the bound is loose at so few poses: "), std::string::npos)
+        << few;
+    const std::string many = run_well("plan " + fanuc_design + " -k 40 -c d" + quick + "-o p.json");
+    EXPECT_EQ(many.find("loose"), std::string::npos) << many;
+}
+
 TEST_F(PlanCommand, RefusesMeasurementsOfAnotherRobot) {
     std::string other =
         read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");

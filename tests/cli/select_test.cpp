@@ -175,9 +175,10 @@ TEST_F(Select, ReturnsTheBestSoFarWhenTimeIsUpOrCtrlCComes) {
 }
 
 TEST_F(Select, NamesTheDirectionThatNoCandidateSees) {
-    expect_input_error("select " + seed_design + " -m s.csv -k 12", "parameters dq2 + Tx2 + dq3");
+    expect_input_error("select " + seed_design + " -m s.csv -k 12", "(0.61 Tx2 - 0.56 dq2 + 0.56 dq3)");
     write_text("flat.csv", "1,2,2\n3,5,5\n-1,4,4\n2,2,2\n");
-    expect_input_error("select --blocks flat.csv --rows 1 -k 3", "columns 2 + 3");
+    expect_input_error("select --blocks flat.csv --rows 1 -k 3",
+                       "(0.71 column 2 - 0.71 column 3)");
 }
 
 TEST_F(Select, RefusesUnusableBlocks) {

@@ -28,6 +28,14 @@ TEST(CharacterLength, IsThatOfTheFirstCharacter) {
     EXPECT_EQ(character_length("\xC3("), 1U);
 }
 
+TEST(DescribeCombination, NamesTheLargestTermsFirstAndPositive) {
+    const VectorXd direction = Eigen::Vector4d(3, -4, 0.1, 0);
+    EXPECT_EQ(describe_combination(direction, {"a", "b", "c", "d"}), "0.8 b - 0.6 a");
+    EXPECT_EQ(describe_combination(direction, {}), "0.8 column 2 - 0.6 column 1");
+    EXPECT_EQ(describe_combination(VectorXd::Ones(25), {}),
+              "0.2 column 1 + 0.2 column 2 + 0.2 column 3 + 0.2 column 4");
+}
+
 TEST(Suggest, NamesTheNearestOrAll) {
     EXPECT_EQ(suggest("calibrated", {"calibrate", "study"}), "did you mean 'calibrate'?");
     EXPECT_EQ(suggest("xyz", {"calibrate", "study"}), "must be calibrate or study");

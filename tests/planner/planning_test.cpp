@@ -122,6 +122,36 @@ TEST(PlanPoses, FocusOnTheRobotLeavesBaseAndTargetsAside) {
     EXPECT_GT(refined.value, evaluate(objective, whole.information) + 0.01);
 }
 
+/// A parameter that the poses see a million times less than expected, and one they see by rounding
+/// only: both pass as regular.
+TEST(PlanPoses, RefusesAPlanThatHardlySeesADirection) {
+    Scene scene(300, 5);
+    PlanOptions options = scene.options(Criterion::D, 10, 2);
+    options.bound_iterations = 0;
+    VectorXd weight = VectorXd::Ones(33);
+    weight[7] = 1e-7;
+    const auto full = scene.space.information;
+    const auto slope = scene.space.information_gradient;
+    scene.space.information = [full, weight](const VectorXd& q) -> MatrixXd {
+        return weight.asDiagonal() * full(q) * weight.asDiagonal();
+    };
+    scene.space.information_gradient = [slope, weight](const VectorXd& q, const MatrixXd& Z) {
+        return slope(q, weight.asDiagonal() * Z * weight.asDiagonal());
+    };
+    scene.blocks.matrix *= weight.asDiagonal();
+    const std::string name = scene.space.parameter_names[7];
+    try {
+        plan_poses(scene.space, scene.pool, scene.blocks, options);
+        FAIL() << "planned";
+    } catch (const InputError& error) {
+        const std::string text = error.what();
+        EXPECT_NE(text.find("direction 1 " + name + " (in"), std::string::npos) << text;
+        EXPECT_NE(text.find("times its expected size, must be 1000 times at most"),
+                  std::string::npos)
+            << text;
+    }
+}
+
 TEST(PlanPoses, RefusesWhatItCannotPlan) {
     const Scene scene(100, 5);
     PlanOptions options = scene.options(Criterion::D, 10, 0);

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "posewise/core/types.hpp"
+
 /// Words of messages.
 namespace posewise {
 
@@ -20,6 +22,11 @@ std::size_t character_length(std::string_view text);
 
 /// "a, b or c".
 std::string list_words(const std::vector<std::string>& words);
+
+/// "0.71 base.x - 0.7 Tx1": the largest terms of a linear combination, four at most, the largest
+/// first and positive, with the direction's norm 1. Without names: "0.71 column 2 - 0.7 column 5".
+std::string describe_combination(const VectorXd& coefficients,
+                                 const std::vector<std::string>& names);
 
 /// The advice after an unknown name: "did you mean 'x'?" if one of the known is near, else
 /// "must be a, b or c".

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/planner/constraints.hpp"
@@ -22,6 +24,7 @@ struct DesignSpace {
     std::function<double(const VectorXd& q)> margin;
     /// Two poses of a plan differ at least so much in one joint (rad or m).
     double least_joint_distance = 0;
+    std::vector<std::string> parameter_names;  ///< for messages; empty: they are numbered from 1
 
     Index joint_count() const { return lower.size(); }
 };
