@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 
 #include "commands.hpp"
@@ -10,6 +11,7 @@
 #include "posewise/core/text.hpp"
 #include "posewise/io/atomic_file.hpp"
 #include "posewise/io/campaign_file.hpp"
+#include "posewise/io/dh_file.hpp"
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/model/transforms.hpp"
@@ -21,17 +23,24 @@ namespace {
 constexpr const char* footer = R"(
 Example:
   posewise export campaign.yaml estimate.json --urdf calibrated.urdf
+  posewise export campaign.yaml estimate.json --dh calibrated.yaml
 
 The estimate is what calibrate --out wrote. The URDF is the one the campaign's robot comes from, and
 stays as it is (names, order, comments, layout) but for the numbers of joint origins: between base
 link and tip link it then predicts exactly what the estimate does, but for errors that depend on the
 configuration (gravity, harmonics), which a URDF cannot have; they are listed. The base as the instrument sees it
-and the targets are not part of the robot, and not of the URDF.)";
+and the targets are not part of the robot, and not of the URDF.
+
+--dh writes any robot as a standard Denavit-Hartenberg table, which moves the flange exactly as the
+estimate does, again but for errors that depend on the configuration. Where two axes are nearly
+parallel, their common normal lies far away and the row's d is large: such a table is right, but its
+numbers must not be rounded, nor compared with the nominal ones.)";
 
 struct Arguments {
     std::string campaign;
     std::string estimate;
     std::string urdf;
+    std::string dh;
 };
 
 Table change_table(const io::CalibratedUrdf& urdf) {
@@ -51,6 +60,13 @@ std::string describe_base(const Isometry3d& world_from_base) {
                        format_fixed(to_degrees(rpy.y()), 5), format_fixed(to_degrees(rpy.z()), 5));
 }
 
+void print_missing(const std::vector<std::string>& names, const char* reason, const char* where) {
+    if (names.empty()) return;
+    print(fmt::format("not in the {}: ", where));
+    for (const std::string& name : names) print(name + ' ');
+    print(reason);
+}
+
 void print_export(const Arguments& arguments, const io::CampaignFile& file,
                   const Parameters& parameters, const io::CalibratedUrdf& urdf) {
     print(fmt::format("{}: {} with the origins of {} joints changed is in {}\n", file.campaign.name,
@@ -61,26 +77,56 @@ void print_export(const Arguments& arguments, const io::CampaignFile& file,
         fmt::format("\nnot in the URDF: where the instrument sees base link {} ({}), and the "
                     "targets\n",
                     quote(file.urdf->base_link), describe_base(parameters.world_from_base)));
-    const auto print_missing = [](const std::vector<std::string>& names, const char* reason) {
-        if (names.empty()) return;
-        print("not in the URDF: ");
-        for (const std::string& name : names) print(name + ' ');
-        print(reason);
-    };
     print_missing(urdf.not_expressed,
-                  "act behind the last joint, where no fixed joint is that could take them\n");
+                  "act behind the last joint, where no fixed joint is that could take them\n",
+                  "URDF");
     print_missing(urdf.terms,
                   "depend on the configuration, and no URDF can express that: without them the "
-                  "URDF is less accurate than the estimate\n");
+                  "URDF is less accurate than the estimate\n",
+                  "URDF");
 }
 
-void export_estimate(const Arguments& arguments) {
-    check_outputs({arguments.campaign, arguments.estimate}, {arguments.urdf});
-    const io::CampaignFile file = io::read_campaign(arguments.campaign);
+/// Names of the error terms whose parameters are not zero.
+std::vector<std::string> terms_of(const Chain& robot, const VectorXd& parameters) {
+    std::vector<std::string> terms;
+    const std::vector<std::string> names = robot.parameter_names();
+    for (Index k = 0; k < robot.parameter_count(); ++k) {
+        if (robot.parameter_term(k) == nullptr || parameters[k] == 0) continue;
+        terms.push_back(names[static_cast<std::size_t>(k)]);
+    }
+    return terms;
+}
+
+void export_dh(const Arguments& arguments, const io::CampaignFile& file) {
+    constexpr double far = 10;  // m
+    const Chain& robot = file.campaign.robot;
+    const Parameters parameters = io::read_estimate(arguments.estimate, file.campaign);
+    const std::vector<DhRow> rows = dh_rows(robot, parameters.robot);
+    io::write_file(arguments.dh,
+                   fmt::format("# {}, calibrated\n", escape_controls(file.campaign.name)) +
+                       io::make_dh_text(robot, rows));
+    print(fmt::format("{}: the calibrated robot in {} rows is in {}\n", file.campaign.name,
+                      rows.size(), escape_controls(arguments.dh)));
+    print("not in the table: where the instrument sees the base (" +
+          describe_base(parameters.world_from_base) + "), and the targets\n");
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (std::abs(rows[k].d) < far) continue;
+        print(
+            fmt::format("row {}: d is {} m, since its axis and the next are nearly parallel; do "
+                        "not round it\n",
+                        k + 1, format_short(rows[k].d, 4)));
+    }
+    print_missing(terms_of(robot, parameters.robot),
+                  "depend on the configuration, and no table can express that: without them it is "
+                  "less accurate than the estimate\n",
+                  "table");
+}
+
+void export_urdf(const Arguments& arguments, const io::CampaignFile& file) {
     if (!file.urdf) {
         throw input_error_at({arguments.campaign},
                              "has a robot that does not come from a URDF; only such a one can go "
-                             "into one");
+                             "into one (--dh takes any)");
     }
     check_outputs({file.urdf->path}, {arguments.urdf});
     const Parameters parameters = io::read_estimate(arguments.estimate, file.campaign);
@@ -88,6 +134,16 @@ void export_estimate(const Arguments& arguments) {
         io::make_calibrated_urdf(*file.urdf, file.campaign.robot, parameters.robot);
     io::write_file(arguments.urdf, urdf.text);
     print_export(arguments, file, parameters, urdf);
+}
+
+void export_estimate(const Arguments& arguments) {
+    if (arguments.urdf.empty() && arguments.dh.empty()) {
+        throw CLI::RequiredError("--urdf or --dh");
+    }
+    check_outputs({arguments.campaign, arguments.estimate}, {arguments.urdf, arguments.dh});
+    const io::CampaignFile file = io::read_campaign(arguments.campaign);
+    if (!arguments.urdf.empty()) export_urdf(arguments, file);
+    if (!arguments.dh.empty()) export_dh(arguments, file);
 }
 
 }  // namespace
@@ -103,7 +159,8 @@ void add_export(CLI::App& program) {
         ->required()
         ->check(file_name());
     command->add_option("--urdf", arguments->urdf, "Write the calibrated URDF to this file")
-        ->required()
+        ->check(file_name());
+    command->add_option("--dh", arguments->dh, "Write it as a Denavit-Hartenberg table (YAML)")
         ->check(file_name());
     command->footer(footer);
     command->callback([arguments] { export_estimate(*arguments); });

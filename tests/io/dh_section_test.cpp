@@ -2,9 +2,11 @@
 
 #include "campaign_text.hpp"
 #include "posewise/io/campaign_file.hpp"
+#include "posewise/io/dh_file.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/model/complete_model.hpp"
 #include "support/robots.hpp"
+#include "support/sweep.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -181,6 +183,43 @@ TEST(DhSection, StandsAlone) {
                           "  errors: stated\n"));
         }),
         "campaign.yaml:3:3: robot has no key elements, dh or urdf; one of them must be stated");
+}
+
+TEST(MakeDhText, IsReadBackAsTheSameRobot) {
+    for (const Chain& chain : {testing::fanuc(), testing::scara(), testing::gantry_with_wrist(),
+                               read(campaign_of(rows_of_a_rail)).campaign.robot}) {
+        const Chain complete = complete_model(chain);
+        RandomStream stream(9);
+        const VectorXd errors = testing::random_vector(stream, complete.parameter_count(), 1e-2);
+        const std::string text = make_dh_text(complete, dh_rows(complete, errors));
+        const Chain back = read("name: back\n" + text +
+                                "sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n")
+                               .declared_robot;
+        ASSERT_EQ(back.joint_count(), chain.joint_count());
+        for (Index j = 0; j < chain.joint_count(); ++j) {
+            const auto k = static_cast<std::size_t>(j);
+            EXPECT_EQ(back.joints()[k].name, chain.joints()[k].name);
+            EXPECT_NEAR(back.joints()[k].lower, chain.joints()[k].lower, 1e-12);
+        }
+        for (int i = 0; i < 10; ++i) {
+            const VectorXd q = testing::random_vector(stream, chain.joint_count(), 1);
+            EXPECT_LT((back.base_from_flange(q, VectorXd::Zero(back.parameter_count())).matrix() -
+                       complete.base_from_flange(q, errors).matrix())
+                          .norm(),
+                      1e-10);
+        }
+    }
+}
+
+TEST(MakeDhText, RefusesAJointThatDrivesTwoAxes) {
+    using testing::driven;
+    const Chain chain({{"q1", -1, 1}},
+                      {driven(Motion::Rotation, Axis::Z, 0), testing::translation(Axis::X, 0.3),
+                       driven(Motion::Rotation, Axis::Z, 0, "", -0.5)});
+    EXPECT_NE(input_error_of([&] {
+                  make_dh_text(chain, dh_rows(chain, {}));
+              }).find("'q1' drives more than one axis"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
+#include "posewise/model/complete_model.hpp"
 #include "support/robots.hpp"
 #include "support/sweep.hpp"
 
@@ -92,6 +95,56 @@ TEST(DhElements, OfAFixedRowHaveNoJoint) {
     const DhRow row{0.1, 0.2, 0.3, 0.4, Motion::Rotation, {}};
     for (const Element& element : dh_elements(row)) EXPECT_TRUE(element.joints.empty());
     EXPECT_EQ(dh_elements(row).size(), 4U);
+}
+
+/// The rows as a chain of the same joints.
+Chain chain_of(const Chain& chain, const std::vector<DhRow>& rows) {
+    std::vector<Element> elements;
+    for (const DhRow& row : rows) {
+        for (Element& element : dh_elements(row)) elements.push_back(std::move(element));
+    }
+    return Chain(chain.joints(), elements);
+}
+
+TEST(DhRows, MoveTheFlangeExactlyAsTheChainDoes) {
+    const std::vector<Chain> chains{fanuc(), planar_arm({1, 0.8, 0.5}), gantry_with_wrist(),
+                                    scara(), complete_model(fanuc()),   complete_model(scara())};
+    for (const Chain& chain : chains) {
+        for (const double size : {0.0, 1e-3, 0.2}) {
+            RandomStream stream(77);
+            const VectorXd errors = random_vector(stream, chain.parameter_count(), size);
+            const auto rows = dh_rows(chain, errors);
+            EXPECT_LE(static_cast<Index>(rows.size()), chain.joint_count() + 2);
+            const Chain again = chain_of(chain, rows);
+            for (int i = 0; i < 20; ++i) {
+                const VectorXd q = random_vector(stream, chain.joint_count(), 2);
+                // Nearly parallel axes meet far away: d of 1e3 m and more, with its rounding.
+                const double far = size == 0 ? 1e-14 : 1e-11;
+                EXPECT_LT((again.base_from_flange(q, VectorXd()).matrix() -
+                           chain.base_from_flange(q, errors).matrix())
+                              .norm(),
+                          100 * far);
+            }
+        }
+    }
+}
+
+TEST(DhRows, OfATextbookRobotAreItsTable) {
+    std::vector<Element> elements;
+    const std::vector<DhRow> table{
+        {0, std::numbers::pi / 2, 0.1273, 0, Motion::Rotation, {{0, 1.0}}},
+        {0.612, 0, 0, 0, Motion::Rotation, {{1, 1.0}}},
+        {0.1, 0, 0.3, 0, Motion::Rotation, {{2, 1.0}}}};
+    for (const DhRow& row : table) {
+        for (Element& element : dh_elements(row)) elements.push_back(std::move(element));
+    }
+    const auto rows = dh_rows(Chain({{"q1", -3, 3}, {"q2", -3, 3}, {"q3", -3, 3}}, elements), {});
+    ASSERT_EQ(rows.size(), 4U);  // d of the last one is the tool's, behind a
+    EXPECT_NEAR(rows[0].d, 0.1273, 1e-15);
+    EXPECT_NEAR(rows[0].alpha, std::numbers::pi / 2, 1e-15);
+    EXPECT_NEAR(rows[1].a, 0.612, 1e-15);
+    EXPECT_NEAR(rows[2].a, 0.1, 1e-15);
+    EXPECT_NEAR(rows[3].d, 0.3, 1e-15);
 }
 
 }  // namespace

@@ -26,4 +26,12 @@ std::vector<Element> dh_elements(const DhRow& row);
 /// RotX(alpha) TransX(a) RotZ(theta) TransZ(d) [Craig 1986, eq. 3.6].
 std::vector<Element> mdh_elements(const DhRow& row);
 
+/// A whole chain as rows of the standard convention, exact for all joint values: from base to
+/// flange a fixed row to the axis of the first joint (left out if that is the base's z axis), one
+/// row for each element that joints drive, a fixed row (theta and d only) to the flange (left out
+/// if it does nothing). Each row follows the common normal to the next axis; of parallel axes
+/// (within 1e-8 rad) the one through its own origin. `parameters` are the chain's error parameters
+/// (rad or m); those of error terms, which no row can express, count as zero.
+std::vector<DhRow> dh_rows(const Chain& chain, const VectorXd& parameters);
+
 }  // namespace posewise
