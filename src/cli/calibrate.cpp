@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
+#include "measured.hpp"
 #include "options.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
@@ -64,7 +65,7 @@ struct Split {
 };
 
 Split read_split(const Arguments& arguments, const io::CampaignFile& file) {
-    auto all = io::read_measurements(arguments.paths.measurements, file);
+    auto all = read_measured(arguments.paths.measurements, file);
     if (arguments.plan.empty()) return {std::move(all), std::nullopt};
     const auto planned = find_planned(all, arguments.plan);
     const auto others = all_but(all.configuration_count(), planned);
@@ -198,10 +199,13 @@ void calibrate(const Arguments& arguments) {
         paths.measurements, [&] { return make_report(arguments, file.campaign, split); });
     report.selection = std::move(selection);
     if (!arguments.validate.empty()) {
-        report.validation = metrics_of(
-            file.campaign, io::read_measurements(arguments.validate, file), report.estimate);
+        report.validation =
+            metrics_of(file.campaign, read_measured(arguments.validate, file), report.estimate);
     }
     if (!arguments.out.empty()) io::write_estimate(arguments.out, file.campaign, report);
+    // No error: a calibration may be just for a robot that is far from nominal.
+    const std::string misfit = describe_misfit(file.campaign, split.used);
+    if (!misfit.empty()) print_warning(paths.measurements + ": " + misfit);
     warn_about_calibration(paths.measurements, file.campaign, report);
     print_calibration(file.campaign, split.used, report);
 }

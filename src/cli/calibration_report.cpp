@@ -97,13 +97,13 @@ void print_outliers(const io::CalibrationReport& report) {
     }
 }
 
-/// A robot's maker is rarely wrong by 10 cm, a column's unit easily by a factor of 1000.
-void warn_about_units(const std::string& path, const Metrics& nominal) {
+/// A robot's maker is rarely wrong by 10 cm.
+void warn_about_outliers(const std::string& path, const Metrics& nominal) {
     constexpr double suspicious = 0.1;  // m
     if (nominal.distance_rms <= suspicious) return;
     const std::string warning = fmt::format(
-        "posewise: warning: {}: the nominal robot misses the points by {} m (RMS); are the units "
-        "of the columns right? If some points are grossly wrong, try --loss cauchy\n",
+        "posewise: warning: {}: the nominal robot misses the points by {} m (RMS); if some points "
+        "are grossly wrong, try --loss cauchy\n",
         escape_controls(path), format_short(nominal.distance_rms, 3));
     std::fwrite(warning.data(), 1, warning.size(), stderr);
 }
@@ -163,7 +163,7 @@ void print_model_selection(const ModelSelection& selection) {
 
 void warn_about_calibration(const std::string& measurements_path, const Campaign& campaign,
                             const io::CalibrationReport& report) {
-    warn_about_units(measurements_path, report.nominal);
+    warn_about_outliers(measurements_path, report.nominal);
     warn_about_orientation(measurements_path, report.nominal);
     warn_about_sizes(campaign, report.estimate);
 }

@@ -1,6 +1,7 @@
 #include "common.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/text.hpp"
 #include "posewise/io/plan_file.hpp"
 #include "posewise/measurement/point_sensor.hpp"
 #include "posewise/measurement/pose_sensor.hpp"
@@ -88,6 +90,29 @@ void print_section(const std::string& title, const Table& table) {
     print('\n' + title + "\n\n" + format_table(table));
 }
 
+void print_warning(const std::string& text) {
+    const std::string line = "posewise: warning: " + escape_controls(text) + '\n';
+    std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
+void check_memory(const Campaign& campaign, Index count, const std::string& option) {
+    constexpr double bytes_per_gb = 1e9;
+    constexpr double beside = 1.25;  // what a search needs beside the blocks
+    const double needed = beside * static_cast<double>(sizeof(double)) *
+                          static_cast<double>(count) *
+                          static_cast<double>(campaign.sensor->row_count()) *
+                          static_cast<double>(parameter_count(campaign));
+    rlimit limit{};
+    getrlimit(RLIMIT_AS, &limit);
+    const double there = std::min(
+        static_cast<double>(limit.rlim_cur),
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE)));
+    if (needed < there) return;
+    throw InputError(
+        fmt::format("{} candidates need {:.0f} GB of memory, there are {:.0f} GB; lower {}", count,
+                    needed / bytes_per_gb, there / bytes_per_gb, option));
+}
+
 namespace {
 
 std::string describe_noise(const IsotropicNoise& noise) {
@@ -160,9 +185,10 @@ std::string describe_model_error(const Campaign& campaign) {
 
 std::string describe_scaling(const Campaign& campaign, double repeats) {
     std::string text = fmt::format(
-        "noise: {}, mean of {} samples{}, model error {}\nscale: {} mm and {} mrad a parameter",
-        describe(*campaign.sensor), format_short(repeats), describe_repeatability(campaign),
-        describe_model_error(campaign),
+        "noise: {}, {}{}, model error {}\nscale: {} mm and {} mrad a parameter",
+        describe(*campaign.sensor),
+        repeats == 1 ? "single samples" : "mean of " + format_short(repeats) + " samples",
+        describe_repeatability(campaign), describe_model_error(campaign),
         format_short(mm_per_m * campaign.spread.length),
         format_short(mrad_per_rad * campaign.spread.angle));
     const auto add = [&](TermKind kind, const char* what, double size) {

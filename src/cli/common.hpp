@@ -31,6 +31,13 @@ std::vector<Index> find_planned(const Measurements& measurements, const std::str
 void print(const std::string& text);
 void print_section(const std::string& title, const Table& table);
 
+/// "posewise: warning: ..." on standard error, one line whatever it quotes.
+void print_warning(const std::string& text);
+
+/// Throws InputError if so many candidates of a campaign need more memory than this machine has;
+/// `option` is what says how many.
+void check_memory(const Campaign& campaign, Index count, const std::string& option);
+
 /// One sentence each: "3 targets at unknown places, sigma 0.05 mm", the model error (that of
 /// orientations if they are measured), and the noise and column scales that whitened, scaled
 /// numbers rest on.

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A device, pipe or folder: nothing that is replaced.
+/// A device or pipe: nothing that is replaced.
 bool is_special(const std::string& path) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
@@ -43,6 +43,10 @@ void check_outputs(const std::vector<std::string>& inputs,
                    const std::vector<std::string>& outputs) {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const std::string& path = outputs[i];
+        std::error_code ignored;
+        if (fs::is_directory(path, ignored)) {
+            throw input_error_at({path}, "is a folder; must be the name of a file");
+        }
         if (path.empty() || is_special(path)) continue;
         for (const std::string& input : inputs) {
             if (!input.empty() && is_same_file(path, input)) {

@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
+#include "measured.hpp"
 #include "options.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/jacobian/identifiability.hpp"
@@ -84,7 +85,7 @@ std::string describe_direction(const Campaign& campaign, const WeakDirection& di
 }
 
 Measurements read_input(const Arguments& arguments, const io::CampaignFile& file) {
-    const auto all = io::read_measurements(arguments.paths.measurements, file);
+    const auto all = read_measured(arguments.paths.measurements, file);
     return arguments.plan.empty() ? all : take(all, find_planned(all, arguments.plan));
 }
 

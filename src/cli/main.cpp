@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -90,6 +91,9 @@ int main(int argc, char** argv) {
         return fail_usage(program, error.what());
     } catch (const posewise::InputError& error) {
         return fail(error.what(), input_error);
+    } catch (const std::bad_alloc&) {
+        return fail("needs more memory than there is; take fewer candidates (--random, --pool)",
+                    input_error);
     } catch (const std::exception& error) {
         return fail(std::string("internal error: ") + error.what(), internal_error);
     }

@@ -53,6 +53,26 @@ CLI::Validator file_name() {
         "");
 }
 
+CLI::Option* add_ids_option(CLI::App& command, const std::string& name,
+                            std::vector<std::string>& ids, const std::string& help) {
+    const auto split = [&ids, name](const std::vector<std::string>& texts) {
+        for (const std::string& text : texts) {
+            for (std::string rest = text + ','; !rest.empty();) {
+                const std::size_t comma = rest.find(',');
+                if (comma == 0) {
+                    throw CLI::ValidationError(
+                        name,
+                        "is " + quote(text) + "; must be ids separated by commas, none empty");
+                }
+                ids.push_back(rest.substr(0, comma));
+                rest.erase(0, comma + 1);
+            }
+        }
+    };
+    return command.add_option_function<std::vector<std::string>>(name, split, help)
+        ->expected(1, -1);
+}
+
 void add_prior_option(CLI::App& command, std::optional<bool>& prior,
                       const std::string& consequence) {
     // Callbacks, since a flag that is not given would set an optional, too.

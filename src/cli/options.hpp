@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 /// Checks of what an option may hold; anything else is a usage error.
 namespace posewise::cli {
@@ -19,6 +20,10 @@ CLI::Validator real_number(double least, double most);
 
 /// Not empty.
 CLI::Validator file_name();
+
+/// Takes ids separated by commas, none empty; may be given several times.
+CLI::Option* add_ids_option(CLI::App& command, const std::string& name,
+                            std::vector<std::string>& ids, const std::string& help);
 
 /// --prior and --no-prior; `consequence` ends the help's sentence.
 void add_prior_option(CLI::App& command, std::optional<bool>& prior,

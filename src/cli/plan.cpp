@@ -32,6 +32,7 @@ be stated in the campaign file, if only roughly. Prints
   pool         which constraint rejected how many candidates
   predicted    position error of the calibrated robot over the workspace, by the covariance alone
   pool bound   proven: no choice from the pool has a larger value
+  note         where that says little: how many starts ended at the best
   searched     no plan at all has a larger value, if the search met the best poses; not a proof
   order        time at the joints' speeds, from the cell's home; a via point where the straight
                way is not free, BLOCKED where none was found
@@ -68,9 +69,10 @@ class ProgressNote {
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-PlannedPoses search(PlanningProblem& problem, const std::atomic<bool>* interrupted,
-                    bool shows_progress) {
+PlannedPoses search(PlanningProblem& problem, const Stopwatch& watch,
+                    const std::atomic<bool>* interrupted, bool shows_progress) {
     PlanOptions options = problem.options;
+    options.time_limit = watch.left();
     if (options.criterion == Criterion::G || options.criterion == Criterion::V) {
         options.test_poses = &problem.prediction;
     }
@@ -140,7 +142,6 @@ io::PosePlanFile make_file(const PlanningProblem& problem, const PlannedPoses& p
                            const PredictedAccuracy& accuracy, const Tour& tour) {
     io::PosePlanFile file;
     file.request = problem.request;
-    file.request.workspace_count = problem.workspace_count;
     file.poses = arrange(problem, all_poses(problem, planned.configurations), tour);
     file.value = planned.value;
     file.feasible_count = problem.pool.configurations.rows();
@@ -175,8 +176,11 @@ void plan(Arguments arguments) {
     check_outputs({request.campaign, request.augment, request.repaired, request.workspace},
                   {out, arguments.csv});
     const InterruptFlag interrupted;
-    PlanningProblem problem = read_planning_problem(asked);
-    const PlannedPoses planned = search(problem, interrupted.get(), arguments.progress);
+    const Stopwatch watch(request.time_limit);
+    PlanningProblem problem =
+        read_planning_problem(asked, {interrupted.get(), deadline_after(request.time_limit / 2)});
+    PlannedPoses planned = search(problem, watch, interrupted.get(), arguments.progress);
+    planned.is_interrupted |= problem.pool.candidate_count < request.pool_count;
     const PredictedAccuracy accuracy = predict_accuracy(problem.prediction, planned.information);
     TourOptions tour_options;
     tour_options.order.seed = problem.request.seed;
@@ -188,7 +192,11 @@ void plan(Arguments arguments) {
         io::write_configurations_csv(arguments.csv, problem.campaign, file.poses);
     }
     print_pose_plan(problem, file, tour);
-    if (!file.is_interrupted) print_other_counts(problem, accuracy);
+    if (file.is_interrupted) {
+        print("\nPredicted position error by number of poses: left out, planning was stopped\n");
+    } else {
+        print_other_counts(problem, accuracy);
+    }
     print_deviations(problem.campaign, file.standard_deviations);
     print(fmt::format("\n{}plan:        {}\n",
                       describe_scaling(problem.campaign, problem.request.repeats), out));
@@ -202,7 +210,8 @@ void plan(Arguments arguments) {
 void add_problem(CLI::App& command, PlanningArguments& problem, std::string& focus) {
     io::PosePlanRequest& request = problem.request;
     command.add_option("CAMPAIGN", request.campaign, "Campaign file (YAML): robot, sensor, cell")
-        ->required();
+        ->required()
+        ->check(file_name());
     command
         .add_option("-k,--poses", problem.pose_count,
                     "How many configurations (with --plan: all together; default: as it has)")
@@ -217,10 +226,11 @@ void add_problem(CLI::App& command, PlanningArguments& problem, std::string& foc
                     "all, or robot: base and targets are estimated along, but do not count")
         ->check(CLI::IsMember({"all", "robot"}))
         ->capture_default_str();
-    command.add_option("--augment", request.augment, "Poses measured already (CSV or .mat): held");
-    command.add_option("--plan", request.repaired, "Plan to repair: its poses are held");
-    command.add_option("--drop", request.dropped, "Ids of its poses to replace, by commas")
-        ->delimiter(',');
+    command.add_option("--augment", request.augment, "Poses measured already (CSV or .mat): held")
+        ->check(file_name());
+    command.add_option("--plan", request.repaired, "Plan to repair: its poses are held")
+        ->check(file_name());
+    add_ids_option(command, "--drop", request.dropped, "Ids of its poses to replace, by commas");
     add_prior_option(command, problem.prior, "; --poses may then be below what identifies");
     command.add_option("--repeats", request.repeats, "Samples of each configuration")
         ->check(real_number(1, 1e9))
@@ -229,21 +239,26 @@ void add_problem(CLI::App& command, PlanningArguments& problem, std::string& foc
 
 void add_workspace(CLI::App& command, PlanningArguments& problem) {
     io::PosePlanRequest& request = problem.request;
-    command.add_option("--workspace", request.workspace,
-                       "Configurations (CSV) where the robot shall be accurate (default: drawn)");
+    CLI::Option* const given =
+        command
+            .add_option("--workspace", request.workspace,
+                        "Configurations (CSV) where the robot shall be accurate (default: drawn)")
+            ->check(file_name());
     command
         .add_option("--workspace-poses", request.workspace_count,
                     "How many are drawn for it otherwise")
         ->check(whole_number(1, 20000))
-        ->default_val(Index{500});
+        ->default_val(Index{500})
+        ->excludes(given);
     command
-        .add_option("--workspace-box-mm", problem.workspace_box_mm,
+        .add_option("--workspace-box-mm", request.workspace_box_mm,
                     "Box of the base frame that targets are in then: least x,y,z,largest x,y,z "
                     "(default: the cell's target boxes)")
         ->delimiter(',')
-        ->expected(6);
+        ->expected(6)
+        ->excludes(given);
     command
-        .add_option("--workspace-target", problem.target,
+        .add_option("--workspace-target", request.workspace_target,
                     "Target whose position counts, from 1 (0: all of them)")
         ->check(whole_number(0, 10000))
         ->capture_default_str();
@@ -261,9 +276,12 @@ void add_search(CLI::App& command, Arguments& arguments) {
         ->check(whole_number(0, largest_seed));
     command.add_option("--time", request.time_limit, "Seconds after which to stop")
         ->check(real_number(1e-3, 1e9));
-    command.add_option("-o,--out", arguments.out,
-                       "Plan file (default: <campaign>.poses.json in this folder)");
-    command.add_option("--csv", arguments.csv, "Write the configurations as CSV, too");
+    command
+        .add_option("-o,--out", arguments.out,
+                    "Plan file (default: <campaign>.poses.json in this folder)")
+        ->check(file_name());
+    command.add_option("--csv", arguments.csv, "Write the configurations as CSV, too")
+        ->check(file_name());
     command.add_flag("--progress", arguments.progress,
                      "Show progress on standard error even if it is no terminal");
 }

@@ -167,14 +167,16 @@ void print_pose_plan(const PlanningProblem& problem, const io::PosePlanFile& fil
                      const Tour& tour) {
     print(fmt::format("pool:        {}\nposes:       {}\ncriterion:   {}\nvalue:       {}\n",
                       describe_pool(problem.pool), describe_counts(problem),
-                      criterion_name(file.request.criterion), format_value(file.request.criterion, file.value)));
+                      criterion_name(file.request.criterion),
+                      format_value(file.request.criterion, file.value)));
     print(fmt::format(
         "predicted:   position error {} mm RMS, 95 % are below {} mm, over {} workspace poses\n",
         format_mm(file.predicted_rms), format_mm(file.predicted_p95), problem.workspace_count));
     print(
         fmt::format("pool bound:  {}, proven: no choice from the pool has a larger value\n"
                     "best choice: {} from the pool, efficiency {} proven\n",
-                    format_value(file.request.criterion, file.pool_bound), format_value(file.request.criterion, file.pool_value),
+                    format_value(file.request.criterion, file.pool_bound),
+                    format_value(file.request.criterion, file.pool_value),
                     format_fixed(file.pool_efficiency, 4)));
     const std::string looseness =
         describe_looseness(file.pool_efficiency, file.starts_at_best, file.request.starts);

@@ -8,11 +8,13 @@
 #include <numeric>
 
 #include "common.hpp"
-#include "posewise/calibrator/estimate.hpp"
+#include "measured.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/text.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/model/joint_limits.hpp"
 #include "posewise/planner/tour.hpp"
 #include "posewise/report/units.hpp"
 
@@ -22,36 +24,8 @@ namespace {
 constexpr Index draws_per_workspace_pose = 20;
 /// New poses keep so far from those that could not be reached (some joint, rad).
 constexpr double distance_from_dropped = 5 * std::numbers::pi / 180;
-/// Another robot's measurements are off by more than so many expected errors.
-constexpr double credible_errors = 10;
 
 // ---- Poses measured already ----
-
-/// The nominal robot explains its own measurements to about the expected error, another's not.
-void check_is_of_robot(const Campaign& campaign, const Measurements& measured,
-                       const std::string& path) {
-    Parameters fitted;
-    try {
-        fitted = register_base_and_targets(campaign, measured);
-    } catch (const InputError&) {
-        return;  // too few to tell
-    }
-    const double error = make_metrics(mean_residuals(campaign, fitted, measured)).distance_rms;
-    const Blocks blocks = make_prediction_blocks(campaign, fitted, measured.configurations);
-    const auto points = static_cast<double>(blocks.matrix.rows()) / 3;
-    const double expected =
-        std::sqrt(blocks.matrix
-                      .middleCols(base_parameter_count(campaign), campaign.robot.parameter_count())
-                      .squaredNorm() /
-                  points) +
-        campaign.model_error;
-    if (error <= credible_errors * expected) return;
-    throw input_error_at(
-        {path}, fmt::format("are these of another robot? The nominal robot misses them by {} mm "
-                            "RMS; must be about {} mm, as the spread of {} says",
-                            format_short(mm_per_m * error, 3), format_short(mm_per_m * expected, 3),
-                            campaign.name));
-}
 
 void settle_base(Campaign& campaign, const std::optional<Measurements>& measured) {
     if (campaign.has_nominal_base && campaign.has_nominal_targets) return;
@@ -99,6 +73,16 @@ RowMatrixXd configurations_of(const std::vector<io::ContinuousPose>& poses, Inde
     return configurations;
 }
 
+/// Throws InputError for a pose that cannot be measured.
+void check_kept(const PlanningProblem& problem, const io::ContinuousPose& pose) {
+    std::string fault = describe_violation(problem.constraints, pose.joints);
+    if (pose.visible.empty()) fault = "shows no target";
+    if (fault.empty()) return;
+    throw input_error_at({problem.request.repaired},
+                         fmt::format("pose {} {}; find another for it with --drop {}",
+                                     quote(pose.id), fault, pose.id));
+}
+
 /// Keeps the poses of a plan but those dropped, which new poses only must stay away from.
 void hold_kept(PlanningProblem& problem, std::vector<io::ContinuousPose> poses) {
     const Campaign& campaign = problem.campaign;
@@ -116,6 +100,7 @@ void hold_kept(PlanningProblem& problem, std::vector<io::ContinuousPose> poses) 
     });
     const std::vector<io::ContinuousPose> away(dropped, poses.end());
     poses.erase(dropped, poses.end());
+    for (const io::ContinuousPose& pose : poses) check_kept(problem, pose);
     const Index L = parameter_count(campaign);
     hold(problem, MatrixXd::Zero(L, L), configurations_of(away, joints));
     std::vector<std::vector<bool>> is_visible;
@@ -157,20 +142,19 @@ void count_new_poses(PlanningProblem& problem, Index asked_for) {
     }
 }
 
-RowMatrixXd find_workspace(const PlanningArguments& arguments, const io::CampaignFile& file,
-                           const Campaign& campaign, std::uint64_t seed) {
-    const io::PosePlanRequest& request = arguments.request;
+RowMatrixXd find_workspace(const io::PosePlanRequest& request, const io::CampaignFile& file) {
+    const Campaign& campaign = file.campaign;
     if (!request.workspace.empty()) return io::read_configurations(request.workspace, file).joints;
     Cell cell = file.cell;
     cell.sight.reset();  // the robot works where the tracker sees nothing, too
-    if (const auto& box = arguments.workspace_box_mm; !box.empty()) {
+    if (const auto& box = request.workspace_box_mm; !box.empty()) {
         cell.target_boxes = {{Vector3d(box[0], box[1], box[2]) / mm_per_m,
                               Vector3d(box[3], box[4], box[5]) / mm_per_m}};
     }
     const Index count = request.workspace_count;
     try {
         const Pool pool = make_pool(Constraints(campaign, std::move(cell)),
-                                    draws_per_workspace_pose * count, seed + 1);
+                                    draws_per_workspace_pose * count, request.seed + 1);
         return pool.configurations.topRows(std::min(count, pool.configurations.rows()));
     } catch (const InputError& error) {
         throw InputError(std::string("workspace: ") + error.what());
@@ -199,39 +183,76 @@ void apply_options(PlanningProblem& problem) {
     }
 }
 
-}  // namespace
+struct StatedProblem {
+    PlanningProblem problem;
+    io::CampaignFile file;
+};
 
-PlanningProblem read_planning_problem(const PlanningArguments& arguments) {
+/// All but pool, poses to keep and workspace.
+StatedProblem state_problem(const PlanningArguments& arguments) {
     io::CampaignFile file = io::read_campaign(arguments.request.campaign);
     const io::PosePlanRequest request = complete_request(arguments, file);
     std::optional<Measurements> measured;
     if (!request.augment.empty()) {
-        measured = io::read_measurements(request.augment, file);
+        measured = read_measured(request.augment, file);
         check_is_of_robot(file.campaign, *measured, request.augment);
     }
     file.campaign.spread.is_prior = request.has_prior;
     settle_base(file.campaign, measured);
-    std::vector<io::ContinuousPose> repaired;
+    Cell cell = file.cell;
     if (!request.repaired.empty()) {
-        repaired = io::read_planned_poses(request.repaired, file.campaign);
-        double& distance = file.cell.least_joint_distance;
-        distance = std::max(distance, distance_from_dropped);
+        cell.least_joint_distance = std::max(cell.least_joint_distance, distance_from_dropped);
     }
     const Campaign& campaign = file.campaign;
-    PlanningProblem problem{request, campaign, Constraints(campaign, file.cell), {}, {}, 0, 0,
+    PlanningProblem problem{request, campaign, Constraints(campaign, std::move(cell)), {}, {}, 0, 0,
                             {},      {}};
     apply_options(problem);
     if (request.has_prior) hold(problem, prior_information(campaign), {});
     if (measured) hold_measured(problem, *measured);
-    if (!request.repaired.empty()) hold_kept(problem, std::move(repaired));
-    count_new_poses(problem, arguments.pose_count);
-    problem.pool = make_pool(problem.constraints, request.pool_count, request.seed);
-    plan_tour(problem.constraints, problem.pool.configurations.topRows(1));  // throws early if home
-    const RowMatrixXd workspace = find_workspace(arguments, file, campaign, request.seed);
+    return {std::move(problem), std::move(file)};
+}
+
+void draw_workspace(PlanningProblem& problem, const io::CampaignFile& file) {
+    const RowMatrixXd workspace = find_workspace(problem.request, file);
     problem.workspace_count = workspace.rows();
-    problem.prediction =
-        make_prediction_blocks(campaign, campaign.nominal, workspace, arguments.target - 1);
-    return problem;
+    problem.prediction = make_prediction_blocks(problem.campaign, problem.campaign.nominal,
+                                                workspace, problem.request.workspace_target - 1);
+}
+
+}  // namespace
+
+PlanningProblem read_planning_problem(const PlanningArguments& arguments, const StopSignal& stop) {
+    auto [problem, file] = state_problem(arguments);
+    if (!problem.request.repaired.empty()) {
+        hold_kept(problem, io::read_pose_plan(problem.request.repaired, problem.campaign).poses);
+    }
+    count_new_poses(problem, arguments.pose_count);
+    problem.pool =
+        make_pool(problem.constraints, problem.request.pool_count, problem.request.seed, stop);
+    problem.request.pool_count = problem.pool.candidate_count;
+    check_memory(problem.campaign, problem.pool.configurations.rows(), "--pool");
+    plan_tour(problem.constraints, problem.pool.configurations.topRows(1));  // throws early if home
+    draw_workspace(problem, file);
+    return std::move(problem);
+}
+
+PlanningProblem state_planning_problem(const PlanningArguments& arguments) {
+    auto [problem, file] = state_problem(arguments);
+    draw_workspace(problem, file);
+    return std::move(problem);
+}
+
+std::string describe_violation(const Constraints& constraints, const VectorXd& q) {
+    constexpr double rounding = 1e-9;  // m or rad
+    const std::string beyond = describe_limit_violation(constraints.robot(), q);
+    if (!beyond.empty()) return "is beyond the joint limits (less their margin): " + beyond;
+    const ConstraintReport report = constraints.check(q);
+    for (std::size_t k = 0; k < constraint_count; ++k) {
+        const auto constraint = static_cast<Constraint>(k);
+        if (report[constraint] >= -rounding || constraint == Constraint::JointLimits) continue;
+        return std::string("does not meet ") + constraint_name(constraint);
+    }
+    return "";
 }
 
 std::vector<Index> visible_targets(const PlanningProblem& problem, const VectorXd& q) {

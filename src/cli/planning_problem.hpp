@@ -18,8 +18,6 @@ struct PlanningArguments {
     std::string criterion;
     std::optional<bool> prior;
     std::optional<std::uint64_t> seed;
-    std::vector<double> workspace_box_mm;  ///< least x, y, z, then largest; empty: the cell's boxes
-    Index target = 0;                      ///< to predict for, from 1; 0: all
 };
 
 /// A planning problem with all its files read, ready to be solved.
@@ -35,9 +33,17 @@ struct PlanningProblem {
     PlanOptions options;  ///< without test poses, which are `prediction` for G and V
 };
 
-/// Reads what the arguments name, draws pool and workspace. Throws InputError for files that cannot
-/// be used, or not together, and for a cell without a feasible pose.
-PlanningProblem read_planning_problem(const PlanningArguments& arguments);
+/// Reads what the arguments name, draws pool and workspace; less of the pool if `stop` comes.
+/// Throws InputError for files that cannot be used, or not together, and for a cell without a
+/// feasible pose.
+PlanningProblem read_planning_problem(const PlanningArguments& arguments, const StopSignal& stop);
+
+/// The same but for the pool and the poses of a plan to repair: what a finished plan is judged by.
+PlanningProblem state_planning_problem(const PlanningArguments& arguments);
+
+/// The constraint that a pose does not meet, in words ("does not meet keep_out"); empty if it
+/// meets all, to rounding.
+std::string describe_violation(const Constraints& constraints, const VectorXd& q);
 
 /// Targets a pose shows, from 0; all if the cell does not speak of sight.
 std::vector<Index> visible_targets(const PlanningProblem& problem, const VectorXd& q);

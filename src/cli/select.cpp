@@ -35,8 +35,8 @@ what is proven about it:
 At few poses the bound is loose: the plan may well be the best although little is proven.
 
 Measurements register the base and the targets; other candidates need them in the campaign file (or
-measured poses, --augment). A candidate file has the columns config,q1_deg,..., perhaps
-visible_targets (as plan --csv writes it), and may have more; --random draws a scrambled Halton
+measured poses, --augment). A candidate file has the columns config,q1_deg,... and perhaps
+visible_targets (as plan --csv writes it), or is a measurement file; --random draws a scrambled Halton
 sequence within the joint limits. A file of blocks has a row of numbers a line (or is a MATLAB
 matrix), and each --rows of them are one candidate, named 0, 1, ...
 A file of --groups has the columns config,group.
@@ -73,8 +73,11 @@ void check_usage(const Arguments& arguments) {
                   is_plain ? "must be left out with --blocks" : "is required (but for --blocks)");
     require_usage(is_plain == (request.source.rows_per_block > 0), "--rows",
                   is_plain ? "is required with --blocks" : "goes with --blocks only");
-    require_usage(is_plain || request.source.variable.empty(), "--variable",
-                  "goes with --blocks only");
+    const std::string& blocks = arguments.blocks;
+    require_usage(
+        request.source.variable.empty() || blocks.ends_with(".mat") || blocks.ends_with(".MAT"),
+        "--variable", "goes with --blocks and a MATLAB file only");
+    require_usage(!is_plain || request.source.repeats == 0, "--repeats", "needs a robot");
     require_usage(!is_plain || arguments.focus == "all", "--focus", "needs a robot");
     require_usage(!is_plain || arguments.least_distance_deg == 0, "--least-distance-deg",
                   "needs a robot");
@@ -164,12 +167,12 @@ std::string default_out(const io::CandidateSource& source) {
     return std::filesystem::path(path).stem().string() + ".plan.json";
 }
 
-Plan search(SelectionProblem& problem, const Arguments& arguments) {
+Plan search(SelectionProblem& problem, const Arguments& arguments, const Stopwatch& watch,
+            const InterruptFlag& interrupted) {
     SelectOptions& options = problem.options;
     options.starts = arguments.search.starts;
     options.seed = arguments.search.seed;
-    options.time_limit = arguments.search.time_limit;
-    const InterruptFlag interrupted;
+    options.time_limit = watch.left();
     options.interrupted = interrupted.get();
     Progress progress("selecting", arguments.progress);
     options.progress = [&](const SelectProgress& state) {
@@ -184,8 +187,18 @@ void select(Arguments arguments) {
     check_outputs({request.source.campaign, request.source.path, request.augment,
                    request.test_poses, request.groups},
                   {out});
-    SelectionProblem problem = read_problem(request);
-    const io::PlanFile file = make_plan_file(problem, search(problem, arguments));
+    const InterruptFlag interrupted;
+    const double limit = arguments.search.time_limit;
+    const Stopwatch watch(limit);
+    SelectionProblem problem =
+        read_problem(request, {interrupted.get(), deadline_after(limit / 2)});
+    if (problem.request.source.count < request.source.count) {
+        print_warning(
+            fmt::format("only {} of the {} random candidates were drawn in the time there was",
+                        problem.request.source.count, request.source.count));
+    }
+    const io::PlanFile file =
+        make_plan_file(problem, search(problem, arguments, watch, interrupted));
     const io::CampaignFile* campaign = problem.campaign ? &*problem.campaign : nullptr;
     io::write_plan(out, file, campaign != nullptr ? &campaign->campaign : nullptr);
     print_plan(file);
@@ -213,7 +226,8 @@ void add_sources(CLI::App& command, Arguments& arguments) {
     group
         .add_option("--random", arguments.random, "As many configurations within the joint limits")
         ->check(whole_number(1, 10000000));
-    group.add_option("--blocks", arguments.blocks, "A plain matrix, CSV or MATLAB .mat; no robot");
+    group.add_option("--blocks", arguments.blocks, "A plain matrix, CSV or MATLAB .mat; no robot")
+        ->check(file_name());
     group.require_option(1);
     command.add_option("--rows", source.rows_per_block, "--blocks: rows of one candidate")
         ->check(whole_number(1, 1000000));
@@ -235,19 +249,23 @@ void add_problem(CLI::App& command, Arguments& arguments) {
         .add_option("-c,--criterion", arguments.criterion,
                     "o1, o2, o3, o4, o5, a, d, e, g or v (default: the campaign's, else d)")
         ->check(criterion_check());
-    command.add_option("--test-poses", request.test_poses,
-                       "g and v: predict these (as --candidates; default: the candidates)");
+    command
+        .add_option("--test-poses", request.test_poses,
+                    "g and v: predict these (as --candidates; default: the candidates)")
+        ->check(file_name());
     add_prior_option(command, arguments.prior, "; --poses may then be below what identifies");
     command
         .add_option("--focus", arguments.focus,
                     "all, or robot: base and targets are estimated along, but do not count")
         ->check(CLI::IsMember({"all", "robot"}))
         ->capture_default_str();
-    command.add_option("--augment", request.augment,
-                       "Poses measured already: their information is there, they are not chosen");
-    command.add_option("--exclude", request.excluded, "Ids not to choose, separated by commas")
-        ->delimiter(',');
-    command.add_option("--groups", request.groups, "CSV that gives each candidate a group");
+    command
+        .add_option("--augment", request.augment,
+                    "Poses measured already: their information is there, they are not chosen")
+        ->check(file_name());
+    add_ids_option(command, "--exclude", request.excluded, "Ids not to choose, by commas");
+    command.add_option("--groups", request.groups, "CSV that gives each candidate a group")
+        ->check(file_name());
     command.add_option("--per-group", request.group_limit, "At most so many of one group")
         ->check(count);
     command
@@ -270,8 +288,10 @@ void add_search(CLI::App& command, Arguments& arguments) {
         ->check(whole_number(0, largest_seed));
     command.add_option("--time", arguments.search.time_limit, "Seconds after which to stop")
         ->check(real_number(1e-3, 1e9));
-    command.add_option("-o,--out", arguments.out,
-                       "Plan file (default: <candidates>.plan.json in this folder)");
+    command
+        .add_option("-o,--out", arguments.out,
+                    "Plan file (default: <candidates>.plan.json in this folder)")
+        ->check(file_name());
     command.add_flag("--progress", arguments.progress,
                      "Show progress on standard error even if it is no terminal");
 }

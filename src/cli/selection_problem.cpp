@@ -4,6 +4,7 @@
 
 #include "common.hpp"
 #include "files.hpp"
+#include "measured.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/io/checksum.hpp"
@@ -19,6 +20,7 @@ namespace {
 using Kind = io::CandidateSource::Kind;
 
 constexpr double same_joints = 1e-6;  // rad or m
+constexpr Index drawn_at_once = 4096;
 
 std::vector<std::string> number_ids(Index count) {
     std::vector<std::string> ids;
@@ -83,7 +85,7 @@ void state_plain(SelectionProblem& problem) {
 
 // ---- A robot ----
 
-/// Candidates as the request says where.
+/// Candidates of a file.
 struct Candidates {
     std::optional<Measurements> measured;
     RowMatrixXd share;  ///< of a candidate's samples in which each target is seen
@@ -91,33 +93,59 @@ struct Candidates {
 
 Candidates read_candidates(SelectionProblem& problem) {
     const io::CandidateSource& source = problem.request.source;
-    io::Checksum checksum;
     Candidates candidates;
-    if (source.kind == Kind::Random) {
-        HaltonOptions halton;
-        halton.scramble_seed = source.seed;
-        problem.configurations =
-            halton_configurations(problem.campaign->campaign.robot, source.count, halton);
-        problem.ids = number_ids(source.count);
-        candidates.share.setOnes(source.count, problem.campaign->campaign.sensor->target_count());
-    } else if (source.kind == Kind::Configurations) {
+    if (source.kind == Kind::Configurations) {
         auto [ids, joints, is_visible] = io::read_configurations(source.path, *problem.campaign);
         problem.ids = std::move(ids);
         problem.configurations = std::move(joints);
         candidates.share = is_visible.cast<double>();
-    } else {
+    } else if (source.kind == Kind::Measurements) {
         const Measurements& measured =
-            candidates.measured.emplace(io::read_measurements(source.path, *problem.campaign));
+            candidates.measured.emplace(read_measured(source.path, *problem.campaign));
+        check_is_of_robot(problem.campaign->campaign, measured, source.path);
         problem.ids = measured.ids;
         problem.configurations = measured.configurations;
         candidates.share = share_seen(measured);
-        checksum.add(measured.observations);
     }
+    return candidates;
+}
+
+/// Random candidates and their blocks, part by part until `stop` comes; all targets are seen.
+void draw_candidates(SelectionProblem& problem, const Parameters& parameters,
+                     const StopSignal& stop) {
+    const Campaign& campaign = problem.campaign->campaign;
+    io::CandidateSource& source = problem.request.source;
+    const Index rows = campaign.sensor->row_count();
+    check_memory(campaign, source.count, "--random");
+    RowMatrixXd& configurations = problem.configurations;
+    Blocks& blocks = problem.blocks;
+    configurations.resize(source.count, campaign.robot.joint_count());
+    blocks.matrix.resize(rows * source.count, parameter_count(campaign));
+    Index drawn = 0;
+    while (drawn < source.count && !(drawn > 0 && stop.is_set())) {
+        const Index size = std::min(source.count - drawn, drawn_at_once);
+        const RowMatrixXd part =
+            halton_configurations(campaign.robot, size, {{}, 1 + drawn, source.seed});
+        configurations.middleRows(drawn, size) = part;
+        blocks.matrix.middleRows(rows * drawn, rows * size) =
+            make_blocks(campaign, parameters, part, source.repeats).matrix;
+        drawn += size;
+    }
+    configurations.conservativeResize(drawn, Eigen::NoChange);
+    blocks.matrix.conservativeResize(rows * drawn, Eigen::NoChange);
+    for (Index i = 1; i <= drawn; ++i) blocks.first_row.push_back(rows * i);
+    problem.ids = number_ids(drawn);
+    source.count = drawn;
+}
+
+/// Of all that candidates are: ids, joints, what was measured, what is seen.
+std::string checksum_of(const SelectionProblem& problem, const Candidates& candidates) {
+    io::Checksum checksum;
+    if (candidates.measured) checksum.add(candidates.measured->observations);
     for (const std::string& id : problem.ids) checksum.add(id);
     checksum.add(problem.configurations);
     if ((candidates.share.array() < 1).any()) checksum.add(candidates.share);
-    problem.checksum = checksum.text();
-    return candidates;
+    return checksum.text();
 }
 
 /// Base and targets: registered from the candidates' measurements, else as the campaign states
@@ -166,22 +194,29 @@ RowMatrixXd turning_joints(const Chain& robot, const RowMatrixXd& configurations
     return configurations(Eigen::all, turning);
 }
 
-void state_with_robot(SelectionProblem& problem) {
+void state_with_robot(SelectionProblem& problem, const StopSignal& stop) {
     io::SelectionRequest& request = problem.request;
     problem.campaign = io::read_campaign(request.source.campaign);
     problem.campaign->campaign.spread.is_prior = request.has_prior;
     const Campaign& campaign = problem.campaign->campaign;
-    const auto [measured, share] = read_candidates(problem);
+    const Candidates candidates = read_candidates(problem);
+    const std::optional<Measurements>& measured = candidates.measured;
     if (request.source.repeats == 0) {
         request.source.repeats = measured ? mean_repeats(*measured) : 1;
     }
     std::optional<Measurements> augment;
     if (!request.augment.empty()) {
-        augment = io::read_measurements(request.augment, *problem.campaign);
+        augment = read_measured(request.augment, *problem.campaign);
+        check_is_of_robot(campaign, *augment, request.augment);
     }
     const Parameters parameters = find_parameters(problem, measured, augment);
-    problem.blocks =
-        make_blocks(campaign, parameters, problem.configurations, request.source.repeats * share);
+    if (request.source.kind == Kind::Random) {
+        draw_candidates(problem, parameters, stop);
+    } else {
+        problem.blocks = make_blocks(campaign, parameters, problem.configurations,
+                                     request.source.repeats * candidates.share);
+    }
+    problem.checksum = checksum_of(problem, candidates);
     problem.options.column_names = parameter_names(campaign);
     if (request.has_prior) held(problem) += prior_information(campaign);
     if (augment) hold_measured(problem, parameters, *augment);
@@ -239,7 +274,7 @@ Index CandidateIndex::find(const std::string& id, const std::string& what) const
     return found->second;
 }
 
-SelectionProblem read_problem(io::SelectionRequest request) {
+SelectionProblem read_problem(io::SelectionRequest request, const StopSignal& stop) {
     check_test_poses(request);
     SelectionProblem problem;
     problem.request = std::move(request);
@@ -247,7 +282,7 @@ SelectionProblem read_problem(io::SelectionRequest request) {
         if (problem.request.source.repeats == 0) problem.request.source.repeats = 1;
         state_plain(problem);
     } else {
-        state_with_robot(problem);
+        state_with_robot(problem, stop);
     }
     state_limits(problem);
     return problem;

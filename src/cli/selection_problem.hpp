@@ -8,6 +8,7 @@
 
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/plan_file.hpp"
+#include "posewise/planner/search.hpp"
 #include "posewise/selection/exchange.hpp"
 
 namespace posewise::cli {
@@ -24,8 +25,9 @@ struct SelectionProblem {
     SelectOptions options;               ///< the problem's part; refers to test_poses
 };
 
-/// Throws InputError for files that cannot be used, or not together.
-SelectionProblem read_problem(io::SelectionRequest request);
+/// Of random candidates fewer are drawn if `stop` comes; the request returned says how many. Throws
+/// InputError for files that cannot be used, or not together.
+SelectionProblem read_problem(io::SelectionRequest request, const StopSignal& stop = {});
 
 /// Index of a candidate. Throws InputError, beginning with `what`, if there is none of that id.
 class CandidateIndex {

@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
+#include "measured.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/text.hpp"
@@ -142,7 +143,8 @@ void study(const Arguments& arguments) {
     auto file = io::read_campaign(arguments.paths.campaign);
     bool& is_prior = file.campaign.spread.is_prior;
     is_prior = arguments.prior.value_or(is_prior);
-    const auto measurements = io::read_measurements(arguments.paths.measurements, file);
+    const auto measurements = read_measured(arguments.paths.measurements, file);
+    check_is_of_robot(file.campaign, measurements, arguments.paths.measurements);
     StudyOptions options = arguments.options;
     options.seed = arguments.seed.value_or(file.seed);
     options.criteria = arguments.criteria;

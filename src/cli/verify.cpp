@@ -7,10 +7,14 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "findings.hpp"
+#include "options.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/io/pose_plan_file.hpp"
 #include "posewise/report/units.hpp"
 #include "posewise/selection/bound.hpp"
 #include "selection_problem.hpp"
+#include "verify_poses.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -26,6 +30,8 @@ certificate, whatever made the plan: no search, no optimiser. Says of each wheth
 and checks the candidates (a changed file is noticed by its checksum), the poses and the limits the
 plan was made under. Where a plan claims to be optimal beyond its certificate, all other choices
 were ruled out or tried; that search is made again.
+Of a pose plan, as plan writes it, checks every pose (joint limits, the cell's constraints, targets
+seen), the value and the predicted accuracy; its bounds are not proven by what the file holds.
 Exit code: 0 everything is as stated, 1 something is not.)";
 
 struct Arguments {
@@ -37,32 +43,8 @@ struct Arguments {
     std::string test_poses;
 };
 
-/// Findings, printed as they come; the names of what is wrong are kept.
-class Findings {
-  public:
-    void note(const std::string& name, bool is_right, const std::string& text) {
-        print(fmt::format("{:<11} {}\n", name + ':', text));
-        const bool is_new = std::find(wrong_.begin(), wrong_.end(), name) == wrong_.end();
-        if (!is_right && is_new) wrong_.push_back(name);
-    }
-    void compare(const std::string& name, double stated, double actual, bool is_right) {
-        note(name, is_right,
-             is_right ? "as stated, " + format_short(stated, 8)
-                      : fmt::format("stated {}, is {}", format_short(stated, 12),
-                                    format_short(actual, 12)));
-    }
-    const std::vector<std::string>& wrong() const { return wrong_; }
-
-  private:
-    std::vector<std::string> wrong_;
-};
-
 /// To rounding, which differs between processors; D is a logarithm, so its zero means nothing.
-bool agree(Criterion criterion, double a, double b) {
-    const double least = criterion == Criterion::D ? 1 : 0;
-    if (!std::isfinite(a) || !std::isfinite(b)) return a == b;
-    return std::abs(a - b) <= 1e-8 * std::max({least, std::abs(a), std::abs(b)});
-}
+bool agree(Criterion criterion, double a, double b) { return is_same_value(criterion, a, b, 1e-8); }
 
 void check_candidates(const io::PlanFile& file, const SelectionProblem& problem,
                       Findings& findings) {
@@ -210,7 +192,7 @@ io::SelectionRequest redirect(io::SelectionRequest request, const Arguments& arg
     return request;
 }
 
-void verify(const Arguments& arguments) {
+void verify_selection(const Arguments& arguments) {
     const io::PlanFile file = io::read_plan(arguments.plan);
     const SelectionProblem problem = read_problem(redirect(file.request, arguments));
     print(fmt::format("{}: {} of {} candidates by {}\n", arguments.plan, file.request.pose_count,
@@ -220,9 +202,16 @@ void verify(const Arguments& arguments) {
     const std::vector<Index> poses = find_poses(file, problem, findings);
     check_poses(problem, poses, findings);
     check_numbers(file.plan, problem, poses, findings);
-    if (findings.wrong().empty()) return;
-    throw InputError(
-        fmt::format("{}: not as stated: {}", arguments.plan, fmt::join(findings.wrong(), ", ")));
+    if (problem.campaign) check_assumptions(arguments.plan, problem.campaign->campaign, findings);
+    findings.conclude(arguments.plan);
+}
+
+void verify(const Arguments& arguments) {
+    if (!io::is_pose_plan(arguments.plan)) return verify_selection(arguments);
+    if (!(arguments.candidates + arguments.groups + arguments.test_poses).empty()) {
+        throw CLI::ValidationError("PLAN", "is a pose plan, which takes --campaign and --augment");
+    }
+    verify_pose_plan(arguments.plan, arguments.campaign, arguments.augment);
 }
 
 }  // namespace
@@ -231,7 +220,9 @@ void add_verify(CLI::App& program) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App* command =
         program.add_subcommand("verify", "Check a plan's value, bound and efficiency");
-    command->add_option("PLAN", arguments->plan, "Plan file, as select writes it")->required();
+    command->add_option("PLAN", arguments->plan, "Plan file, as select or plan writes it")
+        ->required()
+        ->check(file_name());
     command->add_option("--campaign", arguments->campaign, "Campaign file, if it is elsewhere now");
     command->add_option("-m,--measurements,--candidates,--blocks", arguments->candidates,
                         "File of the candidates, if it is elsewhere now");

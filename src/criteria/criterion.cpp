@@ -48,7 +48,7 @@ Criterion parse_criterion(std::string_view name) {
         if (entry.name == lower) return entry.criterion;
         all += (all.empty() ? "" : ", ") + std::string(entry.name);
     }
-    throw InputError("criterion is " + quote(name) + ", must be one of " + all +
+    throw InputError(quote(name) + " is no criterion; must be one of " + all +
                      " (or i, the same as v)");
 }
 

@@ -85,7 +85,7 @@ Criterion read_criterion(const YamlValue& value) {
     try {
         return parse_criterion(name);
     } catch (const InputError& problem) {
-        throw value.error(std::string("is not usable: ") + problem.what());
+        throw input_error_at(value.location(), std::string("criterion: ") + problem.what());
     }
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "campaign_sections.hpp"
+#include "posewise/model/joint_limits.hpp"
 #include "text.hpp"
 
 namespace posewise::io {
@@ -130,6 +131,11 @@ void read_tracker(const YamlValue& value, Sight& sight) {
     }
     if (const auto elevation = map.find_measure("elevation")) {
         sight.elevation = read_interval(*elevation);
+        constexpr double upright = std::numbers::pi / 2 * (1 + 1e-12);
+        if (sight.elevation.lower < -upright || sight.elevation.upper > upright) {
+            throw elevation->value.error(
+                "must lie from -90 to 90 deg: straight down to straight up");
+        }
     }
     if (const auto line = map.find("line_of_sight")) sight.is_line_required = line->boolean();
 }
@@ -191,7 +197,13 @@ void read_fixed(const YamlValue& value, const Chain& robot, Cell& cell) {
 }
 
 void read_motion(const YamlMap& map, const Chain& robot, Cell& cell) {
-    if (const auto home = map.find_measure("home")) cell.home = read_joint_angles(*home, robot);
+    if (const auto home = map.find_measure("home")) {
+        cell.home = read_joint_angles(*home, robot);
+        const std::string violation = describe_limit_violation(robot, cell.home);
+        if (!violation.empty()) {
+            throw home->value.error("is beyond the joint limits: " + violation);
+        }
+    }
     for (const char* const unit : {"deg", "rad"}) {
         const std::string key = std::string("speed_") + unit + "_per_s";
         const auto speed = map.find(key);

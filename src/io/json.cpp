@@ -1,8 +1,11 @@
 #include "json.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <set>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/core/text.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/io/atomic_file.hpp"
 #include "posewise/measurement/point_sensor.hpp"
@@ -43,6 +46,26 @@ void append_json(const Json& value, const std::string& indent, std::string& text
     text += '\n' + indent + (value.is_object() ? '}' : ']');
 }
 
+/// Notes the first key that an object has twice, of which a parser would keep one silently.
+class RepeatedKey {
+  public:
+    /// As a callback of Json::parse().
+    bool operator()(Json::parse_event_t event, const Json& parsed) {
+        if (event == Json::parse_event_t::object_start) keys_.emplace_back();
+        if (event == Json::parse_event_t::object_end) keys_.pop_back();
+        if (event == Json::parse_event_t::key) {
+            const auto key = parsed.get<std::string>();
+            if (!keys_.back().insert(key).second && !key_) key_ = key;
+        }
+        return true;
+    }
+    const std::optional<std::string>& key() const { return key_; }
+
+  private:
+    std::vector<std::set<std::string>> keys_;  // of the objects that are open
+    std::optional<std::string> key_;
+};
+
 void add_noise(Json& assumptions, const IsotropicNoise& noise) {
     assumptions["sigma_m"] = noise.sigma;
 }
@@ -81,8 +104,12 @@ void write_json(const std::string& path, const Json& document) {
 Json read_document(const std::string& path, const std::string& kind) {
     const std::string content = read_file(path);
     Json document;
+    RepeatedKey repeated;
     try {
-        document = Json::parse(content);
+        document =
+            Json::parse(content, [&](int /*depth*/, Json::parse_event_t event, const Json& parsed) {
+                return repeated(event, parsed);
+            });
     } catch (const Json::parse_error& problem) {
         const auto location =
             content.empty() ? FileLocation{path} : locate(path, content, problem.byte);
@@ -92,12 +119,22 @@ Json read_document(const std::string& path, const std::string& kind) {
         throw input_error_at({path}, "has a number beyond the range of numbers; must be a " + kind +
                                          " as posewise writes it");
     }
+    if (repeated.key()) {
+        throw input_error_at({path}, "key " + quote(*repeated.key()) +
+                                         " stands twice in one object; must stand once");
+    }
     const auto found = document.is_object() ? document.find("kind") : document.end();
     if (found == document.end() || *found != "posewise " + kind) {
         throw input_error_at({path}, "kind: must be \"posewise " + kind + "\", as in a " + kind +
                                          " written by posewise");
     }
     return document;
+}
+
+bool is_document_of(const std::string& path, const std::string& kind) {
+    const Json document = Json::parse(read_file(path), nullptr, false);
+    const auto found = document.is_object() ? document.find("kind") : document.end();
+    return found != document.end() && *found == "posewise " + kind;
 }
 
 const char* si_suffix(bool is_angle) { return is_angle ? "_rad" : "_m"; }

@@ -17,8 +17,12 @@ Json make_document(const std::string& kind);
 /// is infinite or unknown becomes null. Throws InputError if a text is not UTF-8.
 void write_json(const std::string& path, const Json& document);
 
-/// Reads a document of that kind. Throws InputError for anything else.
+/// Reads a document of that kind. Throws InputError for anything else, and for a key that stands
+/// twice.
 Json read_document(const std::string& path, const std::string& kind);
+
+/// Whether a file says of itself that it is of that kind. Throws InputError if it cannot be read.
+bool is_document_of(const std::string& path, const std::string& kind);
 
 /// `_rad` or `_m`.
 const char* si_suffix(bool is_angle);

@@ -1,23 +1,13 @@
 #include "posewise/io/plan_file.hpp"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "json.hpp"
 #include "plan_names.hpp"
+#include "plan_paths.hpp"
 
 namespace posewise::io {
 namespace {
-
-/// A relative path as seen from the folder of the plan; null if there is none.
-Json path_to_json(const std::string& path, const std::string& plan_path) {
-    if (path.empty()) return nullptr;
-    if (std::filesystem::path(path).is_absolute()) return path;
-    std::error_code failed;
-    const auto folder = std::filesystem::absolute(plan_path, failed).parent_path();
-    const auto from_folder = std::filesystem::proximate(path, folder, failed);
-    return failed ? path : from_folder.generic_string();
-}
 
 Json source_to_json(const PlanFile& file, const std::string& plan_path) {
     using Kind = CandidateSource::Kind;

@@ -1,25 +1,21 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
 
 #include "json_reader.hpp"
 #include "plan_names.hpp"
+#include "plan_paths.hpp"
 #include "posewise/io/plan_file.hpp"
+#include "posewise/io/pose_plan_file.hpp"
 
 namespace posewise::io {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// A stored path as one that leads there from here; empty if null.
-std::string read_path(const JsonValue& value, const std::string& plan_path) {
-    if (value.is_null()) return "";
-    const std::filesystem::path path = value.text();
-    const auto from_plan = std::filesystem::path(plan_path).parent_path() / path;
-    std::error_code ignored;
-    return std::filesystem::exists(from_plan, ignored) ? from_plan.string() : path.string();
-}
 
 CandidateSource read_source(const JsonValue& json, const std::string& plan_path) {
     using Kind = CandidateSource::Kind;
@@ -51,7 +47,7 @@ SelectionRequest read_request(const JsonValue& document, const std::string& plan
     try {
         request.criterion = parse_criterion(document["criterion"].text());
     } catch (const InputError& problem) {
-        throw document["criterion"].error(std::string("is not usable: ") + problem.what());
+        throw document["criterion"].error(problem.what());
     }
     const JsonValue problem = document["problem"];
     request.pose_count = problem["pose_count"].count(1);
@@ -66,6 +62,9 @@ SelectionRequest read_request(const JsonValue& document, const std::string& plan
     for (const JsonValue& id : problem["excluded"].list()) request.excluded.push_back(id.text());
     request.repeat_limit = problem["repeat_limit"].count(1);
     request.least_distance = problem["least_distance_rad"].number();
+    if (!(request.least_distance >= 0)) {
+        throw problem["least_distance_rad"].error("must not be negative");
+    }
     return request;
 }
 
@@ -112,6 +111,10 @@ Plan read_result(const JsonValue& document) {
     return plan;
 }
 
+bool agree(double a, double b) {
+    return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
+}
+
 /// The poses, each with its proper id, none twice.
 std::vector<PlannedPose> read_poses(const Json& document, const std::string& path) {
     const auto found = document.find("poses");
@@ -147,6 +150,7 @@ PlanFile read_plan(const std::string& path) {
     const JsonValue document(json, path);
     PlanFile file;
     file.poses = read_poses(json, path);
+    for (const JsonValue& pose : document["poses"].list()) pose["times"].count(1);
     file.request = read_request(document, path);
     file.candidate_count = file.request.source.count;
     file.checksum = document["candidates"]["checksum"].text();
@@ -155,7 +159,29 @@ PlanFile read_plan(const std::string& path) {
 }
 
 std::vector<PlannedPose> read_plan_poses(const std::string& path) {
-    return read_poses(read_document(path, "plan"), path);
+    return read_poses(read_document(path, is_pose_plan(path) ? "pose plan" : "plan"), path);
+}
+
+std::vector<std::string> find_changed_assumptions(const std::string& path,
+                                                  const Campaign& campaign) {
+    const Json json = read_document(path, is_pose_plan(path) ? "pose plan" : "plan");
+    JsonValue(json, path)["assumes"].values();  // an object
+    const Json stated = json["assumes"].flatten();
+    const Json actual = assumptions_to_json(campaign).flatten();
+    std::vector<std::string> changed;
+    for (const auto& [place, value] : actual.items()) {
+        const Json other = stated.contains(place) ? stated[place] : Json();
+        const bool is_same = other.is_number() && agree(value.get<double>(), other.get<double>());
+        if (is_same) continue;
+        changed.push_back(
+            fmt::format("{}: stated {}, is {}", place.substr(1), other.dump(), value.dump()));
+    }
+    for (const auto& [place, value] : stated.items()) {
+        if (place.empty() || actual.contains(place)) continue;
+        changed.push_back(
+            fmt::format("{}: stated {}, is not assumed", place.substr(1), value.dump()));
+    }
+    return changed;
 }
 
 }  // namespace posewise::io

@@ -4,10 +4,13 @@
 
 #include <cmath>
 #include <iterator>
+#include <map>
 
 #include "csv_reader.hpp"
 #include "json_reader.hpp"
 #include "measurement_columns.hpp"
+#include "plan_paths.hpp"
+#include "posewise/core/text.hpp"
 #include "posewise/io/atomic_file.hpp"
 
 namespace posewise::io {
@@ -22,8 +25,6 @@ bool turns(const Campaign& campaign, Index joint) {
 const std::string& joint_name(const Campaign& campaign, Index joint) {
     return campaign.robot.joints()[static_cast<std::size_t>(joint)].name;
 }
-
-Json optional_text(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 Json joints_to_json(const Campaign& campaign, const VectorXd& q) {
     Json json;
@@ -48,15 +49,17 @@ Json pose_to_json(const Campaign& campaign, const ContinuousPose& pose) {
     return json;
 }
 
-Json request_to_json(const PosePlanRequest& request) {
-    return {{"campaign_file", request.campaign},
+Json request_to_json(const PosePlanRequest& request, const std::string& plan_path) {
+    return {{"campaign_file", path_to_json(request.campaign, plan_path)},
             {"prior", request.has_prior},
             {"focus", request.is_focused_on_robot ? "robot" : "all"},
-            {"augment", optional_text(request.augment)},
-            {"repaired_plan", optional_text(request.repaired)},
+            {"augment", path_to_json(request.augment, plan_path)},
+            {"repaired_plan", path_to_json(request.repaired, plan_path)},
             {"dropped", request.dropped},
-            {"workspace", optional_text(request.workspace)},
+            {"workspace", path_to_json(request.workspace, plan_path)},
             {"workspace_poses", request.workspace_count},
+            {"workspace_box_mm", request.workspace_box_mm},
+            {"workspace_target", request.workspace_target},
             {"pool", request.pool_count},
             {"starts", request.starts},
             {"repeats", request.repeats},
@@ -111,12 +114,28 @@ ContinuousPose read_pose(const JsonValue& json, const Campaign& campaign) {
     return pose;
 }
 
+std::vector<ContinuousPose> read_poses(const JsonValue& json, const Campaign& campaign) {
+    std::vector<ContinuousPose> poses;
+    std::map<std::string, std::size_t> places;
+    for (const JsonValue& item : json.list()) {
+        ContinuousPose pose = read_pose(item, campaign);
+        const auto [first, is_new] = places.emplace(pose.id, poses.size());
+        if (!is_new) {
+            throw item["id"].error(fmt::format("{} occurs before in poses[{}]; keep one",
+                                               quote(pose.id), first->second));
+        }
+        poses.push_back(std::move(pose));
+    }
+    if (poses.empty()) throw json.error("is empty; must hold at least one pose");
+    return poses;
+}
+
 }  // namespace
 
 void write_pose_plan(const std::string& path, const PosePlanFile& file, const Campaign& campaign) {
     Json document = make_document(kind);
     document["campaign"] = campaign.name;
-    document["asked_for"] = request_to_json(file.request);
+    document["asked_for"] = request_to_json(file.request, path);
     document["criterion"] = criterion_name(file.request.criterion);
     document["value"] = file.value;
     document["bounds"] = bounds_to_json(file);
@@ -133,13 +152,53 @@ void write_pose_plan(const std::string& path, const PosePlanFile& file, const Ca
     write_json(path, document);
 }
 
-std::vector<ContinuousPose> read_planned_poses(const std::string& path, const Campaign& campaign) {
-    const Json document = read_document(path, kind);
-    std::vector<ContinuousPose> poses;
-    for (const JsonValue& json : JsonValue(document, path)["poses"].list()) {
-        poses.push_back(read_pose(json, campaign));
+bool is_pose_plan(const std::string& path) { return is_document_of(path, kind); }
+
+PosePlanRequest read_pose_plan_request(const std::string& path) {
+    const Json json = read_document(path, kind);
+    const JsonValue document(json, path);
+    const JsonValue asked = document["asked_for"];
+    PosePlanRequest request;
+    request.campaign = read_path(asked["campaign_file"], path);
+    try {
+        request.criterion = parse_criterion(document["criterion"].text());
+    } catch (const InputError& problem) {
+        throw document["criterion"].error(problem.what());
     }
-    return poses;
+    request.has_prior = asked["prior"].boolean();
+    request.is_focused_on_robot = asked["focus"].text() == "robot";
+    request.augment = read_path(asked["augment"], path);
+    request.workspace = read_path(asked["workspace"], path);
+    request.workspace_count = asked["workspace_poses"].count(1);
+    for (const JsonValue& number : asked["workspace_box_mm"].list()) {
+        request.workspace_box_mm.push_back(number.number());
+    }
+    if (request.workspace_box_mm.size() != 0 && request.workspace_box_mm.size() != 6) {
+        throw asked["workspace_box_mm"].error("must have 6 numbers or none");
+    }
+    request.workspace_target = asked["workspace_target"].count(0);
+    request.repeats = asked["repeats"].number();
+    if (!(request.repeats >= 1)) throw asked["repeats"].error("must be at least 1");
+    request.seed = asked["seed"].natural_number();
+    return request;
+}
+
+PosePlanFile read_pose_plan(const std::string& path, const Campaign& campaign) {
+    const Json json = read_document(path, kind);
+    const JsonValue document(json, path);
+    const std::string name = document["campaign"].text();
+    if (name != campaign.name) {
+        throw document["campaign"].error("is " + quote(name) + "; must be a plan of " +
+                                         quote(campaign.name));
+    }
+    PosePlanFile file;
+    file.request = read_pose_plan_request(path);
+    file.poses = read_poses(document["poses"], campaign);
+    file.value = document["value"].number();
+    const JsonValue predicted = document["predicted"];
+    file.predicted_rms = predicted["position_error_rms_m"].number();
+    file.predicted_p95 = predicted["position_error_p95_m"].number();
+    return file;
 }
 
 void write_configurations_csv(const std::string& path, const Campaign& campaign,

@@ -21,10 +21,18 @@ void check_interval(const Interval& interval, const char* name) {
 
 bool is_direction(const Vector3d& normal) { return std::abs(normal.norm() - 1) < 1e-9; }
 
+constexpr double upright = std::numbers::pi / 2 * (1 + 1e-12);
+constexpr const char* elevation_rule =
+    "tracker.elevation must lie from -90 to 90 deg: straight down to straight up";
+
 void check_sight(const Sight& sight, std::size_t target_count) {
     check_interval(sight.range, "range");
     check_interval(sight.azimuth, "azimuth");
     check_interval(sight.elevation, "elevation");
+    require(std::abs(sight.elevation.lower) <= upright || std::isinf(sight.elevation.lower),
+            elevation_rule);
+    require(std::abs(sight.elevation.upper) <= upright || std::isinf(sight.elevation.upper),
+            elevation_rule);
     const bool is_turn = std::isinf(sight.azimuth.upper - sight.azimuth.lower) ||
                          sight.azimuth.upper - sight.azimuth.lower <= 2 * std::numbers::pi + 1e-9;
     require(is_turn, "tracker.azimuth is wider than a full turn");

@@ -174,11 +174,12 @@ void check_all_is_seen(const DesignSpace& space, const MatrixXd& M) {
     const double rounding = std::numeric_limits<double>::epsilon() * eigen.eigenvalues().tail(1)[0];
     const std::string deviation =
         least > 100 * rounding
-            ? fmt::format("known to {:.2g} times its expected size", 1 / std::sqrt(least))
+            ? fmt::format("known to {:.2g} times its expected size only", 1 / std::sqrt(least))
             : "unknown";
     throw InputError(fmt::format(
-        "the best plan found leaves the parameter direction {} (in expected errors) {}, must be {} "
-        "times at most; take more poses, more starts or a prior (--poses, --starts, --prior)",
+        "the best plan found leaves the parameter direction {} (in expected errors) {}, must be "
+        "known to {} times at worst; take more poses, more starts or a prior (--poses, --starts, "
+        "--prior)",
         describe_combination(eigen.eigenvectors().col(0), space.parameter_names), deviation,
         largest_deviation));
 }
@@ -246,6 +247,7 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
 
 PlannedPoses plan_poses(const Campaign& campaign, const Constraints& constraints, const Pool& pool,
                         double repeats, const PlanOptions& options) {
+    check_pool_size(pool, options.pose_count);
     const DesignSpace space = make_design_space(campaign, campaign.nominal, repeats, &constraints);
     return plan_poses(space, pool.configurations,
                       make_visible_blocks(campaign, campaign.nominal, pool.configurations,

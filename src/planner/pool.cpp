@@ -8,6 +8,8 @@
 namespace posewise {
 namespace {
 
+constexpr Index drawn_at_once = 4096;
+
 void count_rejections(const ConstraintReport& report,
                       std::array<Rejections, constraint_count>& rejections) {
     bool is_first = true;
@@ -47,6 +49,27 @@ InputError nothing_feasible(const Pool& pool) {
                       ", so relax " + name + " first");
 }
 
+/// Parts of a pool, one behind the other.
+Pool join(const std::vector<Pool>& parts) {
+    Pool pool;
+    Index rows = 0;
+    for (const Pool& part : parts) rows += part.configurations.rows();
+    pool.configurations.resize(rows, parts.front().configurations.cols());
+    Index row = 0;
+    for (const Pool& part : parts) {
+        pool.configurations.middleRows(row, part.configurations.rows()) = part.configurations;
+        row += part.configurations.rows();
+        pool.is_visible.insert(pool.is_visible.end(), part.is_visible.begin(),
+                               part.is_visible.end());
+        pool.candidate_count += part.candidate_count;
+        for (std::size_t k = 0; k < constraint_count; ++k) {
+            pool.rejections[k].first += part.rejections[k].first;
+            pool.rejections[k].in_all += part.rejections[k].in_all;
+        }
+    }
+    return pool;
+}
+
 }  // namespace
 
 Pool filter_pool(const Constraints& constraints, const RowMatrixXd& candidates) {
@@ -72,17 +95,39 @@ Pool filter_pool(const Constraints& constraints, const RowMatrixXd& candidates) 
     return pool;
 }
 
-Pool make_pool(const Constraints& constraints, Index count, std::uint64_t seed) {
+Pool make_pool(const Constraints& constraints, Index count, std::uint64_t seed,
+               const StopSignal& stop) {
     if (count < 1) {
         throw InputError("a pool of " + std::to_string(count) + " candidates, must be at least 1");
     }
-    RowMatrixXd candidates = halton_configurations(constraints.robot(), count, {{}, 1, seed});
-    for (const auto& [joint, value] : constraints.cell().fixed_joints) {
-        candidates.col(joint).setConstant(value);
+    std::vector<Pool> parts;
+    Index drawn = 0;
+    while (drawn < count && !(drawn > 0 && stop.is_set())) {
+        const Index size = std::min(count - drawn, drawn_at_once);
+        RowMatrixXd candidates =
+            halton_configurations(constraints.robot(), size, {{}, 1 + drawn, seed});
+        for (const auto& [joint, value] : constraints.cell().fixed_joints) {
+            candidates.col(joint).setConstant(value);
+        }
+        parts.push_back(filter_pool(constraints, candidates));
+        drawn += size;
     }
-    Pool pool = filter_pool(constraints, candidates);
+    Pool pool = join(parts);
     if (pool.configurations.rows() == 0) throw nothing_feasible(pool);
     return pool;
+}
+
+void check_pool_size(const Pool& pool, Index needed) {
+    const Index count = pool.configurations.rows();
+    if (count >= needed) return;
+    const std::vector<std::size_t> kinds = by_rejections(pool);
+    const std::string relax =
+        kinds.empty()
+            ? ""
+            : " or relax " + std::string(constraint_name(static_cast<Constraint>(kinds.front())));
+    throw InputError("the pool has only " + std::to_string(count) + " feasible poses of " +
+                     std::to_string(pool.candidate_count) + " candidates, " +
+                     std::to_string(needed) + " are needed; raise --pool" + relax);
 }
 
 std::string describe_rejections(const Pool& pool) {

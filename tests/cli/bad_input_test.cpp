@@ -50,6 +50,14 @@ TEST_F(BadInput, TwoOutputsAreTwoFiles) {
     expect_input_error("study c.yaml -m s.csv --csv a.svg --plot ./a.svg", "written twice");
 }
 
+TEST_F(BadInput, AFolderIsNoOutput) {
+    std::filesystem::create_directory(folder_ / "d");
+    for (const std::string command :
+         {"select c.yaml -m s.csv -k 8 --starts 1000000", "plan c.yaml -k 8 --starts 100000"}) {
+        expect_input_error(command + " -o d", "d: is a folder; must be the name of a file");
+    }
+}
+
 TEST_F(BadInput, AFolderThatIsNotThereIsSaidAtOnce) {
     expect_input_error("study c.yaml -m s.csv --random 1000000 --csv none/a.csv", "none/a.csv: ");
 }
@@ -112,7 +120,7 @@ TEST_F(BadInput, ColumnsInTheWrongUnitAreSuspected) {
     }
     write_text("m.csv", text);
     const Outcome outcome = run("calibrate c.yaml -m m.csv --folds 0");
-    EXPECT_NE(outcome.err.find("are the units of the columns right?"), std::string::npos)
+    EXPECT_NE(outcome.err.find("are points in mm where the file says m?"), std::string::npos)
         << outcome.err;
 }
 
@@ -129,6 +137,8 @@ TEST_F(BadInput, WrongUsageIsOneLineThatSaysWhereToLook) {
              {"calibrate c.yaml -m s.csv --alpha nan", "'nan'"},
              {"calibrate c.yaml -m s.csv --folds ''", "''"},
              {"study c.yaml -m s.csv -c ,", "criteri"},
+             {"select c.yaml -m s.csv -k 8 -c o6",
+              "--criterion: 'o6' is no criterion; must be one"},
              {"study c.yaml -m s.csv -k 8:6", "the first must not be above the last"}}) {
         expect_usage_error(arguments, words);
     }

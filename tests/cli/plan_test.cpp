@@ -42,6 +42,9 @@ TEST_F(PlanCommand, WritesPosesAndTellsWhatTheyAchieve) {
     // What a person measures by: select reads it, and its digits are those of the plan.
     run_well("select " + fanuc_design + " --candidates p.csv -k 8 -o s.json");
     EXPECT_EQ(json_of("s.json").at("poses").size(), 8u);
+    // And calibrate takes the plan as it takes that of select.
+    run_well("simulate " + fanuc_design + " --configurations p.csv -o m.csv");
+    run_well("calibrate " + fanuc_design + " -m m.csv --plan p.json --folds 0");
 }
 
 TEST_F(PlanCommand, IsTheSameForOneThreadAndTwo) {
@@ -77,6 +80,54 @@ TEST_F(PlanCommand, RepairsAPlanWithoutMovingTheOthers) {
     EXPECT_EQ(kept, 8);
     expect_input_error("plan " + fanuc_design + quick + "--plan p.json --drop p77 -o x.json",
                        "--drop p77: p.json has no such pose");
+}
+
+TEST_F(PlanCommand, ChecksThePlanItRepairs) {
+    run_well("plan " + cell_design + " -k 8 --pool 1500 --starts 1 -o p.json");
+    run_well("verify p.json");
+    const auto sound = json_of("p.json");
+    const auto expect_refused = [&](const nlohmann::json& plan, const std::string& words) {
+        write_text("e.json", plan.dump());
+        expect_input_error("plan " + cell_design + " --plan e.json --drop p2" + quick + "-o x.json",
+                           words);
+    };
+    auto plan = sound;
+    auto& pose = *std::find_if(plan.at("poses").begin(), plan.at("poses").end(),
+                               [](const auto& other) { return other.at("id") == "p4"; });
+    const auto joints = pose.at("joints");
+    pose.at("joints").at("q1_rad") = 1e6;
+    expect_refused(plan,
+                   "e.json: pose 'p4' is beyond the joint limits (less their margin): q1 is ");
+    pose.at("joints") = joints;
+    pose.at("joints").at("q2_rad") = 1.0;
+    pose.at("joints").at("q3_rad") = -1.3;
+    expect_refused(plan, "find another for it with --drop p4");
+    write_text("e.json", plan.dump());  // what is dropped may be infeasible
+    run_well("plan " + cell_design + " --plan e.json --drop p4 --pool 1500 --starts 1 -o r.json");
+    pose.at("joints") = joints;
+    pose.at("visible_targets") = nlohmann::json::array();
+    expect_refused(plan, "e.json: pose 'p4' shows no target");
+    pose.at("visible_targets") = {1};
+    pose.at("id") = "p5";
+    expect_refused(plan, "'p5' occurs before in poses[");
+    plan = sound;
+    plan.at("campaign") = "another cell";
+    expect_refused(plan, "campaign: is 'another cell'; must be a plan of 'FANUC");
+}
+
+TEST_F(PlanCommand, SaysThatThePoolIsTooSmall) {
+    expect_input_error("plan " + cell_design + " -k 12 --pool 60 -o x.json",
+                       " feasible poses of 60 candidates, 12 are needed; raise --pool or relax ");
+}
+
+TEST_F(PlanCommand, TimeCoversThePool) {
+    const std::string text = run("plan " + cell_design +
+                                 " -k 12 --prior --pool 10000000 --workspace-poses 50 --time 1 "
+                                 "-o p.json")
+                                 .out;
+    EXPECT_LT(json_of("p.json").at("asked_for").at("pool"), 10000000);
+    EXPECT_EQ(json_of("p.json").at("is_interrupted"), true);
+    EXPECT_NE(text.find("left out, planning was stopped"), std::string::npos) << text;
 }
 
 TEST_F(PlanCommand, CountsWhatWasMeasuredAlready) {

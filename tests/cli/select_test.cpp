@@ -175,10 +175,88 @@ TEST_F(Select, ReturnsTheBestSoFarWhenTimeIsUpOrCtrlCComes) {
 }
 
 TEST_F(Select, NamesTheDirectionThatNoCandidateSees) {
-    expect_input_error("select " + seed_design + " -m s.csv -k 12", "(0.61 Tx2 - 0.56 dq2 + 0.56 dq3)");
+    expect_input_error("select " + seed_design + " -m s.csv -k 12",
+                       "(0.61 Tx2 - 0.56 dq2 + 0.56 dq3)");
     write_text("flat.csv", "1,2,2\n3,5,5\n-1,4,4\n2,2,2\n");
-    expect_input_error("select --blocks flat.csv --rows 1 -k 3",
-                       "(0.71 column 2 - 0.71 column 3)");
+    expect_input_error("select --blocks flat.csv --rows 1 -k 3", "(0.71 column 2 - 0.71 column 3)");
+}
+
+TEST_F(Select, RefusesCandidatesBeyondTheLimits) {
+    write_text("q.csv",
+               "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\na,10,20,-30,40,50,60\n"
+               "far,-20,5,10,80,-60,2000\n");
+    const std::string words =
+        "q.csv: configuration 'far' is beyond the joint limits: q6 is 2000 deg, must be from -";
+    expect_input_error("select " + fanuc_design + " --candidates q.csv -k 5", words);
+    expect_input_error("select " + input_ + "-k 8 -c v --test-poses q.csv", words);
+    expect_input_error("simulate " + fanuc_design + " --configurations q.csv -o x.csv", words);
+    expect_input_error("plan " + fanuc_design + " -k 12 --workspace q.csv", words);
+}
+
+TEST_F(Select, WarnsAboutMeasuredPosesBeyondTheLimits) {
+    const std::string design =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    std::string text = design;
+    const auto limits = text.find("q1: {limits_deg: [");
+    text.replace(limits, text.find('}', limits) - limits, "q1: {limits_deg: [-20, 20]");
+    write_text("narrow.yaml", text);
+    const Outcome outcome = run("select narrow.yaml -m s.csv -k 8");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err.find("posewise: warning: s.csv: "), 0U) << outcome.err;
+    EXPECT_NE(outcome.err.find("of 24 measured configurations are beyond"), std::string::npos);
+    EXPECT_NE(outcome.err.find("must be from -20 to 20 deg\n"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Select, RefusesMeasurementsOfAnotherRobot) {
+    std::string other =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    const std::string length = "Tz 1075 mm";
+    write_text("other.yaml", other.replace(other.find(length), length.size(), "Tz 600 mm"));
+    run_well("simulate other.yaml -k 16 -o other.csv");
+    const std::string words = "other.csv: are these of another robot? The nominal robot misses";
+    expect_input_error("select " + fanuc_design + " -m other.csv -k 8", words);
+    expect_input_error("select " + fanuc_design + " -m s.csv --augment other.csv -k 8", words);
+    expect_input_error("study " + fanuc_design + " -m other.csv", words);
+    const Outcome calibrated = run("calibrate " + fanuc_design + " -m other.csv");
+    EXPECT_EQ(calibrated.code, 0);
+    EXPECT_EQ(calibrated.err.find("posewise: warning: " + words), 0U) << calibrated.err;
+    // A robot that may be far from nominal, as its campaign says, is no other.
+    write_text("rough.yaml", other.replace(other.find("length_mm: 1,"), 13, "length_mm: 300,"));
+    run_well("select rough.yaml -m s.csv -k 8");
+}
+
+TEST_F(Select, SuspectsTheUnitOfMeasurements) {
+    const auto renamed = [&](const std::string& from, const std::string& to) {
+        std::string text = text_of("s.csv");
+        for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
+            text.replace(at, from.size(), to);
+        }
+        write_text("wrong.csv", text);
+        return "select " + fanuc_design + " -m wrong.csv -k 8";
+    };
+    expect_input_error(renamed("_mm", "_m"), "are points in mm where the file says m?");
+    expect_input_error(renamed("_rad", "_deg"), "are joint values in rad where the file says deg");
+}
+
+TEST_F(Select, RefusesMoreCandidatesThanMemoryHolds) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "the sanitizer itself needs more address space";
+#endif
+    const Outcome outcome =
+        run("select " + fanuc_design + " --random 10000000 -k 8 -o x.json", "ulimit -v 8000000 &&");
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find(" GB; lower --random\n"), std::string::npos) << outcome.err;
+    EXPECT_FALSE(has_file("x.json"));
+}
+
+TEST_F(Select, StopsDrawingWhenTimeIsUp) {
+    const Outcome outcome =
+        run("select " + fanuc_design + " --random 300000 -k 20 --time 0.1 -o t.json");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find(" of the 300000 random candidates were drawn"), std::string::npos)
+        << outcome.err;
+    EXPECT_LT(plan("t.json").at("candidates").at("count"), 300000);
+    run_well("verify t.json");
 }
 
 TEST_F(Select, RefusesUnusableBlocks) {

@@ -92,6 +92,59 @@ TEST_F(Verify, NoticesEditedPoses) {
     expect_input_error("verify e.json", "occurs before in poses[1]");
 }
 
+TEST_F(Verify, NoticesEditedAssumptions) {
+    expect_found([](Json& plan) { plan["assumes"]["sigma_m"] = 1e-5; },
+                 "assumes:    sigma_m: stated 1e-05, is 5.2e-05", "assumes");
+    expect_found([](Json& plan) { plan["assumes"]["expected_error"].erase("Tx1_m"); },
+                 "assumes:    expected_error/Tx1_m: stated null, is 0.001", "assumes");
+    expect_found([](Json& plan) { plan["assumes"]["wind"] = 3; }, "wind: stated 3, is not assumed",
+                 "assumes");
+}
+
+TEST_F(Verify, RefusesWhatIsMissingOrOutOfRange) {
+    Json plan = Json::parse(text_of("p.json"));
+    plan["problem"]["least_distance_rad"] = -1;
+    write_text("e.json", plan.dump());
+    expect_input_error("verify e.json", "problem.least_distance_rad: must not be negative");
+    plan = Json::parse(text_of("p.json"));
+    plan["poses"][3].erase("times");
+    write_text("e.json", plan.dump());
+    expect_input_error("verify e.json", "poses[3].times: is missing");
+}
+
+TEST_F(Verify, ChecksPosePlans) {
+    const std::string quick = " --pool 500 --starts 1 --workspace-poses 50 ";
+    run_well("plan " + fanuc_design + " -k 8" + quick + "-o q.json --workspace-target 2");
+    const std::string text = run_well("verify q.json");
+    EXPECT_NE(text.find("poses:      8, all feasible"), std::string::npos) << text;
+    EXPECT_NE(text.find("value:      as stated, "), std::string::npos);
+    EXPECT_NE(text.find("RMS/mm:     as stated, "), std::string::npos);
+    const Json sound = Json::parse(text_of("q.json"));
+    const auto expect_wrong = [&](const std::function<void(Json&)>& edit,
+                                  const std::string& words) {
+        Json plan = sound;
+        edit(plan);
+        write_text("e.json", plan.dump());
+        const Outcome outcome = run("verify e.json");
+        EXPECT_EQ(outcome.code, 1) << words;
+        EXPECT_NE((outcome.out + outcome.err).find(words), std::string::npos)
+            << outcome.out << outcome.err;
+    };
+    expect_wrong([](Json& plan) { plan["value"] = plan["value"].get<double>() * 1.001; },
+                 "value:      stated");
+    expect_wrong([](Json& plan) { plan["poses"][1]["joints"]["q2_rad"] = 1e6; },
+                 "is beyond the joint limits");
+    expect_wrong([](Json& plan) { plan["poses"][1]["visible_targets"] = Json::array(); },
+                 "shows no target");
+    expect_wrong([](Json& plan) { plan["poses"][1]["visible_targets"] = {1}; },
+                 "value:      stated");
+    expect_wrong([](Json& plan) { plan["campaign"] = "another"; },
+                 "e.json: campaign: is 'another'; must be a plan of ");
+    expect_wrong([](Json& plan) { plan["assumes"]["model_error_m"] = 1; },
+                 "model_error_m: stated 1");
+    EXPECT_EQ(run("verify q.json --groups g.csv").code, 2);
+}
+
 TEST_F(Verify, NoticesAChangedCandidateFile) {
     run_well("simulate " + fanuc_design + " --truth 8 --seed 3 --poses 40 -o s.csv");
     const Outcome outcome = run("verify p.json");

@@ -125,6 +125,12 @@ TEST(ReadCell, TellsWhatIsWrongAndWhere) {
     expect_error("[[2, 0, 0], [0, 0, 1]]", "[[2, 0, 0]]", "28:56", "must have 2");
     expect_error("angle_deg: 25", "angle_deg: 0", "28:43", "must be positive");
     expect_error("home_deg: [0, -10]", "home_deg: [0]", "29:13", "must have 2");
+    expect_error("home_deg: [0, -10]", "home_deg: [0, 121]", "29:13",
+                 "q2 is 121 deg, must be from");
+    expect_error("elevation_deg: [-10, 40]", "elevation_deg: [100, 145]", "27:70",
+                 "from -90 to 90 deg");
+    expect_error("elevation_deg: [-10, 40]", "elevation_deg: [-91, 40]", "27:70",
+                 "from -90 to 90 deg");
     expect_error("[90, 180]", "[90, 0]", "30:20", "must be positive for every joint");
 }
 

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "campaign_text.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "support/temporary_folder.hpp"
@@ -46,6 +48,17 @@ TEST_F(ReadConfigurations, MayListTheTargetsThatAreVisible) {
     const std::string misspelt =
         testing::input_error_of([&] { read(header + ",visible_target\n"); });
     EXPECT_NE(misspelt.find("did you mean 'visible_targets'?"), std::string::npos) << misspelt;
+}
+
+TEST_F(ReadConfigurations, RefusesWhatIsBeyondTheLimits) {
+    const std::string header = "config,q1_deg,q2_rad,lift_mm\n";
+    const Joint& q1 = campaign_.campaign.robot.joints()[0];
+    const double most = q1.upper * 180 / std::numbers::pi;
+    read(header + "edge," + std::to_string(most + 1e-6) + ",0.25,125\n");
+    const std::string error = testing::input_error_of(
+        [&] { read(header + "in,0,0.25,125\nout," + std::to_string(most + 1) + ",0.25,125\n"); });
+    EXPECT_EQ(error.rfind("q.csv: configuration 'out' is beyond the joint limits: q1 is ", 0), 0U)
+        << error;
 }
 
 TEST_F(ReadConfigurations, StillNeedsEveryJoint) {

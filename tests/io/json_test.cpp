@@ -14,5 +14,13 @@ TEST(ReadJson, RefusesANumberThatOverflows) {
               "it");
 }
 
+TEST(ReadJson, RefusesAKeyThatStandsTwice) {
+    const testing::TemporaryFolder folder;
+    const std::string path = folder.write(
+        "p.json", R"({"kind": "posewise plan", "poses": [{"id": "a"}, {"id": "b", "id": "c"}]})");
+    EXPECT_EQ(testing::input_error_of([&] { read_plan_poses(path); }),
+              "p.json: key 'id' stands twice in one object; must stand once");
+}
+
 }  // namespace
 }  // namespace posewise::io

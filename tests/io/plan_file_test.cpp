@@ -110,7 +110,7 @@ TEST_F(PlanFileTest, SaysWhereAnEditedFileIsWrong) {
     EXPECT_EQ(error_with("\"value\": -12.5", "\"value\": \"high\""),
               "p.json: value: is of type string; must be a number");
     EXPECT_EQ(error_with("\"criterion\": \"d\"", "\"criterion\": \"q\"").substr(0, 35),
-              "p.json: criterion: is not usable: c");
+              "p.json: criterion: 'q' is no criter");
     EXPECT_EQ(error_with("\"pose_count\": 3", "\"pose_count\": 0"),
               "p.json: problem.pose_count: is 0; must be at least 1");
     EXPECT_EQ(error_with("\"times\": 2", "\"times\": 1.5"),

@@ -48,6 +48,35 @@ TEST(MakePool, RejectsOnlyWhatBreaksAConstraint) {
     EXPECT_GT(infeasible, 60);
 }
 
+TEST(MakePool, StopsWhenToldAndSaysHowMuchWasDrawn) {
+    const Constraints constraints(cell_campaign(), demo_cell());
+    const std::atomic<bool> interrupted = true;
+    const Pool some = make_pool(constraints, 1000000, 1, {&interrupted});
+    EXPECT_LT(some.candidate_count, 10000);
+    // What was drawn is what the same count draws.
+    const Pool whole = make_pool(constraints, some.candidate_count + 1000, 1);
+    EXPECT_EQ(whole.configurations.topRows(some.configurations.rows()), some.configurations);
+    const Pool same = make_pool(constraints, some.candidate_count, 1);
+    EXPECT_EQ(same.configurations, some.configurations);
+    EXPECT_EQ(same.is_visible, some.is_visible);
+    EXPECT_EQ(describe_rejections(same), describe_rejections(some));
+}
+
+TEST(MakePool, SaysWhatToDoAboutTooFew) {
+    const Pool pool = make_pool(Constraints(cell_campaign(), demo_cell()), 200, 1);
+    check_pool_size(pool, pool.configurations.rows());
+    try {
+        check_pool_size(pool, 190);
+        FAIL() << "enough";
+    } catch (const InputError& error) {
+        EXPECT_NE(
+            std::string(error.what())
+                .find("feasible poses of 200 candidates, 190 are needed; raise --pool or relax "),
+            std::string::npos)
+            << error.what();
+    }
+}
+
 TEST(MakePool, CountsWhatEachConstraintRemoved) {
     const Pool pool = make_pool(Constraints(cell_campaign(), demo_cell()), 2000, 1);
     Index first = 0;

@@ -251,8 +251,10 @@ TEST(SelectByExchange, RefusesUnusableInput) {
     blind.matrix.col(2) = blind.matrix.col(1);
     expect_refusal(blind, make_options(Criterion::D, 5), "unseen (0.71 column 2 - 0.71 column 3)");
     blind.matrix.col(3).setZero();
-    expect_refusal(blind, make_options(Criterion::D, 5),
-                   "2 of 4 parameter directions unseen (1 column 4; 0.71 column 2 - 0.71 column 3)");
+    for (const char* const part :
+         {"2 of 4 parameter directions unseen (", "0.71 column 2 - 0.71 column 3", "1 column 4"}) {
+        expect_refusal(blind, make_options(Criterion::D, 5), part);
+    }
     Blocks not_finite = candidates;
     not_finite.matrix(1, 1) = std::numeric_limits<double>::quiet_NaN();
     expect_refusal(not_finite, make_options(Criterion::D, 5), "finite");

@@ -25,8 +25,10 @@ struct Configurations {
 
 /// Reads configurations as read_measurements() does; a CSV need not have the sensor's columns, and
 /// what stands in them does not matter. Its column visible_targets, if there is one, lists the
-/// targets each shows ("1 3"), as plans do; else all are visible.
+/// targets each shows ("1 3"), as plans do; else all are visible. What is beyond the joint limits
+/// is refused: nobody measured there.
 Configurations read_configurations(const std::string& path, const CampaignFile& file);
+/// The same without a look at the limits.
 Configurations read_configurations_csv(const std::string& path, const Campaign& campaign);
 
 /// CSV with a header that carries the units: config, <joint>_rad or _deg (_m or _mm if it slides),

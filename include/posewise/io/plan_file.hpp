@@ -70,7 +70,13 @@ void write_plan(const std::string& path, const PlanFile& file, const Campaign* c
 /// InputError with the place for whatever is missing, of another type or out of range.
 PlanFile read_plan(const std::string& path);
 
-/// Only the poses of a plan file, in order. Throws InputError for a file that is not a plan.
+/// Only the poses of a plan file, in order; of a pose plan, too. Throws InputError for a file that
+/// is neither.
 std::vector<PlannedPose> read_plan_poses(const std::string& path);
+
+/// What a plan or pose plan states to assume (noise, scales) and the campaign does not, one line
+/// each: "sigma_m: stated 1e-05, is 5.2e-05". Throws InputError as read_plan().
+std::vector<std::string> find_changed_assumptions(const std::string& path,
+                                                  const Campaign& campaign);
 
 }  // namespace posewise::io

@@ -30,8 +30,11 @@ struct PosePlanRequest {
     std::string repaired;              ///< path of the plan that was repaired; empty: none
     std::vector<std::string> dropped;  ///< ids of its poses that could not be reached
     std::string workspace;             ///< path; empty: drawn
-    Index workspace_count = 0;
-    Index pool_count = 0;  ///< candidates drawn
+    Index workspace_count = 0;         ///< how many shall be drawn
+    /// Least x, y, z, then largest, where targets are in drawn ones; empty: the cell's boxes.
+    std::vector<double> workspace_box_mm;
+    Index workspace_target = 0;  ///< that counts, from 1; 0: all
+    Index pool_count = 0;        ///< candidates drawn
     Index starts = 0;
     double repeats = 1;
     double time_limit = 0;  ///< s; 0: none
@@ -58,11 +61,19 @@ struct PosePlanFile {
 };
 
 /// Writes the plan as JSON: joint values in rad (m) exactly and in degrees (mm) for people.
+/// Relative paths are stored as seen from the plan's folder.
 void write_pose_plan(const std::string& path, const PosePlanFile& file, const Campaign& campaign);
 
-/// Ids, joint values and visible targets of the poses, in visiting order. Throws InputError with
-/// the place for a file that is no such plan or one of another robot.
-std::vector<ContinuousPose> read_planned_poses(const std::string& path, const Campaign& campaign);
+/// Whether a file says of itself that it is such a plan. Throws InputError if it cannot be read.
+bool is_pose_plan(const std::string& path);
+
+/// What was asked for. Relative paths lead from the plan's folder or else from the current one.
+/// Throws InputError with the place for whatever is missing, of another type or out of range.
+PosePlanRequest read_pose_plan_request(const std::string& path);
+
+/// What verification needs: request, poses (without ways), value and predicted accuracy. Throws
+/// InputError as read_pose_plan_request(), and for a plan of another robot or campaign.
+PosePlanFile read_pose_plan(const std::string& path, const Campaign& campaign);
 
 /// The configurations as CSV: config, then each joint in degrees or mm, digits enough to read the
 /// numbers back exactly, then visible_targets ("1 3"). read_configurations() reads it.

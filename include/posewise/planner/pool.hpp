@@ -4,6 +4,7 @@
 
 #include "posewise/core/blocks.hpp"
 #include "posewise/planner/constraints.hpp"
+#include "posewise/planner/search.hpp"
 
 namespace posewise {
 
@@ -24,9 +25,14 @@ struct Pool {
 };
 
 /// Draws `count` configurations of a scrambled Halton sequence within the limits and margins, fixed
-/// joints at their values, and keeps the feasible ones. The same for any number of threads. Throws
-/// InputError for a count below 1, or if none is feasible: it names the constraints to blame.
-Pool make_pool(const Constraints& constraints, Index count, std::uint64_t seed);
+/// joints at their values, and keeps the feasible ones. The same for any number of threads. Fewer
+/// are drawn if `stop` comes, see Pool::candidate_count. Throws InputError for a count below 1, or
+/// if none is feasible: it names the constraints to blame.
+Pool make_pool(const Constraints& constraints, Index count, std::uint64_t seed,
+               const StopSignal& stop = {});
+
+/// Throws InputError if a pool has fewer poses than a plan needs; it names the constraint to blame.
+void check_pool_size(const Pool& pool, Index needed);
 
 /// One line a constraint that removed anything: "keep_out: 812 (310 first)", the largest first.
 std::string describe_rejections(const Pool& pool);
