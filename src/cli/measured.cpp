@@ -101,7 +101,9 @@ std::string describe_misfit(const Campaign& campaign, const Measurements& measur
         return "";  // too few to tell
     }
     const double error = median_distance(mean_residuals(campaign, fitted, measured));
-    const Blocks blocks = make_prediction_blocks(campaign, fitted, measured.configurations);
+    // At nominal targets: fitted to another robot's points they may be anywhere.
+    const Blocks blocks =
+        make_prediction_blocks(campaign, campaign.nominal, measured.configurations);
     const auto points = static_cast<double>(blocks.matrix.rows()) / 3;
     const double expected =
         std::sqrt(blocks.matrix

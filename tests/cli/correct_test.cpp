@@ -58,8 +58,8 @@ TEST_F(Correct, RefusesWhatItCannotUse) {
                "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\na,10,20,30,40,50,60\n"
                "b,10,120,30,40,50,60\n");
     expect_input_error(correct_ + "p.csv -o c.csv",
-                       "p.csv: configuration 'b': joint 'q2' is at 120 deg; must be within its "
-                       "limits, -60 to 60");
+                       "p.csv: configuration 'b' is beyond the joint limits: q2 is 120 deg, must be "
+                       "from -60 to 60 deg");
     expect_input_error(correct_ + "p.csv -o e.json", "is read and shall be written");
     expect_input_error(correct_ + "absent.csv", "absent.csv");
     expect_input_error("correct " + fanuc_design + " m.csv --poses m.csv", "m.csv");
