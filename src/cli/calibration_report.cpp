@@ -108,9 +108,9 @@ void warn_about_outliers(const std::string& path, const Metrics& nominal) {
     std::fwrite(warning.data(), 1, warning.size(), stderr);
 }
 
-/// Nor does it miss orientations by 10 deg, unless they are read in another order.
+/// Nor does it miss orientations by 5 deg, unless they are read in another order.
 void warn_about_orientation(const std::string& path, const Metrics& nominal) {
-    constexpr double suspicious = 0.2;  // rad
+    constexpr double suspicious = 0.1;  // rad
     if (nominal.orientation_rms <= suspicious) return;
     const std::string warning = fmt::format(
         "posewise: warning: {}: the nominal robot misses the orientations by {} deg (RMS); is qw "
