@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 
 #include "calibration_report.hpp"
@@ -10,6 +11,7 @@
 #include "files.hpp"
 #include "measured.hpp"
 #include "options.hpp"
+#include "posewise/calibrator/global_identification.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
@@ -38,7 +40,10 @@ other geometric errors, gravity terms, free terms and harmonics, as far as the c
 recommends the smallest set within one standard error of the best. The calibration that follows is
 that of the whole campaign; state the recommended set in the campaign file to have it.
 The method two-step is that of Wu et al. 2015; it heads to the same optimum, slowly, and the output
-says whether it got there.)";
+says whether it got there. The method global is for a nominal robot that is far off (lengths by
+--length-error-percent, angles by --angle-error-deg): lm from the nominal robot and from random
+ones, until three starts agree on the best. Errors of 20 deg and 30 % rarely need it; it cannot turn
+round a joint that the campaign file has reversed (inspect --measurements tells).)";
 
 constexpr Index leave_one_out_limit = 100;
 constexpr Index default_folds = 10;
@@ -49,6 +54,9 @@ struct Arguments {
     std::string method = "lm";
     TwoStepOptions two_step;
     std::optional<Index> iteration_limit;
+    GlobalOptions global;
+    double length_error_percent = 30;
+    double angle_error_deg = 20;
     std::string validate;
     std::optional<Index> folds;
     std::optional<bool> prior;
@@ -82,8 +90,23 @@ LevenbergMarquardtOptions with_loss(const Arguments& arguments) {
     return options;
 }
 
+Estimate identify_from_afar(const Arguments& arguments, const Campaign& campaign,
+                            const Measurements& measurements) {
+    GlobalOptions options = arguments.global;
+    options.length_share = arguments.length_error_percent / 100;
+    options.angle = arguments.angle_error_deg * std::numbers::pi / 180;
+    Index& limit = options.start_options.iteration_limit;
+    limit = arguments.iteration_limit.value_or(limit);
+    GlobalEstimate found = identify_globally(campaign, measurements, options);
+    print(fmt::format("{} starts, {} of them ended at the best{}\n", found.starts,
+                      found.starts_at_best,
+                      found.starts_at_best > 1 ? "" : "; there may be a better one"));
+    return std::move(found.estimate);
+}
+
 Estimate identify_by_method(const Arguments& arguments, const Campaign& campaign,
                             const Measurements& measurements, const Parameters& start) {
+    if (arguments.method == "global") return identify_from_afar(arguments, campaign, measurements);
     if (arguments.method == "two-step") {
         TwoStepOptions options = arguments.two_step;
         options.iteration_limit = arguments.iteration_limit.value_or(options.iteration_limit);
@@ -146,11 +169,12 @@ Metrics metrics_of(const Campaign& campaign, const Measurements& measurements,
 io::CalibrationReport make_report(const Arguments& arguments, const Campaign& campaign,
                                   const Split& split) {
     const Measurements& used = split.used;
-    const Parameters start = register_base_and_targets(campaign, used);
+    Parameters start = register_base_and_targets(campaign, used);
     io::CalibrationReport report;
     report.method = arguments.method;
     report.measurements = arguments.paths.measurements;
     report.estimate = identify_by_method(arguments, campaign, used, start);
+    if (arguments.method == "global") start = report.estimate.parameters;  // for those held out
     report.nominal = fit_nominal(arguments, campaign, used);
     report.repeatability = repeatability(*campaign.sensor, used);
     const Index folds = choose_folds(arguments, used);
@@ -170,7 +194,7 @@ void check_usage(const Arguments& arguments) {
     };
     const bool is_squares = arguments.loss == "squares";
     const bool is_lm = arguments.method == "lm";
-    require(is_squares || is_lm, "--loss", "needs --method lm; two-step knows squares only");
+    require(is_squares || is_lm, "--loss", "needs --method lm; the others know squares only");
     require(!is_squares || arguments.loss_width == 0, "--loss-width",
             "needs --loss huber or cauchy");
     require(!arguments.model_selection || is_lm, "--model-selection", "needs --method lm");
@@ -178,12 +202,13 @@ void check_usage(const Arguments& arguments) {
             "needs --folds of 2 or more");
 }
 
-void calibrate(const Arguments& arguments) {
+void calibrate(Arguments arguments) {
     check_usage(arguments);
     const InputPaths& paths = arguments.paths;
     check_outputs({paths.campaign, paths.measurements, arguments.plan, arguments.validate},
                   {arguments.out});
     auto file = io::read_campaign(paths.campaign);
+    arguments.global.seed = file.seed;
     bool& is_prior = file.campaign.spread.is_prior;
     is_prior = arguments.prior.value_or(is_prior);
     const Split split = read_split(arguments, file);
@@ -212,8 +237,8 @@ void calibrate(const Arguments& arguments) {
 void add_options(CLI::App& command, Arguments& arguments) {
     command.add_option("--plan", arguments.plan, "Use only the configurations of this plan file")
         ->check(file_name());
-    command.add_option("--method", arguments.method, "lm or two-step")
-        ->check(CLI::IsMember({"lm", "two-step"}))
+    command.add_option("--method", arguments.method, "lm, two-step or global")
+        ->check(CLI::IsMember({"lm", "two-step", "global"}))
         ->capture_default_str();
     command
         .add_option("--alpha", arguments.two_step.alpha, "two-step: part of each robot step taken")
@@ -221,8 +246,21 @@ void add_options(CLI::App& command, Arguments& arguments) {
         ->capture_default_str();
     command
         .add_option("--max-iterations", arguments.iteration_limit,
-                    "Most iterations (default: lm 100, two-step 200)")
+                    "Most iterations (default: lm and each start of global 100, two-step 200)")
         ->check(whole_number(1, 1000000));
+    command
+        .add_option("--length-error-percent", arguments.length_error_percent,
+                    "global: by how much a length may be off (50 mm at least)")
+        ->check(real_number(0, 100))
+        ->capture_default_str();
+    command
+        .add_option("--angle-error-deg", arguments.angle_error_deg,
+                    "global: by how much an angle may be off")
+        ->check(real_number(0, 180))
+        ->capture_default_str();
+    command.add_option("--starts", arguments.global.start_limit, "global: most starts")
+        ->check(whole_number(1, 1000000))
+        ->capture_default_str();
     command
         .add_option("--validate", arguments.validate,
                     "Second measurement file, to judge the result on")

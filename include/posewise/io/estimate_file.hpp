@@ -15,7 +15,7 @@ struct WithoutOutliers {
 
 /// What `calibrate` reports beside the estimate itself.
 struct CalibrationReport {
-    std::string method;        ///< "lm" or "two-step"
+    std::string method;        ///< "lm", "two-step" or "global"
     std::string measurements;  ///< path they came from
     Estimate estimate;
     Metrics nominal;  ///< base and targets fitted only, all samples

@@ -1,0 +1,128 @@
+#include "posewise/calibrator/global_identification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <optional>
+
+#include "least_squares.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/random.hpp"
+
+namespace posewise {
+namespace {
+
+/// Starts run together; fixed, so that what comes out does not depend on the number of threads.
+constexpr Index batch_size = 8;
+
+void check_options(const Campaign& campaign, const GlobalOptions& options) {
+    const auto check = [](const char* name, double value, double most) {
+        if (value >= 0 && value <= most) return;
+        throw InputError(fmt::format("{} is {}, must be from 0 to {}", name, value, most));
+    };
+    check("length_share", options.length_share, 1);
+    check("least_length", options.least_length, 10);
+    check("angle", options.angle, std::numbers::pi);
+    if (options.start_limit < 1 || options.agreeing_starts < 1) {
+        throw InputError("start_limit and agreeing_starts must be at least 1");
+    }
+    if (campaign.spread.is_prior) {
+        throw InputError(
+            "the campaign's prior says that errors are small; a global search, for a robot that "
+            "is far from nominal, must be without it");
+    }
+}
+
+/// The nominal robot, then random ones.
+VectorXd draw_errors(const VectorXd& bounds, std::uint64_t seed, Index start) {
+    VectorXd errors = VectorXd::Zero(bounds.size());
+    if (start == 0) return errors;
+    RandomStream stream(seed, static_cast<std::uint64_t>(start));
+    for (Index k = 0; k < bounds.size(); ++k) errors[k] = stream.uniform(-bounds[k], bounds[k]);
+    return errors;
+}
+
+/// One run from a start.
+struct Run {
+    std::optional<Estimate> estimate;
+    double cost = std::numeric_limits<double>::infinity();
+    std::exception_ptr failure;
+};
+
+Run run_from(const IdentificationProblem& problem, const VectorXd& errors,
+             const LevenbergMarquardtOptions& options) {
+    Run run;
+    try {
+        const Parameters start =
+            register_roughly_with_errors(problem.campaign, problem.measurements, errors);
+        Estimate estimate = identify(problem.campaign, problem.measurements, start, options);
+        run.cost = total_loss(problem, estimate.parameters);
+        run.estimate = std::move(estimate);
+    } catch (const InputError&) {
+        run.failure = std::current_exception();
+    }
+    return run;
+}
+
+}  // namespace
+
+VectorXd error_bounds(const Chain& robot, const GlobalOptions& options) {
+    VectorXd bounds = VectorXd::Zero(robot.parameter_count());
+    for (Index k = 0; k < bounds.size(); ++k) {
+        if (robot.parameter_term(k) != nullptr) continue;
+        const Element& element = robot.parameter_element(k);
+        bounds[k] =
+            element.motion == Motion::Rotation
+                ? options.angle
+                : std::max(options.length_share * std::abs(element.value), options.least_length);
+    }
+    return bounds;
+}
+
+Parameters register_roughly_with_errors(const Campaign& campaign, const Measurements& measurements,
+                                        const VectorXd& robot_errors) {
+    std::vector<Element> elements = campaign.robot.elements();
+    Index next = 0;
+    for (Element& element : elements) {
+        if (!element.parameter.empty()) element.value += robot_errors[next++];
+        next += static_cast<Index>(element.terms.size());
+    }
+    const Chain moved(campaign.robot.joints(), std::move(elements));
+    Parameters registered = register_roughly(with_robot(campaign, moved), measurements);
+    registered.robot = robot_errors;
+    return registered;
+}
+
+GlobalEstimate identify_globally(const Campaign& campaign, const Measurements& measurements,
+                                 const GlobalOptions& options) {
+    check_options(campaign, options);
+    const IdentificationProblem problem = make_problem(campaign, measurements);
+    const VectorXd bounds = error_bounds(campaign.robot, options);
+    std::vector<Run> runs;
+    GlobalEstimate result;
+    while (result.starts < options.start_limit && result.starts_at_best < options.agreeing_starts) {
+        const Index count = std::min(batch_size, options.start_limit - result.starts);
+        runs.resize(static_cast<std::size_t>(result.starts + count));
+#pragma omp parallel for schedule(dynamic)
+        for (Index i = result.starts; i < result.starts + count; ++i) {
+            runs[static_cast<std::size_t>(i)] =
+                run_from(problem, draw_errors(bounds, options.seed, i), options.start_options);
+        }
+        result.starts += count;
+        const Run& best = *std::min_element(
+            runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.cost < b.cost; });
+        if (!best.estimate) continue;
+        result.estimate = *best.estimate;
+        const double alike = best.cost * (1 + 1e-6) + 1e-12;
+        result.starts_at_best = std::count_if(
+            runs.begin(), runs.end(), [alike](const Run& run) { return run.cost <= alike; });
+    }
+    if (result.starts_at_best == 0) std::rethrow_exception(runs.front().failure);
+    return result;
+}
+
+}  // namespace posewise

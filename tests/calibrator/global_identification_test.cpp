@@ -1,0 +1,107 @@
+#include "posewise/calibrator/global_identification.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "posewise/model/error_terms.hpp"
+#include "posewise/model/sampling.hpp"
+#include "support/campaigns.hpp"
+#include "support/sweep.hpp"
+
+namespace posewise {
+namespace {
+
+using testing::degree;
+using testing::tracked_campaign;
+
+/// Measurements of a robot whose errors are anywhere within the bounds.
+Measurements measure_far_off(const Campaign& campaign, const VectorXd& bounds, std::uint64_t item) {
+    RandomStream stream(1234, item);
+    Parameters truth = campaign.nominal;
+    for (Index k = 0; k < bounds.size(); ++k) {
+        truth.robot[k] = stream.uniform(-bounds[k], bounds[k]);
+    }
+    return simulate_measurements(campaign, truth, random_configurations(campaign.robot, 24, item),
+                                 1, item);
+}
+
+bool is_found(const Estimate& estimate) { return estimate.fit_means.distance_rms < 4e-4; }
+
+TEST(GlobalIdentification, FindsRobotsThatOneStartDoesNot) {
+    const Campaign campaign = tracked_campaign(testing::fanuc());
+    const GlobalOptions options{.angle = 70 * degree};
+    const VectorXd bounds = error_bounds(campaign.robot, options);
+    Index by_one = 0;
+    Index by_many = 0;
+    constexpr Index count = 20;
+    for (std::uint64_t item = 0; item < count; ++item) {
+        const Measurements measurements = measure_far_off(campaign, bounds, item);
+        const Parameters start = register_base_and_targets(campaign, measurements);
+        by_one += is_found(identify(campaign, measurements, start)) ? 1 : 0;
+        const GlobalEstimate found = identify_globally(campaign, measurements, options);
+        by_many += is_found(found.estimate) ? 1 : 0;
+        EXPECT_LE(found.starts, options.start_limit);
+    }
+    EXPECT_LT(by_one, by_many);
+    EXPECT_GE(by_many, count - 1);
+}
+
+TEST(GlobalIdentification, OfARobotNearNominalIsThatFromNominal) {
+    const Campaign campaign = tracked_campaign(testing::fanuc());
+    const Measurements measurements = simulate(campaign, {.pose_count = 24}).measurements;
+    const GlobalEstimate found = identify_globally(campaign, measurements);
+    const Estimate near =
+        identify(campaign, measurements, register_base_and_targets(campaign, measurements));
+    EXPECT_LT((found.estimate.parameters.robot - near.parameters.robot).norm(), 1e-9);
+    EXPECT_GE(found.starts_at_best, 3);
+}
+
+TEST(GlobalIdentification, BoundsAreAShareOfTheLength) {
+    const Chain robot = with_harmonics(testing::fanuc(), {1}, {0});
+    const VectorXd bounds = error_bounds(robot, {.length_share = 0.3, .least_length = 0.05});
+    const auto names = robot.parameter_names();
+    const auto bound_of = [&](const std::string& name) {
+        return bounds[std::find(names.begin(), names.end(), name) - names.begin()];
+    };
+    EXPECT_DOUBLE_EQ(bound_of("Tx3"), 0.3 * 1.28);
+    EXPECT_DOUBLE_EQ(bound_of("Ty1"), 0.05);
+    EXPECT_DOUBLE_EQ(bound_of("dq2"), 20 * degree);
+    for (Index k = 0; k < bounds.size(); ++k) {
+        EXPECT_EQ(bounds[k] == 0, robot.parameter_term(k) != nullptr) << k;
+    }
+}
+
+TEST(GlobalIdentification, RegistersARobotWithErrorsExactly) {
+    Campaign campaign = tracked_campaign(testing::fanuc());
+    campaign.model_error = 0;
+    campaign.sensor =
+        std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(3, std::nullopt), 1e-12);
+    RandomStream stream(3);
+    Parameters truth = campaign.nominal;
+    truth.robot = testing::random_vector(stream, 18, 0.3);
+    const Measurements measurements =
+        simulate_measurements(campaign, truth, random_configurations(campaign.robot, 12, 5), 1, 5);
+    const Parameters found = register_roughly_with_errors(campaign, measurements, truth.robot);
+    EXPECT_EQ(found.robot, truth.robot);
+    EXPECT_LT((found.sensor - truth.sensor).norm(), 1e-9);
+    EXPECT_TRUE(found.world_from_base.isApprox(truth.world_from_base, 1e-9));
+}
+
+TEST(GlobalIdentification, RefusesWhatItCannotUse) {
+    Campaign campaign = tracked_campaign(testing::fanuc());
+    const Measurements measurements = simulate(campaign, {.pose_count = 24}).measurements;
+    EXPECT_THROW(identify_globally(campaign, measurements, {.length_share = -1}), InputError);
+    EXPECT_THROW(identify_globally(campaign, measurements, {.angle = NAN}), InputError);
+    EXPECT_THROW(identify_globally(campaign, measurements, {.start_limit = 0}), InputError);
+    const Measurements few = simulate(campaign, {.pose_count = 3}).measurements;
+    EXPECT_THROW(identify_globally(campaign, few), InputError);
+    campaign.spread.is_prior = true;
+    EXPECT_THROW(identify_globally(campaign, measurements), InputError);
+}
+
+}  // namespace
+}  // namespace posewise
