@@ -197,7 +197,9 @@ YamlValue kind_of(const YamlValue& sensor) {
     for (const YamlEntry& entry : sensor.entries()) {
         if (entry.key == "kind") return entry.value;
     }
-    throw sensor.error("has no key kind; must be points, poses, distances or planes");
+    return YamlMap(sensor, {"kind", "sigma_<length>", "sigma_orientation_<angle>", "noise",
+                            "targets", "tool", "anchors", "planes", "known_planes"})
+        .require("kind");
 }
 
 }  // namespace

@@ -144,14 +144,14 @@ TEST_F(Urdf, IsCalibrated) {
     EXPECT_EQ(exported.substr(0, exported.find("<joint name=\"pan\"")),
               urdf.substr(0, urdf.find("<joint name=\"pan\"")));
     EXPECT_NE(exported.find("xyz='"), std::string::npos) << "quotation marks stay";
+    const std::string table = run_well("export c.yaml e.json --dh table.yaml");
+    EXPECT_NE(table.find("the calibrated robot in "), std::string::npos);
+    EXPECT_NE(text_of("table.yaml").find("convention: standard"), std::string::npos);
 }
 
 TEST_F(Urdf, IsNotOverwrittenNorMadeFromAnotherRobot) {
     run_well("inspect arm.urdf --base base --tip tool0 --write-campaign c.yaml");
     expect_input_error("export c.yaml e.json --urdf arm.urdf", "is read and shall be written");
-    const std::string table = run_well("export c.yaml e.json --dh table.yaml");
-    EXPECT_NE(table.find("the calibrated robot in "), std::string::npos);
-    EXPECT_NE(text_of("table.yaml").find("convention: standard"), std::string::npos);
     expect_input_error("export c.yaml e.json --urdf c.yaml", "is read and shall be written");
     expect_input_error("export c.yaml none.json --urdf o.urdf", "none.json: cannot be read");
     expect_input_error("export " + fanuc_design + " e.json --urdf o.urdf",

@@ -197,7 +197,8 @@ TEST(BadCampaign, TargetsStatedNeitherOrBothWays) {
 
 TEST(BadCampaign, KnownTargetsWithoutPositions) {
     EXPECT_EQ(error_with("position_mm: [[100, 0, 0], [0, 200, -10]]", "count: 2, known: true"),
-              "campaign.yaml:17:30: sensor.targets.known is true; needs position_mm, not count");
+              "campaign.yaml:17:30: sensor.targets.known says that positions are known; needs "
+              "position_mm, not count");
 }
 
 TEST(BadCampaign, NoTargets) {
