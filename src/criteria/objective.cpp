@@ -17,12 +17,6 @@ double log_determinant(const Eigen::LLT<MatrixXd>& cholesky) {
     return 2 * cholesky.matrixLLT().diagonal().array().log().sum();
 }
 
-/// d/dM of 1 / trace(C M^-1).
-MatrixXd weighted_trace_gradient(const MatrixXd& C, const MatrixXd& M_inverse) {
-    const double trace = C.cwiseProduct(M_inverse).sum();
-    return M_inverse * C * M_inverse / (trace * trace);
-}
-
 /// The same objective on a matrix without nuisance.
 Objective without_nuisance(Objective objective) {
     objective.nuisance.clear();
@@ -77,37 +71,48 @@ double evaluate(const Objective& objective, const MatrixXd& M) {
     }
 }
 
-MatrixXd gradient(const Objective& objective, const MatrixXd& M) {
+MatrixXd gradient(const Objective& objective, const MatrixXd& M, double* value) {
     const MatrixXd none = MatrixXd::Zero(M.rows(), M.cols());
+    double ignored = 0;
+    double& result = value != nullptr ? *value : ignored;
+    result = minus_infinity;
     if (!objective.nuisance.empty()) {
         const Reduction reduced = eliminate(M, objective.nuisance);
         if (reduced.M.size() == 0) return none;
-        return reduced.N * gradient(without_nuisance(objective), reduced.M) * reduced.N.transpose();
+        return reduced.N * gradient(without_nuisance(objective), reduced.M, &result) *
+               reduced.N.transpose();
     }
     const Eigen::LLT<MatrixXd> cholesky(M);
     if (!is_regular(cholesky, M)) return none;
+    const auto by_trace = [&](const MatrixXd& C) -> MatrixXd {
+        const MatrixXd W = inverse(cholesky);
+        result = 1 / C.cwiseProduct(W).sum();
+        return result * result * W * C * W;
+    };
     switch (objective.criterion) {
         case Criterion::D:
+            result = log_determinant(cholesky);
             return inverse(cholesky);
         case Criterion::O1:
-            return evaluate(objective, M) / (2.0 * static_cast<double>(M.rows())) *
-                   inverse(cholesky);
+            result = evaluate(objective, M);
+            return result / (2.0 * static_cast<double>(M.rows())) * inverse(cholesky);
         case Criterion::A:
-            return weighted_trace_gradient(MatrixXd::Identity(M.rows(), M.cols()),
-                                           inverse(cholesky));
+            return by_trace(MatrixXd::Identity(M.rows(), M.cols()));
         case Criterion::V:
-            return weighted_trace_gradient(objective.mean_test_information, inverse(cholesky));
+            return by_trace(objective.mean_test_information);
         case Criterion::G: {
             const Sloped worst = worst_variance(objective, cholesky);
             const MatrixXd W = inverse(cholesky);
-            return W * weighted_information(*objective.test_poses, worst.slope) * W /
-                   (worst.value * worst.value);
+            result = 1 / worst.value;
+            return result * result * W * weighted_information(*objective.test_poses, worst.slope) *
+                   W;
         }
         default: {
             const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(M);
             if (!(eigen.eigenvalues()[0] > 0)) return none;
-            const Sloped value = spectral_criterion(objective, eigen.eigenvalues());
-            return eigen.eigenvectors() * value.slope.asDiagonal() *
+            const Sloped spectral = spectral_criterion(objective, eigen.eigenvalues());
+            result = spectral.value;
+            return eigen.eigenvectors() * spectral.slope.asDiagonal() *
                    eigen.eigenvectors().transpose();
         }
     }

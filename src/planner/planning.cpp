@@ -116,8 +116,9 @@ std::vector<Refinement> refine_starts(const Problem& problem, const Plan& pool_p
     PlanProgress progress;
     progress.starts = starts;
     RefineOptions refine;
-    refine.kink_rounds = 0;  // the best start alone is finished
+    refine.kink_rounds = 0;  // the best start alone is made sharper and finished
     refine.tolerance = 1e-6;
+    refine.sharpness = {4, 16, 64};
     refine.stop = problem.stop;
 #pragma omp parallel for schedule(dynamic)
     for (Index start = 0; start < starts; ++start) {

@@ -20,12 +20,19 @@ double merit(const Objective& objective, const MatrixXd& M) {
     return objective.criterion == Criterion::D || !std::isfinite(value) ? value : std::log(value);
 }
 
-/// Symmetric Z with d merit = trace(Z dM).
-MatrixXd merit_gradient(const Objective& objective, const MatrixXd& M) {
-    const MatrixXd Z = gradient(objective, M);
-    if (objective.criterion == Criterion::D) return Z;
-    const double value = evaluate(objective, M);
-    return std::isfinite(value) ? MatrixXd(Z / value) : Z;
+/// The merit and the symmetric Z with d merit = trace(Z dM).
+struct SlopedMerit {
+    double value = 0;
+    MatrixXd Z;
+};
+
+SlopedMerit sloped_merit(const Objective& objective, const MatrixXd& M) {
+    SlopedMerit merit;
+    merit.Z = gradient(objective, M, &merit.value);
+    if (objective.criterion == Criterion::D || !std::isfinite(merit.value)) return merit;
+    merit.Z /= merit.value;
+    merit.value = std::log(merit.value);
+    return merit;
 }
 
 /// A plan on its way.
@@ -135,10 +142,10 @@ class Refiner {
         problem.upper = space_.upper;
         problem.value = [&](const VectorXd& q, VectorXd* slope) {
             const MatrixXd M = rest + information(q);
-            if (slope != nullptr) {
-                *slope = space_.information_gradient(q, merit_gradient(objective, M));
-            }
-            return merit(objective, M);
+            if (slope == nullptr) return merit(objective, M);
+            const SlopedMerit sloped = sloped_merit(objective, M);
+            *slope = space_.information_gradient(q, sloped.Z);
+            return sloped.value;
         };
         const VectorXd start = pose(i);
         VectorXd best = start;
@@ -181,13 +188,13 @@ class Refiner {
         problem.value = [&](const VectorXd& x, VectorXd* slope) {
             MatrixXd M = rest;
             for (Index i = 0; i < m; ++i) M += information(x.segment(n * i, n));
-            if (slope != nullptr) {
-                const MatrixXd Z = merit_gradient(objective, M);
-                for (Index i = 0; i < m; ++i) {
-                    slope->segment(n * i, n) = space_.information_gradient(x.segment(n * i, n), Z);
-                }
+            if (slope == nullptr) return merit(objective, M);
+            const SlopedMerit sloped = sloped_merit(objective, M);
+            for (Index i = 0; i < m; ++i) {
+                slope->segment(n * i, n) =
+                    space_.information_gradient(x.segment(n * i, n), sloped.Z);
             }
-            return merit(objective, M);
+            return sloped.value;
         };
         const VectorXd start = poses_.reshaped<Eigen::RowMajor>();
         const VectorXd free = maximise(problem, start, maximise_options(Method::Lbfgs)).x;

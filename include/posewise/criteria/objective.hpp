@@ -30,7 +30,7 @@ double evaluate(const Objective& objective, const MatrixXd& M);
 
 /// The symmetric matrix Z with d evaluate(M) = trace(Z dM); zero where evaluate() is not finite.
 /// Where the least or largest eigenvalue (or the worst test pose) is not unique, one of the
-/// supergradients.
-MatrixXd gradient(const Objective& objective, const MatrixXd& M);
+/// supergradients. `value`, unless null, becomes evaluate(M) at hardly any further cost.
+MatrixXd gradient(const Objective& objective, const MatrixXd& M, double* value = nullptr);
 
 }  // namespace posewise
