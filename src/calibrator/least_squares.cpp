@@ -172,6 +172,7 @@ void check_identifiable(const IdentificationProblem& problem, const Parameters& 
     Parameters nominal = parameters;
     nominal.robot.setZero();
     MatrixXd R = triangularise(linearise(problem, nominal)).R;
+    if (R.cols() == 0) return;  // a registration where base and sensor are known
     const VectorXd norms = R.colwise().norm().transpose().cwiseMax(1e-300);
     R.array().rowwise() /= norms.transpose().array();
     const WeakDirection weakest = weakest_directions(R, 1).front();

@@ -87,6 +87,24 @@ TEST(KnownTargetCoordinate, LetsAScaraBeCalibrated) {
     EXPECT_NEAR(estimate.variance_factor, 1, 0.4);
 }
 
+TEST(KnownBase, LeavesTheRobotAloneToBeIdentifiedWhereTheSensorIsKnown) {
+    for (const auto& [name, declared] : campaigns_of_every_sensor(fanuc())) {
+        if (declared.nominal.sensor.size() > 0) continue;
+        SCOPED_TRACE(name);
+        Campaign known = declared;
+        known.base_is_known.fill(true);
+        const Campaign campaign = irreducible(known);
+        const Simulation simulated = simulate(campaign, {.pose_count = 40});
+        const Parameters start = register_base_and_targets(campaign, simulated.measurements);
+        EXPECT_TRUE(start.world_from_base.isApprox(campaign.nominal.world_from_base, 0));
+        const Estimate estimate = identify(campaign, simulated.measurements, start);
+        EXPECT_EQ(estimate.ending, Ending::Converged);
+        EXPECT_EQ(estimate.covariance.rows(), campaign.robot.parameter_count());
+        const VectorXd error = estimate.parameters.robot - simulated.truth.robot;
+        EXPECT_LT(error.cwiseQuotient(standard_deviations(estimate)).cwiseAbs().maxCoeff(), 5);
+    }
+}
+
 TEST(KnownBase, IsLeftAsItIs) {
     for (const auto& [name, declared] : campaigns_of_every_sensor(fanuc())) {
         if (name != "points, base partly known") continue;
