@@ -15,6 +15,9 @@ namespace {
 
 constexpr std::uint64_t configuration_seed = 20151;  // any: it only has to be the same every time
 
+/// A column below this share of the largest is rounding: the parameter moves nothing.
+constexpr double negligible_share = 1e-12;
+
 /// The part of `column` outside the span of the orthonormal columns of Q; twice, so that rounding
 /// of the first pass is gone.
 VectorXd residual_outside(const Eigen::Ref<const MatrixXd>& Q, VectorXd column) {
@@ -77,7 +80,7 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
         result.largest_dropped_residual = 0;
         for (const Index k : open) {
             const double norm = J.col(k).norm();
-            const VectorXd residual = norm > 1e-12 * largest
+            const VectorXd residual = norm > negligible_share * largest
                                           ? residual_outside(Q.leftCols(rank), J.col(k) / norm)
                                           : VectorXd::Zero(J.rows());
             const double residual_norm = residual.norm();
@@ -101,6 +104,7 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
     const MatrixXd combination = express_dropped(J, result);
     for (std::size_t d = 0; d < result.dropped.size(); ++d) {
         const double norm = J.col(result.dropped[d].parameter).norm();
+        if (norm <= negligible_share * largest) continue;
         for (std::size_t k = 0; k < result.kept.size(); ++k) {
             const double coefficient = combination(static_cast<Index>(k), static_cast<Index>(d));
             // What is less than 1e-7 of the dropped column is rounding.

@@ -58,6 +58,15 @@ TEST(FindIndependentColumns, ExpressesADroppedColumnByTheKeptOnes) {
     EXPECT_TRUE(found.dropped[1].absorbed_by.empty()) << "a zero column moves nothing";
 }
 
+TEST(FindIndependentColumns, SaysNothingOfAColumnThatIsRounding) {
+    MatrixXd J(4, 3);
+    J.leftCols<2>() << 1, 2, 0, 1, 3, -1, 1, 1;
+    J.col(2) = 1e-17 * (J.col(0) + J.col(1));
+    const Identifiability found = find_independent_columns(J, {0, 1, 2});
+    ASSERT_EQ(found.dropped.size(), 1U);
+    EXPECT_TRUE(found.dropped[0].absorbed_by.empty());
+}
+
 TEST(FindIndependentColumns, KeepsWhatComesFirstInPriority) {
     MatrixXd J = MatrixXd::Random(6, 3);
     J.col(2) = J.col(0);
