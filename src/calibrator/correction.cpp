@@ -19,7 +19,7 @@ constexpr double change_weight = 1e-5;
 /// Falls of the sum of squares below this are rounding, m^2.
 constexpr double negligible = 1e-26;
 
-/// Weighted errors below this do not make a pose singular, m.
+/// A pose with a weighted error below this is reached, m: nothing holds it, nor is it singular.
 constexpr double attained = 1e-6;
 
 /// Angle times axis of the rotation that R lacks to be the wanted one, in the frame both are in.
@@ -62,19 +62,22 @@ class Search {
             correction.ending = k < options_.iteration_limit ? step(correction.joints, damping)
                                                              : Ending::IterationLimit;
         }
-        find_held(correction);
         correction.residual = error_at(correction.joints);
+        if (is_reached(correction)) return correction;
+        find_held(correction);
         correction.is_singular = is_singular(correction);
         return correction;
     }
 
   private:
+    bool is_reached(const Correction& correction) const {
+        const PoseError& left = correction.residual;
+        return std::hypot(left.position, options_.length_per_angle * left.orientation) <= attained;
+    }
+
     bool is_singular(const Correction& correction) const {
         if (!correction.held_by_limit.empty() || !correction.held_by_change.empty()) return false;
-        const double weight = options_.length_per_angle;
-        const PoseError& left = correction.residual;
-        return nominal_.size() >= (weight > 0 ? 6 : 3) &&
-               std::hypot(left.position, weight * left.orientation) > attained;
+        return nominal_.size() >= (options_.length_per_angle > 0 ? 6 : 3);
     }
 
     void find_held(Correction& correction) {

@@ -185,6 +185,26 @@ TEST(Correction, SaysWhichLimitHoldsAJoint) {
     EXPECT_GT(held.residual.position, 10 * free.residual.position);
 }
 
+/// Seven joints reach the pose with six: the bound costs nothing, and is no shortfall.
+TEST(Correction, OfARedundantRobotIsCompleteBesideAJointAtItsLimit) {
+    const Calibrated cell = calibrate(testing::seven_joint_arm());
+    const RowMatrixXd configurations = random_configurations(cell.campaign.robot, 5, 3);
+    Index reached_at_a_limit = 0;
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        const VectorXd nominal = configurations.row(i).transpose();
+        const double change = correct(cell, nominal).joints[2] - nominal[2];
+        std::vector<Joint> joints = cell.campaign.robot.joints();
+        (change > 0 ? joints[2].upper : joints[2].lower) = nominal[2] + 0.5 * change;
+        Calibrated narrow = cell;
+        narrow.campaign.robot = Chain(joints, cell.campaign.robot.elements());
+        const Correction found = correct(narrow, nominal);
+        if (found.residual.position > 1e-7 || found.residual.orientation > 1e-7) continue;
+        EXPECT_EQ(describe_shortfall(narrow.campaign.robot, found), "") << i;
+        if (found.joints[2] == nominal[2] + 0.5 * change) ++reached_at_a_limit;
+    }
+    EXPECT_GT(reached_at_a_limit, 0);
+}
+
 /// With the wrist stretched no joint turns the flange about one axis: what lacks stays, no joint
 /// runs away, and the correction says so.
 TEST(Correction, AtASingularPoseStaysNear) {
