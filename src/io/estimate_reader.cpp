@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "json.hpp"
@@ -5,6 +7,7 @@
 #include "posewise/core/text.hpp"
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/measurement/point_sensor.hpp"
+#include "units.hpp"
 
 namespace posewise::io {
 namespace {
@@ -20,9 +23,19 @@ std::vector<double> read_numbers(const JsonValue& value, std::size_t count) {
     return numbers;
 }
 
-Vector3d read_vector(const JsonValue& value) {
+/// m or rad, of a size that occurs.
+double check_size(double si, Quantity quantity, const JsonValue& value) {
+    if (is_plausible(si, quantity)) return si;
+    throw value.error(fmt::format("is {:g}; must be {}", si, plausible(quantity)));
+}
+
+Vector3d read_position(const JsonValue& value) {
+    Vector3d position;
     const std::vector<double> xyz = read_numbers(value, 3);
-    return {xyz[0], xyz[1], xyz[2]};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        position[static_cast<Index>(axis)] = check_size(xyz[axis], Quantity::Length, value);
+    }
+    return position;
 }
 
 Isometry3d read_base(const JsonValue& base) {
@@ -33,7 +46,7 @@ Isometry3d read_base(const JsonValue& base) {
         throw quaternion.error("has length " + std::to_string(q.norm()) + "; must be 1");
     }
     Isometry3d world_from_base(q.normalized());
-    world_from_base.translation() = read_vector(base["position_m"]);
+    world_from_base.translation() = read_position(base["position_m"]);
     return world_from_base;
 }
 
@@ -47,7 +60,8 @@ VectorXd read_robot(const JsonValue& robot, const Campaign& campaign) {
             throw robot.error("has no parameter " + quote(name) +
                               "; must be an estimate of this campaign");
         }
-        values[k] = robot[name][turns ? "value_rad" : "value_m"].number();
+        const JsonValue value = robot[name][turns ? "value_rad" : "value_m"];
+        values[k] = check_size(value.number(), turns ? Quantity::Angle : Quantity::Length, value);
     }
     const std::size_t count = robot.values().size();
     if (count != names.size()) {
@@ -62,7 +76,7 @@ VectorXd read_targets(const JsonValue& targets, const PointSensor& sensor) {
     for (Index j = 0; j < sensor.target_count(); ++j) {
         if (sensor.targets().is_known(j)) continue;
         const Vector3d position =
-            read_vector(targets["target" + std::to_string(j + 1)]["position_m"]);
+            read_position(targets["target" + std::to_string(j + 1)]["position_m"]);
         for (Index axis = 0; axis < 3; ++axis) {
             const Index k = sensor.targets().unknown_index(j, axis);
             if (k >= 0) unknowns[k] = position[axis];
@@ -76,7 +90,9 @@ VectorXd read_unknowns(const JsonValue& values, const Sensor& sensor) {
     const std::vector<bool> is_angle = sensor.unknown_is_angle();
     VectorXd unknowns(static_cast<Index>(names.size()));
     for (std::size_t k = 0; k < names.size(); ++k) {
-        unknowns[static_cast<Index>(k)] = values[names[k] + si_suffix(is_angle[k])].number();
+        const JsonValue value = values[names[k] + si_suffix(is_angle[k])];
+        unknowns[static_cast<Index>(k)] =
+            check_size(value.number(), is_angle[k] ? Quantity::Angle : Quantity::Length, value);
     }
     return unknowns;
 }

@@ -193,5 +193,23 @@ TEST_F(EstimateFile, WithAQuaternionThatIsNoRotationIsRefused) {
               "estimate.json: base.quaternion_wxyz: has length 2.000000; must be 1");
 }
 
+TEST_F(EstimateFile, OfASizeThatDoesNotOccurIsRefused) {
+    const Json good = written();
+    const auto error_with = [&](const char* pointer) {
+        Json document = good;
+        document[Json::json_pointer(pointer)] = -1e300;
+        folder_.write("estimate.json", document.dump());
+        return testing::input_error_of([&] { read_estimate(path_, campaign_); });
+    };
+    const std::string length = " is -1e+300; must be at most 1e+06 m in magnitude";
+    EXPECT_EQ(error_with("/robot/Tx1/value_m"), "estimate.json: robot.Tx1.value_m:" + length);
+    EXPECT_EQ(error_with("/base/position_m/1"), "estimate.json: base.position_m:" + length);
+    EXPECT_EQ(error_with("/targets/target2/position_m/0"),
+              "estimate.json: targets.target2.position_m:" + length);
+    EXPECT_EQ(error_with("/robot/dq1/value_rad"),
+              "estimate.json: robot.dq1.value_rad: is -1e+300; must be at most 10000 rad in "
+              "magnitude");
+}
+
 }  // namespace
 }  // namespace posewise::io
