@@ -58,7 +58,8 @@ LinearSolution solve_linear(const Campaign& campaign, const Targets& targets,
         throw InputError("these " + std::to_string(means.configuration_count()) +
                          " configurations with " + std::to_string(point_count) +
                          " points do not determine base and targets; more configurations "
-                         "that turn the tool in different ways are needed");
+                         "that turn the tool in different ways are needed or, where all axes are "
+                         "parallel (SCARA), base or targets known along them, like known: [z]");
     }
     const VectorXd solution = qr.solve(b);
     LinearSolution found;

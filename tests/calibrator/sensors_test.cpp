@@ -8,6 +8,7 @@
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/model/sampling.hpp"
 #include "support/sweep.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace posewise {
 namespace {
@@ -85,6 +86,15 @@ TEST(KnownTargetCoordinate, LetsAScaraBeCalibrated) {
     EXPECT_EQ(estimate.ending, Ending::Converged);
     EXPECT_LT(estimate.fit.distance_rms, 3e-4);
     EXPECT_NEAR(estimate.variance_factor, 1, 0.4);
+}
+
+TEST(KnownBase, IsAskedForWhereAllAxesAreParallel) {
+    Campaign campaign = tracked_campaign(scara());
+    const auto measured = simulate(campaign, {.pose_count = 20}).measurements;
+    const std::string message = input_error_of([&] { register_roughly(campaign, measured); });
+    EXPECT_NE(message.find("base or targets known along them"), std::string::npos) << message;
+    campaign.base_is_known[2] = true;
+    EXPECT_EQ(input_error_of([&] { register_base_and_targets(campaign, measured); }), "no error");
 }
 
 TEST(KnownBase, LeavesTheRobotAloneToBeIdentifiedWhereTheSensorIsKnown) {
