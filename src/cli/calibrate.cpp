@@ -285,6 +285,19 @@ void add_options(CLI::App& command, Arguments& arguments) {
         ->check(file_name());
 }
 
+/// Options of one method beside another would have no effect.
+void check_method_options(const CLI::App& command, const std::string& method) {
+    const std::vector<std::pair<std::string, std::string>> owners{
+        {"--alpha", "two-step"},
+        {"--length-error-percent", "global"},
+        {"--angle-error-deg", "global"},
+        {"--starts", "global"}};
+    for (const auto& [option, owner] : owners) {
+        if (method == owner || command.count(option) == 0) continue;
+        throw CLI::ValidationError(option, "needs --method " + owner);
+    }
+}
+
 }  // namespace
 
 void add_calibrate(CLI::App& program) {
@@ -295,7 +308,10 @@ void add_calibrate(CLI::App& program) {
     add_measurements_option(*command, arguments->paths);
     add_options(*command, *arguments);
     command->footer(footer);
-    command->callback([arguments] { calibrate(*arguments); });
+    command->callback([arguments, command] {
+        check_method_options(*command, arguments->method);
+        calibrate(*arguments);
+    });
 }
 
 }  // namespace posewise::cli

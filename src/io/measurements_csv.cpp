@@ -8,6 +8,7 @@
 #include "csv_reader.hpp"
 #include "measurement_columns.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/measurement/scalar_sensor.hpp"
 #include "posewise/model/transforms.hpp"
 #include "sample_collector.hpp"
 #include "text.hpp"
@@ -305,8 +306,20 @@ class RowReader {
         }
         for (std::size_t k = first; k < first + width; ++k) {
             row_.observation[static_cast<Index>(k)] = read_number(field_of_observation_[k]);
+            check_distance(k);
         }
         if (!orientation_fields_.empty()) row_.observation.tail<3>() = read_orientation();
+    }
+
+    /// No target is at its anchor, or behind it.
+    void check_distance(std::size_t k) const {
+        const bool is_distance =
+            dynamic_cast<const DistanceSensor*>(campaign_.sensor.get()) != nullptr;
+        if (!is_distance || row_.observation[static_cast<Index>(k)] > 0) return;
+        const std::size_t field = field_of_observation_[k];
+        throw input_error_at(csv_.locate(field),
+                             fmt::format("{} is {}; must be a distance above 0", name_of(field),
+                                         quote(csv_.fields()[field])));
     }
 
     /// The name of an observation's column, without unit.

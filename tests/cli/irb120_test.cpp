@@ -38,6 +38,16 @@ TEST_F(Irb120, CalibratesGeometricallyAsFarAsGeometryGoes) {
     EXPECT_NEAR(number_behind(report, "distance RMS", 1), 0.2637, 0.0005);
 }
 
+TEST_F(Irb120, IsCalibratedByEightPlannedConfigurationsWithPriors) {
+    write_text("c.yaml",
+               read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/abb_irb120/planning.yaml"));
+    const std::string report = run_well("study c.yaml -k 8 --random 5 --starts 1" +
+                                        measured_.substr(0, measured_.find(" --")));
+    const std::string row = "8 ";
+    EXPECT_LT(number_behind(report, row), 0.24);     // two thirds of the random median
+    EXPECT_GT(number_behind(report, row, 2), 0.27);  // independent figure: 0.32
+}
+
 TEST_F(Irb120, ModelSelectionNeedsEveryStep) {
     write_text("c.yaml", design_);
     const std::string report =

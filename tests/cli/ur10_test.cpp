@@ -30,6 +30,14 @@ TEST_F(Ur10, CalibratesGeometricallyFromPositionsAndOrientations) {
     EXPECT_LE(number_behind(report, "distance RMS", 3), 0.447 * 1.02);
 }
 
+TEST_F(Ur10, IsThreeTimesAsAccurateWithJointMaps) {
+    write_text("c.yaml",
+               read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/ur10/joint_maps.yaml"));
+    const std::string report = run_well("calibrate c.yaml --folds 0 -m '" + csv_ + "'");
+    EXPECT_LT(number_behind(report, "distance RMS", 1), 0.139);
+    EXPECT_NEAR(number_behind(report, "variance factor"), 0.89, 0.05);
+}
+
 TEST_F(Ur10, SaysThatTheOrderOfTheQuaternionIsWrong) {
     write_text("c.yaml", design_);
     std::string csv = read_text(csv_);

@@ -150,6 +150,14 @@ TEST(ReadMeasurementsCsv, RefusesHalfAnOrientation) {
               std::string::npos);
 }
 
+TEST(ReadMeasurementsCsv, RefusesADistanceBelowZero) {
+    const std::string header = "config,q1_deg,q2_deg,p1_a1_mm,p1_a2_mm\n";
+    EXPECT_NE(input_error_of([&] {
+                  read_csv(distances, header + "a,10,20,900,-5\n");
+              }).find("m.csv:2:13: p1_a2 is '-5'; must be a distance above 0"),
+              std::string::npos);
+}
+
 TEST(WriteMeasurementsCsv, KeepsEveryKindOfNumber) {
     for (const std::string& sensor : {poses, distances, planes}) {
         const CampaignFile file = read(sensor);
