@@ -61,8 +61,13 @@ class ProgressNote {
         const double elapsed = Seconds(std::chrono::steady_clock::now() - begin_).count();
         const double left = elapsed * static_cast<double>(state.starts - state.starts_done) /
                             static_cast<double>(state.starts_done);
-        return fmt::format("best {}, efficiency {} over the pool, about {:.0f} s left",
-                           format_short(state.value), format_fixed(state.efficiency, 3), left);
+        // Unknown while the choice from the whole pool is still being made.
+        const std::string efficiency =
+            state.efficiency > 0
+                ? fmt::format(", efficiency {} over the pool", format_fixed(state.efficiency, 3))
+                : "";
+        return fmt::format("best {}{}, about {:.0f} s left", format_short(state.value), efficiency,
+                           left);
     }
 
   private:

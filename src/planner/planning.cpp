@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <numeric>
 
 #include "posewise/core/errors.hpp"
@@ -106,9 +107,12 @@ RowMatrixXd choose_from_part(const Problem& problem, Index start) {
     return candidates(select_poses(take(problem.blocks, part), select).poses, Eigen::all);
 }
 
-/// Refinements of all starts; those whose choice identifies too little are left empty.
-std::vector<Refinement> refine_starts(const Problem& problem, const Plan& pool_plan) {
-    const RowMatrixXd first = problem.pool(pool_plan.poses, Eigen::all);
+/// The choice from the whole pool, which becomes `pool_plan`, and the refinements of all starts, of
+/// which it is the first; those whose choice identifies too little are left empty. That choice is
+/// made beside the other starts, since by G it takes as long as many of them.
+std::vector<Refinement> refine_starts(const Problem& problem, const SelectOptions& select,
+                                      Plan& pool_plan) {
+    double pool_bound = std::numeric_limits<double>::infinity();  // until the choice is made
     const Index starts = problem.options.starts;
     std::vector<Refinement> results(static_cast<std::size_t>(starts));
     std::vector<std::exception_ptr> errors(results.size());
@@ -124,8 +128,20 @@ std::vector<Refinement> refine_starts(const Problem& problem, const Plan& pool_p
     for (Index start = 0; start < starts; ++start) {
         const auto s = static_cast<std::size_t>(start);
         if (start > 0 && problem.stop.is_set()) continue;
+        if (start == 0) {
+            try {
+                pool_plan = select_poses(problem.blocks, select);
+            } catch (...) {
+                errors[s] = std::current_exception();
+                continue;
+            }
+#pragma omp atomic write
+            pool_bound = pool_plan.bound;
+        }
         try {
-            const RowMatrixXd chosen = start == 0 ? first : choose_from_part(problem, start);
+            const RowMatrixXd chosen = start == 0
+                                           ? RowMatrixXd(problem.pool(pool_plan.poses, Eigen::all))
+                                           : choose_from_part(problem, start);
             results[s] = refine_poses(problem.space, problem.objective, problem.options.held,
                                       chosen, refine);
         } catch (const InputError&) {
@@ -138,8 +154,11 @@ std::vector<Refinement> refine_starts(const Problem& problem, const Plan& pool_p
         {
             ++progress.starts_done;
             progress.value = std::max(progress.value, results[s].value);
-            progress.efficiency = efficiency(problem.options.criterion, progress.value,
-                                             pool_plan.bound, interesting_count(problem));
+            double bound = 0;
+#pragma omp atomic read
+            bound = pool_bound;
+            progress.efficiency = efficiency(problem.options.criterion, progress.value, bound,
+                                             interesting_count(problem));
             problem.options.progress(progress);
         }
     }
@@ -214,9 +233,7 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     PlannedPoses planned;
     planned.criterion = options.criterion;
     planned.seed = options.seed;
-    planned.pool_plan = select_poses(blocks, select);
-
-    const auto results = refine_starts(problem, planned.pool_plan);
+    const auto results = refine_starts(problem, select, planned.pool_plan);
     Refinement best =
         *std::max_element(results.begin(), results.end(),
                           [](const auto& a, const auto& b) { return a.value < b.value; });
