@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/targets.hpp"
+#include "posewise/model/transforms.hpp"
 
 namespace posewise {
 namespace {
@@ -22,10 +24,9 @@ constexpr double negligible = 1e-26;
 /// A pose with a weighted error below this is reached, m: nothing holds it, nor is it singular.
 constexpr double attained = 1e-6;
 
-/// Angle times axis of the rotation that R lacks to be the wanted one, in the frame both are in.
+/// Rotation vector of what R lacks to be the wanted rotation, in the frame both are in.
 Vector3d missing_rotation(const Matrix3d& wanted, const Matrix3d& R) {
-    const Eigen::AngleAxisd turn(Matrix3d(wanted * R.transpose()));
-    return turn.angle() * turn.axis();
+    return vector_from_rotation(wanted * R.transpose());
 }
 
 /// min |J d - r|^2, rows: position and weighted angle that are missing, change of each joint.
@@ -109,9 +110,9 @@ class Search {
         const double weight = options_.length_per_angle;
         Equations system{MatrixXd::Zero(6 + count, count), VectorXd(6 + count)};
         for (Index j = 0; j < count; ++j) {
-            const Vector3d w = motion_.joint_twists.col(j).head<3>();
-            system.J.block<3, 1>(0, j) = motion_.joint_twists.col(j).tail<3>() + w.cross(tool);
-            system.J.block<3, 1>(3, j) = weight * w;
+            const Twist twist = motion_.joint_twists.col(j);
+            system.J.block<3, 1>(0, j) = velocity_of(tool, twist);
+            system.J.block<3, 1>(3, j) = weight * twist.head<3>();
         }
         system.J.bottomRows(count).diagonal().setConstant(change_weight);
         system.r << wanted_ * options_.tool - tool,

@@ -97,10 +97,10 @@ std::vector<std::string> terms_of(const Chain& robot, const VectorXd& parameters
     return terms;
 }
 
-void export_dh(const Arguments& arguments, const io::CampaignFile& file) {
+void export_dh(const Arguments& arguments, const io::CampaignFile& file,
+               const Parameters& parameters) {
     constexpr double far = 10;  // m
     const Chain& robot = file.campaign.robot;
-    const Parameters parameters = io::read_estimate(arguments.estimate, file.campaign);
     const std::vector<DhRow> rows = dh_rows(robot, parameters.robot);
     io::write_file(arguments.dh,
                    fmt::format("# {}, calibrated\n", escape_controls(file.campaign.name)) +
@@ -122,14 +122,17 @@ void export_dh(const Arguments& arguments, const io::CampaignFile& file) {
                   "table");
 }
 
-void export_urdf(const Arguments& arguments, const io::CampaignFile& file) {
+void check_urdf(const Arguments& arguments, const io::CampaignFile& file) {
     if (!file.urdf) {
         throw input_error_at({arguments.campaign},
                              "has a robot that does not come from a URDF; only such a one can go "
                              "into one (--dh takes any)");
     }
     check_outputs({file.urdf->path}, {arguments.urdf});
-    const Parameters parameters = io::read_estimate(arguments.estimate, file.campaign);
+}
+
+void export_urdf(const Arguments& arguments, const io::CampaignFile& file,
+                 const Parameters& parameters) {
     const io::CalibratedUrdf urdf =
         io::make_calibrated_urdf(*file.urdf, file.campaign.robot, parameters.robot);
     io::write_file(arguments.urdf, urdf.text);
@@ -142,8 +145,10 @@ void export_estimate(const Arguments& arguments) {
     }
     check_outputs({arguments.campaign, arguments.estimate}, {arguments.urdf, arguments.dh});
     const io::CampaignFile file = io::read_campaign(arguments.campaign);
-    if (!arguments.urdf.empty()) export_urdf(arguments, file);
-    if (!arguments.dh.empty()) export_dh(arguments, file);
+    if (!arguments.urdf.empty()) check_urdf(arguments, file);
+    const Parameters parameters = io::read_estimate(arguments.estimate, file.campaign);
+    if (!arguments.urdf.empty()) export_urdf(arguments, file, parameters);
+    if (!arguments.dh.empty()) export_dh(arguments, file, parameters);
 }
 
 }  // namespace

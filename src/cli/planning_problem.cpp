@@ -103,21 +103,11 @@ void hold_kept(PlanningProblem& problem, std::vector<io::ContinuousPose> poses) 
     for (const io::ContinuousPose& pose : poses) check_kept(problem, pose);
     const Index L = parameter_count(campaign);
     hold(problem, MatrixXd::Zero(L, L), configurations_of(away, joints));
-    std::vector<std::vector<bool>> is_visible;
-    for (io::ContinuousPose& pose : poses) {
-        pose.is_kept = true;
-        is_visible.emplace_back(static_cast<std::size_t>(campaign.sensor->target_count()));
-        for (const Index target : pose.visible) {
-            is_visible.back()[static_cast<std::size_t>(target)] = true;
-        }
-    }
+    for (io::ContinuousPose& pose : poses) pose.is_kept = true;
     problem.kept = std::move(poses);
     if (problem.kept.empty()) return;
     const RowMatrixXd configurations = configurations_of(problem.kept, joints);
-    hold(problem,
-         information(make_visible_blocks(campaign, campaign.nominal, configurations, is_visible,
-                                         problem.request.repeats)),
-         configurations);
+    hold(problem, information(blocks_of(problem, problem.kept)), configurations);
     problem.options.held_pose_count += configurations.rows();
 }
 
@@ -240,6 +230,20 @@ PlanningProblem state_planning_problem(const PlanningArguments& arguments) {
     auto [problem, file] = state_problem(arguments);
     draw_workspace(problem, file);
     return std::move(problem);
+}
+
+Blocks blocks_of(const PlanningProblem& problem, const std::vector<io::ContinuousPose>& poses) {
+    const Campaign& campaign = problem.campaign;
+    std::vector<std::vector<bool>> is_visible;
+    for (const io::ContinuousPose& pose : poses) {
+        is_visible.emplace_back(static_cast<std::size_t>(campaign.sensor->target_count()));
+        for (const Index target : pose.visible) {
+            is_visible.back()[static_cast<std::size_t>(target)] = true;
+        }
+    }
+    return make_visible_blocks(campaign, campaign.nominal,
+                               configurations_of(poses, campaign.robot.joint_count()), is_visible,
+                               problem.request.repeats);
 }
 
 std::string describe_violation(const Constraints& constraints, const VectorXd& q) {

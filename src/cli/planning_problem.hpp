@@ -41,6 +41,9 @@ PlanningProblem read_planning_problem(const PlanningArguments& arguments, const 
 /// The same but for the pool and the poses of a plan to repair: what a finished plan is judged by.
 PlanningProblem state_planning_problem(const PlanningArguments& arguments);
 
+/// Blocks of the targets that these poses state to show.
+Blocks blocks_of(const PlanningProblem& problem, const std::vector<io::ContinuousPose>& poses);
+
 /// The constraint that a pose does not meet, in words ("does not meet keep_out"); empty if it
 /// meets all, to rounding.
 std::string describe_violation(const Constraints& constraints, const VectorXd& q);

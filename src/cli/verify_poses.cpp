@@ -65,21 +65,6 @@ void check_poses(const PlanningProblem& problem, const std::vector<io::Continuou
     if (is_right) findings.note("poses", true, fmt::format("{}, all feasible", poses.size()));
 }
 
-Blocks blocks_of(const PlanningProblem& problem, const std::vector<io::ContinuousPose>& poses) {
-    const Campaign& campaign = problem.campaign;
-    RowMatrixXd configurations(static_cast<Index>(poses.size()), campaign.robot.joint_count());
-    std::vector<std::vector<bool>> is_visible;
-    for (const io::ContinuousPose& pose : poses) {
-        configurations.row(static_cast<Index>(is_visible.size())) = pose.joints.transpose();
-        is_visible.emplace_back(static_cast<std::size_t>(campaign.sensor->target_count()));
-        for (const Index target : pose.visible) {
-            is_visible.back()[static_cast<std::size_t>(target)] = true;
-        }
-    }
-    return make_visible_blocks(campaign, campaign.nominal, configurations, is_visible,
-                               problem.request.repeats);
-}
-
 void check_numbers(const PlanningProblem& problem, const io::PosePlanFile& file,
                    Findings& findings) {
     const Blocks blocks = blocks_of(problem, file.poses);

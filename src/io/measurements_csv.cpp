@@ -163,6 +163,7 @@ class RowReader {
               std::vector<Column> columns)
         : csv_(csv),
           campaign_(campaign),
+          is_of_distances_(dynamic_cast<const DistanceSensor*>(campaign.sensor.get()) != nullptr),
           content_(content),
           columns_(std::move(columns)),
           field_of_joint_(campaign.robot.joints().size()),
@@ -313,9 +314,7 @@ class RowReader {
 
     /// No target is at its anchor, or behind it.
     void check_distance(std::size_t k) const {
-        const bool is_distance =
-            dynamic_cast<const DistanceSensor*>(campaign_.sensor.get()) != nullptr;
-        if (!is_distance || row_.observation[static_cast<Index>(k)] > 0) return;
+        if (!is_of_distances_ || row_.observation[static_cast<Index>(k)] > 0) return;
         const std::size_t field = field_of_observation_[k];
         throw input_error_at(csv_.locate(field),
                              fmt::format("{} is {}; must be a distance above 0", name_of(field),
@@ -357,6 +356,7 @@ class RowReader {
 
     const CsvReader& csv_;
     const Campaign& campaign_;
+    bool is_of_distances_;
     Content content_;
     std::vector<Column> columns_;
     std::vector<std::size_t> field_of_joint_;

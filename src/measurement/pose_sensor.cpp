@@ -3,14 +3,23 @@
 #include <cmath>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/targets.hpp"
 #include "posewise/model/transforms.hpp"
 
 namespace posewise {
 
+namespace {
+
+std::vector<std::optional<Vector3d>> origin_of(const std::optional<Isometry3d>& tool) {
+    if (!tool) return {std::nullopt};
+    return {Vector3d(tool->translation())};
+}
+
+}  // namespace
+
 PoseSensor::PoseSensor(std::optional<Isometry3d> known_tool, PointNoise position_noise,
                        double sigma_orientation)
     : known_tool_(std::move(known_tool)),
+      origin_(origin_of(known_tool_)),
       noise_(position_noise),
       sigma_orientation_(sigma_orientation) {
     check_noise(noise_);
@@ -84,49 +93,38 @@ void PoseSensor::differentiate_along(const Isometry3d& world_from_flange, const 
                                      const Twist& direction, const TwistMatrix& twist_rates,
                                      const VectorXd& unknowns,
                                      Eigen::Ref<RowMatrixXd> J_rate) const {
-    const Vector3d w = direction.head<3>();
-    const Vector3d x = world_from_flange * tool(unknowns).translation();
-    const Vector3d velocity = velocity_of(x, direction);
-    for (Index k = 0; k < twists.cols(); ++k) {
-        J_rate.col(k).head<3>() =
-            velocity_of(x, twist_rates.col(k)) + twists.col(k).head<3>().cross(velocity);
-        J_rate.col(k).tail<3>() = twist_rates.col(k).head<3>();
-    }
-    auto J_tool = J_rate.rightCols(J_rate.cols() - twists.cols());
+    origin_.differentiate_along(world_from_flange, twists, direction, twist_rates, unknowns,
+                                J_rate.topRows(3));
+    J_rate.bottomLeftCorner(3, twists.cols()) = twist_rates.topRows<3>();
+    auto J_tool = J_rate.bottomRightCorner(3, J_rate.cols() - twists.cols());
     if (J_tool.cols() == 0) return;
-    J_tool.setZero();
-    const Matrix3d R_rate = cross_matrix(w) * world_from_flange.linear();
-    J_tool.topLeftCorner<3, 3>() = R_rate;
-    J_tool.bottomRightCorner<3, 3>() = R_rate * rotation_vector_rate(unknowns.segment<3>(3));
+    J_tool.leftCols<3>().setZero();
+    J_tool.rightCols<3>() = cross_matrix(direction.head<3>()) * world_from_flange.linear() *
+                            rotation_vector_rate(unknowns.segment<3>(3));
 }
 
-Vector3d PoseSensor::target_position(Index, const VectorXd& unknowns) const {
-    return tool(unknowns).translation();
+Vector3d PoseSensor::target_position(Index target, const VectorXd& unknowns) const {
+    return origin_.position(target, unknowns);
 }
 
 void PoseSensor::differentiate_positions(const Isometry3d& world_from_flange,
                                          const TwistMatrix& twists, const VectorXd& unknowns,
                                          Eigen::Ref<RowMatrixXd> J_positions_parameters) const {
-    auto& J = J_positions_parameters;
-    const Vector3d x = world_from_flange * tool(unknowns).translation();
-    for (Index k = 0; k < twists.cols(); ++k) J.col(k) = velocity_of(x, twists.col(k));
-    auto J_tool = J.rightCols(J.cols() - twists.cols());
-    J_tool.setZero();
-    if (J_tool.cols() > 0) J_tool.leftCols<3>() = world_from_flange.linear();
+    origin_.differentiate(world_from_flange, twists, unknowns, J_positions_parameters);
 }
 
 MatrixXd PoseSensor::covariance(const Isometry3d& world_from_flange,
                                 const VectorXd& unknowns) const {
     MatrixXd covariance = MatrixXd::Zero(6, 6);
     covariance.topLeftCorner<3, 3>() =
-        point_covariance(noise_, world_from_flange * tool(unknowns).translation());
+        point_covariance(noise_, world_from_flange * target_position(0, unknowns));
     covariance.diagonal().tail<3>().setConstant(sigma_orientation_ * sigma_orientation_);
     return covariance;
 }
 
 MatrixXd PoseSensor::covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
                                      const VectorXd& unknowns) const {
-    const Vector3d x = world_from_flange * tool(unknowns).translation();
+    const Vector3d x = world_from_flange * target_position(0, unknowns);
     MatrixXd rate = MatrixXd::Zero(6, 6);
     rate.topLeftCorner<3, 3>() = point_covariance_rate(noise_, x, velocity_of(x, direction));
     return rate;

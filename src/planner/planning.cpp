@@ -135,7 +135,7 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
                 errors[s] = std::current_exception();
                 continue;
             }
-#pragma omp atomic write
+#pragma omp critical(posewise_plan_progress)
             pool_bound = pool_plan.bound;
         }
         try {
@@ -154,10 +154,7 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
         {
             ++progress.starts_done;
             progress.value = std::max(progress.value, results[s].value);
-            double bound = 0;
-#pragma omp atomic read
-            bound = pool_bound;
-            progress.efficiency = efficiency(problem.options.criterion, progress.value, bound,
+            progress.efficiency = efficiency(problem.options.criterion, progress.value, pool_bound,
                                              interesting_count(problem));
             problem.options.progress(progress);
         }

@@ -10,6 +10,7 @@
 #include "posewise/planner/tour.hpp"
 #include "support/cell_recheck.hpp"
 #include "support/fanuc_planning.hpp"
+#include "support/parameter_error.hpp"
 #include "support/sweep.hpp"
 
 namespace posewise {
@@ -59,16 +60,6 @@ TEST(APlanInTheDemonstrationCell, SatisfiesEveryConstraintByASeparateDenseCheck)
     }
 }
 
-/// Difference of two parameter vectors as advance() takes them.
-VectorXd step_between(const Parameters& from, const Parameters& to) {
-    const Eigen::AngleAxisd turn(to.world_from_base.linear() *
-                                 from.world_from_base.linear().transpose());
-    VectorXd step(6 + from.robot.size() + from.sensor.size());
-    step << to.world_from_base.translation() - from.world_from_base.translation(),
-        turn.angle() * turn.axis(), to.robot - from.robot, to.sensor - from.sensor;
-    return step;
-}
-
 /// Calibrations simulated, POSEWISE_SWEEP_COUNT of them or 2 000.
 TEST(APlanInTheDemonstrationCell, PredictsTheCovarianceThatSimulatedCalibrationsHave) {
     io::CampaignFile file = demo_showing_all();
@@ -93,7 +84,7 @@ TEST(APlanInTheDemonstrationCell, PredictsTheCovarianceThatSimulatedCalibrations
         const Measurements measured =
             simulate_measurements(campaign, truth, plan.configurations, 1, 100000 + seed);
         errors[static_cast<std::size_t>(trial)] =
-            step_between(truth, identify(campaign, measured, campaign.nominal).parameters);
+            error_of(identify(campaign, measured, campaign.nominal).parameters, truth);
     }
     double distance = 0;
     VectorXd variance = VectorXd::Zero(L);

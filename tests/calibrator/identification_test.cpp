@@ -10,10 +10,12 @@
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
+#include "support/parameter_error.hpp"
 
 namespace posewise {
 namespace {
 
+using testing::error_of;
 using testing::tracked_campaign;
 
 Campaign with_sigma(double sigma) {
@@ -26,16 +28,6 @@ Campaign with_sigma(double sigma) {
 
 Estimate calibrate(const Campaign& campaign, const Measurements& measurements) {
     return identify(campaign, measurements, register_base_and_targets(campaign, measurements));
-}
-
-/// Estimated minus true, in the 33 parameters' own coordinates.
-VectorXd error_of(const Parameters& estimate, const Parameters& truth) {
-    VectorXd error(6 + truth.robot.size() + truth.sensor.size());
-    const Eigen::AngleAxisd turn(
-        Matrix3d(estimate.world_from_base.linear() * truth.world_from_base.linear().transpose()));
-    error << estimate.world_from_base.translation() - truth.world_from_base.translation(),
-        turn.angle() * turn.axis(), estimate.robot - truth.robot, estimate.sensor - truth.sensor;
-    return error;
 }
 
 TEST(Identify, RecoversTheTruthFromExactMeasurements) {

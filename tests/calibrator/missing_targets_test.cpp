@@ -11,11 +11,13 @@
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
+#include "support/parameter_error.hpp"
 
 /// Calibration from measurements that do not show every target in every sample.
 namespace posewise {
 namespace {
 
+using testing::error_of;
 using testing::hide_at_random;
 using testing::tracked_campaign;
 
@@ -39,15 +41,6 @@ Measurements simulate_with_gaps(const Campaign& campaign, const Parameters& trut
 
 Estimate calibrate(const Campaign& campaign, const Measurements& measurements) {
     return identify(campaign, measurements, register_base_and_targets(campaign, measurements));
-}
-
-VectorXd error_of(const Parameters& estimate, const Parameters& truth) {
-    VectorXd error(6 + truth.robot.size() + truth.sensor.size());
-    const Eigen::AngleAxisd turn(
-        Matrix3d(estimate.world_from_base.linear() * truth.world_from_base.linear().transpose()));
-    error << estimate.world_from_base.translation() - truth.world_from_base.translation(),
-        turn.angle() * turn.axis(), estimate.robot - truth.robot, estimate.sensor - truth.sensor;
-    return error;
 }
 
 std::string error_message(const Campaign& campaign, const Measurements& measurements) {

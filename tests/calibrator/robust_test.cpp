@@ -11,11 +11,13 @@
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
+#include "support/parameter_error.hpp"
 
 /// Calibration by robust losses, of measurements with gross errors and without.
 namespace posewise {
 namespace {
 
+using testing::error_of;
 using testing::tracked_campaign;
 
 constexpr LossKind robust_kinds[] = {LossKind::Huber, LossKind::Cauchy};
@@ -24,15 +26,6 @@ LevenbergMarquardtOptions with_loss(LossKind kind, double width = 0) {
     LevenbergMarquardtOptions options;
     options.loss = {kind, width};
     return options;
-}
-
-VectorXd error_of(const Parameters& estimate, const Parameters& truth) {
-    VectorXd error(6 + truth.robot.size() + truth.sensor.size());
-    const Eigen::AngleAxisd turn(
-        Matrix3d(estimate.world_from_base.linear() * truth.world_from_base.linear().transpose()));
-    error << estimate.world_from_base.translation() - truth.world_from_base.translation(),
-        turn.angle() * turn.axis(), estimate.robot - truth.robot, estimate.sensor - truth.sensor;
-    return error;
 }
 
 using Places = std::vector<std::pair<Index, Index>>;

@@ -33,9 +33,9 @@ Configurations read_configurations_csv(const std::string& path, const Campaign& 
 
 /// CSV with a header that carries the units: config, <joint>_rad or _deg (_m or _mm if it slides),
 /// the sensor's columns with _m or _mm (orientations: rx, ry, rz or roll, pitch, yaw with _rad or
-/// _deg, or qw, qx, qy, qz of length 1 within 0.001), and optionally sample and visible_targets (which measured
-/// ones need not agree with); in any order. Separated by commas,
-/// semicolons or tabs; lines behind # are comments. Rows of one config may stand anywhere.
+/// _deg, or qw, qx, qy, qz of length 1 within 0.001), and optionally sample and visible_targets
+/// (which measured ones need not agree with); in any order. Separated by commas, semicolons or
+/// tabs; lines behind # are comments. Rows of one config may stand anywhere.
 Measurements read_measurements_csv(const std::string& path, const Campaign& campaign);
 
 /// MATLAB file (5 to 7.3) of real double matrices; rows with equal joint values are samples of one

@@ -4,6 +4,7 @@
 
 #include "posewise/measurement/point_noise.hpp"
 #include "posewise/measurement/sensor.hpp"
+#include "posewise/measurement/targets.hpp"
 
 namespace posewise {
 
@@ -52,6 +53,7 @@ class PoseSensor final : public Sensor {
 
   private:
     std::optional<Isometry3d> known_tool_;
+    Targets origin_;  ///< of the body: a target whose unknowns are tool.x to tool.z
     PointNoise noise_;
     double sigma_orientation_;
 };
