@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "least_squares.hpp"
+#include "population_search.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
@@ -27,8 +28,8 @@ void check_options(const Campaign& campaign, const GlobalOptions& options) {
     check("length_share", options.length_share, 1);
     check("least_length", options.least_length, 10);
     check("angle", options.angle, std::numbers::pi);
-    if (options.start_limit < 1 || options.agreeing_starts < 1) {
-        throw InputError("start_limit and agreeing_starts must be at least 1");
+    if (options.start_limit < 1 || options.agreeing_starts < 1 || options.evaluation_limit < 1) {
+        throw InputError("start_limit, agreeing_starts and evaluation_limit must be at least 1");
     }
     if (campaign.spread.is_prior) {
         throw InputError(
@@ -37,11 +38,16 @@ void check_options(const Campaign& campaign, const GlobalOptions& options) {
     }
 }
 
-/// The nominal robot, then random ones.
-VectorXd draw_errors(const VectorXd& bounds, std::uint64_t seed, Index start) {
+/// The nominal robot, then random ones or those that a search with another seed finds.
+VectorXd draw_errors(const IdentificationProblem& problem, const VectorXd& bounds,
+                     const GlobalOptions& options, Index start) {
     VectorXd errors = VectorXd::Zero(bounds.size());
     if (start == 0) return errors;
-    RandomStream stream(seed, static_cast<std::uint64_t>(start));
+    RandomStream stream(options.seed, static_cast<std::uint64_t>(start));
+    if (options.search != StartSearch::Random) {
+        return search_population(problem.campaign, problem.means, bounds, options.search,
+                                 options.evaluation_limit, stream);
+    }
     for (Index k = 0; k < bounds.size(); ++k) errors[k] = stream.uniform(-bounds[k], bounds[k]);
     return errors;
 }
@@ -91,7 +97,7 @@ Parameters register_roughly_with_errors(const Campaign& campaign, const Measurem
         if (!element.parameter.empty()) element.value += robot_errors[next++];
         next += static_cast<Index>(element.terms.size());
     }
-    const Chain moved(campaign.robot.joints(), std::move(elements));
+    const Chain moved = campaign.robot.with_elements(std::move(elements));
     Parameters registered = register_roughly(with_robot(campaign, moved), measurements);
     registered.robot = robot_errors;
     return registered;
@@ -110,7 +116,7 @@ GlobalEstimate identify_globally(const Campaign& campaign, const Measurements& m
 #pragma omp parallel for schedule(dynamic)
         for (Index i = result.starts; i < result.starts + count; ++i) {
             runs[static_cast<std::size_t>(i)] =
-                run_from(problem, draw_errors(bounds, options.seed, i), options.start_options);
+                run_from(problem, draw_errors(problem, bounds, options, i), options.start_options);
         }
         result.starts += count;
         const Run& best = *std::min_element(

@@ -50,6 +50,40 @@ TEST(GlobalIdentification, FindsRobotsThatOneStartDoesNot) {
     EXPECT_GE(by_many, count - 1);
 }
 
+TEST(GlobalIdentification, FindsRobotsByEveryPopulationSearch) {
+    const Campaign campaign = tracked_campaign(testing::fanuc());
+    GlobalOptions options{.angle = 45 * degree, .start_limit = 3, .agreeing_starts = 2};
+    const VectorXd bounds = error_bounds(campaign.robot, options);
+    options.evaluation_limit = 1000;
+    for (const StartSearch search :
+         {StartSearch::Crs2, StartSearch::Esch, StartSearch::Isres, StartSearch::CmaEs}) {
+        options.search = search;
+        Index found = 0;
+        for (std::uint64_t item = 0; item < 4; ++item) {
+            const Measurements measurements = measure_far_off(campaign, bounds, item);
+            found += is_found(identify_globally(campaign, measurements, options).estimate) ? 1 : 0;
+        }
+        EXPECT_EQ(found, 4) << static_cast<int>(search);
+    }
+}
+
+TEST(GlobalIdentification, ComesNearByAPopulationSearchAlone) {
+    // Without Levenberg-Marquardt: one start whose iterations are spent on next to nothing.
+    const Campaign campaign = tracked_campaign(testing::fanuc());
+    GlobalOptions options{.angle = 20 * degree, .search = StartSearch::CmaEs};
+    const VectorXd bounds = error_bounds(campaign.robot, options);
+    const Measurements measurements = measure_far_off(campaign, bounds, 3);
+    const auto misfit_after = [&](Index evaluations) {
+        options.evaluation_limit = evaluations;
+        options.start_limit = 2;
+        options.start_options.iteration_limit = 1;
+        return identify_globally(campaign, measurements, options).estimate.fit_means.distance_rms;
+    };
+    const double far = misfit_after(1);
+    EXPECT_LT(misfit_after(4000), far / 3);
+    EXPECT_EQ(misfit_after(500), misfit_after(500));
+}
+
 TEST(GlobalIdentification, OfARobotNearNominalIsThatFromNominal) {
     const Campaign campaign = tracked_campaign(testing::fanuc());
     const Measurements measurements = simulate(campaign, {.pose_count = 24}).measurements;

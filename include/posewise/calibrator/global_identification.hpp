@@ -7,11 +7,17 @@
 
 namespace posewise {
 
+/// Where the starts of a global identification are: anywhere, or where a population search, over
+/// the robot's errors alone with base and targets registered for each, has found its best.
+enum class StartSearch { Random, Crs2, Esch, Isres, CmaEs };
+
 /// How far the nominal robot may be off, and how hard to search.
 struct GlobalOptions {
     double length_share = 0.3;                   ///< error of a length, as part of it
     double least_length = 0.05;                  ///< m; that of any length at least
     double angle = 20 * std::numbers::pi / 180;  ///< error of an angle, rad
+    StartSearch search = StartSearch::Random;
+    Index evaluation_limit = 20000;  ///< of one population search
     Index start_limit = 200;
     Index agreeing_starts = 3;  ///< stop when so many ended at the best sum of squares
     std::uint64_t seed = 1;     ///< start i draws from stream (seed, i)
@@ -32,7 +38,7 @@ struct GlobalEstimate {
 };
 
 /// Identification of a robot whose nominal parameters are far off: identify() from the nominal
-/// robot and from random ones within the bounds, base and targets registered anew for each. The
+/// robot and from others within the bounds, base and targets registered anew for each. The
 /// same for any number of threads. Throws InputError as identify() does where every start fails,
 /// for options out of range, and where the spread is a prior, since that says errors are small.
 GlobalEstimate identify_globally(const Campaign& campaign, const Measurements& measurements,
