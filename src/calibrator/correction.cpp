@@ -46,7 +46,8 @@ class Search {
           options_(options),
           lower_(nominal),
           upper_(nominal) {
-        for (Index j = 0; j < nominal.size(); ++j) {
+        // What follows the joints, measured torques, stays as it is.
+        for (Index j = 0; j < robot.joint_count(); ++j) {
             const bool turns = robot.joint_motion(j) == Motion::Rotation;
             const double change = turns ? options.largest_turn : options.largest_slide;
             lower_[j] = std::max(limits(j).lower, nominal[j] - change);
@@ -78,13 +79,13 @@ class Search {
 
     bool is_singular(const Correction& correction) const {
         if (!correction.held_by_limit.empty() || !correction.held_by_change.empty()) return false;
-        return nominal_.size() >= (options_.length_per_angle > 0 ? 6 : 3);
+        return robot_.joint_count() >= (options_.length_per_angle > 0 ? 6 : 3);
     }
 
     void find_held(Correction& correction) {
         const Equations system = equations(correction.joints);
         const std::vector<Index> free = free_joints(correction.joints, system);
-        for (Index j = 0; j < nominal_.size(); ++j) {
+        for (Index j = 0; j < robot_.joint_count(); ++j) {
             if (std::find(free.begin(), free.end(), j) != free.end()) continue;
             const double q = correction.joints[j];
             const bool at_limit = q == limits(j).lower || q == limits(j).upper;
@@ -109,7 +110,7 @@ class Search {
         const Vector3d tool = flange * options_.tool;
         const double weight = options_.length_per_angle;
         Equations system{MatrixXd::Zero(6 + count, count), VectorXd(6 + count)};
-        for (Index j = 0; j < count; ++j) {
+        for (Index j = 0; j < robot_.joint_count(); ++j) {
             const Twist twist = motion_.joint_twists.col(j);
             system.J.block<3, 1>(0, j) = velocity_of(tool, twist);
             system.J.block<3, 1>(3, j) = weight * twist.head<3>();
@@ -184,7 +185,7 @@ void check_options(const CorrectionOptions& options) {
 
 void check_limits(const Chain& robot, const VectorXd& nominal) {
     robot.check_configuration(nominal);
-    for (Index j = 0; j < nominal.size(); ++j) {
+    for (Index j = 0; j < robot.joint_count(); ++j) {
         const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
         constexpr double rounding = 1e-9;  // of values that were converted, rad or m
         if (nominal[j] >= joint.lower - rounding && nominal[j] <= joint.upper + rounding) continue;

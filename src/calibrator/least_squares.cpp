@@ -18,10 +18,10 @@ namespace {
 
 void check_size(const Campaign& campaign, const Measurements& measurements) {
     const Sensor& sensor = *campaign.sensor;
-    if (measurements.configurations.cols() != campaign.robot.joint_count()) {
-        throw InputError(fmt::format("measurements have {} joints, the robot has {}",
-                                     measurements.configurations.cols(),
-                                     campaign.robot.joint_count()));
+    if (measurements.configurations.cols() != campaign.robot.configuration_size()) {
+        throw InputError(fmt::format(
+            "configurations have {} numbers, the robot's have {}: joints and measured torques",
+            measurements.configurations.cols(), campaign.robot.configuration_size()));
     }
     if (measurements.observations.cols() != sensor.row_count()) {
         throw InputError(fmt::format("an observation has {} numbers, the sensor returns {}",
@@ -104,7 +104,7 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
     // The residual is whitened with the Jacobian.
     RowMatrixXd augmented(campaign.sensor->row_count(), size + 1);
     FlangeMotion motion;
-    VectorXd q(campaign.robot.joint_count());
+    VectorXd q(campaign.robot.configuration_size());
     Index row = 0;
     for (Index i = 0; i < problem.means.configuration_count(); ++i) {
         q = problem.means.configurations.row(i).transpose();
@@ -134,7 +134,7 @@ VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters
     VectorXd lengths(problem.means.is_seen.count());
     Index count = 0;
     FlangeMotion motion;
-    VectorXd q(campaign.robot.joint_count());
+    VectorXd q(campaign.robot.configuration_size());
     for (Index i = 0; i < problem.means.configuration_count(); ++i) {
         q = problem.means.configurations.row(i).transpose();
         differentiate_flange(campaign, parameters, q, motion);

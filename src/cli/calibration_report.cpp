@@ -182,6 +182,8 @@ void print_calibration(const Campaign& campaign, const Measurements& used,
     print_outliers(report);
     print_section("Parameters (errors of the robot, base, targets in the flange frame)",
                   parameter_table(campaign, report.estimate));
+    const Table compliance = compliance_table(campaign, report.estimate);
+    if (!compliance.rows.empty()) print_section("Compliances", compliance);
     print_section("Strongest correlations", correlation_table(report.estimate, correlations_shown));
 }
 

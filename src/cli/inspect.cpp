@@ -19,6 +19,7 @@
 #include "posewise/measurement/point_sensor.hpp"
 #include "posewise/measurement/pose_sensor.hpp"
 #include "posewise/model/complete_model.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "posewise/report/units.hpp"
 #include "robot_tables.hpp"
 
@@ -120,6 +121,18 @@ std::string describe_formula(const Campaign& campaign) {
                        4 * revolute + 2 * prismatic + unknowns + terms);
 }
 
+/// What the parameters of compliances are measured at; empty if there are none.
+std::string describe_compliances(const Chain& robot) {
+    std::string text;
+    for (const Compliance& compliance : compliances(robot)) {
+        const bool turns = robot.joint_motion(compliance.joint) == Motion::Rotation;
+        text += fmt::format("{}{} {} {}", text.empty() ? "compliances are stated at " : ", ",
+                            robot.joints()[static_cast<std::size_t>(compliance.joint)].name,
+                            format_short(compliance.largest, 4), turns ? "N m" : "N");
+    }
+    return text.empty() ? "" : text + ", the largest that occur\n";
+}
+
 /// The campaign with every error a rigid link can have.
 Campaign with_complete_model(const io::CampaignFile& file) {
     return with_robot(file.campaign, complete_model(file.declared_robot));
@@ -161,8 +174,8 @@ void print_reduced(const io::CampaignFile& file) {
 
 void print_campaign(const io::CampaignFile& file) {
     const Campaign& campaign = file.campaign;
-    print(fmt::format("{}\nsensor: {}; model error {}\n", campaign.name,
-                      describe(*campaign.sensor), describe_model_error(campaign)));
+    print(fmt::format("{}\nsensor: {}; model error {}\n", campaign.name, describe(*campaign.sensor),
+                      describe_model_error(campaign)));
     if (file.urdf) {
         print(fmt::format("robot: {}, from base link {} to tip link {}\n",
                           escape_controls(file.urdf->path), quote(file.urdf->base_link),
@@ -177,6 +190,7 @@ void print_campaign(const io::CampaignFile& file) {
     } else {
         print_stated(file);
     }
+    print(describe_compliances(campaign.robot));
     print(fmt::format("least number of poses: {}\n", least_pose_count(campaign)));
 }
 

@@ -34,7 +34,7 @@ std::string format_parameters(const Element& element) {
 
 FlangeMotion motion_at_zero(const Chain& robot) {
     FlangeMotion motion;
-    robot.differentiate(Isometry3d::Identity(), VectorXd::Zero(robot.joint_count()),
+    robot.differentiate(Isometry3d::Identity(), VectorXd::Zero(robot.configuration_size()),
                         VectorXd::Zero(robot.parameter_count()), motion);
     return motion;
 }

@@ -172,9 +172,11 @@ void hold_measured(SelectionProblem& problem, const Parameters& parameters,
         information(make_blocks(problem.campaign->campaign, parameters, measured.configurations,
                                 mean_repeats(measured) * share_seen(measured)));
     problem.options.held_pose_count = measured.configuration_count();
+    const Index joints = problem.campaign->campaign.robot.joint_count();
     for (Index i = 0; i < problem.configurations.rows(); ++i) {
-        const auto distance =
-            (measured.configurations.rowwise() - problem.configurations.row(i)).cwiseAbs();
+        const auto distance = (measured.configurations.leftCols(joints).rowwise() -
+                               problem.configurations.row(i).head(joints))
+                                  .cwiseAbs();
         if (distance.rowwise().maxCoeff().minCoeff() <= same_joints) {
             problem.options.excluded.push_back(i);
         }

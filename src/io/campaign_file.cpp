@@ -64,9 +64,10 @@ double read_unit(const YamlMap& map, std::string_view key, Quantity quantity) {
 
 MatMapping read_mat_mapping(const YamlValue& measurements, Index target_count) {
     const YamlValue value = YamlMap(measurements, {"mat"}).require("mat");
-    const YamlMap map(value, {"joints", "points", "angle_unit", "length_unit"});
+    const YamlMap map(value, {"joints", "points", "torques", "angle_unit", "length_unit"});
     MatMapping mapping;
     mapping.joints = map.require("joints").text();
+    if (const auto torques = map.find("torques")) mapping.torques = torques->text();
     for (const YamlValue& point : map.require("points").list()) {
         mapping.points.push_back(point.text());
     }

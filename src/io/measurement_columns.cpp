@@ -8,17 +8,37 @@
 namespace posewise::io {
 namespace {
 
-bool turns(const Campaign& campaign, Index joint) {
-    return campaign.robot.joint_motion(joint) == Motion::Rotation;
+const Joint& joint_of(const Chain& robot, const MeasuredTorque& torque) {
+    return robot.joints()[static_cast<std::size_t>(torque.joint)];
 }
 
 }  // namespace
 
+std::string WantedColumn::example() const {
+    switch (quantity) {
+        case Quantity::Angle:
+            return stem + "_rad";
+        case Quantity::Length:
+            return stem + "_mm";
+        case Quantity::Torque:
+            break;
+    }
+    return stem + "_Nm";
+}
+
+std::string torque_stem(const Joint& joint) { return "tau_" + joint.name; }
+
 std::vector<WantedColumn> wanted_columns(const Campaign& campaign) {
+    const Chain& robot = campaign.robot;
     std::vector<WantedColumn> wanted;
-    for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
-        wanted.push_back({campaign.robot.joints()[static_cast<std::size_t>(j)].name, Role::Joint, j,
-                          quantity_of(campaign.robot.joint_motion(j))});
+    for (Index j = 0; j < robot.joint_count(); ++j) {
+        wanted.push_back({robot.joints()[static_cast<std::size_t>(j)].name, Role::Joint, j,
+                          quantity_of(robot.joint_motion(j))});
+    }
+    Index next = robot.joint_count();
+    for (const MeasuredTorque& torque : robot.torques()) {
+        wanted.push_back(
+            {torque_stem(joint_of(robot, torque)), Role::Joint, next++, Quantity::Torque});
     }
     Index k = 0;
     for (const std::string& name : campaign.sensor->observation_names()) {
@@ -29,15 +49,17 @@ std::vector<WantedColumn> wanted_columns(const Campaign& campaign) {
 }
 
 double for_people(const Campaign& campaign, Index joint, double value) {
-    return turns(campaign, joint) ? value * 180 / std::numbers::pi : 1e3 * value;
+    if (joint >= campaign.robot.joint_count()) return value;
+    const bool turns = campaign.robot.joint_motion(joint) == Motion::Rotation;
+    return turns ? value * 180 / std::numbers::pi : 1e3 * value;
 }
 
 std::string joint_header(const Campaign& campaign) {
     std::string text;
-    for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
-        fmt::format_to(std::back_inserter(text), ",{}{}",
-                       campaign.robot.joints()[static_cast<std::size_t>(j)].name,
-                       turns(campaign, j) ? "_deg" : "_mm");
+    for (const WantedColumn& column : wanted_columns(campaign)) {
+        if (column.role != Role::Joint) continue;
+        text +=
+            ',' + (column.quantity == Quantity::Angle ? column.stem + "_deg" : column.example());
     }
     return text;
 }

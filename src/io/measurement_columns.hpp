@@ -14,7 +14,15 @@ namespace posewise::io {
 /// Of a configuration: the numbers of the targets it shows, from 1, separated by blanks.
 inline constexpr std::string_view visible_targets = "visible_targets";
 
-enum class Role { Configuration, Sample, VisibleTargets, Joint, Observation, Orientation };
+enum class Role {
+    Configuration,
+    Sample,
+    VisibleTargets,
+    Joint,  ///< or a measured torque: a number of the configuration
+    Observation,
+    Orientation,
+    Unused,  ///< torque that the campaign makes no use of
+};
 
 /// Other columns for an orientation than its rotation vector: a quaternion without units, or turns
 /// about the fixed axes x, y and z.
@@ -32,17 +40,20 @@ struct WantedColumn {
     Index index = 0;
     Quantity quantity = Quantity::Angle;
 
-    std::string example() const { return stem + (quantity == Quantity::Angle ? "_rad" : "_mm"); }
+    std::string example() const;
 };
 
-/// Joints, then observations.
+/// Joints, measured torques, then observations.
 std::vector<WantedColumn> wanted_columns(const Campaign& campaign);
 
-/// A joint value in degrees or millimetres.
+/// The name of the column of a joint's torque without unit, "tau_q2".
+std::string torque_stem(const Joint& joint);
+
+/// A joint value in degrees or millimetres, a torque as it is.
 double for_people(const Campaign& campaign, Index joint, double value);
 
-/// Columns of joints for people and controllers, each behind a comma: ",q1_deg,q2_mm", and the
-/// values of a configuration (rad or m) for them, digits enough to read them back exactly.
+/// Columns of a configuration for people and controllers, each behind a comma: ",q1_deg,q2_mm", and
+/// the values (rad or m, N m) for them, digits enough to read them back exactly.
 std::string joint_header(const Campaign& campaign);
 std::string joint_cells(const Campaign& campaign, const VectorXd& q);
 

@@ -34,6 +34,7 @@ class HeaderReader {
     HeaderReader(const CsvReader& csv, const Campaign& campaign, Content content)
         : csv_(csv),
           content_(content),
+          joints_(campaign.robot.joints()),
           wanted_(wanted_columns(campaign)),
           has_orientation_(campaign.sensor->is_angle(campaign.sensor->row_count() - 1)),
           examples_{"config", "sample"} {
@@ -80,7 +81,11 @@ class HeaderReader {
         if (found == wanted_.end() && has_orientation_) {
             if (const auto column = find_orientation(field, with_unit)) return *column;
         }
-        if (found == wanted_.end()) throw unknown(field);
+        if (found == wanted_.end()) {
+            const auto joint = find_unused_torque(with_unit);
+            if (!joint) throw unknown(field);
+            return {Role::Unused, *joint, with_unit.unit};
+        }
         if (with_unit.unit == nullptr || found->stem == name) {
             throw error(field, "has no unit; must be like " + found->example());
         }
@@ -88,6 +93,15 @@ class HeaderReader {
             throw error(field, "has the wrong kind of unit; must be like " + found->example());
         }
         return {found->role, found->index, with_unit.unit};
+    }
+
+    /// The joint of a torque that the campaign does not ask for.
+    std::optional<Index> find_unused_torque(const NameWithUnit& name) const {
+        if (name.unit == nullptr || name.unit->quantity != Quantity::Torque) return std::nullopt;
+        const auto found = std::find_if(joints_.begin(), joints_.end(), [&](const Joint& joint) {
+            return torque_stem(joint) == name.stem;
+        });
+        return found == joints_.end() ? std::nullopt : std::optional(found - joints_.begin());
     }
 
     /// A column of another form of an orientation.
@@ -151,6 +165,7 @@ class HeaderReader {
 
     const CsvReader& csv_;
     Content content_;
+    const std::vector<Joint>& joints_;
     std::vector<WantedColumn> wanted_;
     bool has_orientation_;
     std::vector<std::string> examples_;
@@ -166,7 +181,7 @@ class RowReader {
           is_of_distances_(dynamic_cast<const DistanceSensor*>(campaign.sensor.get()) != nullptr),
           content_(content),
           columns_(std::move(columns)),
-          field_of_joint_(campaign.robot.joints().size()),
+          field_of_joint_(static_cast<std::size_t>(campaign.robot.configuration_size())),
           field_of_observation_(static_cast<std::size_t>(campaign.sensor->row_count())) {
         for (std::size_t field = 0; field < columns_.size(); ++field) {
             const auto index = static_cast<std::size_t>(columns_[field].index);
@@ -178,7 +193,7 @@ class RowReader {
             }
         }
         if (!orientation_fields_.empty()) field_of_observation_.resize(3);
-        row_.joints.resize(campaign.robot.joint_count());
+        row_.joints.resize(campaign.robot.configuration_size());
         row_.is_seen.assign(static_cast<std::size_t>(campaign.sensor->target_count()), true);
         if (content == Content::JointsAndObservations) {
             row_.observation.setZero(campaign.sensor->row_count());
@@ -232,6 +247,8 @@ class RowReader {
             case Role::Observation:
             case Role::Orientation:
                 return;  // by read_targets()
+            case Role::Unused:
+                return;
         }
     }
 

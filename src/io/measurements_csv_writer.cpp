@@ -72,7 +72,7 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
     for (const WantedColumn& column : wanted_columns(campaign)) {
         text += ',' + column.example();
         if (column.role == Role::Joint) {
-            joint_factors.push_back(column.quantity == Quantity::Angle ? 1 : 1e3);
+            joint_factors.push_back(column.quantity == Quantity::Length ? 1e3 : 1);
         }
     }
     text += '\n';

@@ -13,8 +13,9 @@ namespace {
 /// Joint values, samples x joints, in rad and m.
 MatrixXd read_joints(const MatReader& file, const std::string& path, const Chain& robot,
                      const MatMapping& mapping) {
-    MatrixXd joints = file.read(mapping.joints, robot.joint_count());
-    for (Index j = 0; j < joints.cols(); ++j) {
+    const Index count = robot.joint_count();
+    MatrixXd joints = file.read(mapping.joints, count);
+    for (Index j = 0; j < count; ++j) {
         const bool turns = robot.joint_motion(j) == Motion::Rotation;
         joints.col(j) *= turns ? mapping.angle_unit : mapping.length_unit;
         if (mapping.angle_unit != 1) continue;
@@ -25,6 +26,17 @@ MatrixXd read_joints(const MatReader& file, const std::string& path, const Chain
             });
         }
     }
+    if (robot.torques().empty()) return joints;
+    const auto torque_count = static_cast<Index>(robot.torques().size());
+    const MatrixXd torques = file.read(mapping.torques, torque_count);
+    if (torques.rows() != joints.rows()) {
+        throw input_error_at({path}, "variable '" + mapping.torques + "' has " +
+                                         std::to_string(torques.rows()) + " rows; must have " +
+                                         std::to_string(joints.rows()) + " as '" + mapping.joints +
+                                         "'");
+    }
+    joints.conservativeResize(Eigen::NoChange, count + torque_count);
+    joints.rightCols(torque_count) = torques;
     return joints;
 }
 
@@ -72,9 +84,9 @@ Measurements read_measurements_mat(const std::string& path, const Campaign& camp
         Sample sample;
         sample.joints = joints.row(row).transpose();
         const auto next = std::to_string(ids.size());
+        const auto end = sample.joints.begin() + campaign.robot.joint_count();
         sample.id =
-            ids.emplace(std::vector<double>(sample.joints.begin(), sample.joints.end()), next)
-                .first->second;
+            ids.emplace(std::vector<double>(sample.joints.begin(), end), next).first->second;
         take_seen(observations.row(row).transpose(), sample);
         if (std::count(sample.is_seen.begin(), sample.is_seen.end(), true) == 0) {
             throw input_error_at({path}, "row " + std::to_string(row + 1) +

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "json.hpp"
+#include "measurement_columns.hpp"
 #include "plan_names.hpp"
 #include "plan_paths.hpp"
 
@@ -57,10 +58,10 @@ Json pose_to_json(const PlannedPose& pose, const Campaign* campaign) {
     Json json = {{"id", pose.id}, {"times", pose.times}};
     if (campaign == nullptr) return json;
     Json& joints = json["joints"];
-    for (Index j = 0; j < pose.joints.size(); ++j) {
-        const bool turns = campaign->robot.joint_motion(j) == Motion::Rotation;
-        joints[campaign->robot.joints()[static_cast<std::size_t>(j)].name + si_suffix(turns)] =
-            pose.joints[j];
+    for (const WantedColumn& column : wanted_columns(*campaign)) {
+        if (column.role != Role::Joint) continue;
+        const bool is_length = column.quantity == Quantity::Length;
+        joints[is_length ? column.stem + "_m" : column.example()] = pose.joints[column.index];
     }
     return json;
 }

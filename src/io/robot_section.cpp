@@ -150,9 +150,9 @@ RobotSection read_described(const YamlMap& robot, const YamlValue& description) 
 
 RobotSection read_robot(const YamlValue& value) {
     const YamlMap robot(value, {"joints", "elements", "dh", "urdf", "base_link", "tip_link",
-                                "errors", "gravity", "harmonics"});
+                                "errors", "gravity", "harmonics", "compliance"});
     RobotSection section = read_described(robot, find_description(value, robot));
-    section.declared = add_stated_terms(robot, section.declared);
+    add_stated_terms(robot, section);
     section.error_model = read_error_model(robot, section.declared.elements());
     if (section.joint_repeatability.isZero(0)) section.joint_repeatability.resize(0);
     return section;

@@ -30,6 +30,9 @@ void SampleCollector::add(const Sample& sample, const LocateJoint& locate) {
         first_places_.push_back(locate(0));
     } else {
         check_same_joints(entry->second, sample.joints, locate);
+        const Index torques = sample.joints.size() - campaign_.robot.joint_count();
+        configurations_[static_cast<std::size_t>(entry->second)].tail(torques) +=
+            sample.joints.tail(torques);
     }
     configuration_.push_back(entry->second);
     observations_.insert(observations_.end(), sample.observation.begin(), sample.observation.end());
@@ -39,7 +42,7 @@ void SampleCollector::add(const Sample& sample, const LocateJoint& locate) {
 void SampleCollector::check_same_joints(Index configuration, const VectorXd& joints,
                                         const LocateJoint& locate) const {
     const auto i = static_cast<std::size_t>(configuration);
-    for (Index j = 0; j < joints.size(); ++j) {
+    for (Index j = 0; j < campaign_.robot.joint_count(); ++j) {
         const double first = configurations_[i][j];
         if (std::abs(joints[j] - first) <= joint_tolerance) continue;
         throw input_error_at(
@@ -77,14 +80,16 @@ Measurements SampleCollector::finish(const std::string& path) const {
     check_all_different();
     Measurements measurements;
     measurements.ids = ids_;
-    measurements.configurations.resize(static_cast<Index>(ids_.size()),
-                                       campaign_.robot.joint_count());
-    for (std::size_t i = 0; i < ids_.size(); ++i) {
-        measurements.configurations.row(static_cast<Index>(i)) = configurations_[i].transpose();
-    }
+    const Chain& robot = campaign_.robot;
+    measurements.configurations.resize(static_cast<Index>(ids_.size()), robot.configuration_size());
     std::vector<Index>& first = measurements.first_sample;
     first.assign(ids_.size() + 1, 0);
     for (const Index i : configuration_) ++first[static_cast<std::size_t>(i) + 1];
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+        auto row = measurements.configurations.row(static_cast<Index>(i));
+        row = configurations_[i].transpose();
+        row.tail(row.size() - robot.joint_count()) /= static_cast<double>(first[i + 1]);
+    }
     std::partial_sum(first.begin(), first.end(), first.begin());
 
     const auto samples = static_cast<Index>(configuration_.size());

@@ -14,7 +14,7 @@ namespace posewise::io {
 /// One sample, as a row of a file has it.
 struct Sample {
     std::string id;             ///< of the configuration
-    VectorXd joints;            ///< rad or m
+    VectorXd joints;            ///< the configuration: rad or m, then measured torques
     VectorXd observation;       ///< m; without what was observed if only configurations are read
     std::vector<bool> is_seen;  ///< each target; at least one of them
 };
@@ -28,7 +28,7 @@ class SampleCollector {
     explicit SampleCollector(const Campaign& campaign) : campaign_(campaign) {}
 
     /// One more sample. Throws InputError if its joint values differ by over 1e-6 from those of the
-    /// configuration's first sample.
+    /// configuration's first sample. Torques may differ: the configuration's are their means.
     void add(const Sample& sample, const LocateJoint& locate);
 
     /// Samples grouped by configuration, in the order the configurations first occurred. Throws
@@ -43,7 +43,7 @@ class SampleCollector {
     const Campaign& campaign_;
     std::unordered_map<std::string, Index> configuration_of_id_;
     std::vector<std::string> ids_;
-    std::vector<VectorXd> configurations_;
+    std::vector<VectorXd> configurations_;    // of the first sample, torques added up
     std::vector<FileLocation> first_places_;  // of each configuration
     std::vector<Index> configuration_;        // of each sample
     std::vector<double> observations_;        // of all samples, one after another

@@ -28,24 +28,33 @@ Chain add(const YamlValue& value, const Make& make) {
     return chain;
 }
 
+/// The index of the joint called `name`. Throws InputError at `value` if there is none.
+Index find_joint(const Chain& chain, const std::string& name, const YamlValue& value) {
+    std::vector<std::string> names;
+    for (const Joint& joint : chain.joints()) names.push_back(joint.name);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return found - names.begin();
+    throw value.error("is " + quote(name) + ", no joint of the robot; " + suggest(name, names));
+}
+
 /// Indices of the joints listed under `joints`; empty if the key is not there.
 std::vector<Index> read_joints(const YamlMap& map, const Chain& chain) {
     std::vector<Index> joints;
     const auto listed = map.find("joints");
     if (!listed) return joints;
-    std::vector<std::string> names;
-    for (const Joint& joint : chain.joints()) names.push_back(joint.name);
     for (const YamlValue& item : listed->list()) {
-        const std::string name = item.text();
-        const auto found = std::find(names.begin(), names.end(), name);
-        if (found == names.end()) {
-            throw item.error("is " + quote(name) + ", no joint of the robot; " +
-                             suggest(name, names));
-        }
-        joints.push_back(found - names.begin());
+        joints.push_back(find_joint(chain, item.text(), item));
     }
     if (joints.empty()) throw listed->error("is empty; must list joints, or be left out for all");
     return joints;
+}
+
+/// Down, unless it is stated.
+Vector3d read_direction(const YamlMap& map) {
+    const auto stated = map.find("direction");
+    if (!stated) return -Vector3d::UnitZ();
+    const std::vector<double> numbers = stated->numbers(3);
+    return Eigen::Map<const Vector3d>(numbers.data());
 }
 
 Chain add_gravity(const YamlValue& value, const Chain& chain) {
@@ -53,10 +62,7 @@ Chain add_gravity(const YamlValue& value, const Chain& chain) {
     std::vector<Index> joints;
     if (value.is_map()) {
         const YamlMap map(value, {"direction", "joints"});
-        if (const auto stated = map.find("direction")) {
-            const std::vector<double> numbers = stated->numbers(3);
-            direction = Eigen::Map<const Vector3d>(numbers.data());
-        }
+        direction = read_direction(map);
         joints = read_joints(map, chain);
     } else if (!value.boolean()) {
         return chain;
@@ -109,13 +115,83 @@ Chain add_harmonics(const YamlValue& value, const Chain& chain) {
     return add(value, [&] { return with_harmonics(chain, orders, joints); });
 }
 
+double read_positive_number(const YamlValue& value, double most, const char* rule) {
+    const double number = value.number();
+    if (number > 0 && number <= most) return number;
+    throw value.error("is " + quote(value.text()) + "; must be " + rule);
+}
+
+Load read_load(const YamlValue& value, Index link) {
+    const YamlMap map(value, {"mass_kg", "center_<length>"});
+    return {link,
+            read_positive_number(map.require("mass_kg"), 1e5, "above 0 and at most 100000 kg"),
+            map.require_measure("center").vector_to_si()};
+}
+
+/// Weights of the links and the payload.
+std::vector<Load> read_loads(const YamlMap& map, const RobotSection& section) {
+    std::vector<Load> loads;
+    const auto links = map.find("links");
+    if (links && links->is_map()) {
+        for (const YamlEntry& entry : links->entries()) {
+            const Index joint = find_joint(section.declared, entry.key, *links);
+            loads.push_back(read_load(entry.value, joint + 1));
+        }
+    } else if (links) {
+        if (links->text() != "urdf") {
+            throw links->error("is " + quote(links->text()) +
+                               "; must be a map of joints, or urdf for the masses of the URDF");
+        }
+        if (!section.urdf) throw links->error("is urdf, but the robot does not come from one");
+        loads = read_urdf_loads(*section.urdf);
+    }
+    if (const auto payload = map.find("payload")) {
+        loads.push_back(read_load(*payload, section.declared.joint_count() + 1));
+    }
+    return loads;
+}
+
+std::vector<MeasuredTorque> read_torques(const YamlValue& value, const Chain& chain) {
+    std::vector<MeasuredTorque> torques;
+    for (const YamlEntry& entry : value.entries()) {
+        torques.push_back(
+            {find_joint(chain, entry.key, value),
+             read_positive_number(entry.value, 1e6, "above 0 and at most 1e+06 N m")});
+    }
+    if (torques.empty()) throw value.error("is empty; must state the largest torque of joints");
+    return torques;
+}
+
+Chain add_compliance(const YamlValue& value, const RobotSection& section) {
+    const YamlMap map(value, {"links", "payload", "direction", "joints", "torques_Nm"});
+    const Chain& chain = section.declared;
+    if (const auto measured = map.find("torques_Nm")) {
+        for (const char* const key : {"links", "payload", "direction", "joints"}) {
+            if (const auto other = map.find(key)) {
+                throw other->error(
+                    "is stated beside torques_Nm; torques are measured or follow "
+                    "from weights, keep one");
+            }
+        }
+        const std::vector<MeasuredTorque> torques = read_torques(*measured, chain);
+        return add(*measured, [&] { return with_measured_compliance(chain, torques); });
+    }
+    const std::vector<Load> loads = read_loads(map, section);
+    if (loads.empty()) {
+        throw value.error("states no weight; must have links, payload or torques_Nm");
+    }
+    const Vector3d direction = read_direction(map);
+    const std::vector<Index> joints = read_joints(map, chain);
+    return add(value, [&] { return with_compliance(chain, loads, direction, joints); });
+}
+
 }  // namespace
 
-Chain add_stated_terms(const YamlMap& robot, const Chain& chain) {
-    Chain result = chain;
-    if (const auto gravity = robot.find("gravity")) result = add_gravity(*gravity, result);
-    if (const auto harmonics = robot.find("harmonics")) result = add_harmonics(*harmonics, result);
-    return result;
+void add_stated_terms(const YamlMap& robot, RobotSection& section) {
+    Chain& chain = section.declared;
+    if (const auto gravity = robot.find("gravity")) chain = add_gravity(*gravity, chain);
+    if (const auto harmonics = robot.find("harmonics")) chain = add_harmonics(*harmonics, chain);
+    if (const auto stated = robot.find("compliance")) chain = add_compliance(*stated, section);
 }
 
 }  // namespace posewise::io

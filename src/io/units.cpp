@@ -9,7 +9,7 @@
 namespace posewise::io {
 namespace {
 
-constexpr std::array<Unit, 7> units{{
+constexpr std::array<Unit, 8> units{{
     {"mm", Quantity::Length, 1, 1e3},
     {"m", Quantity::Length, 1, 1},
     {"um", Quantity::Length, 1, 1e6},
@@ -17,9 +17,10 @@ constexpr std::array<Unit, 7> units{{
     {"rad", Quantity::Angle, 1, 1},
     {"mrad", Quantity::Angle, 1, 1e3},
     {"urad", Quantity::Angle, 1, 1e6},
+    {"Nm", Quantity::Torque, 1, 1},
 }};
 
-double largest_plausible(Quantity quantity) { return quantity == Quantity::Length ? 1e6 : 1e4; }
+double largest_plausible(Quantity quantity) { return quantity == Quantity::Angle ? 1e4 : 1e6; }
 
 }  // namespace
 
@@ -44,7 +45,9 @@ bool is_plausible(double si, Quantity quantity) {
 
 std::string plausible(Quantity quantity) {
     return fmt::format("at most {:g} {} in magnitude", largest_plausible(quantity),
-                       quantity == Quantity::Length ? "m" : "rad");
+                       quantity == Quantity::Length  ? "m"
+                       : quantity == Quantity::Angle ? "rad"
+                                                     : "N m");
 }
 
 NameWithUnit split_unit(std::string_view name) {

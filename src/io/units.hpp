@@ -8,15 +8,15 @@
 
 namespace posewise::io {
 
-enum class Quantity { Length, Angle };
+enum class Quantity { Length, Angle, Torque };
 
 /// What a translation or a rotation is measured in.
 inline Quantity quantity_of(Motion motion) {
     return motion == Motion::Rotation ? Quantity::Angle : Quantity::Length;
 }
 
-/// A unit of files: value * factor / divisor is in m or rad. (312 mm / 1000 is 0.312 to the last
-/// digit, 312 * 1e-3 is not.)
+/// A unit of files: value * factor / divisor is in m, rad or N m. (312 mm / 1000 is 0.312 to the
+/// last digit, 312 * 1e-3 is not.)
 struct Unit {
     std::string_view name;
     Quantity quantity = Quantity::Length;
@@ -32,7 +32,8 @@ const Unit* find_unit(std::string_view name);
 /// Names of the units of a quantity, the usual one first.
 std::vector<std::string> unit_names(Quantity quantity);
 
-/// Whether m or rad are of a size that occurs: a larger one is a slip, and would overflow later.
+/// Whether m, rad or N m are of a size that occurs: a larger one is a slip, and would overflow
+/// later.
 bool is_plausible(double si, Quantity quantity);
 /// That rule in words, "at most 1e+06 m in magnitude".
 std::string plausible(Quantity quantity);

@@ -1,9 +1,7 @@
 #include "posewise/io/urdf_file.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
-#include <sstream>
 
 #include "posewise/model/transforms.hpp"
 #include "robot_parts.hpp"
@@ -14,8 +12,6 @@ namespace posewise::io {
 namespace {
 
 using tinyxml2::XMLElement;
-
-constexpr double most = 1e6;  // m or rad: no robot has more
 
 /// Reads one <joint>.
 class JointReader {
@@ -96,26 +92,8 @@ class JointReader {
                                        : "; " + suggest(word, known)));
     }
 
-    double read_number(const XMLElement& element, const char* attribute, std::string_view text,
-                       const char* rule) const {
-        const ParsedNumber number = parse_number(text);
-        if (number.ok() && std::abs(number.value) <= most) return number.value;
-        throw error(element, "has " + std::string(element.Name()) + ' ' + attribute + ' ' +
-                                 quote(element.Attribute(attribute)) + "; must be " + rule);
-    }
-
     std::optional<Vector3d> read_vector(const XMLElement& element, const char* attribute) const {
-        const char* const text = element.Attribute(attribute);
-        if (text == nullptr) return std::nullopt;
-        constexpr const char* rule = "three numbers, each at most 1e+06 in magnitude";
-        std::istringstream words(text);
-        std::vector<double> values;
-        for (std::string word; words >> word;) {
-            values.push_back(read_number(element, attribute, word, rule));
-        }
-        if (values.size() == 3) return Vector3d(values[0], values[1], values[2]);
-        throw error(element, "has " + std::string(element.Name()) + ' ' + attribute + ' ' +
-                                 quote(text) + "; must be " + rule);
+        return io::read_vector(document_, element, attribute, "joint " + quote(name_));
     }
 
     void read_axis(UrdfJoint& joint) const {
@@ -134,9 +112,8 @@ class JointReader {
         const XMLElement* const limit = find("limit", {"lower", "upper", "effort", "velocity",
                                                        "acceleration", "deceleration", "jerk"});
         const auto read = [&](const char* attribute) {
-            const char* const text = limit == nullptr ? nullptr : limit->Attribute(attribute);
-            constexpr const char* rule = "a number of at most 1e+06 in magnitude";
-            return text == nullptr ? 0 : read_number(*limit, attribute, text, rule);
+            if (limit == nullptr) return 0.0;
+            return read_number(document_, *limit, attribute, "joint " + quote(name_)).value_or(0);
         };
         joint.speed = read("velocity");
         if (joint.speed < 0) throw error(*limit, "has a negative velocity; must be positive");

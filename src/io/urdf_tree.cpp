@@ -1,7 +1,9 @@
 #include "urdf_tree.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <sstream>
 
 #include "text.hpp"
 
@@ -76,6 +78,10 @@ class Tree {
         throw input_error_at({document_.path()},
                              "has no link " + quote(name) + "; " + suggest(name, link_names()));
     }
+
+    const XMLElement* link(const std::string& name) const { return links_.at(name); }
+
+    const XMLElement* child(const XMLElement& joint) const { return link(end_of(joint, "child")); }
 
     std::vector<const XMLElement*> path(const std::string& base, const std::string& tip) const {
         std::vector<const XMLElement*> joints;
@@ -167,12 +173,46 @@ void refuse_template(const XmlDocument& document) {
     }
 }
 
+constexpr double most = 1e6;  // m, rad or kg: no robot has more
+
+double parse(const XmlDocument& document, const XMLElement& element, const char* attribute,
+             std::string_view text, const std::string& subject, const char* rule) {
+    const ParsedNumber number = parse_number(text);
+    if (number.ok() && std::abs(number.value) <= most) return number.value;
+    throw document.error(element, subject + " has " + std::string(element.Name()) + ' ' +
+                                      attribute + ' ' + quote(element.Attribute(attribute)) +
+                                      "; must be " + rule);
+}
+
 }  // namespace
+
+std::optional<double> read_number(const XmlDocument& document, const XMLElement& element,
+                                  const char* attribute, const std::string& subject) {
+    const char* const text = element.Attribute(attribute);
+    if (text == nullptr) return std::nullopt;
+    return parse(document, element, attribute, text, subject,
+                 "a number of at most 1e+06 in magnitude");
+}
+
+std::optional<Vector3d> read_vector(const XmlDocument& document, const XMLElement& element,
+                                    const char* attribute, const std::string& subject) {
+    const char* const text = element.Attribute(attribute);
+    if (text == nullptr) return std::nullopt;
+    constexpr const char* rule = "three numbers, each at most 1e+06 in magnitude";
+    std::istringstream words(text);
+    std::vector<double> values;
+    for (std::string word; words >> word;) {
+        values.push_back(parse(document, element, attribute, word, subject, rule));
+    }
+    if (values.size() == 3) return Vector3d(values[0], values[1], values[2]);
+    throw document.error(element, subject + " has " + std::string(element.Name()) + ' ' +
+                                      attribute + ' ' + quote(text) + "; must be " + rule);
+}
 
 UrdfPath find_path(const XmlDocument& document, const UrdfSource& source) {
     refuse_template(document);
     const Tree tree(document);
-    UrdfPath path{source, {}};
+    UrdfPath path{source, {}, {}};
     std::string& base = path.source.base_link;
     std::string& tip = path.source.tip_link;
     if (base.empty()) base = tree.find_root();
@@ -180,6 +220,8 @@ UrdfPath find_path(const XmlDocument& document, const UrdfSource& source) {
     if (tip.empty()) tip = tree.find_leaf_below(base);
     tree.check_link(tip);
     path.joints = tree.path(base, tip);
+    path.links.push_back(tree.link(base));
+    for (const XMLElement* joint : path.joints) path.links.push_back(tree.child(*joint));
     return path;
 }
 

@@ -134,7 +134,7 @@ Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names)
                            element.parameter.empty() && element.terms.empty();
         if (!empty) elements.push_back(std::move(element));
     }
-    return Chain(chain.joints(), std::move(elements));
+    return chain.with_elements(std::move(elements));
 }
 
 Chain irreducible_model(const Campaign& campaign) {

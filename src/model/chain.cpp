@@ -6,6 +6,7 @@
 #include <set>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/model/gravity_torque.hpp"
 
 namespace posewise {
 namespace {
@@ -71,6 +72,7 @@ struct FunctionValue {
 };
 
 FunctionValue evaluate(const JointFunction& function, const VectorXd& q) {
+    if (function.torque != nullptr) return {function.torque->evaluate(q).value, 0, 0};
     const double u = sum_of(function.phase, function.joints, q);
     if (function.shape == JointFunction::Shape::Linear) return {u, 1, 0};
     const double sine = std::sin(u);
@@ -116,14 +118,23 @@ void check_sum(const std::string& subject, double start, const std::vector<Joint
     }
 }
 
-void check_element(const Element& element, std::size_t number, Index joint_count) {
+/// Terms may depend on `input_count` numbers: joints and measured torques.
+void check_element(const Element& element, std::size_t number, Index joint_count,
+                   Index input_count) {
     const std::string subject = "element " + std::to_string(number + 1) + " of the chain";
     check_sum(subject, element.value, element.joints, joint_count);
     for (const ErrorTerm& term : element.terms) {
         if (term.parameter.empty()) throw InputError(subject + " has an error term without name");
         const std::string its_term = "term '" + term.parameter + "' of " + subject;
-        if (term.function.joints.empty()) throw InputError(its_term + " depends on no joint");
-        check_sum(its_term, term.function.phase, term.function.joints, joint_count);
+        const bool is_torque = term.function.shape == JointFunction::Shape::Torque;
+        if (is_torque != (term.function.torque != nullptr)) {
+            throw InputError(its_term + " has the shape of a torque without one, or the reverse");
+        }
+        if (is_torque != term.function.joints.empty()) {
+            throw InputError(its_term +
+                             (is_torque ? " is a torque of joints" : " depends on no joint"));
+        }
+        check_sum(its_term, term.function.phase, term.function.joints, input_count);
     }
 }
 
@@ -134,15 +145,41 @@ void check_element(const Element& element, std::size_t number, Index joint_count
                                    FlangeMotion& motion) {
     double amount = 0;
     for (const ErrorTerm& term : element.terms) {
-        const FunctionValue f = evaluate(term.function, q);
-        motion.twists.col(6 + next) = f.value * twist;
-        for (const JointTerm& by : term.function.joints) {
-            motion.joint_twists.col(by.joint) +=
-                parameters[next] * f.slope * by.coefficient * twist;
+        const double pi = parameters[next];
+        double value = 0;
+        if (term.function.torque != nullptr) {
+            const TorqueShare share = term.function.torque->evaluate(q);
+            value = share.value;
+            motion.joint_twists += pi * twist * share.gradient.transpose();
+        } else {
+            const FunctionValue f = evaluate(term.function, q);
+            value = f.value;
+            for (const JointTerm& by : term.function.joints) {
+                if (by.joint >= motion.joint_twists.cols()) continue;  // a measured torque
+                motion.joint_twists.col(by.joint) += pi * f.slope * by.coefficient * twist;
+            }
         }
-        amount += parameters[next++] * f.value;
+        motion.twists.col(6 + next++) = value * twist;
+        amount += pi * value;
     }
     return amount;
+}
+
+/// What a term adds to the rates by joint j of its element's twist, which changes by `change`:
+/// pi df/dq_i in the column of joint i.
+void add_term_rate(const JointFunction& function, const FunctionValue& f, double pi,
+                   const Twist& twist, const Twist& change, Index j, Index k,
+                   FlangeMotionRate& rate) {
+    double du_dqj = 0;
+    for (const JointTerm& by : function.joints) {
+        if (by.joint == j) du_dqj += by.coefficient;
+    }
+    rate.twists.col(6 + k) = f.value * change + f.slope * du_dqj * twist;
+    for (const JointTerm& by : function.joints) {
+        if (by.joint >= rate.joint_twists.cols()) continue;  // a measured torque
+        rate.joint_twists.col(by.joint) +=
+            pi * by.coefficient * (f.slope * change + f.curvature * du_dqj * twist);
+    }
 }
 
 /// What the terms of an element, error parameters k on, add to the rates: the element's twist,
@@ -153,20 +190,19 @@ void check_element(const Element& element, std::size_t number, Index joint_count
                                       const TwistMatrix& joint_twists,
                                       std::vector<FlangeMotionRate>& rates) {
     for (const ErrorTerm& term : element.terms) {
-        const FunctionValue f = evaluate(term.function, q);
+        const bool is_torque = term.function.torque != nullptr;
+        const TorqueShare share = is_torque ? term.function.torque->evaluate(q) : TorqueShare{};
+        const FunctionValue f = is_torque ? FunctionValue{} : evaluate(term.function, q);
         for (Index j = 0; j < joint_twists.cols(); ++j) {
             const Twist change = lie_bracket(joint_twists.col(j), twist);
             FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
-            double du_dqj = 0;
-            for (const JointTerm& by : term.function.joints) {
-                if (by.joint == j) du_dqj += by.coefficient;
+            if (!is_torque) {
+                add_term_rate(term.function, f, parameters[k], twist, change, j, k, rate);
+                continue;
             }
-            rate.twists.col(6 + k) = f.value * change + f.slope * du_dqj * twist;
-            for (const JointTerm& by : term.function.joints) {
-                rate.joint_twists.col(by.joint) +=
-                    parameters[k] * by.coefficient *
-                    (f.slope * change + f.curvature * du_dqj * twist);
-            }
+            rate.twists.col(6 + k) = share.value * change + share.gradient[j] * twist;
+            rate.joint_twists += parameters[k] * (change * share.gradient.transpose() +
+                                                  twist * share.hessian.row(j));
         }
         ++k;
     }
@@ -174,8 +210,9 @@ void check_element(const Element& element, std::size_t number, Index joint_count
 
 }  // namespace
 
-Chain::Chain(std::vector<Joint> joints, std::vector<Element> elements)
-    : joints_(std::move(joints)), elements_(std::move(elements)) {
+Chain::Chain(std::vector<Joint> joints, std::vector<Element> elements,
+             std::vector<MeasuredTorque> torques)
+    : joints_(std::move(joints)), elements_(std::move(elements)), torques_(std::move(torques)) {
     std::set<std::string> names;
     for (const Joint& joint : joints_) {
         check_unique(names, joint.name, "joint");
@@ -185,7 +222,7 @@ Chain::Chain(std::vector<Joint> joints, std::vector<Element> elements)
     std::vector<std::optional<Motion>> driven(joints_.size());
     for (std::size_t k = 0; k < elements_.size(); ++k) {
         const Element& element = elements_[k];
-        check_element(element, k, joint_count());
+        check_element(element, k, joint_count(), configuration_size());
         for (const JointTerm& term : element.joints) {
             auto& motion = driven[static_cast<std::size_t>(term.joint)];
             if (motion && *motion != element.motion) {
@@ -208,6 +245,30 @@ Chain::Chain(std::vector<Joint> joints, std::vector<Element> elements)
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         if (!driven[j]) throw InputError("joint '" + joints_[j].name + "' drives no element");
     }
+    check_torques();
+}
+
+void Chain::check_torques() const {
+    std::set<Index> seen;
+    for (const MeasuredTorque& torque : torques_) {
+        if (torque.joint < 0 || torque.joint >= joint_count()) {
+            throw InputError("a measured torque is of joint index " + std::to_string(torque.joint) +
+                             ", the robot has " + std::to_string(joint_count()) + " joints");
+        }
+        const std::string subject =
+            "the measured torque of joint '" + joints_[static_cast<std::size_t>(torque.joint)].name;
+        if (joint_motion(torque.joint) != Motion::Rotation) {
+            throw InputError(subject + "' is of one that slides; must be of one that turns");
+        }
+        if (!std::isfinite(torque.largest) || torque.largest <= 0) {
+            throw InputError(subject + "' has no positive and finite largest value");
+        }
+        if (!seen.insert(torque.joint).second) throw InputError(subject + "' occurs twice");
+    }
+}
+
+Chain Chain::with_elements(std::vector<Element> elements) const {
+    return Chain(joints_, std::move(elements), torques_);
 }
 
 Motion Chain::joint_motion(Index joint) const {
@@ -238,16 +299,21 @@ std::vector<std::string> Chain::parameter_names() const {
 }
 
 void Chain::check_configuration(const VectorXd& q) const {
-    if (q.size() != joint_count()) {
+    if (q.size() != configuration_size()) {
+        const std::string torques =
+            torques_.empty() ? "" : " and " + std::to_string(torques_.size()) + " measured torques";
         throw InputError("configuration has " + std::to_string(q.size()) +
-                         " joint values, the robot has " + std::to_string(joint_count()) +
-                         " joints");
+                         (torques_.empty() ? " joint values" : " values") + ", the robot has " +
+                         std::to_string(joint_count()) + " joints" + torques);
     }
-    for (Index j = 0; j < q.size(); ++j) {
-        if (!std::isfinite(q[j])) {
-            throw InputError("joint '" + joints_[static_cast<std::size_t>(j)].name +
-                             "' has a value that is not a finite number");
-        }
+    for (Index k = 0; k < q.size(); ++k) {
+        if (std::isfinite(q[k])) continue;
+        const bool is_joint = k < joint_count();
+        const Index joint =
+            is_joint ? k : torques_[static_cast<std::size_t>(k - joint_count())].joint;
+        throw InputError((is_joint ? "joint '" : "the torque of joint '") +
+                         joints_[static_cast<std::size_t>(joint)].name +
+                         "' has a value that is not a finite number");
     }
 }
 
@@ -365,7 +431,7 @@ Chain without_parameters(const Chain& chain) {
         element.parameter.clear();
         element.terms.clear();
     }
-    return Chain(chain.joints(), std::move(elements));
+    return chain.with_elements(std::move(elements));
 }
 
 }  // namespace posewise

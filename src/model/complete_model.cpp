@@ -40,7 +40,7 @@ Chain complete_model(const Chain& chain) {
             }
         }
     }
-    return Chain(chain.joints(), std::move(elements));
+    return chain.with_elements(std::move(elements));
 }
 
 }  // namespace posewise

@@ -17,6 +17,10 @@ const std::string& joint_name(const Chain& chain, Index joint) {
     return chain.joints()[static_cast<std::size_t>(joint)].name;
 }
 
+std::string compliance_name(const Chain& chain, Index joint) {
+    return joint_name(chain, joint) + ".compliance";
+}
+
 bool is_wanted(const std::vector<Index>& joints, Index joint) {
     return joints.empty() || std::find(joints.begin(), joints.end(), joint) != joints.end();
 }
@@ -41,6 +45,12 @@ void check_joints(const Chain& chain, const std::vector<Index>& joints) {
             throw InputError("joint index " + std::to_string(joint) + " must be below " +
                              std::to_string(chain.joint_count()));
         }
+    }
+}
+
+void check_direction(const Vector3d& direction) {
+    if (!direction.allFinite() || direction.isZero(0)) {
+        throw InputError("direction of gravity must be finite and not zero");
     }
 }
 
@@ -128,16 +138,13 @@ std::string describe_function(const JointFunction& function, const std::vector<J
 Chain with_gravity_terms(const Chain& chain, const Vector3d& direction,
                          const std::vector<Index>& joints) {
     check_joints(chain, joints);
-    if (!direction.allFinite() || direction.isZero(0)) {
-        throw InputError("direction of gravity must be finite and not zero");
-    }
+    check_direction(direction);
     const std::vector<Vector3d> axes = axes_at_zero(chain);
     const std::vector<std::size_t> run = find_level_run(axes, direction.normalized());
     if (run.empty()) {
         throw InputError(
             "no joint turns about an axis that stays perpendicular to gravity: there are no "
-            "gravity "
-            "terms");
+            "gravity terms");
     }
     const auto sums = partial_sums(chain, axes, run);
     const std::vector<Index> owners = element_owners(chain);
@@ -157,7 +164,69 @@ Chain with_gravity_terms(const Chain& chain, const Vector3d& direction,
         throw InputError("joint '" + joint_name(chain, joint) +
                          "' does not turn about an axis that stays perpendicular to gravity");
     }
-    return Chain(chain.joints(), std::move(elements));
+    return chain.with_elements(std::move(elements));
+}
+
+Chain with_compliance(const Chain& chain, const std::vector<Load>& loads, const Vector3d& direction,
+                      const std::vector<Index>& joints) {
+    check_joints(chain, joints);
+    check_direction(direction);
+    if (loads.empty()) throw InputError("no load is stated, so there is no torque of gravity");
+    constexpr double standard_gravity = 9.80665;  // m/s^2
+    const Vector3d gravity = standard_gravity * direction.normalized();
+    const std::vector<Index> owners = element_owners(chain);
+    std::vector<Element> elements = chain.elements();
+    for (std::size_t k = 0; k < elements.size(); ++k) {
+        if (owners[k] < 0 || !is_wanted(joints, owners[k])) continue;
+        auto torque = std::make_shared<const GravityTorque>(chain, k, gravity, loads);
+        if (torque->varies()) {
+            elements[k].terms.push_back({compliance_name(chain, owners[k]),
+                                         {JointFunction::Shape::Torque, {}, 0, std::move(torque)},
+                                         TermKind::Gravity});
+        } else if (!joints.empty()) {
+            throw InputError("the weights turn joint '" + joint_name(chain, owners[k]) +
+                             "' not at all or always alike, so that its compliance has no effect");
+        }
+    }
+    Chain result = chain.with_elements(std::move(elements));
+    if (result.parameter_count() == chain.parameter_count()) {
+        throw InputError("the weights turn no joint, so there are no compliances");
+    }
+    return result;
+}
+
+Chain with_measured_compliance(const Chain& chain, const std::vector<MeasuredTorque>& torques) {
+    const std::vector<Index> owners = element_owners(chain);
+    std::vector<Element> elements = chain.elements();
+    for (std::size_t t = 0; t < torques.size(); ++t) {
+        const auto owned = std::find(owners.begin(), owners.end(), torques[t].joint);
+        if (owned == owners.end()) continue;  // the new chain tells
+        const Index input = chain.joint_count() + static_cast<Index>(t);
+        elements[static_cast<std::size_t>(owned - owners.begin())].terms.push_back(
+            {compliance_name(chain, torques[t].joint),
+             {JointFunction::Shape::Linear, {{input, 1 / torques[t].largest}}},
+             TermKind::Gravity});
+    }
+    return Chain(chain.joints(), std::move(elements), torques);
+}
+
+std::vector<Compliance> compliances(const Chain& chain) {
+    std::vector<Compliance> found;
+    for (Index k = 0; k < chain.parameter_count(); ++k) {
+        const ErrorTerm* const term = chain.parameter_term(k);
+        if (term == nullptr) continue;
+        const JointFunction& function = term->function;
+        const auto owner_of = [&] {
+            const auto element = &chain.parameter_element(k) - chain.elements().data();
+            return element_owners(chain)[static_cast<std::size_t>(element)];
+        };
+        if (function.torque != nullptr) {
+            found.push_back({k, owner_of(), function.torque->largest()});
+        } else if (function.joints.front().joint >= chain.joint_count()) {
+            found.push_back({k, owner_of(), 1 / function.joints.front().coefficient});
+        }
+    }
+    return found;
 }
 
 Chain with_harmonics(const Chain& chain, const std::vector<double>& orders,
@@ -182,7 +251,7 @@ Chain with_harmonics(const Chain& chain, const std::vector<double>& orders,
             add_waves(chain, owners[k], {{owners[k], order}}, TermKind::Harmonic, elements[k]);
         }
     }
-    return Chain(chain.joints(), std::move(elements));
+    return chain.with_elements(std::move(elements));
 }
 
 }  // namespace posewise

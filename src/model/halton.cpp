@@ -86,6 +86,11 @@ RowMatrixXd halton_configurations(const Chain& chain, Index count, const HaltonO
         throw InputError("count and first index of a Halton sequence must not be negative, are " +
                          std::to_string(count) + " and " + std::to_string(options.first_index));
     }
+    if (!chain.torques().empty()) {
+        throw InputError(
+            "the robot's torques are measured with each configuration, and of one that is drawn "
+            "they are not known; state the weights of links and payload instead (compliance)");
+    }
     const std::vector<Index> bases =
         options.bases.empty() ? first_primes(chain.joints().size()) : options.bases;
     check_bases(bases, chain.joint_count());
@@ -119,7 +124,7 @@ Chain with_margin(const Chain& chain, const JointMargin& margin) {
         joint.lower += inset;
         joint.upper -= inset;
     }
-    return Chain(std::move(joints), chain.elements());
+    return Chain(std::move(joints), chain.elements(), chain.torques());
 }
 
 }  // namespace posewise

@@ -85,7 +85,7 @@ Constraints::Posture Constraints::pose_links(const VectorXd& q) const {
 
 double Constraints::limit_clearance(const VectorXd& q) const {
     double least = infinity;
-    for (Index j = 0; j < q.size(); ++j) {
+    for (Index j = 0; j < robot_.joint_count(); ++j) {
         if (cell_.fixed_joints.count(j) != 0) continue;
         const Joint& joint = robot_.joints()[static_cast<std::size_t>(j)];
         least = std::min(least, interval_clearance({joint.lower, joint.upper}, q[j]));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "posewise/model/error_terms.hpp"
 #include "posewise/model/transforms.hpp"
 #include "posewise/report/units.hpp"
 
@@ -75,6 +76,24 @@ Table parameter_table(const Campaign& campaign, const Estimate& estimate) {
                               in_degrees ? "deg" : std::string(error_unit(is_angle[i])),
                               format_fixed(mm_per_m * deviations[k], 4),
                               std::string(error_unit(is_angle[i]))});
+    }
+    return table;
+}
+
+Table compliance_table(const Campaign& campaign, const Estimate& estimate) {
+    const VectorXd deviations = standard_deviations(estimate);
+    const Index robot_begin = base_parameter_count(campaign);
+    Table table{{"joint", "compliance", "std. dev.", "", "largest torque", ""}, {}};
+    for (const Compliance& compliance : compliances(campaign.robot)) {
+        const double value = estimate.parameters.robot[compliance.parameter];
+        const double deviation = deviations[robot_begin + compliance.parameter];
+        const double factor = 1e6 / compliance.largest;
+        const bool turns = campaign.robot.joint_motion(compliance.joint) == Motion::Rotation;
+        table.rows.push_back(
+            {campaign.robot.joints()[static_cast<std::size_t>(compliance.joint)].name,
+             format_short(factor * value, 4), format_short(factor * deviation, 2),
+             turns ? "urad/(N m)" : "um/N", format_short(compliance.largest, 4),
+             turns ? "N m" : "N"});
     }
     return table;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "support/derivative_check.hpp"
 #include "support/robots.hpp"
 #include "support/sweep.hpp"
@@ -139,22 +140,29 @@ void expect_right_rates(const Chain& chain, const Isometry3d& world_from_base, c
         all << a.reshaped(), b.reshaped();
         return all;
     };
-    MatrixXd J(motion.twists.size() + motion.joint_twists.size(), q.size());
-    for (Index j = 0; j < q.size(); ++j) {
+    const Index joints = chain.joint_count();
+    const VectorXd torques = q.tail(q.size() - joints);
+    const auto with_torques = [&](const VectorXd& moved) -> VectorXd {
+        VectorXd all(q.size());
+        all << moved, torques;
+        return all;
+    };
+    MatrixXd J(motion.twists.size() + motion.joint_twists.size(), joints);
+    for (Index j = 0; j < joints; ++j) {
         const FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
         J.col(j) = columns(rate.twists, rate.joint_twists);
     }
-    const auto twists = [&](const VectorXd& joints) {
+    const auto twists = [&](const VectorXd& x) {
         FlangeMotion moved;
-        chain.differentiate(world_from_base, joints, parameters, moved);
+        chain.differentiate(world_from_base, with_torques(x), parameters, moved);
         return columns(moved.twists, moved.joint_twists);
     };
-    expect_is_jacobian(J, twists, q);
-    const auto pose = [&](const VectorXd& joints) {
+    expect_is_jacobian(J, twists, q.head(joints));
+    const auto pose = [&](const VectorXd& x) {
         return twist_between(motion.world_from_flange,
-                             world_from_base * chain.base_from_flange(joints, parameters));
+                             world_from_base * chain.base_from_flange(with_torques(x), parameters));
     };
-    expect_is_jacobian(motion.joint_twists, pose, q);
+    expect_is_jacobian(motion.joint_twists, pose, q.head(joints));
 }
 
 TEST(Chain, KnowsHowItsTwistsChangeWithTheJoints) {
@@ -211,6 +219,53 @@ TEST(Chain, DifferentiatesErrorsThatDependOnTheConfiguration) {
                 chain.base_from_flange(q, errors), 1e-15));
         }
     }
+}
+
+TEST(Chain, DifferentiatesCompliances) {
+    const std::vector<Load> loads{
+        {2, 20, {0.1, 0.05, 0.5}}, {4, 9, {0.2, 0, 0}}, {7, 5, {0.1, 0, 0.1}}};
+    const Chain weighted = with_compliance(fanuc(), loads, Vector3d(0.1, 0.2, -1));
+    const Chain measured = with_measured_compliance(with_every_term(), {{1, 300}, {0, 20}});
+    const std::vector<std::string> names = measured.parameter_names();
+    EXPECT_EQ(std::count(names.begin(), names.end(), "q2.compliance"), 1);
+    EXPECT_EQ(measured.configuration_size(), 5);
+    EXPECT_GT(weighted.parameter_count(), 18 + 3);
+    RandomStream stream(46);
+    for (Index sweep = 0; sweep < sweep_count() / 50; ++sweep) {
+        for (const Chain& chain : {weighted, measured}) {
+            for (const double magnitude : {0.0, 1e-3, 0.3}) {
+                const Isometry3d base = random_pose(stream);
+                VectorXd q = random_vector(stream, chain.configuration_size(), 2);
+                q.tail(chain.configuration_size() - chain.joint_count()) *= 50;
+                const VectorXd errors = random_vector(stream, chain.parameter_count(), magnitude);
+                expect_right_twists(chain, base, q, errors);
+                expect_right_rates(chain, base, q, errors);
+            }
+        }
+    }
+}
+
+TEST(Chain, GivesWayInProportionToAMeasuredTorque) {
+    const Chain arm = with_measured_compliance(planar_arm({1.0, 0.8}), {{1, 200}});
+    EXPECT_EQ(arm.parameter_names(),
+              (std::vector<std::string>{"dq1", "dl1", "dq2", "q2.compliance", "dl2"}));
+    VectorXd errors = VectorXd::Zero(5), same = errors;
+    errors[3] = 2e-3;
+    same[2] = 2e-3 * -150 / 200;
+    const Vector3d q(0.3, 1.1, -150);
+    EXPECT_TRUE(arm.base_from_flange(q, errors).isApprox(arm.base_from_flange(q, same), 1e-15));
+    EXPECT_THROW(arm.check_configuration(Vector2d(0.3, 1.1)), InputError);
+    EXPECT_THROW(arm.check_configuration(Vector3d(0.3, 1.1, std::nan(""))), InputError);
+    EXPECT_NO_THROW(arm.check_configuration(q));
+    EXPECT_EQ(without_parameters(arm).configuration_size(), 3);
+}
+
+TEST(Chain, RefusesTorquesThatMakeNoSense) {
+    const Chain arm = planar_arm({1.0, 0.8});
+    EXPECT_THROW(with_measured_compliance(arm, {{2, 1}}), InputError) << "no such joint";
+    EXPECT_THROW(with_measured_compliance(arm, {{0, 0}}), InputError) << "nothing at its largest";
+    EXPECT_THROW(with_measured_compliance(arm, {{0, 1}, {0, 1}}), InputError) << "twice";
+    EXPECT_THROW(with_measured_compliance(gantry_with_wrist(), {{0, 1}}), InputError) << "slides";
 }
 
 TEST(Chain, AddsATermToItsElement) {

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
+
 #include "posewise/core/errors.hpp"
 #include "support/robots.hpp"
+#include "support/sweep.hpp"
 
 namespace posewise {
 namespace {
@@ -39,6 +42,50 @@ TEST(GravityTerms, OfAUrAreTwelve) {
     EXPECT_EQ(names[5], "q2.cos(q2+q3+q4)");
     EXPECT_EQ(names[6], "q3.sin(q2+q3)");
     EXPECT_EQ(names[11], "q4.cos(q2+q3+q4)");
+}
+
+TEST(Compliance, IsOfTheJointsThatTheWeightsTurn) {
+    const Chain arm = without_parameters(fanuc());
+    const std::vector<Load> forearm{{3, 40, {0.4, 0, 0.1}}, {7, 10, {0.3, 0.2, 0}}};
+    EXPECT_EQ(terms_of(with_compliance(arm, forearm)),
+              (Names{"q2.compliance", "q3.compliance", "q4.compliance", "q5.compliance",
+                     "q6.compliance"}));
+    EXPECT_EQ(terms_of(with_compliance(arm, forearm, -Vector3d::UnitZ(), {2})),
+              Names{"q3.compliance"});
+    // On a wall every joint bends.
+    EXPECT_EQ(terms_of(with_compliance(arm, forearm, Vector3d::UnitX())).size(), 6U);
+    EXPECT_EQ(compliances(with_compliance(arm, forearm))[1].joint, 2);
+    EXPECT_NEAR(compliances(with_compliance(arm, {{2, 10, {0, 0, 1}}}))[0].largest,
+                10 * 9.80665 * std::sin(76 * degree), 0.1);
+    EXPECT_THROW(with_compliance(arm, forearm, -Vector3d::UnitZ(), {0}), InputError);
+    EXPECT_THROW(with_compliance(arm, {}), InputError);
+    EXPECT_THROW(with_compliance(arm, {{1, 10, {1, 0, 0}}}), InputError) << "turns no joint";
+    EXPECT_THROW(with_compliance(arm, forearm, Vector3d::Zero()), InputError);
+    EXPECT_THROW(with_compliance(with_compliance(arm, forearm), forearm), InputError) << "twice";
+}
+
+TEST(Compliance, OfAnArmWithoutWristIsACombinationOfItsGravityTerms) {
+    const Chain arm = without_parameters(fanuc());
+    const Chain waves = with_gravity_terms(arm);
+    const Chain joint = with_compliance(arm, {{2, 30, {0.1, 0, 0.6}}, {3, 50, {0.4, 0.3, 0.2}}});
+    // Amounts of joint 2 at 40 configurations: rows; one column a term.
+    MatrixXd shapes(40, 4);
+    VectorXd torque(40);
+    RandomStream stream(47);
+    const auto amount = [](const Chain& chain, const VectorXd& q, Index parameter) {
+        FlangeMotion motion;
+        chain.differentiate(Isometry3d::Identity(), q, VectorXd::Zero(chain.parameter_count()),
+                            motion);
+        return motion.twists(1, 6 + parameter) / std::cos(q[0]);  // about y, turned by q1
+    };
+    for (Index i = 0; i < 40; ++i) {
+        const VectorXd q = random_vector(stream, 6, 1);
+        for (Index k = 0; k < 4; ++k) shapes(i, k) = amount(waves, q, k);
+        torque[i] = amount(joint, q, 0);
+    }
+    const VectorXd combination = shapes.colPivHouseholderQr().solve(torque);
+    EXPECT_LT((shapes * combination - torque).norm(), 1e-12 * torque.norm());
+    EXPECT_GT(torque.norm(), 0.5);
 }
 
 TEST(GravityTerms, FollowTheWeightNotTheJointOfAParallelogram) {

@@ -29,7 +29,7 @@ struct PoseError {
 /// Joint values that bring the real robot where the nominal one would be.
 struct Correction {
     Ending ending = Ending::NotRun;
-    VectorXd joints;                    ///< rad or m
+    VectorXd joints;                    ///< the configuration; measured torques as they were
     PoseError uncorrected;              ///< of the real robot at the nominal joint values
     PoseError residual;                 ///< of the real robot at the corrected ones
     std::vector<Index> held_by_limit;   ///< joints that their limit keeps from correcting further

@@ -16,6 +16,7 @@ namespace posewise::io {
 struct MatMapping {
     std::string joints = "q";         ///< samples x joints
     std::vector<std::string> points;  ///< one variable a target, samples x 3
+    std::string torques = "tau";      ///< samples x measured torques, N m
     double angle_unit = 1;            ///< of revolute joints, in rad
     double length_unit = 1;           ///< of points and prismatic joints, in m
 };
@@ -53,8 +54,13 @@ struct CampaignFile {
 ///
 /// `gravity: true` adds the terms of with_gravity_terms(); `gravity: {direction: [0, 0, -1],
 /// joints: [q2]}` says which way gravity acts in the base frame and on which joints. `harmonics:
-/// {orders: [1, 2], joints: [q4]}` adds those of with_harmonics(). Their sizes in `spread` are
-/// `gravity_mrad` and `harmonic_mrad`.
+/// {orders: [1, 2], joints: [q4]}` adds those of with_harmonics(). `compliance: {links: {q2:
+/// {mass_kg: 20, center_mm: [0, 0, 150]}}, payload: {mass_kg: 5, center_mm: [0, 0, 80]}}` adds
+/// those of with_compliance(), with centres of mass in the frame behind the joint and of the
+/// flange; `direction` and `joints` as for gravity; `links: urdf` takes masses and centres from the
+/// URDF. `compliance: {torques_Nm: {q2: 300, q3: 120}}` adds those of with_measured_compliance(),
+/// with the largest torques that occur. Their sizes in `spread` are `gravity_mrad` (compliance too)
+/// and `harmonic_mrad`.
 ///
 /// Instead of elements and joints the robot may have a Denavit-Hartenberg table, `dh`, with its
 /// `convention` (standard or modified) and `rows` from base to flange:

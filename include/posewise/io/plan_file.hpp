@@ -47,7 +47,7 @@ struct SelectionRequest {
 struct PlannedPose {
     std::string id;
     Index times = 1;
-    VectorXd joints;  ///< rad or m; empty for plain blocks
+    VectorXd joints;  ///< the configuration, rad, m and N m; empty for plain blocks
 };
 
 /// What a plan file holds.

@@ -7,6 +7,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/model/cell.hpp"
 #include "posewise/model/chain.hpp"
+#include "posewise/model/gravity_torque.hpp"
 
 namespace posewise::io {
 
@@ -55,6 +56,11 @@ std::string chain_joint_name(const std::string& urdf_name);
 /// The chain from base link to tip link without error parameters; its flange is the tip link.
 /// Throws InputError if a joint has no limits or two have one name.
 Chain make_chain(const UrdfRobot& robot);
+
+/// The masses of the links from base to tip; those that branch off are not among them. Throws
+/// InputError with path:line:column for a link that is not in the file, for a mass that is missing,
+/// negative or no number, and if no link has one.
+std::vector<Load> read_urdf_loads(const UrdfSource& source);
 
 /// Largest speed of each joint of the chain, rad/s or m/s; empty unless the file states all.
 VectorXd joint_speeds(const UrdfRobot& robot);

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "posewise/core/types.hpp"
 
 namespace posewise {
+
+class GravityTorque;
 
 enum class Motion {
     Translation,  ///< along the axis, metres
@@ -21,15 +24,18 @@ struct JointTerm {
     double coefficient = 1;
 };
 
-/// f(q) of an error that depends on the configuration; u = phase + sum of joint terms.
+/// f(q) of an error that depends on the configuration; u = phase + sum of joint terms. Of such a
+/// term a joint index from the number of joints on is a measured torque (see Chain::torques()).
 struct JointFunction {
     enum class Shape {
-        Linear,  ///< u: coupling of joints, transmission ratio
+        Linear,  ///< u: coupling of joints, transmission ratio, compliance under a measured torque
         Sine,    ///< sin(u); a cosine has phase pi/2
+        Torque,  ///< the torque of known weights, as a share of the largest; no joint terms
     };
     Shape shape = Shape::Linear;
     std::vector<JointTerm> joints;
     double phase = 0;
+    std::shared_ptr<const GravityTorque> torque = nullptr;  ///< of Shape::Torque
 };
 
 /// What a term is for, which says how large it is expected to be.
@@ -64,6 +70,12 @@ struct Joint {
     double upper = 0;
 };
 
+/// A joint's torque that is measured with each configuration.
+struct MeasuredTorque {
+    Index joint = 0;
+    double largest = 1;  ///< that occurs, in magnitude, N m
+};
+
 /// Where the flange is, and how it moves with each parameter.
 struct FlangeMotion {
     Isometry3d world_from_flange;
@@ -85,19 +97,30 @@ struct FlangeMotionRate {
 /// A serial robot as a product of elementary transforms from base to flange:
 /// base_from_flange(q) = prod_k E_k(v_k + c_k . q + pi_k + sum_i pi_ki f_ki(q)). Error parameters
 /// stand in the order of the elements, of one element first its constant error, then its terms.
+/// A configuration q is the joint values, then the torques measured with them (if any).
 class Chain {
   public:
     Chain() = default;
 
     /// Throws InputError if a joint drives no element or both a rotation and a translation, if its
     /// limits are not finite or out of order, if two parameters (or joints) share a name, if an
-    /// element names a joint that does not exist or has a number that is not finite, or if an error
-    /// term has no name or no joint.
-    Chain(std::vector<Joint> joints, std::vector<Element> elements);
+    /// element names a joint that does not exist or has a number that is not finite, if an error
+    /// term has no name or no joint, or if a torque is of no joint that turns, of one twice, or not
+    /// positive at its largest.
+    Chain(std::vector<Joint> joints, std::vector<Element> elements,
+          std::vector<MeasuredTorque> torques = {});
+
+    /// The same joints and torques with other elements.
+    Chain with_elements(std::vector<Element> elements) const;
 
     const std::vector<Joint>& joints() const { return joints_; }
+    const std::vector<MeasuredTorque>& torques() const { return torques_; }
     const std::vector<Element>& elements() const { return elements_; }
     Index joint_count() const { return static_cast<Index>(joints_.size()); }
+    /// Numbers of a configuration: joints and measured torques.
+    Index configuration_size() const {
+        return static_cast<Index>(joints_.size() + torques_.size());
+    }
     Index parameter_count() const { return static_cast<Index>(parameter_places_.size()); }
 
     /// Whether joint j turns (else it slides).
@@ -112,7 +135,7 @@ class Chain {
     /// that is not finite. Limits are not looked at.
     void check_configuration(const VectorXd& q) const;
 
-    /// base_from_flange at joint values q (joint_count(), rad or m) and error parameters
+    /// base_from_flange at q (configuration_size(); rad or m, then N m) and error parameters
     /// (parameter_count(), rad or m; zero is nominal).
     Isometry3d base_from_flange(const VectorXd& q, const VectorXd& parameters) const;
 
@@ -141,12 +164,15 @@ class Chain {
         Index term;
     };
 
+    void check_torques() const;
+
     template <typename Visit>
     void walk(const Isometry3d& world_from_base, const VectorXd& q, const VectorXd& parameters,
               FlangeMotion& motion, const Visit& visit) const;
 
     std::vector<Joint> joints_;
     std::vector<Element> elements_;
+    std::vector<MeasuredTorque> torques_;
     std::vector<Place> parameter_places_;
 };
 

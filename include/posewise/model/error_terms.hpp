@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "posewise/model/chain.hpp"
+#include "posewise/model/gravity_torque.hpp"
 
 /// Error terms that every robot of a kind has, made from its axes.
 namespace posewise {
@@ -24,6 +25,32 @@ std::string describe_function(const JointFunction& function, const std::vector<J
 /// direction.
 Chain with_gravity_terms(const Chain& chain, const Vector3d& direction = -Vector3d::UnitZ(),
                          const std::vector<Index>& joints = {});
+
+/// The robot with a compliance on each of `joints` (empty: all that the weights turn or push, and
+/// not always alike): under the torque of gravity on `loads`, which acts in `direction` of the base
+/// frame with 9.80665 m/s^2, a joint gives way in proportion. Parameters are named `q2.compliance`
+/// and are the joint's yielding (rad or m) under the largest torque that occurs within the limits,
+/// GravityTorque::largest(). Throws InputError as GravityTorque does, for no load or a zero
+/// direction, and for a joint listed that has no torque, always the same one or already a
+/// compliance.
+Chain with_compliance(const Chain& chain, const std::vector<Load>& loads,
+                      const Vector3d& direction = -Vector3d::UnitZ(),
+                      const std::vector<Index>& joints = {});
+
+/// The robot with a compliance, named and meant as those of with_compliance(), on each joint whose
+/// torque is measured with every configuration; these numbers follow its joint values, see
+/// Chain::torques(). Throws InputError as Chain does.
+Chain with_measured_compliance(const Chain& chain, const std::vector<MeasuredTorque>& torques);
+
+/// A compliance of the robot.
+struct Compliance {
+    Index parameter = 0;  ///< of the chain
+    Index joint = 0;
+    double largest = 1;  ///< torque (N m) or force (N) at which the parameter is what gives way
+};
+
+/// Those of with_compliance() and with_measured_compliance(), in the order of the parameters.
+std::vector<Compliance> compliances(const Chain& chain);
 
 /// The robot with periodic errors of encoders and gears: on each of `joints` (empty: all revolute
 /// ones) a sine and a cosine of order * q for each order, in turns of the error per turn of the

@@ -20,8 +20,8 @@ struct HaltonOptions {
 
 /// Low-discrepancy configurations within the joint limits: count x joints. Joint j of point i is
 /// the radical inverse of first_index + i in base j, so a longer list begins with the shorter one.
-/// Throws InputError for a count or index below 0, another number of bases than joints, and bases
-/// below 2, above 100 000 or with a common factor.
+/// Throws InputError for a robot with measured torques, for a count or index below 0, another
+/// number of bases than joints, and bases below 2, above 100 000 or with a common factor.
 RowMatrixXd halton_configurations(const Chain& chain, Index count,
                                   const HaltonOptions& options = {});
 

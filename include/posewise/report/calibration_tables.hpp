@@ -17,6 +17,10 @@ Table metrics_table(const std::vector<std::pair<std::string, Metrics>>& columns)
 /// in mm, the base's position in mm and its turn as the rotation vector in degrees.
 Table parameter_table(const Campaign& campaign, const Estimate& estimate);
 
+/// The compliance of each joint that has one, in urad/(N m) (um/N), with its standard deviation and
+/// the largest torque, at which the parameter is what gives way. No rows if there is none.
+Table compliance_table(const Campaign& campaign, const Estimate& estimate);
+
 /// The `count` strongest correlations between two parameters, by name.
 Table correlation_table(const Estimate& estimate, Index count);
 
