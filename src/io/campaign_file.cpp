@@ -128,7 +128,9 @@ std::vector<bool> read_known(const YamlValue& known, const std::vector<std::stri
         const auto found = std::find(names.begin(), names.end(), name);
         if (found == names.end())
             throw item.error("is " + quote(name) + "; " + suggest(name, names));
-        marks[static_cast<std::size_t>(found - names.begin())] = true;
+        const auto k = static_cast<std::size_t>(found - names.begin());
+        if (marks[k]) throw item.error("is " + quote(name) + " again; keep one");
+        marks[k] = true;
     }
     return marks;
 }

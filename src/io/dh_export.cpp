@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 
 #include "posewise/core/errors.hpp"
 #include "posewise/io/dh_file.hpp"
+#include "units.hpp"
 
 namespace posewise::io {
 namespace {
 
 double in_file_unit(Motion motion, double si) {
-    return motion == Motion::Rotation ? si * 180 / std::numbers::pi : 1e3 * si;
+    return find_unit(motion == Motion::Rotation ? "deg" : "mm")->from_si(si);
 }
 
 /// "-q3 + 0.98*q2".

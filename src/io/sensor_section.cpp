@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,13 +33,13 @@ std::vector<Vector3d> generic_targets(const YamlValue& count) {
     return targets;
 }
 
-std::vector<Vector3d> stated_targets(const YamlMeasure& positions) {
-    std::vector<Vector3d> targets;
+std::vector<Vector3d> stated_positions(const YamlMeasure& positions, const std::string& of_what) {
+    std::vector<Vector3d> stated;
     for (const YamlValue& item : positions.value.list()) {
-        targets.push_back(YamlMeasure{item, positions.unit}.vector_to_si());
+        stated.push_back(YamlMeasure{item, positions.unit}.vector_to_si());
     }
-    if (targets.empty()) throw positions.value.error("is empty; must list at least one target");
-    return targets;
+    if (stated.empty()) throw positions.value.error("is empty; must list at least one " + of_what);
+    return stated;
 }
 
 /// `sigma_mm`, one number or one for each axis, or `noise`, a laser tracker's.
@@ -92,7 +94,7 @@ TargetsSection read_targets(const YamlValue& value) {
         throw known->error("says that positions are known; needs position_mm, not count");
     }
     const std::vector<Vector3d> nominal =
-        positions ? stated_targets(*positions) : generic_targets(*count);
+        positions ? stated_positions(*positions, "target") : generic_targets(*count);
     Targets found(nominal, std::vector<std::array<bool, 3>>(nominal.size(), is_known));
     VectorXd unknowns(found.unknown_count());
     for (Index j = 0; j < found.count(); ++j) {
@@ -150,7 +152,8 @@ bool is_known(const YamlMap& map) {
 SensorSection read_distances(const YamlValue& value) {
     const YamlMap sensor(value, {"kind", "sigma_<length>", "anchors", "targets"});
     const YamlMap anchors(sensor.require("anchors"), {"position_<length>", "known"});
-    const std::vector<Vector3d> positions = stated_targets(anchors.require_measure("position"));
+    const std::vector<Vector3d> positions =
+        stated_positions(anchors.require_measure("position"), "anchor");
     TargetsSection targets = read_targets(sensor.require("targets"));
     VectorXd own(is_known(anchors) ? 0 : 3 * static_cast<Index>(positions.size()));
     for (Index k = 0; k < own.size(); ++k)
@@ -165,7 +168,11 @@ Plane read_plane(const YamlValue& value) {
     const YamlValue normal = map.require("normal");
     const std::vector<double> xyz = normal.numbers(3);
     const Plane plane{{xyz[0], xyz[1], xyz[2]}, map.require_measure("offset").to_si()};
-    if (!(plane.normal.norm() > 1e-9)) throw normal.error("is zero; must point away from the face");
+    const double length = plane.normal.stableNorm();
+    if (!(length > 1e-9 && length < 1e9)) {
+        throw normal.error(fmt::format(
+            "is of length {:g}; must point away from the face and be of length 1 or so", length));
+    }
     return plane;
 }
 

@@ -77,6 +77,9 @@ std::vector<double> read_list(const YamlValue& listed) {
         if (!(orders.back() >= 1e-3 && orders.back() <= 1e4)) {
             throw item.error("is " + quote(item.text()) + "; must be from 1e-3 to 1e4 a turn");
         }
+        if (std::find(orders.begin(), orders.end() - 1, orders.back()) != orders.end() - 1) {
+            throw item.error("is " + quote(item.text()) + " again; keep one");
+        }
     }
     return orders;
 }

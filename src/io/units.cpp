@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "text.hpp"
+
 namespace posewise::io {
 namespace {
 
@@ -23,6 +25,15 @@ constexpr std::array<Unit, 8> units{{
 double largest_plausible(Quantity quantity) { return quantity == Quantity::Angle ? 1e4 : 1e6; }
 
 }  // namespace
+
+double Unit::from_si(double si) const {
+    const double nearest = si * divisor / factor;
+    for (int digits = 1; digits < 17; ++digits) {
+        const double value = parse_number(fmt::format("{:.{}e}", nearest, digits - 1)).value;
+        if (to_si(value) == si) return value;
+    }
+    return nearest;
+}
 
 const Unit* find_unit(std::string_view name) {
     for (const Unit& unit : units) {

@@ -24,6 +24,8 @@ struct Unit {
     double divisor = 1;
 
     double to_si(double value) const { return value * factor / divisor; }
+    /// The shortest decimal number that to_si() turns into `si`; the nearest one if none does.
+    double from_si(double si) const;
 };
 
 /// The unit of that name; nullptr if there is none.

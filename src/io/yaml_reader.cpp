@@ -40,6 +40,15 @@ std::vector<std::string> spell_out_units(const std::vector<std::string>& keys) {
     return spelled;
 }
 
+/// The advice after an unknown key; one that only lacks its unit gets the usual unit.
+std::string suggest_key(const std::string& unknown, const std::vector<std::string>& keys) {
+    for (const std::string& key : keys) {
+        const NameWithUnit name = split_unit(key);
+        if (name.unit != nullptr && name.stem == unknown) return suggest(key, {key});
+    }
+    return suggest(unknown, keys);
+}
+
 }  // namespace
 
 YamlValue::YamlValue(YAML::Node node, FileLocation location, std::string name)
@@ -156,7 +165,7 @@ YamlMap::YamlMap(const YamlValue& value, const std::vector<std::string>& keys)
         if (std::find(keys_.begin(), keys_.end(), entry.key) == keys_.end()) {
             const std::string where = value.name().empty() ? "" : " in " + value.name();
             throw input_error_at(entry.key_location, "unknown key " + quote(entry.key) + where +
-                                                         "; " + suggest(entry.key, keys_));
+                                                         "; " + suggest_key(entry.key, keys_));
         }
     }
 }

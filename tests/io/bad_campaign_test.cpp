@@ -97,7 +97,7 @@ TEST(BadCampaign, KeyThatResemblesNone) {
 
 TEST(BadCampaign, KeyWithoutUnit) {
     EXPECT_EQ(error_with("sigma_mm", "sigma"),
-              "campaign.yaml:16:3: unknown key 'sigma' in sensor; did you mean 'sigma_m'?");
+              "campaign.yaml:16:3: unknown key 'sigma' in sensor; did you mean 'sigma_mm'?");
 }
 
 TEST(BadCampaign, DuplicateKey) {
@@ -340,6 +340,8 @@ TEST(BadCampaign, GravityAndHarmonicsThatCannotBe) {
     EXPECT_EQ(
         error_with_terms("  harmonics: {orders: [1, 0]}"),
         "campaign.yaml:7:27: robot.harmonics.orders[2] is '0'; must be from 1e-3 to 1e4 a turn");
+    EXPECT_EQ(error_with_terms("  harmonics: {orders: [1, 2, 1.0]}"),
+              "campaign.yaml:7:30: robot.harmonics.orders[3] is '1.0' again; keep one");
     EXPECT_EQ(error_with_terms("  harmonics: {orders: []}").substr(0, 19), "campaign.yaml:7:23:");
     EXPECT_EQ(error_with_terms("  harmonics: {orders: [1], joints: [lift]}"),
               "campaign.yaml:7:14: robot.harmonics is not possible: joint 'lift' slides; harmonics "

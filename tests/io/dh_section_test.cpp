@@ -211,6 +211,15 @@ TEST(MakeDhText, IsReadBackAsTheSameRobot) {
     }
 }
 
+TEST(MakeDhText, PrintsTheShortestNumbersThatAreReadBackExactly) {
+    const Chain chain = read(campaign_of("      - {joint: q1, a_mm: 312.1, alpha_deg: 0, d_mm: 0, "
+                                         "theta_deg: 0, limits_deg: [-150, 75.3]}\n"))
+                            .declared_robot;
+    const std::string text = make_dh_text(chain, dh_rows(chain, {}));
+    EXPECT_NE(text.find("limits_deg: [-150, 75.3]"), std::string::npos) << text;
+    EXPECT_NE(text.find("a_mm: 312.1,"), std::string::npos) << text;
+}
+
 TEST(MakeDhText, RefusesAJointThatDrivesTwoAxes) {
     using testing::driven;
     const Chain chain({{"q1", -1, 1}},

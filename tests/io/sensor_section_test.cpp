@@ -113,8 +113,19 @@ TEST(ReadSensor, TellsWhatIsWrongAndWhere) {
     EXPECT_NE(error(poses, "  sigma_orientation_mrad: 0.2\n", "").find("sigma_orientation"),
               std::string::npos);
     EXPECT_NE(error(distances, "[x, y]", "[x, w]").find("'w'"), std::string::npos);
-    EXPECT_NE(error(planes, "[0, 0, 2]", "[0, 0, 0]").find("is zero"), std::string::npos);
-    EXPECT_NE(error(distances, "[[1000, 2000, 0], [-500, 800, 300]]", "[]").find("is empty"),
+    EXPECT_EQ(error(distances, "[x, y]", "[x, x]"),
+              "c.yaml:12:51: sensor.targets.known[2] is 'x' again; keep one");
+    for (const auto& [normal, length] :
+         {std::pair("[0, 0, 0]", "0"), {"[0, 0, 1e200]", "1e+200"}}) {
+        EXPECT_EQ(error(planes, "[0, 0, 2]", normal),
+                  std::string("c.yaml:11:21: sensor.planes[1].normal is of length ") + length +
+                      "; must point away from the face and be of length 1 or so");
+    }
+    EXPECT_EQ(error(planes, "offset_mm: 300", "offset: 300"),
+              "c.yaml:11:32: unknown key 'offset' in sensor.planes[1]; did you mean 'offset_mm'?");
+    EXPECT_EQ(error(distances, "[[1000, 2000, 0], [-500, 800, 300]]", "[]"),
+              "c.yaml:11:26: sensor.anchors.position_mm is empty; must list at least one anchor");
+    EXPECT_NE(error(planes, "[[0, 0, 150]], known: true", "[]").find("at least one target"),
               std::string::npos);
 }
 
