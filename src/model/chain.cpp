@@ -191,7 +191,8 @@ void add_term_rate(const JointFunction& function, const FunctionValue& f, double
                                       std::vector<FlangeMotionRate>& rates) {
     for (const ErrorTerm& term : element.terms) {
         const bool is_torque = term.function.torque != nullptr;
-        const TorqueShare share = is_torque ? term.function.torque->evaluate(q) : TorqueShare{};
+        const TorqueShare share =
+            is_torque ? term.function.torque->evaluate_twice(q) : TorqueShare{};
         const FunctionValue f = is_torque ? FunctionValue{} : evaluate(term.function, q);
         for (Index j = 0; j < joint_twists.cols(); ++j) {
             const Twist change = lie_bracket(joint_twists.col(j), twist);

@@ -58,11 +58,17 @@ GravityTorque::GravityTorque(const Chain& chain, std::size_t element, const Vect
         check_load(chain, load);
         moved_by_.push_back(count_driven(chain, load.link));
     }
+    driven_by_.setZero(chain_.parameter_count(), chain_.joint_count());
+    for (Index e = 0; e < chain_.parameter_count(); ++e) {
+        for (const JointTerm& term : chain_.parameter_element(e).joints) {
+            driven_by_(e, term.joint) += term.coefficient;
+        }
+    }
     constexpr Index samples = 1000;
     const RowMatrixXd configurations = random_configurations(chain_, samples, 1);
     double low = 0, high = 0;
     for (Index i = 0; i < samples; ++i) {
-        const double value = torque(configurations.row(i).transpose()).value;
+        const double value = torque(configurations.row(i).transpose(), false).value;
         low = i == 0 ? value : std::min(low, value);
         high = i == 0 ? value : std::max(high, value);
     }
@@ -72,14 +78,21 @@ GravityTorque::GravityTorque(const Chain& chain, std::size_t element, const Vect
 }
 
 TorqueShare GravityTorque::evaluate(const VectorXd& q) const {
-    TorqueShare share = torque(q);
+    TorqueShare share = torque(q, false);
+    share.value /= largest_;
+    share.gradient /= largest_;
+    return share;
+}
+
+TorqueShare GravityTorque::evaluate_twice(const VectorXd& q) const {
+    TorqueShare share = torque(q, true);
     share.value /= largest_;
     share.gradient /= largest_;
     share.hessian /= largest_;
     return share;
 }
 
-TorqueShare GravityTorque::torque(const VectorXd& q) const {
+TorqueShare GravityTorque::torque(const VectorXd& q, bool is_twice) const {
     const VectorXd joints = q.head(chain_.joint_count());
     const VectorXd nominal = VectorXd::Zero(chain_.parameter_count());
     FlangeMotion motion;
@@ -92,7 +105,7 @@ TorqueShare GravityTorque::torque(const VectorXd& q) const {
     // it, so that D_i D_j c = w_i x D_j c for i before j, and likewise once more.
     double value = 0;
     VectorXd gradient = VectorXd::Zero(count);
-    MatrixXd hessian = MatrixXd::Zero(count, count);
+    MatrixXd hessian = MatrixXd::Zero(is_twice ? count : 0, is_twice ? count : 0);
     for (std::size_t l = 0; l < loads_.size(); ++l) {
         if (driven_ >= moved_by_[l]) continue;
         const Vector3d center = links[static_cast<std::size_t>(loads_[l].link)] * loads_[l].center;
@@ -105,7 +118,7 @@ TorqueShare GravityTorque::torque(const VectorXd& q) const {
             const auto [first, second] = std::minmax(i, driven_);
             const Vector3d twice = w(first).cross(rate(second));
             gradient[i] += weight.dot(twice);
-            for (Index h = 0; h <= i; ++h) {
+            for (Index h = 0; is_twice && h <= i; ++h) {
                 std::array<Index, 3> order{h, i, driven_};
                 std::sort(order.begin(), order.end());
                 const double third =
@@ -115,14 +128,9 @@ TorqueShare GravityTorque::torque(const VectorXd& q) const {
             }
         }
     }
-    // From elements to the joints that drive them.
-    MatrixXd driven_by = MatrixXd::Zero(count, chain_.joint_count());
-    for (Index e = 0; e < count; ++e) {
-        for (const JointTerm& term : chain_.parameter_element(e).joints) {
-            driven_by(e, term.joint) += term.coefficient;
-        }
-    }
-    return {value, driven_by.transpose() * gradient, driven_by.transpose() * hessian * driven_by};
+    TorqueShare share{value, driven_by_.transpose() * gradient, {}};
+    if (is_twice) share.hessian = driven_by_.transpose() * hessian * driven_by_;
+    return share;
 }
 
 }  // namespace posewise

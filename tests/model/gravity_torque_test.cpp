@@ -23,7 +23,7 @@ TEST(GravityTorque, OfAPendulumIsItsWeightTimesItsArm) {
     EXPECT_NEAR(torque.largest(), 3 * 9.80665 * 0.5, 1e-4);
     EXPECT_TRUE(torque.varies());
     for (const double q : {-1.2, 0.0, 0.7}) {
-        const TorqueShare share = torque.evaluate(VectorXd::Constant(1, q));
+        const TorqueShare share = torque.evaluate_twice(VectorXd::Constant(1, q));
         const double scale = 3 * 9.80665 * 0.5 / torque.largest();
         EXPECT_NEAR(share.value, scale * std::cos(q), 1e-14);
         EXPECT_NEAR(share.gradient[0], -scale * std::sin(q), 1e-14);
@@ -89,7 +89,7 @@ TEST(GravityTorque, IsWhatTakesThePotentialEnergyOfAnyRobot) {
             const GravityTorque torque(robot, k, gravity, loads);
             for (Index i = 0; i < configurations.rows(); ++i) {
                 const VectorXd q = configurations.row(i).transpose();
-                const TorqueShare share = torque.evaluate(q);
+                const TorqueShare share = torque.evaluate_twice(q);
                 const MatrixXd value = MatrixXd::Constant(1, 1, -torque.largest() * share.value);
                 expect_is_jacobian(
                     value,
@@ -115,7 +115,8 @@ TEST(GravityTorque, RefusesLoadsThatMakeNoSense) {
     const Chain robot = fanuc();
     EXPECT_THROW(GravityTorque(robot, 1, gravity, {}), InputError) << "element that stands still";
     EXPECT_THROW(GravityTorque(robot, 99, gravity, {}), InputError) << "no such element";
-    EXPECT_THROW(GravityTorque(robot, 0, gravity, {{8, 1, Vector3d::Zero()}}), InputError) << "no such link";
+    EXPECT_THROW(GravityTorque(robot, 0, gravity, {{8, 1, Vector3d::Zero()}}), InputError)
+        << "no such link";
     EXPECT_THROW(GravityTorque(robot, 0, gravity, {{1, -1, Vector3d::Zero()}}), InputError);
     EXPECT_THROW(GravityTorque(robot, 0, Vector3d(0, 0, std::nan("")), {}), InputError);
 }

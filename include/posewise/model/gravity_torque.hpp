@@ -18,7 +18,7 @@ struct Load {
 struct TorqueShare {
     double value = 0;
     VectorXd gradient;  ///< joint_count()
-    MatrixXd hessian;   ///< joint_count() square
+    MatrixXd hessian;   ///< joint_count() square; of evaluate_twice() only
 };
 
 /// What known weights do to one of a robot's driven elements: the torque (or force) of gravity in
@@ -42,17 +42,19 @@ class GravityTorque {
 
     /// At a configuration (joint values, what follows them does not matter), divided by largest().
     TorqueShare evaluate(const VectorXd& q) const;
+    /// The same with the second derivatives.
+    TorqueShare evaluate_twice(const VectorXd& q) const;
 
   private:
     /// The same in N m (N).
-    TorqueShare torque(const VectorXd& q) const;
+    TorqueShare torque(const VectorXd& q, bool is_twice) const;
 
     Chain chain_;       ///< every driven element has one error parameter, which tells its motion
     Index driven_ = 0;  ///< number of the element among the driven ones
     Vector3d gravity_;
     std::vector<Load> loads_;
-    std::vector<Index>
-        moved_by_;  ///< of each load: how many driven elements, from the base, move it
+    MatrixXd driven_by_;           ///< how much each joint moves each driven element
+    std::vector<Index> moved_by_;  ///< of each load, how many of them, from the base, move it
     double largest_ = 1;
     bool varies_ = false;
 };
