@@ -55,11 +55,15 @@ LinearSolution solve_linear(const Campaign& campaign, const Targets& targets,
     Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
     qr.setThreshold(1e-9);
     if (A.rows() < A.cols() || qr.rank() < A.cols()) {
-        throw InputError("these " + std::to_string(means.configuration_count()) +
-                         " configurations with " + std::to_string(point_count) +
-                         " points do not determine base and targets; more configurations "
-                         "that turn the tool in different ways are needed or, where all axes are "
-                         "parallel (SCARA), base or targets known along them, like known: [z]");
+        const bool is_poses = dynamic_cast<const PoseSensor*>(campaign.sensor.get()) != nullptr;
+        throw InputError(
+            "these " + std::to_string(means.configuration_count()) +
+            (is_poses ? " poses do not determine base and tool"
+                      : " configurations with " + std::to_string(point_count) +
+                            " points do not determine base and targets") +
+            "; more configurations that turn the tool in different ways are needed or, "
+            "where all axes are parallel (SCARA), base or " +
+            (is_poses ? "tool" : "targets") + " known along them, like known: [z]");
     }
     const VectorXd solution = qr.solve(b);
     LinearSolution found;

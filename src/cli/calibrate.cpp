@@ -239,10 +239,7 @@ void calibrate(Arguments arguments) {
             metrics_of(file.campaign, read_measured(arguments.validate, file), report.estimate);
     }
     if (!arguments.out.empty()) io::write_estimate(arguments.out, file.campaign, report);
-    // No error: a calibration may be just for a robot that is far from nominal.
-    const std::string misfit = describe_misfit(file.campaign, split.used);
-    if (!misfit.empty()) print_warning(paths.measurements + ": " + misfit);
-    warn_about_calibration(paths.measurements, file.campaign, report);
+    warn_about_calibration(paths.measurements, file.campaign, split.used, report);
     print_calibration(file.campaign, split.used, report);
 }
 void add_options(CLI::App& command, Arguments& arguments) {

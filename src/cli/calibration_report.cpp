@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "common.hpp"
-#include "posewise/core/text.hpp"
+#include "measured.hpp"
 #include "posewise/report/calibration_tables.hpp"
 #include "posewise/report/units.hpp"
+#include "suspicions.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -98,26 +98,28 @@ void print_outliers(const io::CalibrationReport& report) {
 }
 
 /// A robot's maker is rarely wrong by 10 cm.
-void warn_about_outliers(const std::string& path, const Metrics& nominal) {
+void warn_about_outliers(const std::string& path, const std::string& readings,
+                         const Metrics& nominal) {
     constexpr double suspicious = 0.1;  // m
     if (nominal.distance_rms <= suspicious) return;
-    const std::string warning = fmt::format(
-        "posewise: warning: {}: the nominal robot misses the points by {} m (RMS); if some points "
-        "are grossly wrong, try --loss cauchy\n",
-        escape_controls(path), format_short(nominal.distance_rms, 3));
-    std::fwrite(warning.data(), 1, warning.size(), stderr);
+    print_warning(
+        fmt::format("{}: the nominal robot misses the {} by {} m (RMS); if some are grossly wrong, "
+                    "try --loss cauchy",
+                    path, readings, format_short(nominal.distance_rms, 3)));
 }
 
 /// Nor does it miss orientations by 5 deg, unless they are read in another order.
-void warn_about_orientation(const std::string& path, const Metrics& nominal) {
+void warn_about_orientation(const std::string& path, const Campaign& campaign,
+                            const Measurements& used, const Metrics& nominal) {
     constexpr double suspicious = 0.1;  // rad
     if (nominal.orientation_rms <= suspicious) return;
-    const std::string warning = fmt::format(
-        "posewise: warning: {}: the nominal robot misses the orientations by {} deg (RMS); is qw "
-        "the real part of the quaternion, are roll, pitch and yaw about the fixed axes x, y and "
-        "z?\n",
-        escape_controls(path), format_short(to_degrees(nominal.orientation_rms), 3));
-    std::fwrite(warning.data(), 1, warning.size(), stderr);
+    const std::string suspicion = suspect_orientations(campaign, used, suspicious);
+    print_warning(fmt::format(
+        "{}: the nominal robot misses the orientations by {} deg (RMS){}", path,
+        format_short(to_degrees(nominal.orientation_rms), 3),
+        suspicion.empty() ? "; is qw the real part of the quaternion, are roll, pitch and yaw "
+                            "about the fixed axes x, y and z?"
+                          : suspicion));
 }
 
 /// A joint with a wrong sign may converge as well, with an offset of half a turn.
@@ -136,11 +138,10 @@ void warn_about_sizes(const Campaign& campaign, const Estimate& estimate) {
                              format_short(times[k], 3));
     }
     if (words.empty()) return;
-    const std::string warning = fmt::format(
-        "posewise: warning: far above the expected size: {}; are sign, unit and nominal value in "
-        "the campaign right, and do the poses tell them apart? If so, state their size in spread\n",
-        escape_controls(words));
-    std::fwrite(warning.data(), 1, warning.size(), stderr);
+    print_warning(fmt::format(
+        "far above the expected size: {}; are sign, unit and nominal value in the campaign right, "
+        "and do the poses tell them apart? If so, state their size in spread",
+        words));
 }
 
 }  // namespace
@@ -162,9 +163,14 @@ void print_model_selection(const ModelSelection& selection) {
 }
 
 void warn_about_calibration(const std::string& measurements_path, const Campaign& campaign,
-                            const io::CalibrationReport& report) {
-    warn_about_outliers(measurements_path, report.nominal);
-    warn_about_orientation(measurements_path, report.nominal);
+                            const Measurements& used, const io::CalibrationReport& report) {
+    // No error: a calibration may be just for a robot that is far from nominal.
+    const std::string misfit = describe_misfit(campaign, used);
+    if (!misfit.empty()) print_warning(measurements_path + ": " + misfit);
+    const std::string planes = misfit.empty() ? suspect_planes(campaign, used) : "";
+    if (!planes.empty()) print_warning(measurements_path + ": " + planes);
+    warn_about_outliers(measurements_path, words_of(*campaign.sensor).readings, report.nominal);
+    warn_about_orientation(measurements_path, campaign, used, report.nominal);
     warn_about_sizes(campaign, report.estimate);
 }
 
@@ -174,13 +180,15 @@ void print_calibration(const Campaign& campaign, const Measurements& used,
                       used.configuration_count(), used.observations.rows(),
                       parameter_count(campaign)));
     if (!used.is_seen.all()) {
-        print(fmt::format("{} of {} points are missing: targets that were not seen\n",
-                          used.is_seen.size() - used.is_seen.count(), used.is_seen.size()));
+        print(fmt::format("{} of {} {} are missing: targets that were not seen\n",
+                          used.is_seen.size() - used.is_seen.count(), used.is_seen.size(),
+                          words_of(*campaign.sensor).readings));
     }
     print(describe_ending(report.method, report.estimate) + judge_residuals(report.estimate));
     print_accuracy(report);
     print_outliers(report);
-    print_section("Parameters (errors of the robot, base, targets in the flange frame)",
+    print_section(fmt::format("Parameters (errors of the robot, base, {})",
+                              words_of(*campaign.sensor).unknowns),
                   parameter_table(campaign, report.estimate));
     const Table compliance = compliance_table(campaign, report.estimate);
     if (!compliance.rows.empty()) print_section("Compliances", compliance);

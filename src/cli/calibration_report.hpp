@@ -12,9 +12,9 @@ void print_model_selection(const ModelSelection& selection);
 void print_calibration(const Campaign& campaign, const Measurements& used,
                        const io::CalibrationReport& report);
 
-/// Warnings on standard error: a nominal robot far from the points, errors far above their expected
-/// size.
+/// Warnings on standard error: a nominal robot far from what was measured (another robot's? planes
+/// or orientations read in another sense?), errors far above their expected size.
 void warn_about_calibration(const std::string& measurements_path, const Campaign& campaign,
-                            const io::CalibrationReport& report);
+                            const Measurements& used, const io::CalibrationReport& report);
 
 }  // namespace posewise::cli

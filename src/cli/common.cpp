@@ -177,6 +177,18 @@ std::string describe(const Sensor& sensor) {
                        describe(lengths.targets()), format_short(mm_per_m * lengths.sigma()));
 }
 
+SensorWords words_of(const Sensor& sensor) {
+    if (dynamic_cast<const PoseSensor*>(&sensor) != nullptr) {
+        return {"poses", "tool in the flange frame", "sensor.tool"};
+    }
+    SensorWords words;
+    if (dynamic_cast<const PointSensor*>(&sensor) != nullptr) return words;
+    words.readings = "lengths";
+    words.unknowns +=
+        dynamic_cast<const PlaneSensor*>(&sensor) != nullptr ? ", planes" : ", anchors";
+    return words;
+}
+
 std::string describe_model_error(const Campaign& campaign) {
     const std::string text = format_short(mm_per_m * campaign.model_error) + " mm";
     if (!campaign.sensor->is_angle(campaign.sensor->row_count() - 1)) return text;

@@ -45,6 +45,14 @@ std::string describe(const Sensor& sensor);
 std::string describe_model_error(const Campaign& campaign);
 std::string describe_scaling(const Campaign& campaign, double repeats);
 
+/// What a sensor's readings and unknowns are called, and the key that places what it measures.
+struct SensorWords {
+    std::string readings = "points";
+    std::string unknowns = "targets in the flange frame";
+    std::string key = "sensor.targets.position_mm";
+};
+SensorWords words_of(const Sensor& sensor);
+
 /// Says, where little is proven about a choice, what tells more; empty where it is nearly optimal.
 std::string describe_looseness(double efficiency, Index starts_at_best, Index starts);
 

@@ -38,7 +38,8 @@ tell from the others is marked "no", with the errors that do exactly the same, f
 A campaign that states such a parameter is singular: drop it. A campaign that states no parameters
 has the complete model (every error a rigid link can have), less those marked "no". The last lines
 compare with the formula for what is identifiable; a stated set that spans less leaves errors of the
-real robot uncorrected.
+real robot uncorrected. A warning tells where there is no clear gap between what is identifiable and
+what is not, as of harmonics of high order on a joint that turns little.
 
 With --measurements the directions of the joints are checked, too: the robot is registered (base and
 targets fitted, nothing else) with every choice of joints reversed. The right one misses the points by
@@ -143,6 +144,24 @@ std::string describe_complete(const Campaign& complete, std::size_t rank) {
                        parameter_count(complete), describe_formula(complete));
 }
 
+/// Not with a prior: that holds what the poses hardly tell.
+void warn_about_gap(const std::string& path, const Campaign& campaign,
+                    const Identifiability& found) {
+    if (campaign.spread.is_prior || has_clear_gap(found)) return;
+    const auto names = parameter_names(campaign);
+    std::vector<std::string> weakest;
+    for (const Index k : weakest_kept(campaign, found)) {
+        weakest.push_back(names[static_cast<std::size_t>(k)]);
+    }
+    print_warning(fmt::format(
+        "{}: no gap between what is identifiable and what is not: of columns of norm 1 those "
+        "before leave {} of one that is kept and {} of one that is dropped; the weakest direction "
+        "kept is of {}: state fewer terms (orders of harmonics), a larger range of their joints, "
+        "or prior: true",
+        path, format_short(found.least_kept_residual, 2),
+        format_short(found.largest_dropped_residual, 2), fmt::join(weakest, ", ")));
+}
+
 void print_stated(const io::CampaignFile& file) {
     const Campaign& campaign = file.campaign;
     const Identifiability stated = find_identifiable(campaign);
@@ -153,6 +172,7 @@ void print_stated(const io::CampaignFile& file) {
     print(fmt::format("\nstated set: rank {} of {} parameters{}\n", rank, parameter_count(campaign),
                       stated.dropped.empty() ? "" : ": rank deficient, drop those marked no"));
     print(describe_complete(complete, complete_rank));
+    warn_about_gap(file.path, campaign, stated);
     print(rank < complete_rank
               ? fmt::format("The stated set spans only {} of these {} directions: errors of the "
                             "robot in the other {} stay uncorrected.\n",
@@ -170,6 +190,7 @@ void print_reduced(const io::CampaignFile& file) {
                     "at most {} of one that is dropped.\n",
                     format_short(found.least_kept_residual, 2),
                     format_short(found.largest_dropped_residual, 2)));
+    warn_about_gap(file.path, complete, found);
 }
 
 void print_campaign(const io::CampaignFile& file) {

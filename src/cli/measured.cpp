@@ -14,6 +14,7 @@
 #include "posewise/model/joint_limits.hpp"
 #include "posewise/planner/prediction.hpp"
 #include "posewise/report/units.hpp"
+#include "suspicions.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -112,11 +113,12 @@ std::string describe_misfit(const Campaign& campaign, const Measurements& measur
                   points) +
         campaign.model_error;
     if (error <= credible_errors * expected) return "";
+    const std::string planes = suspect_planes(campaign, measured);
     return fmt::format(
         "are these of another robot? The nominal robot misses half of them by over {} mm; must be "
         "about {} mm, as the spread of {} says{}",
         format_short(mm_per_m * error, 3), format_short(mm_per_m * expected, 3), campaign.name,
-        suspect_unit(campaign, measured));
+        suspect_unit(campaign, measured) + (planes.empty() ? "" : "; " + planes));
 }
 
 void check_is_of_robot(const Campaign& campaign, const Measurements& measured,

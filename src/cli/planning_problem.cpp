@@ -30,10 +30,10 @@ constexpr double distance_from_dropped = 5 * std::numbers::pi / 180;
 void settle_base(Campaign& campaign, const std::optional<Measurements>& measured) {
     if (campaign.has_nominal_base && campaign.has_nominal_targets) return;
     if (!measured) {
+        const std::string key = words_of(*campaign.sensor).key;
         throw InputError(campaign.name + ": the campaign file states no " +
-                         (campaign.has_nominal_base ? "target positions" : "base") +
-                         "; must state base and sensor.targets.position_mm to plan, or measured "
-                         "poses (--augment) must tell them");
+                         (campaign.has_nominal_base ? key : "base") + "; must state base and " +
+                         key + " to plan, or measured poses (--augment) must tell them");
     }
     campaign.nominal = register_base_and_targets(campaign, *measured);
     campaign.nominal.robot.setZero();

@@ -160,10 +160,11 @@ Parameters find_parameters(const SelectionProblem& problem,
     if (candidates) return register_from(problem.request.source.path, *candidates);
     if (campaign.has_nominal_base && campaign.has_nominal_targets) return campaign.nominal;
     if (augment) return register_from(problem.request.augment, *augment);
+    const std::string key = words_of(*campaign.sensor).key;
     throw InputError(campaign.name + ": the campaign file states no " +
-                     (campaign.has_nominal_base ? "target positions" : "base") +
-                     ", and nothing was measured to find them from; state base and "
-                     "sensor.targets.position_mm there, or use --measurements");
+                     (campaign.has_nominal_base ? key : "base") +
+                     ", and nothing was measured to find them from; state base and " + key +
+                     " there, or use --measurements");
 }
 
 void hold_measured(SelectionProblem& problem, const Parameters& parameters,

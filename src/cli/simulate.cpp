@@ -9,7 +9,7 @@
 #include "options.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/report/units.hpp"
+#include "posewise/report/calibration_tables.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -23,10 +23,10 @@ Draws a robot with errors of the campaign's spread (by the seed --truth), sends 
 configurations within the joint limits, or to those of a file, and measures with the sensor's noise.
 In the column visible_targets that file may list which targets each configuration shows ("1 3"), as
 plan --csv writes it; the cells of the others stay empty. The file written starts with comment lines
-that hold the command, so it can be made again. Prints the true parameters, to compare a
-calibration with:
-  parameter      error
-  Tx1        -0.8412 mm)";
+that hold the command, so it can be made again. Prints the true parameters as
+calibrate prints those it finds:
+  parameter    value
+  Tx1        -0.8412  mm)";
 
 struct Arguments {
     InputPaths paths;
@@ -57,19 +57,6 @@ Simulation simulate_as_asked(const Arguments& arguments, const io::CampaignFile&
     return simulation;
 }
 
-/// The robot's true errors; base and targets are at the campaign's, moved by the spread.
-Table truth_table(const Campaign& campaign, const Parameters& truth) {
-    const auto names = campaign.robot.parameter_names();
-    Table table{{"parameter", "error", ""}, {}};
-    for (Index k = 0; k < truth.robot.size(); ++k) {
-        const bool turns = campaign.robot.parameter_element(k).motion == Motion::Rotation;
-        table.rows.push_back({names[static_cast<std::size_t>(k)],
-                              format_fixed(mm_per_m * truth.robot[k], 4),
-                              std::string(error_unit(turns))});
-    }
-    return table;
-}
-
 void run_simulation(Arguments arguments) {
     check_outputs({arguments.paths.campaign, arguments.configurations}, {arguments.out});
     const auto file = io::read_campaign(arguments.paths.campaign);
@@ -80,7 +67,9 @@ void run_simulation(Arguments arguments) {
     print(fmt::format("{} configurations, {} samples: {}\n",
                       simulation.measurements.configuration_count(),
                       simulation.measurements.observations.rows(), arguments.out));
-    print_section("True errors of the robot", truth_table(file.campaign, simulation.truth));
+    print_section(fmt::format("True parameters (errors of the robot, base, {})",
+                              words_of(*file.campaign.sensor).unknowns),
+                  value_table(file.campaign, simulation.truth));
 }
 
 void add_options(CLI::App& command, Arguments& arguments) {

@@ -121,6 +121,23 @@ Identifiability find_identifiable(const Campaign& campaign) {
                                     make_priority(campaign));
 }
 
+bool has_clear_gap(const Identifiability& found) {
+    return found.least_kept_residual >= 1e3 * found.largest_dropped_residual;
+}
+
+std::vector<Index> weakest_kept(const Campaign& campaign, const Identifiability& found,
+                                Index count) {
+    const MatrixXd J = stack_at_nominal(campaign, 2 * parameter_count(campaign));
+    MatrixXd kept = J(Eigen::all, found.kept);
+    kept.colwise().normalize();
+    std::vector<Index> parameters;
+    const std::vector<WeakDirection> weakest = weakest_directions(kept, 1, count);
+    for (const ParameterTerm& term : weakest.front().terms) {
+        parameters.push_back(found.kept[static_cast<std::size_t>(term.parameter)]);
+    }
+    return parameters;
+}
+
 Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names) {
     const auto is_dropped = [&names](const std::string& name) {
         return std::find(names.begin(), names.end(), name) == names.end();

@@ -76,7 +76,7 @@ Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
     if (!campaign.has_nominal_base || !campaign.has_nominal_targets) {
         throw InputError(
             "to simulate, the campaign must state where base and targets are (keys 'base' and "
-            "'sensor.targets.position_mm')");
+            "'sensor.targets.position_mm' or 'sensor.tool')");
     }
     if (is_visible.rows() != configurations.rows() ||
         is_visible.cols() != campaign.sensor->target_count()) {

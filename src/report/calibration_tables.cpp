@@ -62,20 +62,31 @@ Table metrics_table(const std::vector<std::pair<std::string, Metrics>>& columns)
     return table;
 }
 
-Table parameter_table(const Campaign& campaign, const Estimate& estimate) {
-    const VectorXd values = flatten(campaign, estimate.parameters);
-    const VectorXd deviations = standard_deviations(estimate);
+Table value_table(const Campaign& campaign, const Parameters& parameters) {
+    const VectorXd values = flatten(campaign, parameters);
+    const auto names = parameter_names(campaign);
     const auto is_angle = parameter_is_angle(campaign);
-    Table table{{"parameter", "value", "", "std. dev.", ""}, {}};
+    Table table{{"parameter", "value", ""}, {}};
     for (Index k = 0; k < values.size(); ++k) {
         const auto i = static_cast<std::size_t>(k);
         // The base's turn is no small error.
         const bool in_degrees = k < base_parameter_count(campaign) && is_angle[i];
         const double value = in_degrees ? to_degrees(values[k]) : mm_per_m * values[k];
-        table.rows.push_back({estimate.names[i], format_fixed(value, 4),
-                              in_degrees ? "deg" : std::string(error_unit(is_angle[i])),
-                              format_fixed(mm_per_m * deviations[k], 4),
-                              std::string(error_unit(is_angle[i]))});
+        table.rows.push_back({names[i], format_fixed(value, 4),
+                              in_degrees ? "deg" : std::string(error_unit(is_angle[i]))});
+    }
+    return table;
+}
+
+Table parameter_table(const Campaign& campaign, const Estimate& estimate) {
+    const VectorXd deviations = standard_deviations(estimate);
+    const auto is_angle = parameter_is_angle(campaign);
+    Table table = value_table(campaign, estimate.parameters);
+    table.header.insert(table.header.end(), {"std. dev.", ""});
+    for (std::size_t k = 0; k < table.rows.size(); ++k) {
+        const double deviation = deviations[static_cast<Index>(k)];
+        table.rows[k].push_back(format_fixed(mm_per_m * deviation, 4));
+        table.rows[k].emplace_back(error_unit(is_angle[k]));
     }
     return table;
 }

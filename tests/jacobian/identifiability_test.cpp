@@ -219,5 +219,20 @@ TEST(WeakestDirections, OfFewerRowsThanColumnsHaveSingularValueZero) {
     for (const auto& direction : directions) EXPECT_EQ(direction.singular_value, 0);
 }
 
+TEST(HasClearGap, NotOfHarmonicsOnAJointThatTurnsLittle) {
+    EXPECT_TRUE(
+        has_clear_gap(find_identifiable(tracked_campaign(complete_model(testing::fanuc())))));
+    std::vector<Joint> joints = testing::fanuc().joints();
+    joints[3] = {joints[3].name, -0.15, 0.15};
+    const Chain narrow(joints, testing::fanuc().elements());
+    const Campaign campaign = tracked_campaign(with_harmonics(narrow, {1, 2, 3, 4, 5, 6, 7}, {3}));
+    const Identifiability found = find_identifiable(campaign);
+    EXPECT_FALSE(has_clear_gap(found))
+        << found.least_kept_residual << " and " << found.largest_dropped_residual;
+    const auto weakest = names_of(campaign, weakest_kept(campaign, found));
+    ASSERT_EQ(weakest.size(), 4U);
+    for (const std::string& name : weakest) EXPECT_NE(name.find("q4"), std::string::npos) << name;
+}
+
 }  // namespace
 }  // namespace posewise

@@ -48,6 +48,14 @@ TEST(ParameterTable, PrintsValuesWithStandardDeviations) {
     EXPECT_EQ(table.rows[10], (Row{"target1.x", "280.0000", "mm", "0.1000", "mm"}));
 }
 
+TEST(ValueTable, IsTheParameterTableWithoutDeviations) {
+    const Campaign campaign = testing::tracked_campaign(testing::planar_arm({1, 0.5}));
+    const Table table = value_table(campaign, example_estimate(campaign).parameters);
+    ASSERT_EQ(table.rows.size(), 19u);
+    EXPECT_EQ(table.rows[5], (Row{"base.rz", "90.0000", "deg"}));
+    EXPECT_EQ(table.rows[6], (Row{"dq1", "0.5000", "mrad"}));
+}
+
 TEST(CorrelationTable, NamesTheStrongest) {
     const Campaign campaign = testing::tracked_campaign(testing::planar_arm({1, 0.5}));
     const Table table = correlation_table(example_estimate(campaign), 1);

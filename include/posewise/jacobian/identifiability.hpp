@@ -45,6 +45,15 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
 /// campaign does not state are put at generic places.
 Identifiability find_identifiable(const Campaign& campaign);
 
+/// Whether the tolerance has no part in what was kept: a factor of 1000 at least between the least
+/// residual of a kept column and the largest of a dropped one.
+bool has_clear_gap(const Identifiability& found);
+
+/// The parameters that what find_identifiable() kept tells apart worst, `count` at most: those with
+/// the largest shares in the weakest direction of the kept columns (of norm 1), largest first.
+std::vector<Index> weakest_kept(const Campaign& campaign, const Identifiability& found,
+                                Index count = 4);
+
 /// The same robot with only the kept error parameters.
 Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names);
 

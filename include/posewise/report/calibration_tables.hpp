@@ -13,8 +13,10 @@ namespace posewise {
 /// RMS and maximum of x, y and z. A column without points shows "-".
 Table metrics_table(const std::vector<std::pair<std::string, Metrics>>& columns);
 
-/// Every parameter with value and standard deviation: errors of the robot in mm and mrad, targets
-/// in mm, the base's position in mm and its turn as the rotation vector in degrees.
+/// Every parameter with its value: errors of the robot in mm and mrad, targets in mm, the base's
+/// position in mm and its turn as the rotation vector in degrees.
+Table value_table(const Campaign& campaign, const Parameters& parameters);
+/// The same of an estimate, with standard deviations.
 Table parameter_table(const Campaign& campaign, const Estimate& estimate);
 
 /// The compliance of each joint that has one, in urad/(N m) (um/N), with its standard deviation and
