@@ -169,11 +169,26 @@ Index least_pose_count(const Campaign& campaign) {
     const auto rank = static_cast<Index>(all.kept.size());
     const Index rows = campaign.sensor->row_count();
     const MatrixXd J = stack_at_nominal(campaign, 2 * parameter_count(campaign));
-    for (Index count = (rank + rows - 1) / rows;; ++count) {
+    const auto suffices = [&](Index count) {
+        if (count * rows >= J.rows()) return true;
         const auto some = find_independent_columns(J.topRows(count * rows), all.kept);
-        if (static_cast<Index>(some.kept.size()) == rank) return count;
-        if (count * rows >= J.rows()) return count;
+        return static_cast<Index>(some.kept.size()) == rank;
+    };
+    Index least = (rank + rows - 1) / rows;  // nothing less can
+    Index enough = least;
+    for (Index step = 1; !suffices(enough); step *= 2) {
+        least = enough + 1;
+        enough += step;
     }
+    while (least < enough) {
+        const Index middle = (least + enough) / 2;
+        if (suffices(middle)) {
+            enough = middle;
+        } else {
+            least = middle + 1;
+        }
+    }
+    return least;
 }
 
 std::vector<WeakDirection> weakest_directions(const MatrixXd& stacked, Index count,
