@@ -6,6 +6,7 @@
 
 #include "common.hpp"
 #include "measured.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "posewise/report/calibration_tables.hpp"
 #include "posewise/report/units.hpp"
 #include "suspicions.hpp"
@@ -44,6 +45,24 @@ std::string judge_residuals(const Estimate& estimate) {
                     : "state a larger model_error_mm or add error terms (gravity, harmonics)\n");
     }
     return factor < 1 / tolerated ? text + "a smaller model_error_mm or sigma would do\n" : "";
+}
+
+/// A sentence if compliances are clearly negative; else empty.
+std::string judge_compliances(const Campaign& campaign, const Estimate& estimate) {
+    constexpr double significant = 3;  // standard deviations
+    const VectorXd sigmas = standard_deviations(estimate);
+    const Index robot_begin = base_parameter_count(campaign);
+    std::string names;
+    for (const Compliance& compliance : compliances(campaign.robot)) {
+        const Index k = compliance.parameter;
+        if (estimate.parameters.robot[k] > -significant * sigmas[robot_begin + k]) continue;
+        names += (names.empty() ? "" : ", ") +
+                 campaign.robot.joints()[static_cast<std::size_t>(compliance.joint)].name;
+    }
+    if (names.empty()) return "";
+    return '\n' + names +
+           ": negative, but a joint gives way with its load; is tau the torque of the load (a "
+           "motor's has the other sign), are weights, places and direction of gravity right?\n";
 }
 
 std::string describe_noise_floor(const io::CalibrationReport& report) {
@@ -191,7 +210,10 @@ void print_calibration(const Campaign& campaign, const Measurements& used,
                               words_of(*campaign.sensor).unknowns),
                   parameter_table(campaign, report.estimate));
     const Table compliance = compliance_table(campaign, report.estimate);
-    if (!compliance.rows.empty()) print_section("Compliances", compliance);
+    if (!compliance.rows.empty()) {
+        print_section("Compliances", compliance);
+        print(judge_compliances(campaign, report.estimate));
+    }
     print_section("Strongest correlations", correlation_table(report.estimate, correlations_shown));
 }
 

@@ -217,6 +217,14 @@ std::string describe_scaling(const Campaign& campaign, double repeats) {
     return text + '\n';
 }
 
+void check_torques_known(const std::string& campaign_path, const Chain& robot) {
+    if (robot.torques().empty()) return;
+    throw input_error_at(
+        {campaign_path},
+        "its torques are measured with each configuration, and of poses that are drawn nobody "
+        "knows them; state robot.compliance.links and payload instead of torques_Nm");
+}
+
 std::string describe_looseness(double efficiency, Index starts_at_best, Index starts) {
     constexpr double loose_efficiency = 0.9;
     if (efficiency >= loose_efficiency) return "";

@@ -45,6 +45,10 @@ std::string describe(const Sensor& sensor);
 std::string describe_model_error(const Campaign& campaign);
 std::string describe_scaling(const Campaign& campaign, double repeats);
 
+/// Throws InputError for a robot whose torques are measured with each configuration: of poses that
+/// are drawn nobody knows them.
+void check_torques_known(const std::string& campaign_path, const Chain& robot);
+
 /// What a sensor's readings and unknowns are called, and the key that places what it measures.
 struct SensorWords {
     std::string readings = "points";

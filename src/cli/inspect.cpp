@@ -131,7 +131,7 @@ std::string describe_compliances(const Chain& robot) {
                             robot.joints()[static_cast<std::size_t>(compliance.joint)].name,
                             format_short(compliance.largest, 4), turns ? "N m" : "N");
     }
-    return text.empty() ? "" : text + ", the largest that occur\n";
+    return text.empty() ? "" : text + ", about the largest that occur\n";
 }
 
 /// The campaign with every error a rigid link can have.

@@ -181,6 +181,7 @@ struct StatedProblem {
 /// All but pool, poses to keep and workspace.
 StatedProblem state_problem(const PlanningArguments& arguments) {
     io::CampaignFile file = io::read_campaign(arguments.request.campaign);
+    check_torques_known(file.path, file.campaign.robot);
     const io::PosePlanRequest request = complete_request(arguments, file);
     std::optional<Measurements> measured;
     if (!request.augment.empty()) {

@@ -212,6 +212,9 @@ void state_with_robot(SelectionProblem& problem, const StopSignal& stop) {
         augment = read_measured(request.augment, *problem.campaign);
         check_is_of_robot(campaign, *augment, request.augment);
     }
+    if (request.source.kind == Kind::Random) {
+        check_torques_known(request.source.campaign, campaign.robot);
+    }
     const Parameters parameters = find_parameters(problem, measured, augment);
     if (request.source.kind == Kind::Random) {
         draw_candidates(problem, parameters, stop);

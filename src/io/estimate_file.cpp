@@ -4,6 +4,7 @@
 
 #include "json.hpp"
 #include "posewise/measurement/point_sensor.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "posewise/model/transforms.hpp"
 
 namespace posewise::io {
@@ -71,6 +72,10 @@ Json robot_to_json(const Campaign& campaign, const Estimate& estimate, const Vec
         const std::string unit = si_suffix(is_angle[i]);
         robot[estimate.names[i]] = {{"value" + unit, estimate.parameters.robot[k]},
                                     {"sigma" + unit, sigmas[robot_begin + k]}};
+    }
+    for (const Compliance& compliance : compliances(campaign.robot)) {
+        const auto i = static_cast<std::size_t>(robot_begin + compliance.parameter);
+        robot[estimate.names[i]][load_key(is_angle[i])] = compliance.largest;
     }
     return robot;
 }

@@ -7,6 +7,7 @@
 #include "posewise/core/text.hpp"
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/measurement/point_sensor.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "units.hpp"
 
 namespace posewise::io {
@@ -62,6 +63,14 @@ VectorXd read_robot(const JsonValue& robot, const Campaign& campaign) {
         }
         const JsonValue value = robot[name][turns ? "value_rad" : "value_m"];
         values[k] = check_size(value.number(), turns ? Quantity::Angle : Quantity::Length, value);
+    }
+    // What gives way is in proportion to the load, which limits or payload may have changed.
+    for (const Compliance& compliance : compliances(campaign.robot)) {
+        const bool turns = campaign.robot.joint_motion(compliance.joint) == Motion::Rotation;
+        const JsonValue load =
+            robot[names[static_cast<std::size_t>(compliance.parameter)]][load_key(turns)];
+        if (!(load.number() > 0)) throw load.error("must be above 0");
+        values[compliance.parameter] *= compliance.largest / load.number();
     }
     const std::size_t count = robot.values().size();
     if (count != names.size()) {

@@ -139,6 +139,8 @@ bool is_document_of(const std::string& path, const std::string& kind) {
 
 const char* si_suffix(bool is_angle) { return is_angle ? "_rad" : "_m"; }
 
+const char* load_key(bool turns) { return turns ? "at_Nm" : "at_N"; }
+
 Json vector_to_json(const Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
 Json assumptions_to_json(const Campaign& campaign) {

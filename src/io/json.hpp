@@ -27,6 +27,9 @@ bool is_document_of(const std::string& path, const std::string& kind);
 /// `_rad` or `_m`.
 const char* si_suffix(bool is_angle);
 
+/// The key of the torque or force under which a compliance's value is what gives way.
+const char* load_key(bool turns);
+
 Json vector_to_json(const Vector3d& vector);
 
 /// What a campaign assumes: noise, model error and the expected error of each parameter.

@@ -22,6 +22,7 @@ std::string in_line(const FileLocation& location) {
 }  // namespace
 
 void SampleCollector::add(const Sample& sample, const LocateJoint& locate) {
+    check_torques(sample.joints, locate);
     const auto next = static_cast<Index>(ids_.size());
     const auto [entry, is_new] = configuration_of_id_.emplace(sample.id, next);
     if (is_new) {
@@ -51,6 +52,22 @@ void SampleCollector::check_same_joints(Index configuration, const VectorXd& joi
                         "configuration must agree within 1e-6 (rad or m)",
                         quote(ids_[i]), campaign_.robot.joints()[static_cast<std::size_t>(j)].name,
                         joints[j], first, in_line(first_places_[i])));
+    }
+}
+
+void SampleCollector::check_torques(const VectorXd& configuration,
+                                    const LocateJoint& locate) const {
+    const Chain& robot = campaign_.robot;
+    Index k = robot.joint_count();
+    for (const MeasuredTorque& torque : robot.torques()) {
+        const double value = configuration[k++];
+        if (std::abs(value) <= 2 * torque.largest) continue;
+        throw input_error_at(
+            locate(k - 1),
+            fmt::format("the torque of {} is {:g} N m, over twice the largest that the campaign "
+                        "states, {:g}; correct compliance.torques_Nm or the unit here",
+                        robot.joints()[static_cast<std::size_t>(torque.joint)].name, value,
+                        torque.largest));
     }
 }
 

@@ -28,7 +28,8 @@ class SampleCollector {
     explicit SampleCollector(const Campaign& campaign) : campaign_(campaign) {}
 
     /// One more sample. Throws InputError if its joint values differ by over 1e-6 from those of the
-    /// configuration's first sample. Torques may differ: the configuration's are their means.
+    /// configuration's first sample, or a torque is over twice the largest that occurs. Torques may
+    /// differ: the configuration's are their means.
     void add(const Sample& sample, const LocateJoint& locate);
 
     /// Samples grouped by configuration, in the order the configurations first occurred. Throws
@@ -38,6 +39,7 @@ class SampleCollector {
   private:
     void check_same_joints(Index configuration, const VectorXd& joints,
                            const LocateJoint& locate) const;
+    void check_torques(const VectorXd& configuration, const LocateJoint& locate) const;
     void check_all_different() const;
 
     const Campaign& campaign_;

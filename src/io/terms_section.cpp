@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -28,13 +30,14 @@ Chain add(const YamlValue& value, const Make& make) {
     return chain;
 }
 
-/// The index of the joint called `name`. Throws InputError at `value` if there is none.
-Index find_joint(const Chain& chain, const std::string& name, const YamlValue& value) {
+/// The index of the joint called `name`. Throws InputError at `location` if there is none.
+Index find_joint(const Chain& chain, const std::string& name, const FileLocation& location) {
     std::vector<std::string> names;
     for (const Joint& joint : chain.joints()) names.push_back(joint.name);
     const auto found = std::find(names.begin(), names.end(), name);
     if (found != names.end()) return found - names.begin();
-    throw value.error("is " + quote(name) + ", no joint of the robot; " + suggest(name, names));
+    throw input_error_at(location,
+                         quote(name) + " is no joint of the robot; " + suggest(name, names));
 }
 
 /// Indices of the joints listed under `joints`; empty if the key is not there.
@@ -43,7 +46,10 @@ std::vector<Index> read_joints(const YamlMap& map, const Chain& chain) {
     const auto listed = map.find("joints");
     if (!listed) return joints;
     for (const YamlValue& item : listed->list()) {
-        joints.push_back(find_joint(chain, item.text(), item));
+        joints.push_back(find_joint(chain, item.text(), item.location()));
+        if (std::count(joints.begin(), joints.end(), joints.back()) > 1) {
+            throw item.error("lists " + quote(item.text()) + " twice; keep one");
+        }
     }
     if (joints.empty()) throw listed->error("is empty; must list joints, or be left out for all");
     return joints;
@@ -118,16 +124,17 @@ Chain add_harmonics(const YamlValue& value, const Chain& chain) {
     return add(value, [&] { return with_harmonics(chain, orders, joints); });
 }
 
-double read_positive_number(const YamlValue& value, double most, const char* rule) {
+double read_number_up_to(const YamlValue& value, double most, const char* unit) {
+    constexpr double least = 1e-6;
     const double number = value.number();
-    if (number > 0 && number <= most) return number;
-    throw value.error("is " + quote(value.text()) + "; must be " + rule);
+    if (number >= least && number <= most) return number;
+    throw value.error(
+        fmt::format("is {}; must be from 1e-06 to {:g} {}", quote(value.text()), most, unit));
 }
 
 Load read_load(const YamlValue& value, Index link) {
     const YamlMap map(value, {"mass_kg", "center_<length>"});
-    return {link,
-            read_positive_number(map.require("mass_kg"), 1e5, "above 0 and at most 100000 kg"),
+    return {link, read_number_up_to(map.require("mass_kg"), 1e5, "kg"),
             map.require_measure("center").vector_to_si()};
 }
 
@@ -137,13 +144,12 @@ std::vector<Load> read_loads(const YamlMap& map, const RobotSection& section) {
     const auto links = map.find("links");
     if (links && links->is_map()) {
         for (const YamlEntry& entry : links->entries()) {
-            const Index joint = find_joint(section.declared, entry.key, *links);
+            const Index joint = find_joint(section.declared, entry.key, entry.key_location);
             loads.push_back(read_load(entry.value, joint + 1));
         }
     } else if (links) {
-        if (links->text() != "urdf") {
-            throw links->error("is " + quote(links->text()) +
-                               "; must be a map of joints, or urdf for the masses of the URDF");
+        if (links->is_list() || links->text() != "urdf") {
+            throw links->error("must be a map of joints, or urdf for the masses of the URDF");
         }
         if (!section.urdf) throw links->error("is urdf, but the robot does not come from one");
         loads = read_urdf_loads(*section.urdf);
@@ -157,9 +163,8 @@ std::vector<Load> read_loads(const YamlMap& map, const RobotSection& section) {
 std::vector<MeasuredTorque> read_torques(const YamlValue& value, const Chain& chain) {
     std::vector<MeasuredTorque> torques;
     for (const YamlEntry& entry : value.entries()) {
-        torques.push_back(
-            {find_joint(chain, entry.key, value),
-             read_positive_number(entry.value, 1e6, "above 0 and at most 1e+06 N m")});
+        torques.push_back({find_joint(chain, entry.key, entry.key_location),
+                           read_number_up_to(entry.value, 1e6, "N m")});
     }
     if (torques.empty()) throw value.error("is empty; must state the largest torque of joints");
     return torques;

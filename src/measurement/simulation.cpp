@@ -1,8 +1,11 @@
 #include "posewise/measurement/simulation.hpp"
 
+#include <cmath>
+
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/measurement/noise.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "posewise/model/sampling.hpp"
 
 namespace posewise {
@@ -18,8 +21,12 @@ VectorXd draw_normal(RandomStream& stream, Index count) {
 
 Parameters draw_truth(const Campaign& campaign, std::uint64_t seed) {
     RandomStream stream(seed);
-    const VectorXd errors =
+    VectorXd errors =
         parameter_scale(campaign).cwiseProduct(draw_normal(stream, parameter_count(campaign)));
+    for (const Compliance& compliance : compliances(campaign.robot)) {
+        double& error = errors[base_parameter_count(campaign) + compliance.parameter];
+        error = std::abs(error);
+    }
     return advance(campaign, campaign.nominal, errors);
 }
 
@@ -38,7 +45,9 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
         RandomStream stream(seed, static_cast<std::uint64_t>(i));
         VectorXd q = configurations.row(i).transpose();
         if (campaign.joint_repeatability.size() > 0) {
-            q += campaign.joint_repeatability.cwiseProduct(draw_normal(stream, q.size()));
+            const Index joints = campaign.robot.joint_count();
+            q.head(joints) +=
+                campaign.joint_repeatability.cwiseProduct(draw_normal(stream, joints));
         }
         const Isometry3d flange = world_from_flange(campaign, truth, q);
         const VectorXd expected =

@@ -140,7 +140,7 @@ Chain with_gravity_terms(const Chain& chain, const Vector3d& direction,
     check_joints(chain, joints);
     check_direction(direction);
     const std::vector<Vector3d> axes = axes_at_zero(chain);
-    const std::vector<std::size_t> run = find_level_run(axes, direction.normalized());
+    const std::vector<std::size_t> run = find_level_run(axes, direction.stableNormalized());
     if (run.empty()) {
         throw InputError(
             "no joint turns about an axis that stays perpendicular to gravity: there are no "
@@ -173,7 +173,7 @@ Chain with_compliance(const Chain& chain, const std::vector<Load>& loads, const 
     check_direction(direction);
     if (loads.empty()) throw InputError("no load is stated, so there is no torque of gravity");
     constexpr double standard_gravity = 9.80665;  // m/s^2
-    const Vector3d gravity = standard_gravity * direction.normalized();
+    const Vector3d gravity = standard_gravity * direction.stableNormalized();
     const std::vector<Index> owners = element_owners(chain);
     std::vector<Element> elements = chain.elements();
     for (std::size_t k = 0; k < elements.size(); ++k) {

@@ -66,15 +66,29 @@ GravityTorque::GravityTorque(const Chain& chain, std::size_t element, const Vect
     }
     constexpr Index samples = 1000;
     const RowMatrixXd configurations = random_configurations(chain_, samples, 1);
-    double low = 0, high = 0;
+    double low = 0, high = 0, moment = 0;
     for (Index i = 0; i < samples; ++i) {
-        const double value = torque(configurations.row(i).transpose(), false).value;
+        const VectorXd q = configurations.row(i).transpose();
+        const double value = torque(q, false).value;
+        moment = std::max(moment, moment_about_base(q));
         low = i == 0 ? value : std::min(low, value);
         high = i == 0 ? value : std::max(high, value);
     }
     const double size = std::max(std::abs(low), std::abs(high));
-    varies_ = high - low > 1e-9 * size;
+    constexpr double rounding = 1e-6;  // of the loads at their distances from the base
+    varies_ = high - low > rounding * moment;
     if (size > 0) largest_ = size;
+}
+
+double GravityTorque::moment_about_base(const VectorXd& q) const {
+    const std::vector<Isometry3d> links =
+        chain_.base_from_links(q, VectorXd::Zero(chain_.parameter_count()));
+    double moment = 0;
+    for (const Load& load : loads_) {
+        const Vector3d center = links[static_cast<std::size_t>(load.link)] * load.center;
+        moment += load.mass * gravity_.norm() * center.norm();
+    }
+    return moment;
 }
 
 TorqueShare GravityTorque::evaluate(const VectorXd& q) const {

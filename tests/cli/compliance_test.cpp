@@ -75,9 +75,56 @@ TEST_F(Compliance, UnderMeasuredTorquesIsIdentified) {
     EXPECT_NE(text_of("corrected.csv").find(",q7_deg,tau_q1_Nm,"), std::string::npos);
 }
 
+TEST_F(Compliance, IsThatOfTheJointWhateverTheLargestTorque) {
+    calibrate(torques);
+    write_text(
+        "pose.csv",
+        "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,q7_deg,tau_q1_Nm,tau_q2_Nm,"
+        "tau_q3_Nm,tau_q4_Nm,tau_q5_Nm,tau_q6_Nm\na,10,20,30,40,50,60,70,50,100,40,-20,9,5\n");
+    run_well("correct c.yaml e.json --poses pose.csv -o before.csv");
+    std::string wider = torques;
+    wider.replace(wider.find("q2: 200"), 7, "q2: 400");
+    write_text("c.yaml", arm(wider));
+    run_well("correct c.yaml e.json --poses pose.csv -o after.csv");
+    const auto joints = [&](const char* file) {
+        const std::string text = text_of(file);
+        return text.substr(text.find("\na,"), 150);
+    };
+    EXPECT_EQ(joints("before.csv").substr(0, 60), joints("after.csv").substr(0, 60));
+}
+
+TEST_F(Compliance, OfTheWrongSignIsSaid) {
+    calibrate(torques);
+    std::string turned;
+    std::istringstream lines(text_of("m.csv"));
+    for (std::string line; std::getline(lines, line);) {
+        if (line[0] >= '0' && line[0] <= '9') {
+            std::size_t begin = 0;
+            for (int comma = 0; comma < 9; ++comma) begin = line.find(',', begin) + 1;
+            std::string signs = line.substr(0, begin);
+            for (int k = 0; k < 6; ++k) {
+                const auto end = line.find(',', begin);
+                const std::string value = line.substr(begin, end - begin);
+                signs += (value[0] == '-' ? value.substr(1) : '-' + value) + ',';
+                begin = end + 1;
+            }
+            line = signs + line.substr(begin);
+        }
+        turned += line + '\n';
+    }
+    write_text("turned.csv", turned);
+    const std::string text = run_well("calibrate c.yaml -m turned.csv --folds 0");
+    EXPECT_NE(text.find(": negative, but a joint gives way with its load"), std::string::npos)
+        << text;
+    EXPECT_EQ(run_well("calibrate c.yaml -m m.csv --folds 0").find("negative, but"),
+              std::string::npos);
+}
+
 TEST_F(Compliance, UnderMeasuredTorquesCannotBePlannedFromNothing) {
     write_text("c.yaml", arm(torques));
-    const std::string rule = "of one that is drawn they are not known; state the weights";
+    const std::string rule =
+        "c.yaml: its torques are measured with each configuration, and of poses that are drawn "
+        "nobody";
     expect_input_error("plan c.yaml -k 12", rule);
     expect_input_error("select c.yaml --random 100 -k 20", rule);
     write_text("m.csv",

@@ -111,6 +111,17 @@ TEST(GravityTorque, IsWhatTakesThePotentialEnergyOfAnyRobot) {
     }
 }
 
+TEST(GravityTorque, DoesNotVaryByRounding) {
+    // A weight on the last axis of the wrist, wherever that is.
+    const Chain robot = fanuc();
+    const std::vector<Load> on_axis{{7, 5, {0.1, 0, 0}}};
+    EXPECT_FALSE(GravityTorque(robot, robot.elements().size() - 1, gravity, on_axis).varies());
+    EXPECT_TRUE(GravityTorque(robot, 4, gravity, on_axis).varies());
+    // A tilt of the base that nobody can measure turns nothing about the upright axis.
+    const Vector3d tilted(1e-16, 0, -9.80665);
+    EXPECT_FALSE(GravityTorque(robot, 0, tilted, on_axis).varies());
+}
+
 TEST(GravityTorque, RefusesLoadsThatMakeNoSense) {
     const Chain robot = fanuc();
     EXPECT_THROW(GravityTorque(robot, 1, gravity, {}), InputError) << "element that stands still";

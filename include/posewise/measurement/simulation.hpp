@@ -20,7 +20,8 @@ struct Simulation {
     Measurements measurements;
 };
 
-/// True parameters at nominal plus normal errors of the campaign's spread.
+/// True parameters at nominal plus normal errors of the campaign's spread; compliances are
+/// positive.
 Parameters draw_truth(const Campaign& campaign, std::uint64_t seed);
 
 /// Observations of given configurations (m x joints) by a robot with the true parameters: sensor

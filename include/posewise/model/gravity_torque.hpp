@@ -37,7 +37,7 @@ class GravityTorque {
     /// ones every time.
     double largest() const { return largest_; }
 
-    /// Whether it depends on the configuration, by more than rounding.
+    /// Whether it depends on the configuration, by more than 1e-6 of what the weights could do.
     bool varies() const { return varies_; }
 
     /// At a configuration (joint values, what follows them does not matter), divided by largest().
@@ -48,6 +48,9 @@ class GravityTorque {
   private:
     /// The same in N m (N).
     TorqueShare torque(const VectorXd& q, bool is_twice) const;
+
+    /// Of all weights if gravity pulled across: what rounding is measured by, N m.
+    double moment_about_base(const VectorXd& q) const;
 
     Chain chain_;       ///< every driven element has one error parameter, which tells its motion
     Index driven_ = 0;  ///< number of the element among the driven ones
