@@ -102,9 +102,14 @@ std::string suspect_orientations(const Campaign& campaign, const Measurements& m
                                  double tolerance) {
     for (const OtherSense& sense : other_senses) {
         const Measurements other = read_otherwise(measured, sense);
-        const Parameters fitted = register_base_and_targets(campaign, other);
-        const double rms = make_metrics(residuals(campaign, fitted, other)).orientation_rms;
-        if (rms > tolerance) continue;
+        double rms = tolerance;
+        try {
+            const Parameters fitted = register_base_and_targets(campaign, other);
+            rms = make_metrics(residuals(campaign, fitted, other)).orientation_rms;
+        } catch (const InputError&) {  // it was not that
+            continue;
+        }
+        if (rms >= tolerance) continue;
         return fmt::format(", but by {} deg {}", format_short(to_degrees(rms), 2), sense.advice);
     }
     return "";
