@@ -34,15 +34,13 @@ std::optional<Load> read_load(const XmlDocument& document, const XMLElement& lin
 /// What a fixed joint moves a link by or, behind the element that a moving one drives, what turns
 /// its frame to that of the link.
 Isometry3d fixed_part(const UrdfJoint& joint) {
-    Isometry3d transform = Isometry3d::Identity();
-    if (joint.kind == UrdfJointKind::Fixed) {
-        transform.linear() = rotation_from_rpy(joint.rpy);
-        transform.translation() = joint.xyz;
-        return transform;
+    std::vector<Element> elements = origin_elements(joint.xyz, joint.rpy);
+    if (joint.kind != UrdfJointKind::Fixed) {
+        elements = joint_elements(joint_motion(joint), joint.axis, 0);
+        const auto is_driven = [](const Element& element) { return !element.joints.empty(); };
+        elements.erase(elements.begin(),
+                       std::find_if(elements.begin(), elements.end(), is_driven) + 1);
     }
-    std::vector<Element> elements = joint_elements(joint_motion(joint), joint.axis, 0);
-    const auto is_driven = [](const Element& element) { return !element.joints.empty(); };
-    elements.erase(elements.begin(), std::find_if(elements.begin(), elements.end(), is_driven) + 1);
     return Chain({}, elements).base_from_flange(VectorXd(), VectorXd());
 }
 

@@ -44,6 +44,13 @@ Index count_driven(const Chain& chain, Index link) {
     return count;
 }
 
+TorqueShare divided(TorqueShare torque, double largest) {
+    torque.value /= largest;
+    torque.gradient /= largest;
+    torque.hessian /= largest;
+    return torque;
+}
+
 }  // namespace
 
 GravityTorque::GravityTorque(const Chain& chain, std::size_t element, const Vector3d& gravity,
@@ -92,18 +99,11 @@ double GravityTorque::moment_about_base(const VectorXd& q) const {
 }
 
 TorqueShare GravityTorque::evaluate(const VectorXd& q) const {
-    TorqueShare share = torque(q, false);
-    share.value /= largest_;
-    share.gradient /= largest_;
-    return share;
+    return divided(torque(q, false), largest_);
 }
 
 TorqueShare GravityTorque::evaluate_twice(const VectorXd& q) const {
-    TorqueShare share = torque(q, true);
-    share.value /= largest_;
-    share.gradient /= largest_;
-    share.hessian /= largest_;
-    return share;
+    return divided(torque(q, true), largest_);
 }
 
 TorqueShare GravityTorque::torque(const VectorXd& q, bool is_twice) const {

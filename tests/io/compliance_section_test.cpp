@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
-#include <matio.h>
 
 #include "campaign_text.hpp"
+#include "mat_writer.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/model/error_terms.hpp"
@@ -159,18 +159,10 @@ TEST(MeasuredTorques, AreAVariableOfAMatFile) {
     const std::string path = folder.path("m.mat");
     const auto write = [&](std::size_t torque_rows) {
         mat_t* const mat = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
-        const auto add = [&](const char* name, std::size_t rows, std::size_t columns,
-                             std::vector<double> value) {
-            std::size_t dims[2] = {rows, columns};
-            matvar_t* const variable =
-                Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, value.data(), 0);
-            Mat_VarWrite(mat, variable, MAT_COMPRESSION_NONE);
-            Mat_VarFree(variable);
-        };
-        add("q", 2, 3, {10, 20, 30, 40, 100, 200});
-        add("T", torque_rows, 2, {1, 2, 3, 4, 5, 6});
-        add("mA", 2, 3, {1, 2, 3, 4, 5, 6});
-        add("mB", 2, 3, {1, 2, 3, 4, 5, 6});
+        add_matrix(mat, "q", 2, 3, {10, 20, 30, 40, 100, 200});
+        add_matrix(mat, "T", torque_rows, 2, {1, 2, 3, 4, 5, 6});
+        add_matrix(mat, "mA", 2, 3, {1, 2, 3, 4, 5, 6});
+        add_matrix(mat, "mB", 2, 3, {1, 2, 3, 4, 5, 6});
         Mat_Close(mat);
     };
     write(2);

@@ -1,10 +1,10 @@
 #include "posewise/io/matrix_file.hpp"
 
 #include <gtest/gtest.h>
-#include <matio.h>
 
 #include <vector>
 
+#include "mat_writer.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -21,18 +21,10 @@ class ReadMatrix : public ::testing::Test {
     std::string write_mat() const {
         const std::string path = folder_.path("b.mat");
         mat_t* const file = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
-        add(file, "first", 3, 2, {1, 3, 5, 2, 4, 6});
-        add(file, "second", 1, 1, {7});
+        testing::add_matrix(file, "first", 3, 2, {1, 3, 5, 2, 4, 6});
+        testing::add_matrix(file, "second", 1, 1, {7});
         Mat_Close(file);
         return path;
-    }
-    static void add(mat_t* file, const char* name, std::size_t rows, std::size_t columns,
-                    std::vector<double> values) {
-        std::size_t dims[2] = {rows, columns};
-        matvar_t* const variable =
-            Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, values.data(), 0);
-        Mat_VarWrite(file, variable, MAT_COMPRESSION_NONE);
-        Mat_VarFree(variable);
     }
 
     testing::TemporaryFolder folder_;

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
-#include <matio.h>
 
 #include "campaign_text.hpp"
+#include "mat_writer.hpp"
 #include "posewise/io/atomic_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "support/temporary_folder.hpp"
@@ -30,12 +30,9 @@ class ReadMeasurementsMat : public ::testing::Test {
     }
 
     /// Of three columns, column by column as MATLAB has it.
-    static void add(mat_t* file, const char* name, Value value, matio_compression compression) {
-        std::size_t dims[2] = {value.size() / 3, 3};
-        matvar_t* const variable =
-            Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, value.data(), 0);
-        Mat_VarWrite(file, variable, compression);
-        Mat_VarFree(variable);
+    static void add(mat_t* file, const char* name, const Value& value,
+                    matio_compression compression) {
+        testing::add_matrix(file, name, value.size() / 3, 3, value, compression);
     }
 
     /// A good file, but for one variable `mB` made otherwise.
