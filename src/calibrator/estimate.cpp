@@ -5,20 +5,6 @@
 
 namespace posewise {
 
-std::string_view ending_name(Ending ending) {
-    switch (ending) {
-        case Ending::NotRun:
-            return "not run";
-        case Ending::Converged:
-            return "converged";
-        case Ending::IterationLimit:
-            return "iteration limit";
-        case Ending::Stalled:
-            return "stalled";
-    }
-    return "not run";
-}
-
 VectorXd standard_deviations(const Estimate& estimate) {
     return estimate.covariance.diagonal().cwiseSqrt();
 }

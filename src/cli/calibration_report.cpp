@@ -6,9 +6,10 @@
 
 #include "common.hpp"
 #include "measured.hpp"
+#include "posewise/core/format.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/report/calibration_tables.hpp"
-#include "posewise/report/units.hpp"
 #include "suspicions.hpp"
 
 namespace posewise::cli {

@@ -10,12 +10,13 @@
 
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/format.hpp"
 #include "posewise/core/text.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/io/plan_file.hpp"
 #include "posewise/measurement/point_sensor.hpp"
 #include "posewise/measurement/pose_sensor.hpp"
 #include "posewise/measurement/scalar_sensor.hpp"
-#include "posewise/report/units.hpp"
 
 namespace posewise::cli {
 
@@ -234,7 +235,7 @@ std::string describe_looseness(double efficiency, Index starts_at_best, Index st
 }
 
 std::string format_error(double si_value, bool is_angle) {
-    return format_short(mm_per_m * si_value, 4) + ' ' + std::string(error_unit(is_angle));
+    return format_short(mm_per_m * si_value, 4) + ' ' + std::string(units_of(is_angle).error);
 }
 
 Progress::Progress(std::string label, bool asked_for)

@@ -11,10 +11,11 @@
 #include "options.hpp"
 #include "posewise/calibrator/correction.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/format.hpp"
 #include "posewise/core/text.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/io/correction_file.hpp"
 #include "posewise/io/estimate_file.hpp"
-#include "posewise/report/units.hpp"
 
 namespace posewise::cli {
 namespace {

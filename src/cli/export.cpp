@@ -8,14 +8,15 @@
 #include "files.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/format.hpp"
 #include "posewise/core/text.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/io/atomic_file.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/dh_file.hpp"
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/model/transforms.hpp"
-#include "posewise/report/units.hpp"
 
 namespace posewise::cli {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "common.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/format.hpp"
 #include "posewise/io/plan_file.hpp"
-#include "posewise/report/units.hpp"
 
 namespace posewise::cli {
 

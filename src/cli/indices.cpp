@@ -12,9 +12,9 @@
 #include "measured.hpp"
 #include "options.hpp"
 #include "posewise/calibrator/registration.hpp"
+#include "posewise/core/format.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/report/units.hpp"
 
 namespace posewise::cli {
 namespace {

@@ -11,7 +11,9 @@
 #include "joint_directions.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/format.hpp"
 #include "posewise/core/text.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/io/atomic_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/io/urdf_file.hpp"
@@ -20,7 +22,6 @@
 #include "posewise/measurement/pose_sensor.hpp"
 #include "posewise/model/complete_model.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/report/units.hpp"
 #include "robot_tables.hpp"
 
 namespace posewise::cli {
@@ -59,7 +60,7 @@ struct Arguments {
 /// "1 mm Tx2 = 1 mm Tx1 - 0.78 mrad dq2". Both units are a thousandth of SI, so coefficients stay.
 std::string format_absorbed(const DroppedParameter& dropped, const std::vector<std::string>& names,
                             const std::vector<bool>& is_angle) {
-    const auto unit = [&](Index k) { return error_unit(is_angle[static_cast<std::size_t>(k)]); };
+    const auto unit = [&](Index k) { return units_of(is_angle[static_cast<std::size_t>(k)]).error; };
     const auto name = [&](Index k) { return names[static_cast<std::size_t>(k)]; };
     if (dropped.absorbed_by.empty()) return "moves no target";
     std::string text;
@@ -84,7 +85,7 @@ Table parameter_table(const Campaign& campaign, const Identifiability& identifia
     for (std::size_t k = 0; k < names.size(); ++k) {
         const auto index = static_cast<Index>(k);
         const bool kept = absorbed.count(index) == 0;
-        table.rows.push_back({names[k], std::string(error_unit(is_angle[k])),
+        table.rows.push_back({names[k], std::string(units_of(is_angle[k]).error),
                               format_short(mm_per_m * scale[index]), kept ? "yes" : "no",
                               kept ? "" : absorbed[index]});
     }

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "common.hpp"
+#include "posewise/core/format.hpp"
 #include "posewise/core/text.hpp"
-#include "posewise/report/units.hpp"
 
 namespace posewise::cli {
 namespace {

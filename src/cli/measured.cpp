@@ -10,10 +10,11 @@
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/format.hpp"
 #include "posewise/core/text.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/model/joint_limits.hpp"
 #include "posewise/planner/prediction.hpp"
-#include "posewise/report/units.hpp"
 #include "suspicions.hpp"
 
 namespace posewise::cli {

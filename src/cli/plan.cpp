@@ -13,7 +13,7 @@
 #include "options.hpp"
 #include "plan_report.hpp"
 #include "planning_problem.hpp"
-#include "posewise/report/units.hpp"
+#include "posewise/core/format.hpp"
 #include "posewise/selection/bound.hpp"
 
 namespace posewise::cli {

@@ -8,7 +8,8 @@
 
 #include "common.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/report/units.hpp"
+#include "posewise/core/format.hpp"
+#include "posewise/core/units.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -207,7 +208,7 @@ void print_deviations(const Campaign& campaign, const VectorXd& standard_deviati
     for (std::size_t k = 0; k < names.size(); ++k) {
         table.rows.push_back(
             {names[k], format_fixed(mm_per_m * standard_deviations[static_cast<Index>(k)], 4),
-             std::string(error_unit(is_angle[k]))});
+             std::string(units_of(is_angle[k]).error)});
     }
     print_section("Expected standard deviation of each parameter", table);
 }

@@ -12,11 +12,11 @@
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/text.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/model/joint_limits.hpp"
 #include "posewise/planner/tour.hpp"
-#include "posewise/report/units.hpp"
 
 namespace posewise::cli {
 namespace {

@@ -4,8 +4,9 @@
 
 #include <cmath>
 
+#include "posewise/core/format.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/model/transforms.hpp"
-#include "posewise/report/units.hpp"
 
 namespace posewise::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "files.hpp"
 #include "interrupt.hpp"
 #include "options.hpp"
-#include "posewise/report/units.hpp"
+#include "posewise/core/format.hpp"
 #include "selection_problem.hpp"
 
 namespace posewise::cli {
@@ -139,7 +139,7 @@ io::PlanFile make_plan_file(const SelectionProblem& problem, const Plan& plan) {
 
 /// What the bound says, in words, where the numbers alone may mislead.
 std::string describe_proof(const Plan& plan) {
-    if (plan.stop_reason == StopReason::Optimal) {
+    if (plan.ending == Ending::Optimal) {
         return "proof:      optimal: every other choice is ruled out by the bound or was tried\n";
     }
     const std::string looseness =
@@ -159,7 +159,7 @@ void print_plan(const io::PlanFile& file) {
         "efficiency: {} proven\nstarts:     {} of {} ended here, {}\n{}",
         ids, criterion_name(plan.criterion), format_short(plan.value, 8),
         format_short(plan.bound, 8), format_fixed(plan.efficiency, 4), plan.starts_at_best,
-        plan.starts, stop_reason_name(plan.stop_reason), describe_proof(plan)));
+        plan.starts, ending_name(plan.ending), describe_proof(plan)));
 }
 
 std::string default_out(const io::CandidateSource& source) {
@@ -207,7 +207,7 @@ void select(Arguments arguments) {
     }
     if (problem.request.has_prior) print("prior:      the scale, as standard deviation\n");
     print("plan:       " + out + '\n');
-    if (file.plan.stop_reason == StopReason::Interrupted) {
+    if (file.plan.ending == Ending::Interrupted) {
         std::fputs("posewise: interrupted; the plan is the best so far\n", stderr);
     }
 }

@@ -8,7 +8,7 @@
 
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/plan_file.hpp"
-#include "posewise/planner/search.hpp"
+#include "posewise/core/stop.hpp"
 #include "posewise/selection/exchange.hpp"
 
 namespace posewise::cli {

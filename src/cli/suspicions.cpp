@@ -8,9 +8,10 @@
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/format.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/measurement/scalar_sensor.hpp"
 #include "posewise/model/transforms.hpp"
-#include "posewise/report/units.hpp"
 
 namespace posewise::cli {
 namespace {

@@ -10,8 +10,9 @@
 #include "findings.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/format.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/io/pose_plan_file.hpp"
-#include "posewise/report/units.hpp"
 #include "posewise/selection/bound.hpp"
 #include "selection_problem.hpp"
 #include "verify_poses.hpp"
@@ -142,7 +143,7 @@ bool is_optimal_again(const Plan& stated, const SelectionProblem& problem, doubl
     options.seed = stated.seed;
     options.starts = stated.starts;
     const Plan again = select_poses(problem.blocks, options);
-    return again.stop_reason == StopReason::Optimal && agree(again.criterion, again.value, value);
+    return again.ending == Ending::Optimal && agree(again.criterion, again.value, value);
 }
 
 /// The bound that the certificate proves.
@@ -165,7 +166,7 @@ void check_numbers(const Plan& stated, const SelectionProblem& problem,
     findings.compare("value", stated.value, value, agree(criterion, stated.value, value));
 
     double bound = std::max(value, prove_bound(stated, problem, findings));
-    const bool claims_optimum = stated.stop_reason == StopReason::Optimal &&
+    const bool claims_optimum = stated.ending == Ending::Optimal &&
                                 !agree(criterion, stated.bound, bound) && stated.bound < bound;
     if (claims_optimum && agree(criterion, stated.bound, value) &&
         is_optimal_again(stated, problem, value)) {

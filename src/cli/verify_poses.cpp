@@ -9,8 +9,9 @@
 #include "findings.hpp"
 #include "planning_problem.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/format.hpp"
 #include "posewise/core/text.hpp"
-#include "posewise/report/units.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/selection/bound.hpp"
 
 namespace posewise::cli {

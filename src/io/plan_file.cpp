@@ -81,7 +81,7 @@ void write_plan(const std::string& path, const PlanFile& file, const Campaign* c
     document["search"] = {{"seed", plan.seed},
                           {"starts", plan.starts},
                           {"starts_at_best", plan.starts_at_best},
-                          {"stop_reason", stop_reason_name(plan.stop_reason)}};
+                          {"stop_reason", ending_name(plan.ending)}};
     if (campaign != nullptr) document["assumes"] = assumptions_to_json(*campaign);
     Json& poses = document["poses"] = Json::array();
     for (const PlannedPose& pose : file.poses) poses.push_back(pose_to_json(pose, campaign));

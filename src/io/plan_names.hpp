@@ -15,8 +15,8 @@ inline constexpr std::array<std::pair<CandidateSource::Kind, std::string_view>, 
      {CandidateSource::Kind::Random, "random"},
      {CandidateSource::Kind::Blocks, "blocks"}}};
 
-inline constexpr std::array stop_reasons{StopReason::Converged, StopReason::Optimal,
-                                         StopReason::TimeLimit, StopReason::Interrupted,
-                                         StopReason::NotRun};
+inline constexpr std::array stop_reasons{Ending::Converged, Ending::Optimal,
+                                         Ending::TimeLimit, Ending::Interrupted,
+                                         Ending::NotRun};
 
 }  // namespace posewise::io

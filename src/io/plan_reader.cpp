@@ -102,11 +102,11 @@ Plan read_result(const JsonValue& document) {
     const std::string reason = search["stop_reason"].text();
     const auto found =
         std::find_if(stop_reasons.begin(), stop_reasons.end(),
-                     [&](StopReason known) { return stop_reason_name(known) == reason; });
+                     [&](Ending known) { return ending_name(known) == reason; });
     if (found == stop_reasons.end()) {
         throw search["stop_reason"].error("is '" + reason + "', which is none of posewise");
     }
-    plan.stop_reason = *found;
+    plan.ending = *found;
     plan.certificate = read_certificate(document["certificate"]);
     return plan;
 }

@@ -25,19 +25,19 @@ nlopt_algorithm algorithm_of(Method method) {
     }
 }
 
-SearchEnding ending_of(nlopt_result result) {
+Ending ending_of(nlopt_result result) {
     switch (result) {
         case NLOPT_SUCCESS:
         case NLOPT_STOPVAL_REACHED:
         case NLOPT_FTOL_REACHED:
         case NLOPT_XTOL_REACHED:
-            return SearchEnding::Converged;
+            return Ending::Converged;
         case NLOPT_MAXEVAL_REACHED:
-            return SearchEnding::EvaluationLimit;
+            return Ending::IterationLimit;
         case NLOPT_ROUNDOFF_LIMITED:
-            return SearchEnding::RoundoffLimited;
+            return Ending::RoundoffLimited;
         default:
-            return SearchEnding::Failed;
+            return Ending::Failed;
     }
 }
 
@@ -127,8 +127,8 @@ Maximum maximise(const BoxProblem& problem, const VectorXd& start, const Maximis
     double reported = 0;  // by NLopt, and not believed: `best` was evaluated by ourselves
     const nlopt_result result = nlopt_optimize(run.handle, x.data(), &reported);
     if (run.error) std::rethrow_exception(run.error);
-    run.best.ending = options.stop.is_interrupted() ? SearchEnding::Interrupted
-                      : options.stop.is_late()      ? SearchEnding::TimeLimit
+    run.best.ending = options.stop.is_interrupted() ? Ending::Interrupted
+                      : options.stop.is_late()      ? Ending::TimeLimit
                                                     : ending_of(result);
     return run.best;
 }

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "posewise/core/types.hpp"
-#include "posewise/planner/search.hpp"
+#include "posewise/core/stop.hpp"
 
 /// All use of NLopt is behind this header.
 namespace posewise {
@@ -39,7 +39,7 @@ struct MaximiseOptions {
 struct Maximum {
     VectorXd x;
     double value = 0;
-    SearchEnding ending = SearchEnding::NotRun;
+    Ending ending = Ending::NotRun;
 };
 
 /// The start must lie in the box, be feasible and have a finite value. Exceptions of `problem`

@@ -45,7 +45,7 @@ class Refiner {
     }
 
     const RowMatrixXd& poses() const { return poses_; }
-    SearchEnding ending() const { return ending_; }
+    Ending ending() const { return ending_; }
     bool has_stopped() const { return options_.stop.is_set(); }
 
     double current(const Objective& objective) const {
@@ -55,14 +55,14 @@ class Refiner {
     /// Rounds until a round gains no more than the tolerance. Free poses are swept only at first.
     void climb(const Objective& objective, double tolerance) {
         tolerance_ = tolerance;
-        ending_ = SearchEnding::EvaluationLimit;
+        ending_ = Ending::IterationLimit;
         for (Index round = 0; round < options_.round_limit && !has_stopped(); ++round) {
             const double before = current(objective);
             if (is_constrained() || !is_swept_) sweep(objective, Method::Lbfgs);
             is_swept_ = true;
             move_together(objective);
             if (current(objective) - before > tolerance) continue;
-            ending_ = SearchEnding::Converged;
+            ending_ = Ending::Converged;
             return;
         }
     }
@@ -215,7 +215,7 @@ class Refiner {
     std::vector<MatrixXd> informations_;
     double tolerance_ = 1e-10;
     bool is_swept_ = false;
-    SearchEnding ending_ = SearchEnding::NotRun;
+    Ending ending_ = Ending::NotRun;
 };
 
 /// Values of the criterion for a merit.
@@ -289,9 +289,9 @@ Refinement refine_poses(const DesignSpace& space, const Objective& objective, co
         result.ending = refiner.ending();
     }
     if (options.stop.is_interrupted()) {
-        result.ending = SearchEnding::Interrupted;
+        result.ending = Ending::Interrupted;
     } else if (options.stop.is_late()) {
-        result.ending = SearchEnding::TimeLimit;
+        result.ending = Ending::TimeLimit;
     }
     return result;
 }

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <functional>
 
+#include "posewise/core/format.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/model/transforms.hpp"
-#include "posewise/report/units.hpp"
 
 namespace posewise {
 namespace {
@@ -73,7 +74,7 @@ Table value_table(const Campaign& campaign, const Parameters& parameters) {
         const bool in_degrees = k < base_parameter_count(campaign) && is_angle[i];
         const double value = in_degrees ? to_degrees(values[k]) : mm_per_m * values[k];
         table.rows.push_back({names[i], format_fixed(value, 4),
-                              in_degrees ? "deg" : std::string(error_unit(is_angle[i]))});
+                              in_degrees ? "deg" : std::string(units_of(is_angle[i]).error)});
     }
     return table;
 }
@@ -86,7 +87,7 @@ Table parameter_table(const Campaign& campaign, const Estimate& estimate) {
     for (std::size_t k = 0; k < table.rows.size(); ++k) {
         const double deviation = deviations[static_cast<Index>(k)];
         table.rows[k].push_back(format_fixed(mm_per_m * deviation, 4));
-        table.rows[k].emplace_back(error_unit(is_angle[k]));
+        table.rows[k].emplace_back(units_of(is_angle[k]).error);
     }
     return table;
 }

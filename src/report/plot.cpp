@@ -10,7 +10,8 @@
 #include <optional>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/report/units.hpp"
+#include "posewise/core/format.hpp"
+#include "posewise/core/units.hpp"
 
 namespace posewise {
 namespace {

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 
-#include "posewise/report/units.hpp"
+#include "posewise/core/format.hpp"
+#include "posewise/core/units.hpp"
 
 namespace posewise {
 namespace {

@@ -259,10 +259,10 @@ Plan select_poses(const Blocks& candidates, const SelectOptions& options) {
             return choice.score.identifies && best.score.value - choice.score.value <=
                                                   1e-9 * std::max(1.0, std::abs(best.score.value));
         });
-    plan.stop_reason = outcome.is_optimal          ? StopReason::Optimal
-                       : deadline.is_interrupted() ? StopReason::Interrupted
-                       : deadline.is_over()        ? StopReason::TimeLimit
-                                                   : StopReason::Converged;
+    plan.ending = outcome.is_optimal          ? Ending::Optimal
+                       : deadline.is_interrupted() ? Ending::Interrupted
+                       : deadline.is_over()        ? Ending::TimeLimit
+                                                   : Ending::Converged;
     plan.bound = outcome.is_optimal ? best.score.value : relaxation.bound;
     plan.poses = best.poses;
     std::sort(plan.poses.begin(), plan.poses.end());

@@ -36,7 +36,7 @@ class PlanFileTest : public ::testing::Test {
         file_.plan.seed = 18446744073709551615U;
         file_.plan.starts = 20;
         file_.plan.starts_at_best = 4;
-        file_.plan.stop_reason = StopReason::TimeLimit;
+        file_.plan.ending = Ending::TimeLimit;
         file_.plan.certificate.M = Eigen::Matrix2d{{1.0 / 3, -0.1}, {-0.1, 7}};
     }
 
@@ -83,7 +83,7 @@ TEST_F(PlanFileTest, IsReadBackToTheLastDigit) {
     EXPECT_EQ(read.plan.value, -12.5);
     EXPECT_EQ(read.plan.bound, std::numeric_limits<double>::infinity());
     EXPECT_EQ(read.plan.seed, file_.plan.seed);
-    EXPECT_EQ(read.plan.stop_reason, StopReason::TimeLimit);
+    EXPECT_EQ(read.plan.ending, Ending::TimeLimit);
     EXPECT_EQ(read.plan.certificate.M, file_.plan.certificate.M);
     EXPECT_EQ(read.plan.certificate.sharpness, std::numeric_limits<double>::infinity());
 }

@@ -29,7 +29,7 @@ TEST(Maximise, FindsTheTopByEveryMethod) {
         const Maximum top = maximise(paraboloid(), VectorXd::Zero(2), {method});
         EXPECT_NEAR(top.value, 0, 1e-9);
         EXPECT_TRUE(top.x.isApprox(Eigen::Vector2d(1, -0.5), 1e-4));
-        EXPECT_NE(top.ending, SearchEnding::NotRun);
+        EXPECT_NE(top.ending, Ending::NotRun);
     }
 }
 
@@ -111,9 +111,9 @@ TEST(Maximise, StopsWhenAskedTo) {
     std::atomic<bool> interrupted = true;
     MaximiseOptions options;
     options.stop.interrupted = &interrupted;
-    EXPECT_EQ(maximise(paraboloid(), VectorXd::Zero(2), options).ending, SearchEnding::Interrupted);
+    EXPECT_EQ(maximise(paraboloid(), VectorXd::Zero(2), options).ending, Ending::Interrupted);
     options.stop = {nullptr, std::chrono::steady_clock::now()};
-    EXPECT_EQ(maximise(paraboloid(), VectorXd::Zero(2), options).ending, SearchEnding::TimeLimit);
+    EXPECT_EQ(maximise(paraboloid(), VectorXd::Zero(2), options).ending, Ending::TimeLimit);
 }
 
 }  // namespace

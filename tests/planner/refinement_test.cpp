@@ -94,7 +94,7 @@ TEST(RefinePoses, AnInterruptedRefinementIsTheStartOrBetter) {
     const RowMatrixXd start = fanuc_pool(10);
     const Refinement refined =
         refine_poses(space, make_objective(Criterion::D, 10), {}, start, options);
-    EXPECT_EQ(refined.ending, SearchEnding::Interrupted);
+    EXPECT_EQ(refined.ending, Ending::Interrupted);
     EXPECT_EQ(refined.configurations, start);
 }
 

@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
-#include "posewise/report/units.hpp"
-
 namespace posewise {
 namespace {
 
@@ -25,17 +21,6 @@ TEST(FormatTable, PadsShortRowsAndLeavesNoTrailingBlanks) {
 }
 
 TEST(FormatTable, OfNothingIsItsHeader) { EXPECT_EQ(format_table({{"a"}, {}}), "a\n-\n"); }
-
-TEST(Units, PrintMillimetresAndNoNegativeZero) {
-    EXPECT_EQ(format_mm(1.23456e-3), "1.2346");
-    EXPECT_EQ(format_mm(-1e-9), "0.0000");
-    EXPECT_EQ(format_mm(-2e-3, 1), "-2.0");
-    EXPECT_EQ(format_fixed(std::numeric_limits<double>::quiet_NaN(), 2), "-");
-    EXPECT_EQ(format_short(0.05), "0.05");
-    EXPECT_EQ(format_short(-std::numeric_limits<double>::infinity()), "-inf");
-    EXPECT_EQ(error_unit(true), "mrad");
-    EXPECT_DOUBLE_EQ(to_degrees(1), 57.295779513082323);
-}
 
 }  // namespace
 }  // namespace posewise

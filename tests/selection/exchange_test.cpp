@@ -162,7 +162,7 @@ TEST(SelectByExchange, SaysWhenThePlanIsOptimal) {
     SelectOptions options = make_options(Criterion::D, 5);
     options.enumeration = 1000;
     const Plan plan = select_poses(candidates, options);
-    EXPECT_EQ(plan.stop_reason, StopReason::Optimal);
+    EXPECT_EQ(plan.ending, Ending::Optimal);
     EXPECT_EQ(plan.bound, plan.value);
     EXPECT_EQ(plan.efficiency, 1);
 }
@@ -199,12 +199,12 @@ TEST(SelectByExchange, StopsInTimeOrWhenAskedWithABound) {
     SelectOptions options = make_options(Criterion::D, 20);
     options.time_limit = 0.05;
     const Plan timed = select_poses(candidates, options);
-    EXPECT_EQ(timed.stop_reason, StopReason::TimeLimit);
+    EXPECT_EQ(timed.ending, Ending::TimeLimit);
     EXPECT_GE(timed.bound, timed.value);
     const std::atomic<bool> interrupted = true;
     options.interrupted = &interrupted;
     const Plan stopped = select_poses(candidates, options);
-    EXPECT_EQ(stopped.stop_reason, StopReason::Interrupted);
+    EXPECT_EQ(stopped.ending, Ending::Interrupted);
     EXPECT_TRUE(std::isfinite(stopped.bound));
     EXPECT_TRUE(std::isfinite(stopped.value));
 }

@@ -2,23 +2,14 @@
 
 #include <array>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "posewise/calibrator/loss.hpp"
+#include "posewise/core/ending.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 
 namespace posewise {
-
-/// How an identification ended.
-enum class Ending {
-    NotRun,
-    Converged,
-    IterationLimit,  ///< still improving: usable, not the optimum
-    Stalled,         ///< no step improves although the gradient is not zero
-};
-std::string_view ending_name(Ending ending);
 
 /// Residual metrics over targets seen: distances between observed and predicted points, or by how
 /// much measured lengths are off (m), and by how much orientations are (rad). For points the ten

@@ -4,7 +4,7 @@
 
 #include "posewise/core/blocks.hpp"
 #include "posewise/planner/constraints.hpp"
-#include "posewise/planner/search.hpp"
+#include "posewise/core/stop.hpp"
 
 namespace posewise {
 

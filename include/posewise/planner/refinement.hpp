@@ -4,7 +4,7 @@
 
 #include "posewise/criteria/objective.hpp"
 #include "posewise/planner/design_space.hpp"
-#include "posewise/planner/search.hpp"
+#include "posewise/core/stop.hpp"
 
 namespace posewise {
 
@@ -28,7 +28,7 @@ struct Refinement {
     RowMatrixXd configurations;  ///< poses x joints, rad or m; feasible
     double value = -std::numeric_limits<double>::infinity();
     double start_value = -std::numeric_limits<double>::infinity();
-    SearchEnding ending = SearchEnding::NotRun;
+    Ending ending = Ending::NotRun;
 };
 
 /// Moves the poses of a plan continuously to increase the objective: one pose at a time in a sweep,

@@ -2,22 +2,12 @@
 
 #include <cstdint>
 #include <limits>
-#include <string_view>
 #include <vector>
 
+#include "posewise/core/ending.hpp"
 #include "posewise/criteria/criterion.hpp"
 
 namespace posewise {
-
-enum class StopReason {
-    NotRun,
-    Converged,    ///< every start ended where no exchange with any candidate improves its plan
-    Optimal,      ///< all choices that could be better were ruled out or tried: none is
-    TimeLimit,    ///< the best so far when the time was up
-    Interrupted,  ///< the best so far when the caller asked to stop
-};
-
-std::string_view stop_reason_name(StopReason reason);
 
 /// What proves a plan's bound: upper_bound() needs nothing else, so a plan can be verified without
 /// an optimiser. Any positive definite M proves some bound; the optimum of the continuous
@@ -41,7 +31,7 @@ struct Plan {
     std::uint64_t seed = 0;
     Index starts = 0;
     Index starts_at_best = 0;  ///< how many independent starts ended at this value
-    StopReason stop_reason = StopReason::NotRun;
+    Ending ending = Ending::NotRun;
 };
 
 }  // namespace posewise

@@ -2,24 +2,13 @@
 
 #include <atomic>
 #include <chrono>
-#include <string_view>
+
+#include "posewise/core/ending.hpp"
 
 namespace posewise {
 
-/// How a continuous search ended. In all cases its result is the best feasible point met, never
-/// worse than its start.
-enum class SearchEnding {
-    NotRun,
-    Converged,
-    RoundoffLimited,  ///< no step improves beyond rounding: as good as converged
-    EvaluationLimit,
-    TimeLimit,
-    Interrupted,
-    Failed,  ///< the optimiser gave up
-};
-std::string_view search_ending_name(SearchEnding ending);
-
-/// What makes a long search stop early, with the best found so far.
+/// What makes a long computation stop early, with the best found so far. With a deadline, results
+/// depend on the machine.
 struct StopSignal {
     const std::atomic<bool>* interrupted = nullptr;  ///< set by a signal handler or another thread
     std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
@@ -30,9 +19,11 @@ struct StopSignal {
                std::chrono::steady_clock::now() >= deadline;
     }
     bool is_set() const { return is_interrupted() || is_late(); }
+    /// Interrupted or TimeLimit if it is set, else `ending`.
+    Ending ending_or(Ending ending) const;
 };
 
-/// The deadline `seconds` from now; 0: none.
+/// The deadline `seconds` from now; 0: none. Throws InputError for less than 0.
 std::chrono::steady_clock::time_point deadline_after(double seconds);
 
 }  // namespace posewise

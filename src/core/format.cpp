@@ -1,15 +1,12 @@
-#include "posewise/report/units.hpp"
+#include "posewise/core/format.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "posewise/core/units.hpp"
 
 namespace posewise {
-
-double to_degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
-
-std::string_view error_unit(bool is_angle) { return is_angle ? "mrad" : "mm"; }
 
 std::string format_fixed(double value, int decimals) {
     if (!std::isfinite(value)) return "-";

@@ -1,0 +1,58 @@
+#include "posewise/core/parallel.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+
+namespace posewise {
+namespace {
+
+/// The exception of the lowest index. None may leave an OpenMP region.
+class FirstFailure {
+  public:
+    explicit FirstFailure(Index count) : index_(count) {}
+
+    bool is_before(Index index) const { return index_.load(std::memory_order_relaxed) < index; }
+
+    void keep(Index index, std::exception_ptr failure) {
+        const std::lock_guard lock(mutex_);
+        if (index >= index_.load()) return;
+        index_ = index;
+        failure_ = std::move(failure);
+    }
+
+    void rethrow() const {
+        if (failure_) std::rethrow_exception(failure_);
+    }
+
+  private:
+    std::atomic<Index> index_;
+    std::exception_ptr failure_;
+    std::mutex mutex_;
+};
+
+}  // namespace
+
+void for_each_index(Index count, const std::function<void(Index)>& body) {
+    if (count == 1) return body(0);
+    FirstFailure failure(count);
+#pragma omp parallel for schedule(dynamic)
+    for (Index i = 0; i < count; ++i) {
+        if (failure.is_before(i)) continue;
+        try {
+            body(i);
+        } catch (...) {
+            failure.keep(i, std::current_exception());
+        }
+    }
+    failure.rethrow();
+}
+
+void for_each_range(Index count, Index grain, const std::function<void(Index, Index)>& body) {
+    for_each_index((count + grain - 1) / grain, [&](Index range) {
+        body(range * grain, std::min(count, (range + 1) * grain));
+    });
+}
+
+}  // namespace posewise

@@ -1,0 +1,25 @@
+#include "posewise/core/statistics.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace posewise {
+
+double quantile(VectorXd values, double p, QuantileRule rule) {
+    assert(values.size() > 0 && p >= 0 && p <= 1);
+    const Index last = values.size() - 1;
+    const auto count = static_cast<double>(values.size());
+    const double position = rule == QuantileRule::Linear  ? p * static_cast<double>(last)
+                            : rule == QuantileRule::Lower ? std::ceil(p * count) - 1
+                                                          : std::floor(p * count);
+    const auto index = std::clamp(static_cast<Index>(position), Index{0}, last);
+    const auto nth = values.begin() + index;
+    std::nth_element(values.begin(), nth, values.end());
+    const double part = rule == QuantileRule::Linear ? position - static_cast<double>(index) : 0;
+    if (!(part > 0)) return *nth;
+    const double next = *std::min_element(nth + 1, values.end());
+    return std::isinf(next) ? next : *nth + part * (next - *nth);
+}
+
+}  // namespace posewise

@@ -1,0 +1,51 @@
+#include "posewise/core/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace posewise {
+namespace {
+
+using enum QuantileRule;
+
+VectorXd numbers(std::initializer_list<double> values) {
+    return Eigen::Map<const VectorXd>(values.begin(), static_cast<Index>(values.size()));
+}
+
+TEST(Quantile, OfAnEvenCountDependsOnTheRule) {
+    const VectorXd four = numbers({40, 10, 30, 20});
+    EXPECT_EQ(quantile(four, 0.5, Lower), 20);
+    EXPECT_EQ(quantile(four, 0.5, Upper), 30);
+    EXPECT_EQ(quantile(four, 0.5, Linear), 25);
+}
+
+TEST(Quantile, OfAnOddCountIsTheMiddleByEveryRule) {
+    const VectorXd five = numbers({5, 1, 4, 2, 3});
+    for (const auto rule : {Lower, Upper, Linear}) EXPECT_EQ(quantile(five, 0.5, rule), 3);
+}
+
+TEST(Quantile, AtTheEndsIsTheExtremes) {
+    const VectorXd three = numbers({2, 3, 1});
+    for (const auto rule : {Lower, Upper, Linear}) {
+        EXPECT_EQ(quantile(three, 0, rule), 1);
+        EXPECT_EQ(quantile(three, 1, rule), 3);
+        EXPECT_EQ(quantile(numbers({7}), 0.3, rule), 7);
+    }
+}
+
+TEST(Quantile, InterpolatesAsTheNumbersLie) {
+    EXPECT_DOUBLE_EQ(quantile(numbers({0, 1, 3}), 0.75, Linear), 2);
+    EXPECT_DOUBLE_EQ(quantile(numbers({0, 1, 3}), 0.25, Linear), 0.5);
+}
+
+TEST(Quantile, TakesInfiniteNumbersAsTheLargest) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const VectorXd four = numbers({infinity, 1, 2, 3});
+    EXPECT_EQ(quantile(four, 2.0 / 3, Linear), 3);
+    EXPECT_EQ(quantile(four, 0.7, Linear), infinity);
+    EXPECT_EQ(quantile(numbers({infinity, infinity}), 0.5, Linear), infinity);
+}
+
+}  // namespace
+}  // namespace posewise

@@ -1,0 +1,43 @@
+#include "posewise/core/stop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+TEST(StopSignal, IsSetByTheFlagOrTheDeadline) {
+    StopSignal stop;
+    EXPECT_FALSE(stop.is_set());
+    EXPECT_EQ(stop.ending_or(Ending::Converged), Ending::Converged);
+
+    stop.deadline = Clock::now() - std::chrono::seconds(1);
+    EXPECT_TRUE(stop.is_set());
+    EXPECT_FALSE(stop.is_interrupted());
+    EXPECT_EQ(stop.ending_or(Ending::Converged), Ending::TimeLimit);
+
+    std::atomic<bool> flag = false;
+    stop.interrupted = &flag;
+    EXPECT_FALSE(stop.is_interrupted());
+    flag = true;
+    EXPECT_EQ(stop.ending_or(Ending::Converged), Ending::Interrupted);
+}
+
+TEST(DeadlineAfter, LiesAheadAndZeroIsNone) {
+    const auto now = Clock::now();
+    const auto deadline = deadline_after(100);
+    EXPECT_GE(deadline, now + std::chrono::seconds(100));
+    EXPECT_LE(deadline, Clock::now() + std::chrono::seconds(100));
+    EXPECT_EQ(deadline_after(0), Clock::time_point::max());
+    EXPECT_EQ(deadline_after(1e300), Clock::time_point::max());
+    EXPECT_THROW(deadline_after(-1), InputError);
+    EXPECT_THROW(deadline_after(std::nan("")), InputError);
+}
+
+}  // namespace
+}  // namespace posewise
