@@ -150,9 +150,9 @@ io::PosePlanFile make_file(const PlanningProblem& problem, const PlannedPoses& p
     file.poses = arrange(problem, all_poses(problem, planned.configurations), tour);
     file.value = planned.value;
     file.feasible_count = problem.pool.configurations.rows();
-    file.pool_value = planned.pool_plan.value;
-    file.pool_bound = planned.pool_plan.bound;
-    file.pool_efficiency = planned.pool_plan.efficiency;
+    file.pool_value = planned.pool_choice.value;
+    file.pool_bound = planned.pool_choice.bound;
+    file.pool_efficiency = planned.pool_choice.efficiency;
     file.searched_bound = planned.searched_bound;
     file.searched_efficiency = planned.efficiency;
     file.starts_at_best = planned.starts_at_best;

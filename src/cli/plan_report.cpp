@@ -147,7 +147,7 @@ std::vector<std::string> accuracy_row(const PlanningProblem& problem, PoolPart& 
     std::vector<std::string> row{std::to_string(count), "chosen from the pool"};
     part.options.pose_count = count;
     try {
-        const Plan plan = select_poses(part.blocks, part.options);
+        const Choice plan = select_poses(part.blocks, part.options);
         const PredictedAccuracy accuracy =
             predict_accuracy(problem.prediction, part.held + information(part.blocks, plan.poses));
         row.insert(row.end(), {format_mm(accuracy.rms), format_mm(accuracy.percentile95)});

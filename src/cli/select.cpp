@@ -119,7 +119,7 @@ io::SelectionRequest make_request(Arguments& arguments) {
 
 // ---- From a plan to file and text ----
 
-io::PlanFile make_plan_file(const SelectionProblem& problem, const Plan& plan) {
+io::PlanFile make_plan_file(const SelectionProblem& problem, const Choice& plan) {
     io::PlanFile file;
     file.request = problem.request;
     file.candidate_count = problem.blocks.count();
@@ -138,7 +138,7 @@ io::PlanFile make_plan_file(const SelectionProblem& problem, const Plan& plan) {
 }
 
 /// What the bound says, in words, where the numbers alone may mislead.
-std::string describe_proof(const Plan& plan) {
+std::string describe_proof(const Choice& plan) {
     if (plan.ending == Ending::Optimal) {
         return "proof:      optimal: every other choice is ruled out by the bound or was tried\n";
     }
@@ -148,7 +148,7 @@ std::string describe_proof(const Plan& plan) {
 }
 
 void print_plan(const io::PlanFile& file) {
-    const Plan& plan = file.plan;
+    const Choice& plan = file.plan;
     std::string ids;
     for (const io::PlannedPose& pose : file.poses) {
         ids += (ids.empty() ? "" : " ") + pose.id;
@@ -167,7 +167,7 @@ std::string default_out(const io::CandidateSource& source) {
     return std::filesystem::path(path).stem().string() + ".plan.json";
 }
 
-Plan search(SelectionProblem& problem, const Arguments& arguments, const Stopwatch& watch,
+Choice search(SelectionProblem& problem, const Arguments& arguments, const Stopwatch& watch,
             const InterruptFlag& interrupted) {
     SelectOptions& options = problem.options;
     options.starts = arguments.search.starts;

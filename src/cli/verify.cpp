@@ -138,16 +138,16 @@ void check_poses(const SelectionProblem& problem, const std::vector<Index>& pose
 }
 
 /// Whether a search like the plan's own finds again that no choice is better.
-bool is_optimal_again(const Plan& stated, const SelectionProblem& problem, double value) {
+bool is_optimal_again(const Choice& stated, const SelectionProblem& problem, double value) {
     SelectOptions options = problem.options;
     options.seed = stated.seed;
     options.starts = stated.starts;
-    const Plan again = select_poses(problem.blocks, options);
+    const Choice again = select_poses(problem.blocks, options);
     return again.ending == Ending::Optimal && agree(again.criterion, again.value, value);
 }
 
 /// The bound that the certificate proves.
-double prove_bound(const Plan& stated, const SelectionProblem& problem, Findings& findings) {
+double prove_bound(const Choice& stated, const SelectionProblem& problem, Findings& findings) {
     const Index L = problem.blocks.parameter_count();
     const Index size = stated.certificate.M.rows();
     if (size == L && stated.certificate.sharpness > 0) {
@@ -159,10 +159,10 @@ double prove_bound(const Plan& stated, const SelectionProblem& problem, Findings
     return std::numeric_limits<double>::infinity();
 }
 
-void check_numbers(const Plan& stated, const SelectionProblem& problem,
+void check_numbers(const Choice& stated, const SelectionProblem& problem,
                    const std::vector<Index>& poses, Findings& findings) {
     const Criterion criterion = problem.options.criterion;
-    const double value = plan_value(problem.blocks, problem.options, poses);
+    const double value = choice_value(problem.blocks, problem.options, poses);
     findings.compare("value", stated.value, value, agree(criterion, stated.value, value));
 
     double bound = std::max(value, prove_bound(stated, problem, findings));

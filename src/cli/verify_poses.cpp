@@ -79,7 +79,7 @@ void check_numbers(const PlanningProblem& problem, const io::PosePlanFile& file,
     options.held_pose_count = problem.options.held_pose_count;
     std::vector<Index> all(file.poses.size());
     std::iota(all.begin(), all.end(), Index{0});
-    const double value = plan_value(blocks, options, all);
+    const double value = choice_value(blocks, options, all);
     findings.compare("value", file.value, value,
                      is_same_value(options.criterion, file.value, value, rounding));
     const MatrixXd held = options.held.size() > 0

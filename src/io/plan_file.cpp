@@ -69,7 +69,7 @@ Json pose_to_json(const PlannedPose& pose, const Campaign* campaign) {
 }  // namespace
 
 void write_plan(const std::string& path, const PlanFile& file, const Campaign* campaign) {
-    const Plan& plan = file.plan;
+    const Choice& plan = file.plan;
     Json document = make_document("plan");
     document["campaign"] = campaign != nullptr ? Json(campaign->name) : Json(nullptr);
     document["candidates"] = source_to_json(file, path);

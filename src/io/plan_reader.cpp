@@ -89,8 +89,8 @@ Certificate read_certificate(const JsonValue& json) {
     return certificate;
 }
 
-Plan read_result(const JsonValue& document) {
-    Plan plan;
+Choice read_result(const JsonValue& document) {
+    Choice plan;
     plan.criterion = parse_criterion(document["criterion"].text());
     plan.value = document["value"].number_or(-infinity);
     plan.bound = document["bound"].number_or(infinity);

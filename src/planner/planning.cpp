@@ -107,11 +107,11 @@ RowMatrixXd choose_from_part(const Problem& problem, Index start) {
     return candidates(select_poses(take(problem.blocks, part), select).poses, Eigen::all);
 }
 
-/// The choice from the whole pool, which becomes `pool_plan`, and the refinements of all starts, of
-/// which it is the first; those whose choice identifies too little are left empty. That choice is
-/// made beside the other starts, since by G it takes as long as many of them.
+/// The choice from the whole pool, which becomes `pool_choice`, and the refinements of all starts,
+/// of which it is the first; those whose choice identifies too little are left empty. That choice
+/// is made beside the other starts, since by G it takes as long as many of them.
 std::vector<Refinement> refine_starts(const Problem& problem, const SelectOptions& select,
-                                      Plan& pool_plan) {
+                                      Choice& pool_choice) {
     double pool_bound = std::numeric_limits<double>::infinity();  // until the choice is made
     const Index starts = problem.options.starts;
     std::vector<Refinement> results(static_cast<std::size_t>(starts));
@@ -130,18 +130,18 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
         if (start > 0 && problem.stop.is_set()) continue;
         if (start == 0) {
             try {
-                pool_plan = select_poses(problem.blocks, select);
+                pool_choice = select_poses(problem.blocks, select);
             } catch (...) {
                 errors[s] = std::current_exception();
                 continue;
             }
 #pragma omp critical(posewise_plan_progress)
-            pool_bound = pool_plan.bound;
+            pool_bound = pool_choice.bound;
         }
         try {
-            const RowMatrixXd chosen = start == 0
-                                           ? RowMatrixXd(problem.pool(pool_plan.poses, Eigen::all))
-                                           : choose_from_part(problem, start);
+            const RowMatrixXd chosen =
+                start == 0 ? RowMatrixXd(problem.pool(pool_choice.poses, Eigen::all))
+                           : choose_from_part(problem, start);
             results[s] = refine_poses(problem.space, problem.objective, problem.options.held,
                                       chosen, refine);
         } catch (const InputError&) {
@@ -230,7 +230,7 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     PlannedPoses planned;
     planned.criterion = options.criterion;
     planned.seed = options.seed;
-    const auto results = refine_starts(problem, select, planned.pool_plan);
+    const auto results = refine_starts(problem, select, planned.pool_choice);
     Refinement best =
         *std::max_element(results.begin(), results.end(),
                           [](const auto& a, const auto& b) { return a.value < b.value; });
@@ -247,7 +247,7 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     check_all_is_seen(space, planned.information);
 
     // The relaxed optimum over the pool, with the smoothing it was found by, bounds best.
-    const Certificate& certificate = planned.pool_plan.certificate;
+    const Certificate& certificate = planned.pool_choice.certificate;
     Objective relaxed = problem.objective;
     relaxed.sharpness = certificate.sharpness;
     planned.searched_bound =

@@ -97,7 +97,7 @@ Objective make_objective(const Blocks& candidates, const SelectOptions& options)
     return objective;
 }
 
-double plan_value(const Blocks& candidates, const SelectOptions& options,
+double choice_value(const Blocks& candidates, const SelectOptions& options,
                   const std::vector<Index>& poses) {
     return evaluate(make_objective(candidates, options),
                     held_information(candidates, options) + information(candidates, poses));

@@ -61,7 +61,7 @@ double choice_count(Index n, Index k) {
 /// Visits every completion of a choice by open candidates, in index order.
 class Enumerator {
   public:
-    Enumerator(const SearchProblem& problem, const Choice& best, const Fixing& fixing)
+    Enumerator(const SearchProblem& problem, const ScoredPoses& best, const Fixing& fixing)
         : problem_(problem),
           open_(fixing.open),
           occupancy_(problem.candidates.count(), problem.options),
@@ -69,7 +69,7 @@ class Enumerator {
         for (const Index pose : fixing.in) push(pose);
     }
 
-    Choice run() {
+    ScoredPoses run() {
         complete(0, problem_.regularised_information(poses_));
         return best_;
     }
@@ -104,13 +104,14 @@ class Enumerator {
     const std::vector<Index>& open_;
     Occupancy occupancy_;
     std::vector<Index> poses_;
-    Choice best_;
+    ScoredPoses best_;
 };
 
 }  // namespace
 
-std::optional<Choice> enumerate_open_choices(const SearchProblem& problem,
-                                             const Relaxation& relaxation, const Choice& best) {
+std::optional<ScoredPoses> enumerate_open_choices(const SearchProblem& problem,
+                                                  const Relaxation& relaxation,
+                                                  const ScoredPoses& best) {
     if (problem.options.repeat_limit > 1 || !best.score.identifies) return std::nullopt;
     Fixing fixing = fix_by_bound(problem, relaxation, best.score.value);
     std::sort(fixing.open.begin(), fixing.open.end());

@@ -11,7 +11,8 @@ namespace posewise {
 /// relaxation's certificate below the value of `best` is out (or in). If what stays open has at
 /// most `limit` choices all are tried, and the best choice of all is returned: proven optimal.
 /// Nothing if more stay open, or with repeats, which are not enumerated.
-std::optional<Choice> enumerate_open_choices(const SearchProblem& problem,
-                                             const Relaxation& relaxation, const Choice& best);
+std::optional<ScoredPoses> enumerate_open_choices(const SearchProblem& problem,
+                                                  const Relaxation& relaxation,
+                                                  const ScoredPoses& best);
 
 }  // namespace posewise

@@ -65,13 +65,13 @@ std::vector<Index> take_in_order(const SearchProblem& problem, const std::vector
     return poses;
 }
 
-Choice make_choice(const SearchProblem& problem, std::vector<Index> poses) {
+ScoredPoses make_choice(const SearchProblem& problem, std::vector<Index> poses) {
     const Score score = problem.score(problem.regularised_information(poses));
     return {std::move(poses), score};
 }
 
 /// The poses of the largest relaxed weights.
-Choice make_first_start(const SearchProblem& problem, const Relaxation& relaxation) {
+ScoredPoses make_first_start(const SearchProblem& problem, const Relaxation& relaxation) {
     std::vector<Index> poses = take_in_order(problem, by_decreasing(relaxation.weights));
     if (static_cast<Index>(poses.size()) < problem.options.pose_count) {
         throw InputError("pose count is " + std::to_string(problem.options.pose_count) +
@@ -82,8 +82,8 @@ Choice make_first_start(const SearchProblem& problem, const Relaxation& relaxati
 }
 
 /// Poses drawn by their relaxed weights; nothing if the draw ran into the limits.
-std::optional<Choice> make_random_start(const SearchProblem& problem, const Relaxation& relaxation,
-                                        RandomStream& random) {
+std::optional<ScoredPoses> make_random_start(const SearchProblem& problem,
+                                             const Relaxation& relaxation, RandomStream& random) {
     const double least = 1e-3 * static_cast<double>(problem.options.pose_count) /
                          static_cast<double>(problem.candidates.count());
     // Keys log(u) / w order a draw without replacement [Efraimidis, Spirakis 2006].
@@ -96,13 +96,13 @@ std::optional<Choice> make_random_start(const SearchProblem& problem, const Rela
 
 /// A choice that does not identify the parameters, exchanged by their determinant until it does:
 /// among such choices most criteria are flat, so their own exchange would not find the way out.
-Choice make_identifying(const SearchProblem& problem, const Shortlist& shortlist,
-                        const Choice& choice, RandomStream& random) {
+ScoredPoses make_identifying(const SearchProblem& problem, const Shortlist& shortlist,
+                             const ScoredPoses& choice, RandomStream& random) {
     if (choice.score.identifies || problem.objective.criterion == Criterion::D) return choice;
     const Objective determinant;
     SearchProblem by_determinant{problem.candidates, problem.options, determinant,
                                  problem.held,       problem.ridge,   problem.must_stop};
-    const Choice changed =
+    const ScoredPoses changed =
         improve_with_kicks(by_determinant, make_shortlist(problem.candidates, shortlist.members),
                            make_choice(by_determinant, choice.poses), random);
     return make_choice(problem, changed.poses);
@@ -134,7 +134,7 @@ class Reporter {
         progress_.starts = options.starts;
         progress_.bound = bound;
     }
-    void report(const Choice& choice) {
+    void report(const ScoredPoses& choice) {
         if (!options_.progress) return;
 #pragma omp critical(posewise_select_progress)
         {
@@ -152,23 +152,23 @@ class Reporter {
 };
 
 /// Searches from `first`, the start of the relaxation, and from random ones.
-std::vector<Choice> run_starts(const SearchProblem& problem, const Relaxation& relaxation,
-                               const Shortlist& shortlist, const Choice& first) {
+std::vector<ScoredPoses> run_starts(const SearchProblem& problem, const Relaxation& relaxation,
+                                    const Shortlist& shortlist, const ScoredPoses& first) {
     const SelectOptions& options = problem.options;
     Reporter reporter(options, relaxation.bound);
-    std::vector<std::optional<Choice>> ends(static_cast<std::size_t>(options.starts));
+    std::vector<std::optional<ScoredPoses>> ends(static_cast<std::size_t>(options.starts));
 #pragma omp parallel for schedule(dynamic)
     for (Index start = 0; start < options.starts; ++start) {
         if (start > 0 && problem.must_stop()) continue;
         RandomStream random(options.seed, static_cast<std::uint64_t>(start));
-        Choice choice = first;
+        ScoredPoses choice = first;
         if (start > 0) choice = make_random_start(problem, relaxation, random).value_or(first);
         choice = make_identifying(problem, shortlist, choice, random);
         choice = improve_with_kicks(problem, shortlist, choice, random);
         reporter.report(choice);
         ends[static_cast<std::size_t>(start)] = std::move(choice);
     }
-    std::vector<Choice> choices;  // of the starts there was time for
+    std::vector<ScoredPoses> choices;  // of the starts there was time for
     for (const auto& end : ends) {
         if (end) choices.push_back(*end);
     }
@@ -177,7 +177,7 @@ std::vector<Choice> run_starts(const SearchProblem& problem, const Relaxation& r
 
 /// Exchanges with every candidate that could improve the choice, shortlisted or not, until none
 /// does.
-Choice sweep_all(const SearchProblem& problem, Choice choice) {
+ScoredPoses sweep_all(const SearchProblem& problem, ScoredPoses choice) {
     for (Index sweep = 0; sweep < sweep_limit && !problem.must_stop(); ++sweep) {
         const VectorXd d = sensitivities(
             problem.candidates,
@@ -192,7 +192,7 @@ Choice sweep_all(const SearchProblem& problem, Choice choice) {
         }
         if (members.empty()) break;
         const Shortlist shortlist = make_shortlist(problem.candidates, std::move(members));
-        const Choice improved = improve(problem, shortlist, choice);
+        const ScoredPoses improved = improve(problem, shortlist, choice);
         if (!is_better(improved.score, choice.score)) break;
         choice = improved;
     }
@@ -205,21 +205,21 @@ double ridge_of(const Blocks& candidates) {
 }
 
 struct Outcome {
-    Choice best;
-    std::vector<Choice> starts;  // what each start ended at
+    ScoredPoses best;
+    std::vector<ScoredPoses> starts;  // what each start ended at
     bool is_optimal = false;
 };
 
 /// The relaxation's own start may leave few enough other choices to try them all; else all starts.
 Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
     const Shortlist shortlist = shortlist_by_sensitivity(problem, relaxation);
-    const Choice first = improve(problem, shortlist, make_first_start(problem, relaxation));
+    const ScoredPoses first = improve(problem, shortlist, make_first_start(problem, relaxation));
     if (auto optimum = enumerate_open_choices(problem, relaxation, first)) {
         return {*optimum, {*optimum}, true};
     }
     Outcome outcome{{}, run_starts(problem, relaxation, shortlist, first), false};
     outcome.best = outcome.starts.front();
-    for (const Choice& choice : outcome.starts) {
+    for (const ScoredPoses& choice : outcome.starts) {
         if (is_better(choice.score, outcome.best.score)) outcome.best = choice;
     }
     outcome.best = sweep_all(problem, outcome.best);
@@ -233,7 +233,7 @@ Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
 
 }  // namespace
 
-Plan select_poses(const Blocks& candidates, const SelectOptions& options) {
+Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     validate(candidates, options);
     const Deadline deadline(options);
     const Objective objective = make_objective(candidates, options);
@@ -245,17 +245,17 @@ Plan select_poses(const Blocks& candidates, const SelectOptions& options) {
                                 [&] { return deadline.is_over(); }};
     const Relaxation relaxation = relax(objective, candidates, options, problem.must_stop);
     const Outcome outcome = search(problem, relaxation);
-    const Choice& best = outcome.best;
+    const ScoredPoses& best = outcome.best;
     if (!best.score.identifies) {
         throw InputError("pose count is " + std::to_string(options.pose_count) +
                          ": no choice was found that identifies all " +
                          std::to_string(candidates.parameter_count()) +
                          " parameters; ask for more poses or state a prior");
     }
-    Plan plan;
+    Choice plan;
     plan.starts = static_cast<Index>(outcome.starts.size());
     plan.starts_at_best =
-        std::count_if(outcome.starts.begin(), outcome.starts.end(), [&](const Choice& choice) {
+        std::count_if(outcome.starts.begin(), outcome.starts.end(), [&](const ScoredPoses& choice) {
             return choice.score.identifies && best.score.value - choice.score.value <=
                                                   1e-9 * std::max(1.0, std::abs(best.score.value));
         });
@@ -267,7 +267,7 @@ Plan select_poses(const Blocks& candidates, const SelectOptions& options) {
     plan.poses = best.poses;
     std::sort(plan.poses.begin(), plan.poses.end());
     plan.criterion = options.criterion;
-    plan.value = plan_value(candidates, options, plan.poses);
+    plan.value = choice_value(candidates, options, plan.poses);
     plan.bound = std::max(plan.bound, plan.value);
     plan.efficiency =
         efficiency(plan.criterion, plan.value, plan.bound,

@@ -18,9 +18,9 @@ class LocalSearch {
                          problem.must_stop),
           occupancy_(problem.candidates.count(), problem.options) {}
 
-    const Choice& choice() const { return choice_; }
+    const ScoredPoses& choice() const { return choice_; }
 
-    void start_at(const Choice& choice) {
+    void start_at(const ScoredPoses& choice) {
         occupy(choice);
         settle();
     }
@@ -35,7 +35,7 @@ class LocalSearch {
 
     /// Starts at a choice with one to four poses replaced by random ones of the shortlist; at the
     /// choice itself where the limits leave nothing to replace them by.
-    void start_near(const Choice& choice, RandomStream& random) {
+    void start_near(const ScoredPoses& choice, RandomStream& random) {
         occupy(choice);
         const auto K = static_cast<Index>(choice.poses.size());
         const std::vector<Index> kicked = random.subset(K, 1 + random.index(std::min<Index>(K, 4)));
@@ -58,7 +58,7 @@ class LocalSearch {
     }
 
   private:
-    void occupy(const Choice& choice) {
+    void occupy(const ScoredPoses& choice) {
         for (const Index pose : choice_.poses) occupancy_.remove(pose);
         choice_ = choice;
         for (const Index pose : choice_.poses) occupancy_.add(pose);
@@ -107,7 +107,7 @@ class LocalSearch {
     const Shortlist& shortlist_;
     Neighbourhood neighbourhood_;
     Occupancy occupancy_;
-    Choice choice_;
+    ScoredPoses choice_;
     MatrixXd M_;  // regularised
 };
 
@@ -138,19 +138,20 @@ Score SearchProblem::score(const MatrixXd& regularised) const {
     return {false, evaluate(objective, regularised)};
 }
 
-Choice improve(const SearchProblem& problem, const Shortlist& shortlist, const Choice& choice) {
+ScoredPoses improve(const SearchProblem& problem, const Shortlist& shortlist,
+                    const ScoredPoses& choice) {
     LocalSearch search(problem, shortlist, std::numeric_limits<Index>::max());
     search.start_at(choice);
     search.improve();
     return search.choice();
 }
 
-Choice improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
-                          const Choice& choice, RandomStream& random) {
+ScoredPoses improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
+                               const ScoredPoses& choice, RandomStream& random) {
     LocalSearch search(problem, shortlist, quick_evaluations);
     search.start_at(choice);
     search.improve();
-    Choice best = search.choice();
+    ScoredPoses best = search.choice();
     const Index most_failures = patience(problem, shortlist);
     for (Index failures = 0; failures < most_failures && !problem.must_stop();) {
         search.start_near(best, random);

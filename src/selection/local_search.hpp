@@ -29,18 +29,20 @@ struct SearchProblem {
     Score score(const MatrixXd& regularised) const;
 };
 
-struct Choice {
+/// A choice of candidates in the search, and how good it is.
+struct ScoredPoses {
     std::vector<Index> poses;
     Score score;
 };
 
 /// Exchanges each pose for the best of the shortlist, in turn, until no exchange improves.
-Choice improve(const SearchProblem& problem, const Shortlist& shortlist, const Choice& choice);
+ScoredPoses improve(const SearchProblem& problem, const Shortlist& shortlist,
+                    const ScoredPoses& choice);
 
 /// Iterated local search: some poses of the best choice are replaced at random and the result
 /// improved, until `options.kicks` kicks in a row bring nothing (ten times as many on a small
 /// shortlist).
-Choice improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
-                          const Choice& choice, RandomStream& random);
+ScoredPoses improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
+                               const ScoredPoses& choice, RandomStream& random);
 
 }  // namespace posewise

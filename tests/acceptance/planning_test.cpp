@@ -45,7 +45,7 @@ TEST(APlanInTheDemonstrationCell, SatisfiesEveryConstraintByASeparateDenseCheck)
     const Constraints constraints(file.campaign, file.cell);
     for (const Criterion criterion : {Criterion::D, Criterion::V}) {
         const PlannedPoses plan = plan_in_cell(file.campaign, constraints, 16, criterion);
-        EXPECT_GT(plan.value, plan.pool_plan.value);
+        EXPECT_GT(plan.value, plan.pool_choice.value);
         CellRecheck recheck(file.campaign, file.cell);
         for (Index i = 0; i < plan.configurations.rows(); ++i) {
             const VectorXd q = plan.configurations.row(i).transpose();

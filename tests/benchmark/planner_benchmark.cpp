@@ -95,7 +95,7 @@ void BM_plan_of_the_fanuc(benchmark::State& state) {
     for (auto _ : state) plan = plan_poses(scene.space, pool, blocks, options);
     state.SetLabel(std::string(criterion_name(criterion)));
     state.counters["value"] = plan.value;
-    state.counters["pool_value"] = plan.pool_plan.value;
+    state.counters["pool_value"] = plan.pool_choice.value;
     state.counters["efficiency"] = plan.efficiency;
     state.counters["rms_um"] = 1e6 * predict_accuracy(workspace, plan.information).rms;
 }

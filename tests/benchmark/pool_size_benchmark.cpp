@@ -29,7 +29,7 @@ void BM_PoolSize(benchmark::State& state) {
     const auto begin = std::chrono::steady_clock::now();
     const Index iterations = relax(objective, pool, options, [] { return false; }).iterations;
     const std::chrono::duration<double> relaxation = std::chrono::steady_clock::now() - begin;
-    Plan plan;
+    Choice plan;
     for (auto _ : state) plan = select_poses(pool, options);
     state.counters["relaxation_s"] = relaxation.count();
     state.counters["iterations"] = static_cast<double>(iterations);

@@ -117,7 +117,7 @@ void BM_SelectPoses(benchmark::State& state) {
     options.pose_count = state.range(1);
     options.time_limit = state.range(0) <= 10000 ? 10 : 0;
     options.starts = state.range(0) <= 10000 ? 20 : 4;
-    Plan plan;
+    Choice plan;
     for (auto _ : state) plan = select_poses(pool, options);
     state.counters["efficiency"] = plan.efficiency;
     state.counters["at_best"] = static_cast<double>(plan.starts_at_best);

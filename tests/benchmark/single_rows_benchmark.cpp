@@ -90,7 +90,7 @@ void compare(benchmark::State& state, const Blocks& candidates, Index n) {
     options.pose_count = n;
     options.seed = 0;
     std::vector<Values> runs;
-    Plan plan;
+    Choice plan;
     std::array<double, 2> cpu{};  // of select_poses and the references
     for (auto _ : state) {
         ++options.seed;

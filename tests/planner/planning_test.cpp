@@ -47,7 +47,7 @@ TEST(PlanPoses, PredictsTheFanucWithin33MicrometresOverItsWorkspace) {
     EXPECT_NEAR(1 / (accuracy.rms * accuracy.rms) / plan.value, 1, 1e-9);
     EXPECT_GT(accuracy.percentile95, accuracy.rms);
     EXPECT_LE(accuracy.rms, accuracy.worst_rms);
-    EXPECT_GT(plan.value, plan.pool_plan.value);
+    EXPECT_GT(plan.value, plan.pool_choice.value);
     EXPECT_GE(plan.searched_bound, plan.value);
     EXPECT_GT(plan.efficiency, 0.85);
 }
@@ -59,7 +59,7 @@ TEST(PlanPoses, BeatsTheBestExchangePlanOfThePoolOnEveryCriterion) {
         PlanOptions options = scene.options(criterion, 9, 1);
         options.bound_iterations = 1;
         const PlannedPoses plan = plan_poses(scene.space, scene.pool, scene.blocks, options);
-        EXPECT_GT(plan.value, plan.pool_plan.value) << name;
+        EXPECT_GT(plan.value, plan.pool_choice.value) << name;
         EXPECT_GE(plan.searched_bound, plan.value) << name;
     }
 }
@@ -115,7 +115,7 @@ TEST(PlanPoses, FocusOnTheRobotLeavesBaseAndTargetsAside) {
     Objective objective = make_objective(Criterion::D, 10);
     objective.nuisance = options.nuisance;
     EXPECT_NEAR(robot.value, evaluate(objective, robot.information), 1e-6);
-    EXPECT_GT(robot.value, robot.pool_plan.value);
+    EXPECT_GT(robot.value, robot.pool_choice.value);
     // The plan for all parameters is not the best for the robot's.
     const Refinement refined =
         refine_poses(scene.space, objective, {}, whole.configurations, {.tolerance = 1e-6});

@@ -21,7 +21,7 @@ constexpr std::array all = {Criterion::O1, Criterion::O2, Criterion::O3, Criteri
 double best_value(const Blocks& candidates, const SelectOptions& options) {
     double best = -infinity;
     test::for_each_choice(candidates.count(), options, [&](const std::vector<Index>& poses) {
-        best = std::max(best, plan_value(candidates, options, poses));
+        best = std::max(best, choice_value(candidates, options, poses));
     });
     return best;
 }
@@ -73,7 +73,7 @@ TEST(UpperBound, IsTheValueItselfAtTheOptimumOfThePlanarArm) {
         SelectOptions options;
         options.criterion = criterion;
         options.pose_count = 6;
-        const double value = plan_value(plan, options, {0, 1, 2, 3, 4, 5});
+        const double value = choice_value(plan, options, {0, 1, 2, 3, 4, 5});
         EXPECT_NEAR(upper_bound(plan, options, {information(plan)}), value, 1e-12);
     }
 }

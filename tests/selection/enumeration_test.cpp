@@ -85,7 +85,7 @@ void expect_best_found(const Shape& shape, std::uint64_t seed) {
          {std::pair{Criterion::D, best.D}, std::pair{Criterion::A, best.A},
           std::pair{Criterion::V, best.V}, std::pair{Criterion::E, best.E}}) {
         options.criterion = criterion;
-        const Plan plan = select_poses(candidates, options);
+        const Choice plan = select_poses(candidates, options);
         EXPECT_NEAR(plan.value, value, 1e-9 * std::abs(value))
             << criterion_name(criterion) << ", " << shape.rows << " rows, " << shape.parameters
             << " parameters, prior " << shape.has_prior;

@@ -45,11 +45,11 @@ void expect_refusal(const Blocks& candidates, const SelectOptions& options,
 void expect_best(const Blocks& candidates, const SelectOptions& options) {
     double best = -std::numeric_limits<double>::infinity();
     test::for_each_choice(candidates.count(), options, [&](const std::vector<Index>& poses) {
-        best = std::max(best, plan_value(candidates, options, poses));
+        best = std::max(best, choice_value(candidates, options, poses));
     });
-    const Plan plan = select_poses(candidates, options);
+    const Choice plan = select_poses(candidates, options);
     EXPECT_NEAR(plan.value, best, 1e-11 * std::abs(best)) << criterion_name(options.criterion);
-    EXPECT_EQ(plan.value, plan_value(candidates, options, plan.poses));
+    EXPECT_EQ(plan.value, choice_value(candidates, options, plan.poses));
     EXPECT_GE(plan.bound, plan.value);
     const double certified = upper_bound(candidates, options, plan.certificate);
     EXPECT_GE(certified, plan.value - 1e-10 * std::abs(plan.value));
@@ -161,7 +161,7 @@ TEST(SelectByExchange, SaysWhenThePlanIsOptimal) {
     const Blocks candidates = test::random_blocks(10, 3, 4, 5);
     SelectOptions options = make_options(Criterion::D, 5);
     options.enumeration = 1000;
-    const Plan plan = select_poses(candidates, options);
+    const Choice plan = select_poses(candidates, options);
     EXPECT_EQ(plan.ending, Ending::Optimal);
     EXPECT_EQ(plan.bound, plan.value);
     EXPECT_EQ(plan.efficiency, 1);
@@ -174,9 +174,9 @@ TEST(SelectByExchange, GivesTheSamePlanForAnyNumberOfThreads) {
         SelectOptions options = make_options(criterion, 8);
         options.kicks = 5;
         omp_set_num_threads(1);
-        const Plan serial = select_poses(candidates, options);
+        const Choice serial = select_poses(candidates, options);
         omp_set_num_threads(2);
-        const Plan parallel = select_poses(candidates, options);
+        const Choice parallel = select_poses(candidates, options);
         EXPECT_EQ(serial.poses, parallel.poses);
         EXPECT_EQ(serial.value, parallel.value);
         EXPECT_EQ(serial.bound, parallel.bound);
@@ -198,12 +198,12 @@ TEST(SelectByExchange, StopsInTimeOrWhenAskedWithABound) {
     const Blocks candidates = test::random_blocks(2000, 3, 12, 5);
     SelectOptions options = make_options(Criterion::D, 20);
     options.time_limit = 0.05;
-    const Plan timed = select_poses(candidates, options);
+    const Choice timed = select_poses(candidates, options);
     EXPECT_EQ(timed.ending, Ending::TimeLimit);
     EXPECT_GE(timed.bound, timed.value);
     const std::atomic<bool> interrupted = true;
     options.interrupted = &interrupted;
-    const Plan stopped = select_poses(candidates, options);
+    const Choice stopped = select_poses(candidates, options);
     EXPECT_EQ(stopped.ending, Ending::Interrupted);
     EXPECT_TRUE(std::isfinite(stopped.bound));
     EXPECT_TRUE(std::isfinite(stopped.value));
@@ -214,7 +214,7 @@ TEST(SelectByExchange, TellsItsProgress) {
     SelectOptions options = make_options(Criterion::D, 6);
     std::vector<SelectProgress> reports;
     options.progress = [&](const SelectProgress& progress) { reports.push_back(progress); };
-    const Plan plan = select_poses(candidates, options);
+    const Choice plan = select_poses(candidates, options);
     ASSERT_EQ(static_cast<Index>(reports.size()), options.starts);
     EXPECT_EQ(reports.back().starts_done, options.starts);
     EXPECT_NEAR(reports.back().value, plan.value, 1e-9);

@@ -63,7 +63,7 @@ double best_determinant_of_square(Index n) {
     options.repeat_limit = n;
     double best = 0;
     for (double step = 0.05; step > 1e-7; step /= 2) {
-        const Plan plan = select_poses(quadratic_rows(points), options);
+        const Choice plan = select_poses(quadratic_rows(points), options);
         best = std::exp(plan.value);
         std::vector<Eigen::Vector2d> finer;
         for (const Index i : plan.poses) {

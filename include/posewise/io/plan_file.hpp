@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/selection/plan.hpp"
+#include "posewise/selection/choice.hpp"
 
 namespace posewise::io {
 
@@ -57,7 +57,7 @@ struct PlanFile {
     std::string checksum;  ///< of the candidates' numbers and ids
     std::vector<PlannedPose> poses;
     /// What select_poses() said; `plan.poses` is not stored (the ids are) and empty when read.
-    Plan plan;
+    Choice plan;
 };
 
 /// Writes a plan as JSON: what was asked for, value, bound, efficiency and the matrix that proves

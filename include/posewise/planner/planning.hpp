@@ -41,7 +41,7 @@ struct PlannedPoses {
     Criterion criterion = Criterion::V;
     double value = -std::numeric_limits<double>::infinity();
     MatrixXd information;  ///< of held and planned poses together
-    Plan pool_plan;        ///< the best choice from the pool, its bound over the pool
+    Choice pool_choice;    ///< the best choice from the pool, its bound over the pool
     /// No plan is better, if the search behind search_bound() met the global maxima. Infinity:
     /// not searched (O2, O4), or stopped before.
     double searched_bound = std::numeric_limits<double>::infinity();

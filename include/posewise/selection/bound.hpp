@@ -10,8 +10,8 @@ namespace posewise {
 Objective make_objective(const Blocks& candidates, const SelectOptions& options);
 
 /// The criterion's value of a choice, held information included.
-double plan_value(const Blocks& candidates, const SelectOptions& options,
-                  const std::vector<Index>& poses);
+double choice_value(const Blocks& candidates, const SelectOptions& options,
+                    const std::vector<Index>& poses);
 
 /// Upper bound of the objective over all choices the options allow, from any positive definite M.
 /// With phi the information function of the criterion, H the held information and Z =

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "posewise/selection/plan.hpp"
+#include "posewise/selection/choice.hpp"
 
 namespace posewise {
 
@@ -61,6 +61,6 @@ struct SelectOptions {
 /// fewer than K, if all candidates together do not identify the parameters (naming the columns of
 /// the unseen directions), if no start found K poses that do, or for options that contradict the
 /// candidates.
-Plan select_poses(const Blocks& candidates, const SelectOptions& options);
+Choice select_poses(const Blocks& candidates, const SelectOptions& options);
 
 }  // namespace posewise

@@ -9,8 +9,8 @@
 
 namespace posewise {
 
-/// What proves a plan's bound: upper_bound() needs nothing else, so a plan can be verified without
-/// an optimiser. Any positive definite M proves some bound; the optimum of the continuous
+/// What proves the bound of a choice: upper_bound() needs nothing else, so it can be verified
+/// without an optimiser. Any positive definite M proves some bound; the optimum of the continuous
 /// relaxation the best one.
 struct Certificate {
     MatrixXd M;
@@ -18,7 +18,7 @@ struct Certificate {
 };
 
 /// A choice of poses out of candidates.
-struct Plan {
+struct Choice {
     std::vector<Index> poses;  ///< candidate indices, ascending; one listed twice is measured twice
     Criterion criterion = Criterion::D;
     double value = -std::numeric_limits<double>::infinity();
