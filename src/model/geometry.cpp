@@ -26,18 +26,18 @@ class Breakpoints {
             add((box.upper[k] - from[k]) / step[k]);
         }
         values_[count_++] = 1;
-        std::sort(values_.begin(), values_.begin() + count_);
+        std::sort(values_.begin(), std::next(values_.begin(), static_cast<std::ptrdiff_t>(count_)));
     }
-    std::size_t count() const { return static_cast<std::size_t>(count_); }
+    std::size_t count() const { return count_; }
     double operator[](std::size_t i) const { return values_[i]; }
 
   private:
     void add(double t) {
-        if (t > 0 && t < 1) values_[static_cast<std::size_t>(count_++)] = t;
+        if (t > 0 && t < 1) values_[count_++] = t;
     }
 
     std::array<double, 8> values_{0};
-    int count_ = 1;
+    std::size_t count_ = 1;
 };
 
 /// Least distance of a segment's points to a box, 0 where they meet.
