@@ -1,3 +1,6 @@
+set(posewise_slow_headers <Eigen/Dense> <algorithm> <cmath> <fmt/format.h> <functional> <map>
+  <memory> <optional> <string> <vector>)
+
 # posewise_module(<name> <modules it may use>...)
 # An object library of src/<name>/*.cpp. Modules compile against the whole include tree; that they
 # include only what they may is tested (tests/layering_test.py), and each module's tests link only
@@ -15,9 +18,13 @@ function(posewise_module name)
   if(BUILD_SHARED_LIBS)
     set_target_properties(posewise_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   endif()
+  # What takes a compiler longest to read, precompiled once for all modules, and once more with the
+  # formats of files. That files include what they need is seen by the check of the headers.
   if(name STREQUAL "core")
-    target_precompile_headers(posewise_core PRIVATE
-      <Eigen/Dense> <algorithm> <cmath> <map> <memory> <string> <vector>)
+    target_precompile_headers(posewise_core PRIVATE ${posewise_slow_headers})
+  elseif(name STREQUAL "io")
+    target_precompile_headers(posewise_io PRIVATE ${posewise_slow_headers}
+      <nlohmann/json.hpp> <yaml-cpp/yaml.h>)
   else()
     target_precompile_headers(posewise_${name} REUSE_FROM posewise_core)
   endif()

@@ -1,9 +1,11 @@
-"""The includes obey the table of modules in CMakeLists.txt.
+"""The includes obey the table of modules, which stands alike in CMakeLists.txt and README.md.
 
     layering_test.py REPOSITORY
 
-The table is the posewise_module(<module> <modules it may use>...) lines. Public headers moreover
-include no third-party header but Eigen's, so that no dependency of ours becomes everyone's.
+The table is the posewise_module(<module> <modules it may use>...) lines, and README's lines
+| module | holds | may use |. Public headers moreover include no third-party header but Eigen's, so
+that no dependency of ours becomes everyone's. What `task` computes must be of use without a file or
+a terminal, so it may use neither io nor report.
 """
 
 import pathlib
@@ -17,6 +19,24 @@ def read_table(repository):
     text = (repository / "CMakeLists.txt").read_text()
     lines = re.findall(r"^posewise_module\(([^)]*)\)", text, re.MULTILINE)
     return {line.split()[0]: set(line.split()) for line in lines}
+
+
+def read_readme_table(repository):
+    text = (repository / "README.md").read_text()
+    table = text.partition("| module | holds | may use |\n")[2].partition("\n\n")[0]
+    rows = re.findall(r"^\| ([a-z]+) \| [^|]* \| ([a-z -]*) \|$", table, re.MULTILINE)
+    return {module: {module} | set(used.replace("-", "").split()) for module, used in rows}
+
+
+def table_faults(table, readme):
+    """Where README's table is not that of CMakeLists.txt, and what no table may allow."""
+    for module in sorted((table.keys() | readme.keys()) - {"cli"}):
+        if table.get(module) != readme.get(module):
+            yield (f"README.md: module {module} may use {sorted(readme.get(module, []))}, by "
+                   f"CMakeLists.txt {sorted(table.get(module, []))}")
+    for module in ("io", "report", "cli"):
+        if module in table.get("task", set()):
+            yield f"CMakeLists.txt: task may not use {module}"
 
 
 def includes(path):
@@ -47,7 +67,7 @@ def public_header_faults(bracket, included):
 
 def check(repository):
     table = read_table(repository)
-    faults, count = [], 0
+    faults, count = list(table_faults(table, read_readme_table(repository))), 0
     for path in sorted(repository.glob("include/posewise/**/*.hpp*")) + sorted(
             repository.glob("src/**/*.[ch]pp")):
         name = path.relative_to(repository)

@@ -220,27 +220,27 @@ void calibrate(Arguments arguments) {
                   {arguments.out});
     auto file = io::read_campaign(paths.campaign);
     arguments.global.seed = file.seed;
-    bool& is_prior = file.campaign.spread.is_prior;
+    bool& is_prior = file.spread.is_prior;
     is_prior = arguments.prior.value_or(is_prior);
     const Split split = read_split(arguments, file);
     std::optional<ModelSelection> selection;
     if (arguments.model_selection) {
         selection = compute_from(paths.measurements, [&] {
-            return select_model(file.campaign, split.used, choose_folds(arguments, split.used),
+            return select_model(file, split.used, choose_folds(arguments, split.used),
                                 with_loss(arguments));
         });
         print_model_selection(*selection);
     }
-    io::CalibrationReport report = compute_from(
-        paths.measurements, [&] { return make_report(arguments, file.campaign, split); });
+    io::CalibrationReport report =
+        compute_from(paths.measurements, [&] { return make_report(arguments, file, split); });
     report.selection = std::move(selection);
     if (!arguments.validate.empty()) {
         report.validation =
-            metrics_of(file.campaign, read_measured(arguments.validate, file), report.estimate);
+            metrics_of(file, read_measured(arguments.validate, file), report.estimate);
     }
-    if (!arguments.out.empty()) io::write_estimate(arguments.out, file.campaign, report);
-    warn_about_calibration(paths.measurements, file.campaign, split.used, report);
-    print_calibration(file.campaign, split.used, report);
+    if (!arguments.out.empty()) io::write_estimate(arguments.out, file, report);
+    warn_about_calibration(paths.measurements, file, split.used, report);
+    print_calibration(file, split.used, report);
 }
 void add_options(CLI::App& command, Arguments& arguments) {
     command.add_option("--plan", arguments.plan, "Use only the configurations of this plan file")

@@ -152,17 +152,17 @@ void print_shortfalls(const Campaign& campaign, const io::Configurations& poses,
 void correct(const Arguments& arguments) {
     check_outputs({arguments.paths.campaign, arguments.estimate, arguments.poses}, {arguments.out});
     const io::CampaignFile file = io::read_campaign(arguments.paths.campaign);
-    const Parameters found = io::read_estimate(arguments.estimate, file.campaign);
+    const Parameters found = io::read_estimate(arguments.estimate, file);
     const io::Configurations poses = io::read_configurations(arguments.poses, file);
-    const auto corrections = correct_all(arguments, file.campaign, found, poses);
+    const auto corrections = correct_all(arguments, file, found, poses);
     if (!arguments.out.empty()) {
-        io::write_corrections_csv(arguments.out, file.campaign, poses.ids, corrections);
+        io::write_corrections_csv(arguments.out, file, poses.ids, corrections);
     }
-    print(fmt::format("{}: {} configurations corrected{}\n", file.campaign.name, corrections.size(),
+    print(fmt::format("{}: {} configurations corrected{}\n", file.name, corrections.size(),
                       arguments.out.empty() ? "" : ": " + escape_controls(arguments.out)));
     print_section("Accuracy as the estimate predicts it", error_table(corrections));
-    print_section("Corrections", change_table(file.campaign, poses, corrections));
-    print_shortfalls(file.campaign, poses, corrections);
+    print_section("Corrections", change_table(file, poses, corrections));
+    print_shortfalls(file, poses, corrections);
 }
 
 void add_options(CLI::App& command, Arguments& arguments) {

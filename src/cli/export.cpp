@@ -70,7 +70,7 @@ void print_missing(const std::vector<std::string>& names, const char* reason, co
 
 void print_export(const Arguments& arguments, const io::CampaignFile& file,
                   const Parameters& parameters, const io::CalibratedUrdf& urdf) {
-    print(fmt::format("{}: {} with the origins of {} joints changed is in {}\n", file.campaign.name,
+    print(fmt::format("{}: {} with the origins of {} joints changed is in {}\n", file.name,
                       escape_controls(file.urdf->path), urdf.changes.size(),
                       escape_controls(arguments.urdf)));
     print_section("Origins", change_table(urdf));
@@ -101,13 +101,12 @@ std::vector<std::string> terms_of(const Chain& robot, const VectorXd& parameters
 void export_dh(const Arguments& arguments, const io::CampaignFile& file,
                const Parameters& parameters) {
     constexpr double far = 10;  // m
-    const Chain& robot = file.campaign.robot;
+    const Chain& robot = file.robot;
     const std::vector<DhRow> rows = dh_rows(robot, parameters.robot);
-    io::write_file(arguments.dh,
-                   fmt::format("# {}, calibrated\n", escape_controls(file.campaign.name)) +
-                       io::make_dh_text(robot, rows));
-    print(fmt::format("{}: the calibrated robot in {} rows is in {}\n", file.campaign.name,
-                      rows.size(), escape_controls(arguments.dh)));
+    io::write_file(arguments.dh, fmt::format("# {}, calibrated\n", escape_controls(file.name)) +
+                                     io::make_dh_text(robot, rows));
+    print(fmt::format("{}: the calibrated robot in {} rows is in {}\n", file.name, rows.size(),
+                      escape_controls(arguments.dh)));
     print("not in the table: where the instrument sees the base (" +
           describe_base(parameters.world_from_base) + "), and the targets\n");
     for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -135,7 +134,7 @@ void check_urdf(const Arguments& arguments, const io::CampaignFile& file) {
 void export_urdf(const Arguments& arguments, const io::CampaignFile& file,
                  const Parameters& parameters) {
     const io::CalibratedUrdf urdf =
-        io::make_calibrated_urdf(*file.urdf, file.campaign.robot, parameters.robot);
+        io::make_calibrated_urdf(*file.urdf, file.robot, parameters.robot);
     io::write_file(arguments.urdf, urdf.text);
     print_export(arguments, file, parameters, urdf);
 }
@@ -147,7 +146,7 @@ void export_estimate(const Arguments& arguments) {
     check_outputs({arguments.campaign, arguments.estimate}, {arguments.urdf, arguments.dh});
     const io::CampaignFile file = io::read_campaign(arguments.campaign);
     if (!arguments.urdf.empty()) check_urdf(arguments, file);
-    const Parameters parameters = io::read_estimate(arguments.estimate, file.campaign);
+    const Parameters parameters = io::read_estimate(arguments.estimate, file);
     if (!arguments.urdf.empty()) export_urdf(arguments, file, parameters);
     if (!arguments.dh.empty()) export_dh(arguments, file, parameters);
 }

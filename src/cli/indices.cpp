@@ -91,7 +91,7 @@ Measurements read_input(const Arguments& arguments, const io::CampaignFile& file
 
 void print_indices(const Arguments& arguments) {
     const auto file = io::read_campaign(arguments.paths.campaign);
-    const Campaign& campaign = file.campaign;
+    const Campaign& campaign = file;
     const Measurements measurements = read_input(arguments, file);
     const Parameters registered = compute_from(arguments.paths.measurements, [&] {
         return register_base_and_targets(campaign, measurements);

@@ -137,7 +137,7 @@ std::string describe_compliances(const Chain& robot) {
 
 /// The campaign with every error a rigid link can have.
 Campaign with_complete_model(const io::CampaignFile& file) {
-    return with_robot(file.campaign, complete_model(file.declared_robot));
+    return with_robot(file, complete_model(file.declared_robot));
 }
 
 std::string describe_complete(const Campaign& complete, std::size_t rank) {
@@ -164,7 +164,7 @@ void warn_about_gap(const std::string& path, const Campaign& campaign,
 }
 
 void print_stated(const io::CampaignFile& file) {
-    const Campaign& campaign = file.campaign;
+    const Campaign& campaign = file;
     const Identifiability stated = find_identifiable(campaign);
     const Campaign complete = with_complete_model(file);
     const std::size_t rank = stated.kept.size();
@@ -195,7 +195,7 @@ void print_reduced(const io::CampaignFile& file) {
 }
 
 void print_campaign(const io::CampaignFile& file) {
-    const Campaign& campaign = file.campaign;
+    const Campaign& campaign = file;
     print(fmt::format("{}\nsensor: {}; model error {}\n", campaign.name, describe(*campaign.sensor),
                       describe_model_error(campaign)));
     if (file.urdf) {
@@ -251,7 +251,7 @@ void inspect(const Arguments& arguments) {
     if (!arguments.measurements.empty()) {
         const Measurements measurements = io::read_measurements(arguments.measurements, file);
         patterns = compute_from(arguments.measurements,
-                                [&] { return fit_joint_signs(file.campaign, measurements); });
+                                [&] { return fit_joint_signs(file, measurements); });
     }
     print_campaign(file);
     if (!patterns.empty()) print_joint_directions(file, patterns);

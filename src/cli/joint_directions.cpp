@@ -35,7 +35,7 @@ bool fits_as(const SignPattern& a, const SignPattern& b) {
 void print_joint_directions(const io::CampaignFile& file,
                             const std::vector<SignPattern>& patterns) {
     constexpr std::size_t shown = 5;
-    const Chain& robot = file.campaign.robot;
+    const Chain& robot = file.robot;
     const auto reversed_count = [](const SignPattern& pattern) {
         return std::count(pattern.is_reversed.begin(), pattern.is_reversed.end(), true);
     };
@@ -53,11 +53,11 @@ void print_joint_directions(const io::CampaignFile& file,
                                    : fmt::format(" ({} choices fit alike, by the robot's symmetry)",
                                                  alike_end - patterns.begin());
     if (&best == &stated) {
-        print(fmt::format(
-            "joint directions: as stated{}; the registered robot misses the {} by "
-            "{} mm (RMS), otherwise by {} mm at least\n",
-            others, words_of(*file.campaign.sensor).readings, format_mm(stated.distance_rms),
-            alike_end == patterns.end() ? "-" : format_mm(alike_end->distance_rms)));
+        print(
+            fmt::format("joint directions: as stated{}; the registered robot misses the {} by "
+                        "{} mm (RMS), otherwise by {} mm at least\n",
+                        others, words_of(*file.sensor).readings, format_mm(stated.distance_rms),
+                        alike_end == patterns.end() ? "-" : format_mm(alike_end->distance_rms)));
         return;
     }
     Table table{{"reversed joints", "RMS/mm"}, {}};

@@ -80,8 +80,8 @@ Measurements read_measured(const std::string& path, const io::CampaignFile& file
     Index count = 0;
     std::string first;
     for (Index i = 0; i < measured.configuration_count(); ++i) {
-        const std::string violation = describe_limit_violation(
-            file.campaign.robot, measured.configurations.row(i).transpose());
+        const std::string violation =
+            describe_limit_violation(file.robot, measured.configurations.row(i).transpose());
         if (violation.empty()) continue;
         if (++count == 1)
             first = quote(measured.ids[static_cast<std::size_t>(i)]) + ": " + violation;

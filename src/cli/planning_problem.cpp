@@ -133,7 +133,7 @@ void count_new_poses(PlanningProblem& problem, Index asked_for) {
 }
 
 RowMatrixXd find_workspace(const io::PosePlanRequest& request, const io::CampaignFile& file) {
-    const Campaign& campaign = file.campaign;
+    const Campaign& campaign = file;
     if (!request.workspace.empty()) return io::read_configurations(request.workspace, file).joints;
     Cell cell = file.cell;
     cell.sight.reset();  // the robot works where the tracker sees nothing, too
@@ -155,7 +155,7 @@ io::PosePlanRequest complete_request(const PlanningArguments& arguments,
                                      const io::CampaignFile& file) {
     io::PosePlanRequest request = arguments.request;
     request.seed = arguments.seed.value_or(file.seed);
-    request.has_prior = arguments.prior.value_or(file.campaign.spread.is_prior);
+    request.has_prior = arguments.prior.value_or(file.spread.is_prior);
     request.criterion = !arguments.criterion.empty()  ? parse_criterion(arguments.criterion)
                         : request.is_focused_on_robot ? Criterion::D
                                                       : Criterion::V;
@@ -181,20 +181,20 @@ struct StatedProblem {
 /// All but pool, poses to keep and workspace.
 StatedProblem state_problem(const PlanningArguments& arguments) {
     io::CampaignFile file = io::read_campaign(arguments.request.campaign);
-    check_torques_known(file.path, file.campaign.robot);
+    check_torques_known(file.path, file.robot);
     const io::PosePlanRequest request = complete_request(arguments, file);
     std::optional<Measurements> measured;
     if (!request.augment.empty()) {
         measured = read_measured(request.augment, file);
-        check_is_of_robot(file.campaign, *measured, request.augment);
+        check_is_of_robot(file, *measured, request.augment);
     }
-    file.campaign.spread.is_prior = request.has_prior;
-    settle_base(file.campaign, measured);
+    file.spread.is_prior = request.has_prior;
+    settle_base(file, measured);
     Cell cell = file.cell;
     if (!request.repaired.empty()) {
         cell.least_joint_distance = std::max(cell.least_joint_distance, distance_from_dropped);
     }
-    const Campaign& campaign = file.campaign;
+    const Campaign& campaign = file;
     PlanningProblem problem{request, campaign, Constraints(campaign, std::move(cell)), {}, {}, 0, 0,
                             {},      {}};
     apply_options(problem);

@@ -93,7 +93,7 @@ void apply_campaign_defaults(Arguments& arguments) {
     request.criterion = !arguments.criterion.empty() ? parse_criterion(arguments.criterion)
                         : file                       ? file->criterion
                                                      : Criterion::D;
-    request.has_prior = arguments.prior.value_or(file && file->campaign.spread.is_prior);
+    request.has_prior = arguments.prior.value_or(file && file->spread.is_prior);
     arguments.search.seed = arguments.seed.value_or(file ? file->seed : 1);
 }
 
@@ -200,10 +200,10 @@ void select(Arguments arguments) {
     const io::PlanFile file =
         make_plan_file(problem, search(problem, arguments, watch, interrupted));
     const io::CampaignFile* campaign = problem.campaign ? &*problem.campaign : nullptr;
-    io::write_plan(out, file, campaign != nullptr ? &campaign->campaign : nullptr);
+    io::write_plan(out, file, campaign);
     print_plan(file);
     if (campaign != nullptr) {
-        print(describe_scaling(campaign->campaign, problem.request.source.repeats));
+        print(describe_scaling(*campaign, problem.request.source.repeats));
     }
     if (problem.request.has_prior) print("prior:      the scale, as standard deviation\n");
     print("plan:       " + out + '\n');

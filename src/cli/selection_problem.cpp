@@ -102,7 +102,7 @@ Candidates read_candidates(SelectionProblem& problem) {
     } else if (source.kind == Kind::Measurements) {
         const Measurements& measured =
             candidates.measured.emplace(read_measured(source.path, *problem.campaign));
-        check_is_of_robot(problem.campaign->campaign, measured, source.path);
+        check_is_of_robot(*problem.campaign, measured, source.path);
         problem.ids = measured.ids;
         problem.configurations = measured.configurations;
         candidates.share = share_seen(measured);
@@ -113,7 +113,7 @@ Candidates read_candidates(SelectionProblem& problem) {
 /// Random candidates and their blocks, part by part until `stop` comes; all targets are seen.
 void draw_candidates(SelectionProblem& problem, const Parameters& parameters,
                      const StopSignal& stop) {
-    const Campaign& campaign = problem.campaign->campaign;
+    const Campaign& campaign = *problem.campaign;
     io::CandidateSource& source = problem.request.source;
     const Index rows = campaign.sensor->row_count();
     check_memory(campaign, source.count, "--random");
@@ -153,7 +153,7 @@ std::string checksum_of(const SelectionProblem& problem, const Candidates& candi
 Parameters find_parameters(const SelectionProblem& problem,
                            const std::optional<Measurements>& candidates,
                            const std::optional<Measurements>& augment) {
-    const Campaign& campaign = problem.campaign->campaign;
+    const Campaign& campaign = *problem.campaign;
     const auto register_from = [&](const std::string& path, const Measurements& measured) {
         return compute_from(path, [&] { return register_base_and_targets(campaign, measured); });
     };
@@ -169,11 +169,10 @@ Parameters find_parameters(const SelectionProblem& problem,
 
 void hold_measured(SelectionProblem& problem, const Parameters& parameters,
                    const Measurements& measured) {
-    held(problem) +=
-        information(make_blocks(problem.campaign->campaign, parameters, measured.configurations,
-                                mean_repeats(measured) * share_seen(measured)));
+    held(problem) += information(make_blocks(*problem.campaign, parameters, measured.configurations,
+                                             mean_repeats(measured) * share_seen(measured)));
     problem.options.held_pose_count = measured.configuration_count();
-    const Index joints = problem.campaign->campaign.robot.joint_count();
+    const Index joints = problem.campaign->robot.joint_count();
     for (Index i = 0; i < problem.configurations.rows(); ++i) {
         const auto distance = (measured.configurations.leftCols(joints).rowwise() -
                                problem.configurations.row(i).head(joints))
@@ -185,7 +184,7 @@ void hold_measured(SelectionProblem& problem, const Parameters& parameters,
 }
 
 void focus_on_robot(SelectionProblem& problem) {
-    problem.options.nuisance = nuisance_of_robot(problem.campaign->campaign);
+    problem.options.nuisance = nuisance_of_robot(*problem.campaign);
 }
 
 /// Angles of the joints that turn: what distances between poses are taken of.
@@ -200,8 +199,8 @@ RowMatrixXd turning_joints(const Chain& robot, const RowMatrixXd& configurations
 void state_with_robot(SelectionProblem& problem, const StopSignal& stop) {
     io::SelectionRequest& request = problem.request;
     problem.campaign = io::read_campaign(request.source.campaign);
-    problem.campaign->campaign.spread.is_prior = request.has_prior;
-    const Campaign& campaign = problem.campaign->campaign;
+    problem.campaign->spread.is_prior = request.has_prior;
+    const Campaign& campaign = *problem.campaign;
     const Candidates candidates = read_candidates(problem);
     const std::optional<Measurements>& measured = candidates.measured;
     if (request.source.repeats == 0) {

@@ -49,10 +49,9 @@ std::vector<std::string> make_comments(const Arguments& arguments, const Campaig
 
 /// At random configurations, or at those of a file.
 Simulation simulate_as_asked(const Arguments& arguments, const io::CampaignFile& file) {
-    if (arguments.configurations.empty()) return simulate(file.campaign, arguments.options);
+    if (arguments.configurations.empty()) return simulate(file, arguments.options);
     const auto asked = io::read_configurations(arguments.configurations, file);
-    Simulation simulation =
-        simulate(file.campaign, asked.joints, asked.is_visible, arguments.options);
+    Simulation simulation = simulate(file, asked.joints, asked.is_visible, arguments.options);
     simulation.measurements.ids = asked.ids;
     return simulation;
 }
@@ -62,14 +61,14 @@ void run_simulation(Arguments arguments) {
     const auto file = io::read_campaign(arguments.paths.campaign);
     arguments.options.seed = arguments.seed.value_or(file.seed);
     const Simulation simulation = simulate_as_asked(arguments, file);
-    io::write_measurements_csv(arguments.out, file.campaign, simulation.measurements,
-                               make_comments(arguments, file.campaign));
+    io::write_measurements_csv(arguments.out, file, simulation.measurements,
+                               make_comments(arguments, file));
     print(fmt::format("{} configurations, {} samples: {}\n",
                       simulation.measurements.configuration_count(),
                       simulation.measurements.observations.rows(), arguments.out));
     print_section(fmt::format("True parameters (errors of the robot, base, {})",
-                              words_of(*file.campaign.sensor).unknowns),
-                  value_table(file.campaign, simulation.truth));
+                              words_of(*file.sensor).unknowns),
+                  value_table(file, simulation.truth));
 }
 
 void add_options(CLI::App& command, Arguments& arguments) {

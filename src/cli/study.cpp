@@ -141,10 +141,10 @@ void study(const Arguments& arguments) {
     check_outputs({arguments.paths.campaign, arguments.paths.measurements},
                   {arguments.csv, arguments.plot});
     auto file = io::read_campaign(arguments.paths.campaign);
-    bool& is_prior = file.campaign.spread.is_prior;
+    bool& is_prior = file.spread.is_prior;
     is_prior = arguments.prior.value_or(is_prior);
     const auto measurements = read_measured(arguments.paths.measurements, file);
-    check_is_of_robot(file.campaign, measurements, arguments.paths.measurements);
+    check_is_of_robot(file, measurements, arguments.paths.measurements);
     StudyOptions options = arguments.options;
     options.seed = arguments.seed.value_or(file.seed);
     options.criteria = arguments.criteria;
@@ -152,7 +152,7 @@ void study(const Arguments& arguments) {
 
     Progress progress("calibrating", arguments.progress);
     const auto rows = compute_from(arguments.paths.measurements, [&] {
-        return study_pose_counts(file.campaign, measurements, options,
+        return study_pose_counts(file, measurements, options,
                                  [&](Index done, Index total) { progress(done, total); });
     });
     print(format_table(study_table(options.criteria, rows)));
@@ -161,7 +161,7 @@ void study(const Arguments& arguments) {
     }
     if (!arguments.plot.empty()) {
         draw_plot(arguments.plot, [&](const std::string& image) {
-            return study_plot_script(options.criteria, rows, file.campaign.name, image);
+            return study_plot_script(options.criteria, rows, file.name, image);
         });
     }
 }

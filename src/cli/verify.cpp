@@ -203,7 +203,7 @@ void verify_selection(const Arguments& arguments) {
     const std::vector<Index> poses = find_poses(file, problem, findings);
     check_poses(problem, poses, findings);
     check_numbers(file.plan, problem, poses, findings);
-    if (problem.campaign) check_assumptions(arguments.plan, problem.campaign->campaign, findings);
+    if (problem.campaign) check_assumptions(arguments.plan, *problem.campaign, findings);
     findings.conclude(arguments.plan);
 }
 

@@ -180,7 +180,7 @@ CampaignFile parse_campaign(const std::string& content, const std::string& path)
          "base", "spread", "prior", "criterion", "seed", "measurements", "cell"});
     CampaignFile file;
     file.path = path;
-    Campaign& campaign = file.campaign;
+    Campaign& campaign = file;
     campaign.name = read_name(map.require("name"));
 
     const RobotSection robot = read_robot(map.require("robot"));
@@ -204,7 +204,7 @@ CampaignFile parse_campaign(const std::string& content, const std::string& path)
         campaign.model_error_orientation = read_positive(*error, true);
     }
     if (const auto spread = map.find("spread")) campaign.spread = read_spread(*spread, campaign);
-    if (const auto prior = map.find("prior")) file.campaign.spread.is_prior = prior->boolean();
+    if (const auto prior = map.find("prior")) file.spread.is_prior = prior->boolean();
     if (const auto criterion = map.find("criterion")) file.criterion = read_criterion(*criterion);
     if (const auto seed = map.find("seed")) file.seed = seed->natural_number();
     if (const auto measurements = map.find("measurements")) {

@@ -10,25 +10,25 @@ namespace {
 bool is_matlab(const std::string& path) { return path.ends_with(".mat") || path.ends_with(".MAT"); }
 
 Configurations read_any(const std::string& path, const CampaignFile& file) {
-    if (!is_matlab(path)) return read_configurations_csv(path, file.campaign);
-    Measurements read = read_measurements_mat(path, file.campaign, file.mat);
+    if (!is_matlab(path)) return read_configurations_csv(path, file);
+    Measurements read = read_measurements_mat(path, file, file.mat);
     const Index count = read.configuration_count();
     return {std::move(read.ids), std::move(read.configurations),
-            RowArrayXb::Constant(count, file.campaign.sensor->target_count(), true)};
+            RowArrayXb::Constant(count, file.sensor->target_count(), true)};
 }
 
 }  // namespace
 
 Measurements read_measurements(const std::string& path, const CampaignFile& file) {
-    return is_matlab(path) ? read_measurements_mat(path, file.campaign, file.mat)
-                           : read_measurements_csv(path, file.campaign);
+    return is_matlab(path) ? read_measurements_mat(path, file, file.mat)
+                           : read_measurements_csv(path, file);
 }
 
 Configurations read_configurations(const std::string& path, const CampaignFile& file) {
     Configurations read = read_any(path, file);
     for (Index i = 0; i < read.joints.rows(); ++i) {
         const std::string violation =
-            describe_limit_violation(file.campaign.robot, read.joints.row(i).transpose());
+            describe_limit_violation(file.robot, read.joints.row(i).transpose());
         if (violation.empty()) continue;
         throw input_error_at({path}, "configuration " +
                                          quote(read.ids[static_cast<std::size_t>(i)]) +

@@ -42,11 +42,11 @@ PlannedPoses plan_in_cell(const Campaign& campaign, const Constraints& constrain
 
 TEST(APlanInTheDemonstrationCell, SatisfiesEveryConstraintByASeparateDenseCheck) {
     const io::CampaignFile file = demo();
-    const Constraints constraints(file.campaign, file.cell);
+    const Constraints constraints(file, file.cell);
     for (const Criterion criterion : {Criterion::D, Criterion::V}) {
-        const PlannedPoses plan = plan_in_cell(file.campaign, constraints, 16, criterion);
+        const PlannedPoses plan = plan_in_cell(file, constraints, 16, criterion);
         EXPECT_GT(plan.value, plan.pool_choice.value);
-        CellRecheck recheck(file.campaign, file.cell);
+        CellRecheck recheck(file, file.cell);
         for (Index i = 0; i < plan.configurations.rows(); ++i) {
             const VectorXd q = plan.configurations.row(i).transpose();
             const auto violations = recheck.violations(q);
@@ -63,7 +63,7 @@ TEST(APlanInTheDemonstrationCell, SatisfiesEveryConstraintByASeparateDenseCheck)
 /// Calibrations simulated, POSEWISE_SWEEP_COUNT of them or 2 000.
 TEST(APlanInTheDemonstrationCell, PredictsTheCovarianceThatSimulatedCalibrationsHave) {
     io::CampaignFile file = demo_showing_all();
-    Campaign& campaign = file.campaign;
+    Campaign& campaign = file;
     campaign.model_error = 1e-5;  // so that the tracker's noise dominates
     campaign.joint_repeatability = VectorXd::Constant(6, 5e-6);
     const Constraints constraints(campaign, file.cell);
@@ -104,7 +104,7 @@ TEST(APlanInTheDemonstrationCell, PredictsTheCovarianceThatSimulatedCalibrations
 
 TEST(APlanForTheTrackersNoise, BeatsOneForIsotropicNoiseOfEqualTrace) {
     io::CampaignFile file = demo_showing_all();
-    Campaign& tracker = file.campaign;
+    Campaign& tracker = file;
     tracker.model_error = 0;
     const Constraints constraints(tracker, file.cell);
     const auto& points = dynamic_cast<const PointSensor&>(*tracker.sensor);

@@ -23,7 +23,7 @@ CampaignFile read(const std::string& text) {
 }
 
 TEST(ReadCampaign, TakesJointsWithLimitsInAnyUnit) {
-    const Chain robot = read(campaign_text).campaign.robot;
+    const Chain robot = read(campaign_text).robot;
     ASSERT_EQ(robot.joint_count(), 3);
     EXPECT_EQ(robot.joints()[0].name, "q1");
     EXPECT_DOUBLE_EQ(robot.joints()[0].upper, pi / 2);
@@ -33,7 +33,7 @@ TEST(ReadCampaign, TakesJointsWithLimitsInAnyUnit) {
 }
 
 TEST(ReadCampaign, TakesElementsWithSignsOffsetsAndCoupling) {
-    const std::vector<Element> elements = read(campaign_text).campaign.robot.elements();
+    const std::vector<Element> elements = read(campaign_text).robot.elements();
     ASSERT_EQ(elements.size(), 6U);
     EXPECT_EQ(elements[2].value, 0.312);
     EXPECT_EQ(elements[2].parameter, "Tx1");
@@ -53,8 +53,8 @@ TEST(ReadCampaign, TakesElementsWithSignsOffsetsAndCoupling) {
 TEST(ReadCampaign, DoesNotMindBlanksInElements) {
     const auto text = replaced(campaign_text, "Ry -q2 + 0.5*q1 + 90 deg [dq2]",
                                "'  Ry - q2+0.5 * q1+90deg[ dq2 ] '");
-    const Element spaced = read(text).campaign.robot.elements()[3];
-    const Element plain = read(campaign_text).campaign.robot.elements()[3];
+    const Element spaced = read(text).robot.elements()[3];
+    const Element plain = read(campaign_text).robot.elements()[3];
     EXPECT_EQ(spaced.value, plain.value);
     EXPECT_EQ(spaced.parameter, plain.parameter);
     ASSERT_EQ(spaced.joints.size(), plain.joints.size());
@@ -91,20 +91,20 @@ TEST(ReadCampaign, TakesGravityAndHarmonics) {
     const CampaignFile file =
         read_level("  gravity: true\n  harmonics: {orders: [2, 40.5], joints: [q1]}\n",
                    "gravity_mrad: 0.7, harmonic_mrad: 0.2");
-    const auto names = parameter_names(file.campaign);
-    const VectorXd scale = parameter_scale(file.campaign);
+    const auto names = parameter_names(file);
+    const VectorXd scale = parameter_scale(file);
     const auto size_of = [&](const std::string& name) {
         return scale[std::find(names.begin(), names.end(), name) - names.begin()];
     };
-    EXPECT_EQ(file.campaign.robot.parameter_count(), 4 + 2 + 4);
+    EXPECT_EQ(file.robot.parameter_count(), 4 + 2 + 4);
     EXPECT_DOUBLE_EQ(size_of("q2.sin(q2)"), 0.7e-3);
     EXPECT_DOUBLE_EQ(size_of("q1.cos(40.5q1)"), 0.2e-3);
     EXPECT_DOUBLE_EQ(size_of("dq1"), 3e-3);
-    EXPECT_EQ(read_level("  gravity: false\n").campaign.robot.parameter_count(), 4);
-    EXPECT_EQ(read_level("  harmonics: {orders: [1]}\n").campaign.robot.parameter_count(), 4 + 4);
+    EXPECT_EQ(read_level("  gravity: false\n").robot.parameter_count(), 4);
+    EXPECT_EQ(read_level("  harmonics: {orders: [1]}\n").robot.parameter_count(), 4 + 4);
     const CampaignFile on_wall = read_level("  gravity: {direction: [0, 9.8, 0], joints: [q1]}\n");
-    EXPECT_EQ(on_wall.campaign.robot.parameter_names()[1], "q1.sin(q1)");
-    EXPECT_EQ(parameter_scale(on_wall.campaign)[7], 1e-3);
+    EXPECT_EQ(on_wall.robot.parameter_names()[1], "q1.sin(q1)");
+    EXPECT_EQ(parameter_scale(on_wall)[7], 1e-3);
 }
 
 TEST(ReadCampaign, ReducesGeometryBesideTerms) {
@@ -116,13 +116,12 @@ TEST(ReadCampaign, ReducesGeometryBesideTerms) {
     const CampaignFile file =
         read(replaced(text, "  elements:\n", "  harmonics: {orders: [2]}\n  elements:\n"));
     EXPECT_EQ(file.error_model, ErrorModel::Complete);
-    EXPECT_EQ(file.campaign.robot.parameter_count(),
-              geometric.campaign.robot.parameter_count() + 4);
+    EXPECT_EQ(file.robot.parameter_count(), geometric.robot.parameter_count() + 4);
 }
 
 TEST(ReadCampaign, TakesSensorBaseSpreadAndDefaults) {
     const CampaignFile file = read(campaign_text);
-    const Campaign& campaign = file.campaign;
+    const Campaign& campaign = file;
     EXPECT_EQ(campaign.name, "crane");
     const auto& sensor = dynamic_cast<const PointSensor&>(*campaign.sensor);
     EXPECT_EQ(sensor.target_count(), 2);
@@ -149,7 +148,7 @@ TEST(ReadCampaign, TakesSensorBaseSpreadAndDefaults) {
 
 TEST(ReadCampaign, TurnsTheBaseAboutFixedAxesXThenYThenZ) {
     const auto text = replaced(campaign_text, "rpy_deg: [0, 0, 90]", "rpy_deg: [90, 0, 90]");
-    const Matrix3d R = read(text).campaign.nominal.world_from_base.linear();
+    const Matrix3d R = read(text).nominal.world_from_base.linear();
     EXPECT_TRUE((R * Vector3d::UnitY()).isApprox(Vector3d::UnitZ()));  // by roll; yaw leaves it
 }
 
@@ -157,22 +156,22 @@ TEST(ReadCampaign, NeedsOnlyNameRobotAndSensor) {
     const auto end = campaign_text.find("model_error_mm");
     const CampaignFile file = read(replaced(
         campaign_text.substr(0, end), "position_mm: [[100, 0, 0], [0, 200, -10]]", "count: 3"));
-    EXPECT_EQ(file.campaign.model_error, 1e-4);
-    EXPECT_EQ(file.campaign.spread.length, 1e-3);
+    EXPECT_EQ(file.model_error, 1e-4);
+    EXPECT_EQ(file.spread.length, 1e-3);
     EXPECT_EQ(file.criterion, Criterion::D);
     EXPECT_EQ(file.seed, 1U);
-    EXPECT_FALSE(file.campaign.has_nominal_base);
-    EXPECT_FALSE(file.campaign.has_nominal_targets);
-    ASSERT_EQ(file.campaign.nominal.sensor.size(), 9);
-    const Vector3d a = file.campaign.nominal.sensor.segment<3>(0);
-    const Vector3d b = file.campaign.nominal.sensor.segment<3>(3);
-    const Vector3d c = file.campaign.nominal.sensor.segment<3>(6);
+    EXPECT_FALSE(file.has_nominal_base);
+    EXPECT_FALSE(file.has_nominal_targets);
+    ASSERT_EQ(file.nominal.sensor.size(), 9);
+    const Vector3d a = file.nominal.sensor.segment<3>(0);
+    const Vector3d b = file.nominal.sensor.segment<3>(3);
+    const Vector3d c = file.nominal.sensor.segment<3>(6);
     EXPECT_GT((b - a).cross(c - a).norm(), 0.01);  // not in line
 }
 
 TEST(ReadCampaign, TakesKnownTargets) {
     const auto text = replaced(campaign_text, "-10]]}", "-10]], known: true}");
-    const Campaign campaign = read(text).campaign;
+    const Campaign campaign = read(text);
     EXPECT_EQ(campaign.nominal.sensor.size(), 0);
     const auto& sensor = dynamic_cast<const PointSensor&>(*campaign.sensor);
     EXPECT_EQ(sensor.target_position(1, VectorXd()), Vector3d(0, 0.2, -0.01));
@@ -181,9 +180,8 @@ TEST(ReadCampaign, TakesKnownTargets) {
 TEST(ReadCampaign, HasTheStatedErrorsIfAnyIsStated) {
     const CampaignFile file = read(campaign_text);
     EXPECT_EQ(file.error_model, ErrorModel::Stated);
-    EXPECT_EQ(file.campaign.robot.parameter_names(),
-              (std::vector<std::string>{"dq1", "Tx1", "dq2", "Ty2"}));
-    EXPECT_EQ(file.campaign.nominal.robot, VectorXd::Zero(4));
+    EXPECT_EQ(file.robot.parameter_names(), (std::vector<std::string>{"dq1", "Tx1", "dq2", "Ty2"}));
+    EXPECT_EQ(file.nominal.robot, VectorXd::Zero(4));
 }
 
 TEST(ReadCampaign, ReducesTheCompleteErrorsToAnIrreducibleSet) {
@@ -198,18 +196,18 @@ sensor: {kind: points, sigma_mm: 0.1, targets: {count: 3}}
     EXPECT_EQ(file.error_model, ErrorModel::Complete);
     EXPECT_EQ(file.declared_robot.parameter_count(), 0);
     // 4R + 2P + 3n of all, of which base 6 and targets 9.
-    EXPECT_EQ(file.campaign.robot.parameter_count(), 4 * 2 + 9 - 6 - 9);
-    EXPECT_EQ(file.campaign.nominal.robot.size(), file.campaign.robot.parameter_count());
+    EXPECT_EQ(file.robot.parameter_count(), 4 * 2 + 9 - 6 - 9);
+    EXPECT_EQ(file.nominal.robot.size(), file.robot.parameter_count());
 }
 
 TEST(ReadCampaign, ReadsTheFanucDesigns) {
     const std::string folder = std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/";
     const CampaignFile file = read_campaign(folder + "campaign.yaml");
-    EXPECT_EQ(file.campaign.robot.parameter_count(), 18);
-    EXPECT_EQ(find_identifiable(file.campaign).dropped.size(), 0U);
+    EXPECT_EQ(file.robot.parameter_count(), 18);
+    EXPECT_EQ(find_identifiable(file).dropped.size(), 0U);
     const CampaignFile seed_report = read_campaign(folder + "seed_report.yaml");
-    EXPECT_EQ(seed_report.campaign.robot.parameter_count(), 18);
-    EXPECT_EQ(find_identifiable(seed_report.campaign).dropped.size(), 1U);
+    EXPECT_EQ(seed_report.robot.parameter_count(), 18);
+    EXPECT_EQ(find_identifiable(seed_report).dropped.size(), 1U);
 }
 
 TEST(ReadCampaign, FindsAsManyErrorsInTheFanucAsItsDesignStates) {
@@ -219,7 +217,7 @@ TEST(ReadCampaign, FindsAsManyErrorsInTheFanucAsItsDesignStates) {
     std::ifstream in(path);
     const std::string text(std::istreambuf_iterator<char>(in), {});
     const auto complete = replaced(text, "  elements:", "  errors: complete\n  elements:");
-    EXPECT_EQ(read(complete).campaign.robot.parameter_count(), 18);
+    EXPECT_EQ(read(complete).robot.parameter_count(), 18);
 }
 
 }  // namespace

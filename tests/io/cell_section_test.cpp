@@ -139,10 +139,10 @@ TEST(ReadCell, KnowsTheDemonstrationCell) {
     const CampaignFile file = read_campaign(folder + "campaign.yaml");
     const Campaign expected_campaign = testing::cell_campaign();
     const Cell expected = testing::demo_cell();
-    EXPECT_EQ(file.campaign.robot.joint_count(), 6);
-    EXPECT_TRUE(file.campaign.nominal.world_from_base.isApprox(
-        expected_campaign.nominal.world_from_base, 1e-12));
-    EXPECT_TRUE(file.campaign.nominal.sensor.isApprox(expected_campaign.nominal.sensor, 1e-12));
+    EXPECT_EQ(file.robot.joint_count(), 6);
+    EXPECT_TRUE(
+        file.nominal.world_from_base.isApprox(expected_campaign.nominal.world_from_base, 1e-12));
+    EXPECT_TRUE(file.nominal.sensor.isApprox(expected_campaign.nominal.sensor, 1e-12));
     ASSERT_EQ(file.cell.links.size(), expected.links.size());
     for (std::size_t i = 0; i < expected.links.size(); ++i) {
         const Link& link = file.cell.links[i];
@@ -167,7 +167,7 @@ TEST(ReadCell, KnowsTheDemonstrationCell) {
 
 TEST(ReadSensor, TakesNoiseOfATrackerAndOfEachAxis) {
     const auto noise_with = [](const std::string& by) {
-        const Campaign campaign = read(replaced(cell_text, "sigma_mm: 0.05", by)).campaign;
+        const Campaign campaign = read(replaced(cell_text, "sigma_mm: 0.05", by));
         return dynamic_cast<const PointSensor&>(*campaign.sensor).noise();
     };
     const auto tracker =
@@ -189,11 +189,11 @@ TEST(ReadRobot, TakesTheRepeatabilityOfJoints) {
     const std::string q2 = "q2: {limits_deg: [-120, 120]}";
     const auto text =
         replaced(cell_text, q2, "q2: {limits_deg: [-120, 120], repeatability_urad: 20}");
-    const VectorXd repeatability = read(text).campaign.joint_repeatability;
+    const VectorXd repeatability = read(text).joint_repeatability;
     ASSERT_EQ(repeatability.size(), 2);
     EXPECT_EQ(repeatability[0], 0);
     EXPECT_DOUBLE_EQ(repeatability[1], 2e-5);
-    EXPECT_EQ(read(cell_text).campaign.joint_repeatability.size(), 0);
+    EXPECT_EQ(read(cell_text).joint_repeatability.size(), 0);
     expect_error(q2, "q2: {limits_deg: [-120, 120], repeatability_mm: 1}", "5:53",
                  "the joint drives a rotation");
     expect_error(q2, "q2: {limits_deg: [-120, 120], repeatability_urad: -1}", "5:55", "positive");

@@ -36,7 +36,7 @@ const std::string weights = "{links: {q2: {mass_kg: 10, center_mm: [0, 0, 500]}}
 const std::string torques = "{torques_Nm: {q2: 300, q1: 40}}";
 
 TEST(ComplianceSection, TakesWeightsOfLinksAndPayload) {
-    const Chain robot = read_with(weights).campaign.robot;
+    const Chain robot = read_with(weights).robot;
     ASSERT_EQ(compliances(robot).size(), 1U);
     EXPECT_EQ(compliances(robot)[0].joint, 1);
     EXPECT_EQ(robot.parameter_names()[3], "q2.compliance");
@@ -45,16 +45,16 @@ TEST(ComplianceSection, TakesWeightsOfLinksAndPayload) {
 
     // At the flange: 1.5 m behind, the arm is level at q2 = 90 deg, so that it pulls with q2.
     const Chain loaded =
-        read_with("{payload: {mass_kg: 2, center_mm: [0, 0, 0]}, joints: [q2]}").campaign.robot;
+        read_with("{payload: {mass_kg: 2, center_mm: [0, 0, 0]}, joints: [q2]}").robot;
     EXPECT_NEAR(compliances(loaded)[0].largest, 2 * 9.80665 * 1.5, 0.1);
-    const Campaign campaign = read_with(weights).campaign;
+    const Campaign campaign = read_with(weights);
     EXPECT_EQ(parameter_scale(campaign)[6 + 3], 1e-3);
     EXPECT_THROW(read_with("{payload: {mass_kg: 2, center_mm: [0, 0, 0]}, joints: [q1]}"),
                  InputError);
 }
 
 TEST(ComplianceSection, TakesMeasuredTorques) {
-    const Chain robot = read_with(torques).campaign.robot;
+    const Chain robot = read_with(torques).robot;
     ASSERT_EQ(robot.torques().size(), 2U);
     EXPECT_EQ(robot.torques()[0].joint, 1);
     EXPECT_EQ(robot.torques()[0].largest, 300);
@@ -107,7 +107,7 @@ const std::string measured =
 TEST(MeasuredTorques, AreMeansBehindTheJoints) {
     const TemporaryFolder folder;
     const std::string path = folder.write("m.csv", measured);
-    const Campaign campaign = read_with(torques).campaign;
+    const Campaign campaign = read_with(torques);
     const Measurements read = read_measurements_csv(path, campaign);
     ASSERT_EQ(read.configurations.cols(), 5);
     EXPECT_EQ(read.configuration_count(), 2);   // equal joints, another load
@@ -120,14 +120,14 @@ TEST(MeasuredTorques, AreMeansBehindTheJoints) {
               read.configurations);
     // Who makes no use of them may leave them in the file.
     const std::string other = replaced(measured, "b,0,0.1,0.2,", "b,0,0.1,0.3,");
-    EXPECT_EQ(read_measurements_csv(folder.write("o.csv", other), read_with(weights).campaign)
+    EXPECT_EQ(read_measurements_csv(folder.write("o.csv", other), read_with(weights))
                   .configurations.cols(),
               3);
 }
 
 TEST(MeasuredTorques, ThatAreMissingAreAskedFor) {
     const TemporaryFolder folder;
-    const Campaign campaign = read_with(torques).campaign;
+    const Campaign campaign = read_with(torques);
     const auto error = [&](const std::string& part, const std::string& by) {
         const std::string path = folder.write("m.csv", replaced(measured, part, by));
         return input_error_of([&] { read_measurements_csv(path, campaign); });

@@ -52,7 +52,7 @@ TEST_F(ReadConfigurations, MayListTheTargetsThatAreVisible) {
 
 TEST_F(ReadConfigurations, RefusesWhatIsBeyondTheLimits) {
     const std::string header = "config,q1_deg,q2_rad,lift_mm\n";
-    const Joint& q1 = campaign_.campaign.robot.joints()[0];
+    const Joint& q1 = campaign_.robot.joints()[0];
     const double most = q1.upper * 180 / std::numbers::pi;
     read(header + "edge," + std::to_string(most + 1e-6) + ",0.25,125\n");
     const std::string error = testing::input_error_of(
@@ -68,7 +68,7 @@ TEST_F(ReadConfigurations, StillNeedsEveryJoint) {
 }
 
 TEST_F(ReadConfigurations, ACampaignMayStateAPrior) {
-    EXPECT_FALSE(campaign_.campaign.spread.is_prior);
+    EXPECT_FALSE(campaign_.spread.is_prior);
     const auto with_prior =
         folder_.write("p.yaml", std::string(testing::campaign_text) + "prior: true\n");
     EXPECT_TRUE(read_campaign(with_prior).campaign.spread.is_prior);

@@ -52,7 +52,7 @@ TEST(DhSection, IsReadWithOffsetsSignsCouplingsAndFixedRows) {
     EXPECT_DOUBLE_EQ(robot.joints()[0].upper, 0.9);
     EXPECT_DOUBLE_EQ(robot.joints()[1].lower, -90 * degree);
     EXPECT_EQ(robot.joint_motion(0), Motion::Translation);
-    EXPECT_NEAR(file.campaign.joint_repeatability[1], 1e-4, 1e-18);
+    EXPECT_NEAR(file.joint_repeatability[1], 1e-4, 1e-18);
     EXPECT_EQ(file.error_model, ErrorModel::Complete);
 
     using Eigen::AngleAxisd;
@@ -187,7 +187,7 @@ TEST(DhSection, StandsAlone) {
 
 TEST(MakeDhText, IsReadBackAsTheSameRobot) {
     for (const Chain& chain : {testing::fanuc(), testing::scara(), testing::gantry_with_wrist(),
-                               read(campaign_of(rows_of_a_rail)).campaign.robot}) {
+                               read(campaign_of(rows_of_a_rail)).robot}) {
         const Chain complete = complete_model(chain);
         RandomStream stream(9);
         const VectorXd errors = testing::random_vector(stream, complete.parameter_count(), 1e-2);

@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 class EstimateFile : public ::testing::Test {
   protected:
     EstimateFile() {
-        campaign_ = read_campaign(folder_.write("c.yaml", testing::campaign_text)).campaign;
+        campaign_ = read_campaign(folder_.write("c.yaml", testing::campaign_text));
         Estimate& estimate = report_.estimate;
         const Index count = parameter_count(campaign_);
         estimate.ending = Ending::Converged;
@@ -67,7 +67,7 @@ TEST_F(EstimateFile, GivesTheBaseThreeWaysThatAgree) {
     const auto rpy = base.at("rpy_deg").get<std::vector<double>>();
     const auto text = testing::replaced(testing::campaign_text, "[0, 0, 90]",
                                         Json(rpy).dump());  // as the campaign file takes it
-    const Campaign again = read_campaign(folder_.write("again.yaml", text)).campaign;
+    const Campaign again = read_campaign(folder_.write("again.yaml", text));
     EXPECT_TRUE(again.nominal.world_from_base.linear().isApprox(expected.linear(), 1e-12));
 }
 

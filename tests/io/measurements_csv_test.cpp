@@ -26,7 +26,7 @@ const std::string good =
 const Campaign& crane() {
     static const Campaign campaign = [] {
         const TemporaryFolder folder;
-        return read_campaign(folder.write("c.yaml", testing::campaign_text)).campaign;
+        return read_campaign(folder.write("c.yaml", testing::campaign_text));
     }();
     return campaign;
 }

@@ -21,7 +21,7 @@ class PlanFileTest : public ::testing::Test {
   protected:
     PlanFileTest() {
         const auto campaign = folder_.write("c.yaml", testing::campaign_text);
-        campaign_ = read_campaign(campaign).campaign;
+        campaign_ = read_campaign(campaign);
         file_.request.source.campaign = campaign;
         file_.request.source.path = "absent.csv";
         file_.request.source.repeats = 2.5;

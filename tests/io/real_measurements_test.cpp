@@ -34,7 +34,7 @@ TEST_F(FanucMeasurements, AreTenSamplesOfEachOf24Configurations) {
     EXPECT_EQ(measurements.observations.rows(), 240);
     EXPECT_EQ(measurements.observations.cols(), 9);
     for (Index i = 0; i < 24; ++i) EXPECT_EQ(measurements.sample_count(i), 10);
-    EXPECT_NEAR(repeatability(*file_.campaign.sensor, measurements)->length, 0.05185e-3, 0.00001e-3);
+    EXPECT_NEAR(repeatability(*file_.sensor, measurements)->length, 0.05185e-3, 0.00001e-3);
 }
 
 TEST_F(FanucMeasurements, AreTheSameInCsvAndMatlab) {
@@ -49,7 +49,7 @@ TEST_F(FanucMeasurements, AreTheSameInCsvAndMatlab) {
 TEST_F(FanucMeasurements, LieWithinTheLimitsOfTheDesign) {
     const Measurements measurements = read_measurements(csv_, file_);
     for (Index j = 0; j < 6; ++j) {
-        const Joint& joint = file_.campaign.robot.joints()[static_cast<std::size_t>(j)];
+        const Joint& joint = file_.robot.joints()[static_cast<std::size_t>(j)];
         EXPECT_GE(measurements.configurations.col(j).minCoeff(), joint.lower) << joint.name;
         EXPECT_LE(measurements.configurations.col(j).maxCoeff(), joint.upper) << joint.name;
     }

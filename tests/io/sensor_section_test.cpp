@@ -52,7 +52,7 @@ CampaignFile read(const std::string& sensor) { return parse_campaign(head + sens
 
 Measurements read_csv(const std::string& sensor, const std::string& text) {
     const TemporaryFolder folder;
-    return read_measurements_csv(folder.write("m.csv", text), read(sensor).campaign);
+    return read_measurements_csv(folder.write("m.csv", text), read(sensor));
 }
 
 std::string csv_error(const std::string& header, const std::string& cells) {
@@ -61,7 +61,7 @@ std::string csv_error(const std::string& header, const std::string& cells) {
 }
 
 TEST(ReadSensor, TakesPosesWithTheirTool) {
-    const Campaign campaign = read(poses).campaign;
+    const Campaign campaign = read(poses);
     const auto& sensor = dynamic_cast<const PoseSensor&>(*campaign.sensor);
     EXPECT_DOUBLE_EQ(sensor.sigma_orientation(), 2e-4);
     EXPECT_DOUBLE_EQ(campaign.model_error_orientation, 3e-4);
@@ -70,11 +70,11 @@ TEST(ReadSensor, TakesPosesWithTheirTool) {
     EXPECT_NEAR(campaign.nominal.sensor[5], std::numbers::pi, 1e-15);
     EXPECT_TRUE(campaign.has_nominal_targets);
     const std::string fixed = replaced(poses, "180]}", "180], known: true}");
-    EXPECT_EQ(read(fixed).campaign.nominal.sensor.size(), 0);
+    EXPECT_EQ(read(fixed).nominal.sensor.size(), 0);
 }
 
 TEST(ReadSensor, TakesWhatIsKnownOfTheBase) {
-    const Campaign campaign = read(poses).campaign;
+    const Campaign campaign = read(poses);
     EXPECT_EQ(base_parameter_count(campaign), 4);
     const auto names = parameter_names(campaign);
     EXPECT_EQ(std::vector<std::string>(names.begin(), names.begin() + 4),
@@ -82,24 +82,24 @@ TEST(ReadSensor, TakesWhatIsKnownOfTheBase) {
 }
 
 TEST(ReadSensor, TakesDistancesAndPartlyKnownTargets) {
-    const Campaign campaign = read(distances).campaign;
+    const Campaign campaign = read(distances);
     EXPECT_EQ(campaign.sensor->observation_names(), (std::vector<std::string>{"p1_a1", "p1_a2"}));
     EXPECT_EQ(campaign.sensor->unknown_names().front(), "target1.z");
     VectorXd expected(7);
     expected << 0.05, 1, 2, 0, -0.5, 0.8, 0.3;
     EXPECT_TRUE(campaign.nominal.sensor.isApprox(expected, 1e-15));
     const std::string fixed = replaced(distances, "300]]}", "300]], known: true}");
-    EXPECT_EQ(read(fixed).campaign.nominal.sensor.size(), 1);
+    EXPECT_EQ(read(fixed).nominal.sensor.size(), 1);
 }
 
 TEST(ReadSensor, TakesPlanes) {
-    const Campaign campaign = read(planes).campaign;
+    const Campaign campaign = read(planes);
     EXPECT_EQ(campaign.sensor->unknown_names(),
               (std::vector<std::string>{"plane1.tilt1", "plane1.tilt2", "plane1.offset",
                                         "plane2.tilt1", "plane2.tilt2", "plane2.offset"}));
     EXPECT_DOUBLE_EQ(campaign.nominal.sensor[2], 0.3);
     const std::string fixed = replaced(planes, "  targets", "  known_planes: true\n  targets");
-    EXPECT_EQ(read(fixed).campaign.nominal.sensor.size(), 0);
+    EXPECT_EQ(read(fixed).nominal.sensor.size(), 0);
 }
 
 TEST(ReadSensor, TellsWhatIsWrongAndWhere) {
@@ -172,7 +172,7 @@ TEST(ReadMeasurementsCsv, RefusesADistanceBelowZero) {
 TEST(WriteMeasurementsCsv, KeepsEveryKindOfNumber) {
     for (const std::string& sensor : {poses, distances, planes}) {
         const CampaignFile file = read(sensor);
-        const Campaign& campaign = file.campaign;
+        const Campaign& campaign = file;
         const Simulation simulated = simulate(campaign, {.pose_count = 4, .repeats = 2});
         const TemporaryFolder folder;
         const std::string path = folder.path("m.csv");

@@ -140,29 +140,26 @@ TEST(CalibratedUrdf, PredictsTheMeasuredPointsAsTheEstimateDoes) {
         "50], "
         "[-80, -80, 60]]}}\n";
     const CampaignFile file = read_campaign(folder.write("campaign.yaml", text));
-    const Simulation simulation = simulate(file.campaign, {30, 1, 4, 9});
+    const Simulation simulation = simulate(file, {30, 1, 4, 9});
     const Measurements& measurements = simulation.measurements;
     CalibrationReport report;
-    report.estimate = identify(file.campaign, measurements,
-                               register_base_and_targets(file.campaign, measurements));
+    report.estimate = identify(file, measurements, register_base_and_targets(file, measurements));
     ASSERT_EQ(report.estimate.ending, Ending::Converged);
-    write_estimate(folder.path("estimate.json"), file.campaign, report);
-    const Parameters parameters = read_estimate(folder.path("estimate.json"), file.campaign);
-    const CalibratedUrdf urdf =
-        make_calibrated_urdf(*file.urdf, file.campaign.robot, parameters.robot);
+    write_estimate(folder.path("estimate.json"), file, report);
+    const Parameters parameters = read_estimate(folder.path("estimate.json"), file);
+    const CalibratedUrdf urdf = make_calibrated_urdf(*file.urdf, file.robot, parameters.robot);
     EXPECT_TRUE(urdf.not_expressed.empty());
 
     folder.write("calibrated.urdf", urdf.text);
     const std::string plain =
         replaced(text, "robot: {urdf: robot", "robot: {errors: stated, urdf: calibrated");
-    const Campaign calibrated = read_campaign(folder.write("again.yaml", plain)).campaign;
+    const Campaign calibrated = read_campaign(folder.write("again.yaml", plain));
     ASSERT_EQ(calibrated.robot.parameter_count(), 0);
     Parameters same = parameters;
     same.robot.resize(0);
-    const RowMatrixXd expected = residuals(file.campaign, report.estimate.parameters, measurements);
+    const RowMatrixXd expected = residuals(file, report.estimate.parameters, measurements);
     EXPECT_LT((residuals(calibrated, same, measurements) - expected).cwiseAbs().maxCoeff(), 1e-12);
-    EXPECT_GT((residuals(file.campaign, file.campaign.nominal, measurements) - expected).norm(),
-              1e-3)
+    EXPECT_GT((residuals(file, file.nominal, measurements) - expected).norm(), 1e-3)
         << "there was something to calibrate";
 }
 

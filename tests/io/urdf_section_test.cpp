@@ -181,12 +181,12 @@ Isometry3d motion_from_zero(const Chain& chain, const VectorXd& q) {
 /// each error parameter of the robot is one of them. (Base and targets may be one too many: the
 /// height of base and targets of a SCARA is one unknown.)
 void expect_identifiable(const CampaignFile& file, Index count, const std::string& name) {
-    const Campaign complete = with_robot(file.campaign, complete_model(file.declared_robot));
+    const Campaign complete = with_robot(file, complete_model(file.declared_robot));
     EXPECT_EQ(static_cast<Index>(find_identifiable(complete).kept.size()), count) << name;
-    const Identifiability reduced = find_identifiable(file.campaign);
+    const Identifiability reduced = find_identifiable(file);
     EXPECT_EQ(static_cast<Index>(reduced.kept.size()), count) << name << ", reduced";
     for (const DroppedParameter& dropped : reduced.dropped) {
-        EXPECT_GE(dropped.parameter, 6 + file.campaign.robot.parameter_count()) << name;
+        EXPECT_GE(dropped.parameter, 6 + file.robot.parameter_count()) << name;
     }
 }
 
@@ -226,7 +226,7 @@ TEST(UrdfSection, OverridesLimitsAndAddsRepeatability) {
     EXPECT_EQ(file.declared_robot.joints()[0].upper, 2);
     EXPECT_EQ(file.declared_robot.joints()[1].upper, 0.3);
     EXPECT_EQ(file.declared_robot.joints()[2].upper, 2);
-    EXPECT_NEAR(file.campaign.joint_repeatability[2], 2e-5, 1e-18);
+    EXPECT_NEAR(file.joint_repeatability[2], 2e-5, 1e-18);
     EXPECT_EQ(file.error_model, ErrorModel::Complete);
     ASSERT_TRUE(file.urdf);
     EXPECT_EQ(file.urdf->tip_link, "link3");

@@ -8,7 +8,6 @@
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/model/cell.hpp"
 
 namespace posewise::io {
 
@@ -27,19 +26,17 @@ enum class ErrorModel {
     Complete,  ///< every geometric error of a rigid link, reduced to an irreducible set
 };
 
-/// A campaign file: the campaign and the defaults of the command line.
-struct CampaignFile {
+/// A campaign, what else its file says, and the defaults of the command line.
+struct CampaignFile : Campaign {
     std::string path;
-    Campaign campaign;
-    /// The robot as the file's elements state it. With ErrorModel::Complete, campaign.robot is
-    /// the irreducible form of its complete model, else the same.
+    /// The robot as the file's elements state it. With ErrorModel::Complete, `robot` is the
+    /// irreducible form of its complete model, else the same.
     Chain declared_robot;
     ErrorModel error_model = ErrorModel::Stated;
     std::optional<UrdfSource> urdf;  ///< where the robot comes from, if from a URDF
     Criterion criterion = Criterion::D;
     std::uint64_t seed = 1;
     MatMapping mat;
-    Cell cell;  ///< empty if the file does not describe one
 };
 
 /// Reads a campaign from YAML. Throws InputError with path:line:column for anything missing,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "posewise/measurement/sensor.hpp"
+#include "posewise/model/cell.hpp"
 #include "posewise/model/chain.hpp"
 
 namespace posewise {
@@ -52,6 +53,7 @@ struct Campaign {
     /// Whether base and targets in `nominal` were stated, not made up.
     bool has_nominal_base = false;
     bool has_nominal_targets = false;
+    Cell cell;  ///< the place it stands in; empty if nothing is said of one
 };
 
 /// Number of identified parameters of the base: 6 less those known.

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "posewise/study/study.hpp"
+#include "posewise/task/study.hpp"
 
 namespace posewise {
 

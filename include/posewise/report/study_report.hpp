@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "posewise/report/table.hpp"
-#include "posewise/study/study.hpp"
+#include "posewise/task/study.hpp"
 
 namespace posewise {
 

@@ -1,4 +1,4 @@
-#include "posewise/study/study.hpp"
+#include "posewise/task/study.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
