@@ -16,13 +16,14 @@ is_installed() {
   [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
 }
 
-install_missing_packages() {
+# install_packages <package>...: those that are not there yet.
+install_packages() {
   if ! command -v apt-get >/dev/null; then
-    echo "No apt-get here: please install these (or their like) yourself: ${packages[*]}" >&2
+    echo "No apt-get here: please install these (or their like) yourself: $*" >&2
     return 0
   fi
   local missing=() as_root=() package
-  for package in "${packages[@]}"; do
+  for package in "$@"; do
     is_installed "$package" || missing+=("$package")
   done
   if ((${#missing[@]} == 0)); then return 0; fi
@@ -49,4 +50,4 @@ build() {
   cmake --build --preset "$preset" "$@"
 }
 
-install_missing_packages
+install_packages "${packages[@]}"

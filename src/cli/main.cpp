@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/reproducible.hpp"
 #include "posewise/core/text.hpp"
 #include "posewise/core/version.hpp"
 
@@ -78,6 +79,7 @@ void add_commands(CLI::App& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    posewise::fix_cache_sizes();
     CLI::App program{"Which poses to measure, how many, and what a calibration achieved.",
                      "posewise"};
     try {
