@@ -3,39 +3,24 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <cmath>
 #include <limits>
 
 #include "posewise/core/errors.hpp"
 #include "posewise/core/text.hpp"
-#include "posewise/criteria/objective.hpp"
+#include "spectral.hpp"
 
 namespace posewise {
 namespace {
 
-struct CriterionName {
-    Criterion criterion;
-    std::string_view name;
-};
-constexpr std::array<CriterionName, 10> names{{{Criterion::O1, "o1"},
-                                               {Criterion::O2, "o2"},
-                                               {Criterion::O3, "o3"},
-                                               {Criterion::O4, "o4"},
-                                               {Criterion::O5, "o5"},
-                                               {Criterion::A, "a"},
-                                               {Criterion::D, "d"},
-                                               {Criterion::E, "e"},
-                                               {Criterion::G, "g"},
-                                               {Criterion::V, "v"}}};
+/// In the order of the enumeration.
+constexpr std::array<std::string_view, all_criteria.size()> names{"o1", "o2", "o3", "o4", "o5",
+                                                                  "a",  "d",  "e",  "g",  "v"};
 
 }  // namespace
 
 std::string_view criterion_name(Criterion criterion) {
-    return std::find_if(names.begin(), names.end(),
-                        [&](const auto& entry) { return entry.criterion == criterion; })
-        ->name;
+    return names[static_cast<std::size_t>(criterion)];
 }
 
 Criterion parse_criterion(std::string_view name) {
@@ -44,9 +29,9 @@ Criterion parse_criterion(std::string_view name) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (lower == "i") return Criterion::V;
     std::string all;
-    for (const auto& entry : names) {
-        if (entry.name == lower) return entry.criterion;
-        all += (all.empty() ? "" : ", ") + std::string(entry.name);
+    for (const Criterion criterion : all_criteria) {
+        if (criterion_name(criterion) == lower) return criterion;
+        all += (all.empty() ? "" : ", ") + std::string(criterion_name(criterion));
     }
     throw InputError(quote(name) + " is no criterion; must be one of " + all +
                      " (or i, the same as v)");
@@ -69,13 +54,11 @@ VectorXd singular_values(const RowMatrixXd& stacked) {
 }
 
 double evaluate(Criterion criterion, const VectorXd& singular_values, Index pose_count) {
-    if (criterion == Criterion::G || criterion == Criterion::V) {
+    if (needs_test_poses(criterion)) {
         throw InputError("criterion " + std::string(criterion_name(criterion)) +
                          " needs test poses, singular values are not enough");
     }
-    if (pose_count < 1) {
-        throw InputError("pose count is " + std::to_string(pose_count) + ", must be at least 1");
-    }
+    const Objective objective = make_objective(criterion, pose_count);
     const auto s = singular_values.array();
     if (s.size() == 0) return -std::numeric_limits<double>::infinity();
     const double largest = s[0];
@@ -83,24 +66,7 @@ double evaluate(Criterion criterion, const VectorXd& singular_values, Index pose
     if (!s.isFinite().all() || !(least > 1e-12 * largest)) {
         return -std::numeric_limits<double>::infinity();
     }
-    switch (criterion) {
-        case Criterion::O1:
-            return std::exp(s.log().mean()) / std::sqrt(static_cast<double>(pose_count));
-        case Criterion::O2:
-            return least / largest;
-        case Criterion::O3:
-            return least;
-        case Criterion::O4:
-            return least * (least / largest);
-        case Criterion::O5:
-            return 1 / s.inverse().sum();
-        case Criterion::A:
-            return 1 / s.inverse().square().sum();
-        case Criterion::E:
-            return least * least;
-        default:
-            return 2 * s.log().sum();
-    }
+    return spectral_criterion(objective, s.square().reverse().matrix()).value;
 }
 
 double evaluate(Criterion criterion, const MatrixXd& M, Index pose_count,

@@ -8,19 +8,23 @@
 namespace posewise {
 namespace {
 
+/// Whether phi is its square.
+bool is_root(Criterion criterion) {
+    return criterion == Criterion::O1 || criterion == Criterion::O3 || criterion == Criterion::O5;
+}
+
+/// phi = factor value^2 where it is a root.
+double factor_of(const Objective& objective) {
+    return objective.criterion == Criterion::O1 ? static_cast<double>(objective.pose_count) : 1;
+}
+
 /// d phi / d value.
 double information_slope(const Objective& objective, double value, Index parameter_count) {
     const double phi = information_of_value(objective, value, parameter_count);
-    switch (objective.criterion) {
-        case Criterion::D:
-            return phi / static_cast<double>(interest_count(objective, parameter_count));
-        case Criterion::O1:
-        case Criterion::O3:
-        case Criterion::O5:
-            return 2 * phi / value;
-        default:
-            return 1;
+    if (is_logarithm(objective.criterion)) {
+        return phi / static_cast<double>(interest_count(objective, parameter_count));
     }
+    return is_root(objective.criterion) ? 2 * phi / value : 1;
 }
 
 /// The worst of the test poses is not below their mean by any weights, whose information function
@@ -45,32 +49,17 @@ bool has_information_function(Criterion criterion) {
 }
 
 double information_of_value(const Objective& objective, double value, Index parameter_count) {
-    switch (objective.criterion) {
-        case Criterion::D:
-            return std::exp(value /
-                            static_cast<double>(interest_count(objective, parameter_count)));
-        case Criterion::O1:
-            return static_cast<double>(objective.pose_count) * value * value;
-        case Criterion::O3:
-        case Criterion::O5:
-            return value * value;
-        default:
-            return value;
+    if (is_logarithm(objective.criterion)) {
+        return std::exp(value / static_cast<double>(interest_count(objective, parameter_count)));
     }
+    return is_root(objective.criterion) ? factor_of(objective) * value * value : value;
 }
 
 double value_of_information(const Objective& objective, double phi, Index parameter_count) {
-    switch (objective.criterion) {
-        case Criterion::D:
-            return static_cast<double>(interest_count(objective, parameter_count)) * std::log(phi);
-        case Criterion::O1:
-            return std::sqrt(phi / static_cast<double>(objective.pose_count));
-        case Criterion::O3:
-        case Criterion::O5:
-            return std::sqrt(phi);
-        default:
-            return phi;
+    if (is_logarithm(objective.criterion)) {
+        return static_cast<double>(interest_count(objective, parameter_count)) * std::log(phi);
     }
+    return is_root(objective.criterion) ? std::sqrt(phi / factor_of(objective)) : phi;
 }
 
 MatrixXd supporting_matrix(const Objective& objective, const MatrixXd& M) {

@@ -23,6 +23,67 @@ Objective without_nuisance(Objective objective) {
     return objective;
 }
 
+/// 1 / trace(C M^-1), W = M^-1; C = I where it is null.
+double inverse_trace(const MatrixXd* C, const MatrixXd& W, MatrixXd* slope) {
+    const double value = 1 / (C == nullptr ? W.trace() : C->cwiseProduct(W).sum());
+    if (slope == nullptr) return value;
+    if (C == nullptr) {
+        *slope = value * value * W;
+        *slope *= W;
+    } else {
+        *slope = value * value * W * *C * W;
+    }
+    return value;
+}
+
+double worst_prediction(const Objective& objective, const Eigen::LLT<MatrixXd>& cholesky,
+                        MatrixXd* slope) {
+    const Sloped worst = worst_variance(objective, cholesky);
+    const double value = 1 / worst.value;
+    if (slope == nullptr) return value;
+    const MatrixXd W = inverse(cholesky);
+    *slope = value * value * W * weighted_information(*objective.test_poses, worst.slope) * W;
+    return value;
+}
+
+/// Criteria of single eigenvalues. Minus infinity, and the slope as it was, where the least is not
+/// positive.
+double of_eigenvalues(const Objective& objective, const MatrixXd& M, MatrixXd* slope) {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(
+        M, slope == nullptr ? Eigen::EigenvaluesOnly : Eigen::ComputeEigenvectors);
+    if (!(eigen.eigenvalues()[0] > 0)) return minus_infinity;
+    const Sloped spectral = spectral_criterion(objective, eigen.eigenvalues());
+    if (slope != nullptr) {
+        *slope =
+            eigen.eigenvectors() * spectral.slope.asDiagonal() * eigen.eigenvectors().transpose();
+    }
+    return spectral.value;
+}
+
+/// The criterion of a regular M without nuisance and, unless null, its slope.
+double evaluate_regular(const Objective& objective, const MatrixXd& M,
+                        const Eigen::LLT<MatrixXd>& cholesky, MatrixXd* slope) {
+    switch (objective.criterion) {
+        case Criterion::D:
+        case Criterion::O1: {
+            const Index L = M.rows();
+            const double value = value_of_log_determinant(objective, log_determinant(cholesky), L);
+            const double rate =
+                is_logarithm(objective.criterion) ? 1 : value / (2.0 * static_cast<double>(L));
+            if (slope != nullptr) *slope = rate * inverse(cholesky);
+            return value;
+        }
+        case Criterion::A:
+            return inverse_trace(nullptr, inverse(cholesky), slope);
+        case Criterion::V:
+            return inverse_trace(&objective.mean_test_information, inverse(cholesky), slope);
+        case Criterion::G:
+            return worst_prediction(objective, cholesky, slope);
+        default:
+            return of_eigenvalues(objective, M, slope);
+    }
+}
+
 }  // namespace
 
 Objective make_objective(Criterion criterion, Index pose_count, const Blocks* test_poses) {
@@ -32,7 +93,7 @@ Objective make_objective(Criterion criterion, Index pose_count, const Blocks* te
     Objective objective;
     objective.criterion = criterion;
     objective.pose_count = pose_count;
-    if (criterion != Criterion::G && criterion != Criterion::V) return objective;
+    if (!needs_test_poses(criterion)) return objective;
     if (test_poses == nullptr || test_poses->count() == 0) {
         throw InputError("criterion " + std::string(criterion_name(criterion)) +
                          " needs at least one test pose");
@@ -51,71 +112,23 @@ double evaluate(const Objective& objective, const MatrixXd& M) {
     }
     const Eigen::LLT<MatrixXd> cholesky(M);
     if (!is_regular(cholesky, M)) return minus_infinity;
-    switch (objective.criterion) {
-        case Criterion::D:
-            return log_determinant(cholesky);
-        case Criterion::O1:
-            return std::exp(log_determinant(cholesky) / (2.0 * static_cast<double>(M.rows()))) /
-                   std::sqrt(static_cast<double>(objective.pose_count));
-        case Criterion::A:
-            return 1 / inverse(cholesky).trace();
-        case Criterion::V:
-            return 1 / objective.mean_test_information.cwiseProduct(inverse(cholesky)).sum();
-        case Criterion::G:
-            return 1 / worst_variance(objective, cholesky).value;
-        default: {
-            const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(M, Eigen::EigenvaluesOnly);
-            if (!(eigen.eigenvalues()[0] > 0)) return minus_infinity;
-            return spectral_criterion(objective, eigen.eigenvalues()).value;
-        }
-    }
+    return evaluate_regular(objective, M, cholesky, nullptr);
 }
 
 MatrixXd gradient(const Objective& objective, const MatrixXd& M, double* value) {
-    const MatrixXd none = MatrixXd::Zero(M.rows(), M.cols());
-    double ignored = 0;
-    double& result = value != nullptr ? *value : ignored;
-    result = minus_infinity;
+    MatrixXd slope = MatrixXd::Zero(M.rows(), M.cols());
+    double result = minus_infinity;
     if (!objective.nuisance.empty()) {
         const Reduction reduced = eliminate(M, objective.nuisance);
-        if (reduced.M.size() == 0) return none;
-        return reduced.N * gradient(without_nuisance(objective), reduced.M, &result) *
-               reduced.N.transpose();
-    }
-    const Eigen::LLT<MatrixXd> cholesky(M);
-    if (!is_regular(cholesky, M)) return none;
-    const auto by_trace = [&](const MatrixXd& C) -> MatrixXd {
-        const MatrixXd W = inverse(cholesky);
-        result = 1 / C.cwiseProduct(W).sum();
-        return result * result * W * C * W;
-    };
-    switch (objective.criterion) {
-        case Criterion::D:
-            result = log_determinant(cholesky);
-            return inverse(cholesky);
-        case Criterion::O1:
-            result = evaluate(objective, M);
-            return result / (2.0 * static_cast<double>(M.rows())) * inverse(cholesky);
-        case Criterion::A:
-            return by_trace(MatrixXd::Identity(M.rows(), M.cols()));
-        case Criterion::V:
-            return by_trace(objective.mean_test_information);
-        case Criterion::G: {
-            const Sloped worst = worst_variance(objective, cholesky);
-            const MatrixXd W = inverse(cholesky);
-            result = 1 / worst.value;
-            return result * result * W * weighted_information(*objective.test_poses, worst.slope) *
-                   W;
+        if (reduced.M.size() > 0) {
+            slope = reduced.N * gradient(without_nuisance(objective), reduced.M, &result) *
+                    reduced.N.transpose();
         }
-        default: {
-            const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(M);
-            if (!(eigen.eigenvalues()[0] > 0)) return none;
-            const Sloped spectral = spectral_criterion(objective, eigen.eigenvalues());
-            result = spectral.value;
-            return eigen.eigenvectors() * spectral.slope.asDiagonal() *
-                   eigen.eigenvectors().transpose();
-        }
+    } else if (const Eigen::LLT<MatrixXd> cholesky(M); is_regular(cholesky, M)) {
+        result = evaluate_regular(objective, M, cholesky, &slope);
     }
+    if (value != nullptr) *value = result;
+    return slope;
 }
 
 }  // namespace posewise

@@ -36,12 +36,36 @@ Sloped soft_largest(const VectorXd& x, double p) {
     return result;
 }
 
-Sloped spectral_criterion(const Objective& objective, const VectorXd& eigenvalues) {
-    const double p = objective.sharpness;
+double value_of_log_determinant(const Objective& objective, double log_determinant, Index L) {
+    if (objective.criterion == Criterion::D) return log_determinant;
+    return std::exp(log_determinant / (2.0 * static_cast<double>(L))) /
+           std::sqrt(static_cast<double>(objective.pose_count));
+}
+
+namespace {
+
+/// D, O1, A and O5.
+Sloped smooth_criterion(const Objective& objective, const VectorXd& eigenvalues) {
+    const Eigen::ArrayXd inverse = eigenvalues.array().inverse();
+    const Index L = eigenvalues.size();
+    if (objective.criterion == Criterion::A) {
+        const double value = 1 / inverse.sum();
+        return {value, value * value * inverse.square()};
+    }
     if (objective.criterion == Criterion::O5) {
         const double value = 1 / eigenvalues.array().rsqrt().sum();
         return {value, 0.5 * value * value * eigenvalues.array().pow(-1.5)};
     }
+    const double value = value_of_log_determinant(objective, eigenvalues.array().log().sum(), L);
+    if (objective.criterion == Criterion::D) return {value, inverse};
+    return {value, value / (2.0 * static_cast<double>(L)) * inverse};
+}
+
+}  // namespace
+
+Sloped spectral_criterion(const Objective& objective, const VectorXd& eigenvalues) {
+    if (is_smooth(objective.criterion)) return smooth_criterion(objective, eigenvalues);
+    const double p = objective.sharpness;
     const Sloped least = soft_least(eigenvalues, p);
     if (objective.criterion == Criterion::E) return least;
     if (objective.criterion == Criterion::O3) {

@@ -16,7 +16,10 @@ Sloped soft_least(const VectorXd& x, double p);
 /// (sum x^p)^(1/p) of positive numbers; the largest itself for infinite p.
 Sloped soft_largest(const VectorXd& x, double p);
 
-/// O2, O3, O4, O5 or E as a function of M's eigenvalues (ascending, positive).
+/// D or O1 of a matrix with L rows by the logarithm of its determinant.
+double value_of_log_determinant(const Objective& objective, double log_determinant, Index L);
+
+/// All criteria but G and V as a function of M's eigenvalues (ascending, positive).
 Sloped spectral_criterion(const Objective& objective, const VectorXd& eigenvalues);
 
 }  // namespace posewise

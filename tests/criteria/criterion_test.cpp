@@ -147,13 +147,24 @@ TEST(Criterion, IsMinusInfinityForEverySingularMatrix) {
 }
 
 TEST(Criterion, NamesRoundTrip) {
-    for (const Criterion criterion : spectral) {
+    for (const Criterion criterion : all_criteria) {
         EXPECT_EQ(parse_criterion(criterion_name(criterion)), criterion);
     }
     EXPECT_EQ(parse_criterion("O5"), Criterion::O5);
     EXPECT_EQ(parse_criterion("i"), Criterion::V);
     EXPECT_THROW(parse_criterion("o6"), InputError);
     EXPECT_THROW(parse_criterion(""), InputError);
+}
+
+TEST(Criterion, HasItsTraits) {
+    Index smooth = 0;
+    for (const Criterion criterion : all_criteria) {
+        smooth += is_smooth(criterion);
+        EXPECT_EQ(needs_test_poses(criterion),
+                  criterion == Criterion::G || criterion == Criterion::V);
+        EXPECT_EQ(is_logarithm(criterion), criterion == Criterion::D);
+    }
+    EXPECT_EQ(smooth, 5);  // all but E, G, O2, O3 and O4
 }
 
 TEST(Criterion, RefusesUnusableInput) {

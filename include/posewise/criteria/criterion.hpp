@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,26 @@ enum class Criterion {
     G,   ///< 1 / largest trace(B0 M^-1 B0^T) over test poses: worst prediction
     V,   ///< 1 / mean trace(B0 M^-1 B0^T) over test poses (also called I): mean prediction
 };
+
+/// All of them, in the order that reports show.
+inline constexpr std::array all_criteria{Criterion::O1, Criterion::O2, Criterion::O3, Criterion::O4,
+                                         Criterion::O5, Criterion::A,  Criterion::D,  Criterion::E,
+                                         Criterion::G,  Criterion::V};
+
+/// Whether it judges predictions at test poses.
+constexpr bool needs_test_poses(Criterion criterion) {
+    return criterion == Criterion::G || criterion == Criterion::V;
+}
+
+/// Whether it has a derivative at every regular M; the others have kinks where the extreme
+/// eigenvalue or the worst test pose changes.
+constexpr bool is_smooth(Criterion criterion) {
+    return criterion == Criterion::O1 || criterion == Criterion::O5 || criterion == Criterion::A ||
+           criterion == Criterion::D || criterion == Criterion::V;
+}
+
+/// Whether it is a logarithm already, so that differences of it, not ratios, compare plans.
+constexpr bool is_logarithm(Criterion criterion) { return criterion == Criterion::D; }
 
 /// Lower-case name as on the command line ("o1", ..., "v").
 std::string_view criterion_name(Criterion criterion);
