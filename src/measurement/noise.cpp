@@ -1,7 +1,9 @@
 #include "posewise/measurement/noise.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
-#include <cassert>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "posewise/core/errors.hpp"
@@ -16,6 +18,21 @@ RowMatrixXd joint_noise_effect(const Campaign& campaign, const FlangeMotion& mot
     campaign.sensor->differentiate(motion.world_from_flange, motion.joint_twists, sensor_unknowns,
                                    J);
     return J * campaign.joint_repeatability.asDiagonal();
+}
+
+InputError not_positive_definite(const MatrixXd& covariance) {
+    const std::string rule = ", must be positive definite";
+    if (!covariance.allFinite()) {
+        return InputError(
+            "the covariance of the observation's noise has a value that is not a "
+            "finite number" +
+            rule);
+    }
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(covariance, Eigen::EigenvaluesOnly);
+    return InputError(fmt::format(
+        "the covariance of the observation's noise ({0} x {0}) has the least eigenvalue {1:.3g} "
+        "where the largest is {2:.3g}{3}",
+        covariance.rows(), eigen.eigenvalues()[0], eigen.eigenvalues().tail(1)[0], rule));
 }
 
 bool is_sigma(double value) { return std::isfinite(value) && value >= 0; }
@@ -110,8 +127,9 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
 }
 
 void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows) {
-    if (covariance.isDiagonal(0)) {
-        rows.array().colwise() *= covariance.diagonal().array().rsqrt();
+    const auto variances = covariance.diagonal().array();
+    if (covariance.isDiagonal(0) && (variances > 0).all()) {
+        rows.array().colwise() *= variances.rsqrt();
         return;
     }
     const MatrixXd L = cholesky_factor(covariance);
@@ -120,7 +138,7 @@ void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows) {
 
 MatrixXd cholesky_factor(const MatrixXd& covariance) {
     const Eigen::LLT<MatrixXd> cholesky(covariance);
-    assert(cholesky.info() == Eigen::Success);
+    if (cholesky.info() != Eigen::Success) throw not_positive_definite(covariance);
     return cholesky.matrixL();
 }
 

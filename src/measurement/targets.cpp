@@ -15,7 +15,9 @@ struct PointRows {
     double* z;
 
     PointRows(Eigen::Ref<RowMatrixXd> J, Index target)
-        : x(&J(3 * target, 0)), y(&J(3 * target + 1, 0)), z(&J(3 * target + 2, 0)) {}
+        : x(J.row(3 * target).data()),  // which may have no columns
+          y(J.row(3 * target + 1).data()),
+          z(J.row(3 * target + 2).data()) {}
 
     /// Column k becomes v + w cross point.
     void set(Index k, const double* twist, const Vector3d& point) {

@@ -238,7 +238,7 @@ Chain with_harmonics(const Chain& chain, const std::vector<double>& orders,
         }
     }
     for (const Index joint : joints) {
-        if (chain.joint_motion(joint) == Motion::Rotation) continue;
+        if (chain.joint(joint).motion == Motion::Rotation) continue;
         throw InputError("joint '" + joint_name(chain, joint) +
                          "' slides; harmonics need one that turns");
     }

@@ -111,10 +111,8 @@ RowMatrixXd halton_configurations(const Chain& chain, Index count, const HaltonO
 
 Chain with_margin(const Chain& chain, const JointMargin& margin) {
     std::vector<Joint> joints = chain.joints();
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-        Joint& joint = joints[j];
-        const bool turns = chain.joint_motion(static_cast<Index>(j)) == Motion::Rotation;
-        const double inset = turns ? margin.angle : margin.length;
+    for (Joint& joint : joints) {
+        const double inset = joint.motion == Motion::Rotation ? margin.angle : margin.length;
         if (!(inset >= 0) || !(joint.lower + inset < joint.upper - inset)) {
             throw InputError("margin " + std::to_string(inset) + " of joint '" + joint.name +
                              "' must not be negative and must leave something of its range " +

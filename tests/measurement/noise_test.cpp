@@ -6,6 +6,7 @@
 #include "support/campaigns.hpp"
 #include "support/derivative_check.hpp"
 #include "support/sweep.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace posewise {
 namespace {
@@ -117,6 +118,22 @@ TEST(CheckNoise, RefusesJointRepeatabilityThatDoesNotFit) {
     campaign.joint_repeatability.resize(5);
     campaign.joint_repeatability.setConstant(1e-5);
     EXPECT_THROW(check_noise(campaign), InputError);
+}
+
+TEST(Whiten, RefusesANoiseThatIsNotPositiveDefinite) {
+    MatrixXd correlated(2, 2);
+    correlated << 1, 2, 2, 1;
+    const MatrixXd without_noise = Vector3d(1, 0, 1).asDiagonal();
+    MatrixXd not_a_number = MatrixXd::Identity(2, 2);
+    not_a_number(0, 0) = std::numeric_limits<double>::quiet_NaN();
+    RowMatrixXd rows = RowMatrixXd::Identity(2, 2);
+    EXPECT_EQ(testing::input_error_of([&] { whiten(correlated, rows); }),
+              "the covariance of the observation's noise (2 x 2) has the least eigenvalue -1 where "
+              "the largest is 3, must be positive definite");
+    EXPECT_THROW(cholesky_factor(correlated), InputError);
+    EXPECT_THROW(whiten(not_a_number, rows), InputError);
+    rows = RowMatrixXd::Identity(3, 3);
+    EXPECT_THROW(whiten(without_noise, rows), InputError);
 }
 
 TEST(Whiten, MakesCorrelatedErrorsIndependent) {

@@ -89,8 +89,8 @@ TEST(Chain, SlidesAPrismaticJoint) {
     q << 1.2, 0.7, -0.4, 0, 0, 0;
     const Isometry3d pose = gantry_with_wrist().base_from_flange(q, VectorXd());
     EXPECT_TRUE(pose.translation().isApprox(Vector3d(1.3, 0.7, -0.6), 1e-15));
-    EXPECT_EQ(gantry_with_wrist().joint_motion(1), Motion::Translation);
-    EXPECT_EQ(gantry_with_wrist().joint_motion(4), Motion::Rotation);
+    EXPECT_EQ(gantry_with_wrist().joint(1).motion, Motion::Translation);
+    EXPECT_EQ(gantry_with_wrist().joint(4).motion, Motion::Rotation);
 }
 
 TEST(Chain, AddsTheErrorParameterToItsElement) {

@@ -38,11 +38,11 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
                               double repeats);
 
 /// Multiplies `rows` from the left by L^-1, where covariance = L L^T (Cholesky): errors with this
-/// covariance become independent with variance 1.
+/// covariance become independent with variance 1. Throws as cholesky_factor().
 void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows);
 
-/// L such that covariance = L L^T, for drawing noise. A sensor's covariance is
-/// positive definite because its constructor requires positive sigmas.
+/// L such that covariance = L L^T, for drawing noise. Throws InputError if the covariance is not
+/// positive definite.
 MatrixXd cholesky_factor(const MatrixXd& covariance);
 
 }  // namespace posewise

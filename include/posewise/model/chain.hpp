@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "posewise/core/types.hpp"
+#include "posewise/core/units.hpp"
 
 namespace posewise {
 
@@ -14,6 +15,11 @@ enum class Motion {
     Translation,  ///< along the axis, metres
     Rotation,     ///< about the axis, radians
 };
+
+/// The units that amounts of this motion are stated in.
+constexpr const AmountUnits& units_of(Motion motion) {
+    return units_of(motion == Motion::Rotation);
+}
 
 enum class Axis { X = 0, Y = 1, Z = 2 };
 
@@ -68,6 +74,7 @@ struct Joint {
     std::string name;
     double lower = 0;
     double upper = 0;
+    Motion motion = Motion::Rotation;  ///< that of the elements it drives; set by Chain
 };
 
 /// A joint's torque that is measured with each configuration.
@@ -114,6 +121,7 @@ class Chain {
     Chain with_elements(std::vector<Element> elements) const;
 
     const std::vector<Joint>& joints() const { return joints_; }
+    const Joint& joint(Index index) const { return joints_[static_cast<std::size_t>(index)]; }
     const std::vector<MeasuredTorque>& torques() const { return torques_; }
     const std::vector<Element>& elements() const { return elements_; }
     Index joint_count() const { return static_cast<Index>(joints_.size()); }
@@ -123,8 +131,6 @@ class Chain {
     }
     Index parameter_count() const { return static_cast<Index>(parameter_places_.size()); }
 
-    /// Whether joint j turns (else it slides).
-    Motion joint_motion(Index joint) const;
     /// The element that carries error parameter k.
     const Element& parameter_element(Index parameter) const;
     /// The term whose error parameter k is; nullptr if it is an element's constant error.
@@ -163,8 +169,6 @@ class Chain {
         Index element;
         Index term;
     };
-
-    void check_torques() const;
 
     template <typename Visit>
     void walk(const Isometry3d& world_from_base, const VectorXd& q, const VectorXd& parameters,

@@ -1,0 +1,255 @@
+#include <cmath>
+
+#include "posewise/model/chain.hpp"
+#include "posewise/model/gravity_torque.hpp"
+
+namespace posewise {
+namespace {
+
+/// world_from_base * E_1 * ... * E_k, kept as rotation and position because an elementary
+/// transform touches only two columns of the one or one combination of the other.
+struct RunningProduct {
+    Matrix3d R;
+    Vector3d p;
+
+    void append(Motion motion, Axis axis, double amount) {
+        const auto a = static_cast<Index>(axis);
+        if (motion == Motion::Translation) {
+            p += amount * R.col(a);
+            return;
+        }
+        const double c = std::cos(amount);
+        const double s = std::sin(amount);
+        const Index i = (a + 1) % 3;
+        const Index j = (a + 2) % 3;
+        const Vector3d column = R.col(i);
+        R.col(i) = c * column + s * R.col(j);
+        R.col(j) = c * R.col(j) - s * column;
+    }
+
+    /// How what follows moves by a further amount along or about the axis.
+    Twist twist(Motion motion, Axis axis) const {
+        const Vector3d direction = R.col(static_cast<Index>(axis));
+        Twist result;
+        if (motion == Motion::Rotation) {
+            result << direction, p.cross(direction);
+        } else {
+            result << Vector3d::Zero(), direction;
+        }
+        return result;
+    }
+
+    Isometry3d pose() const {
+        Isometry3d T;
+        T.linear() = R;
+        T.translation() = p;
+        T.makeAffine();
+        return T;
+    }
+};
+
+/// [a, b]: the rate of twist b when what it belongs to moves by twist a.
+Twist lie_bracket(const Twist& a, const Twist& b) {
+    const Vector3d w = a.head<3>();
+    Twist result;
+    result << w.cross(b.head<3>()), w.cross(b.tail<3>()) + a.tail<3>().cross(b.head<3>());
+    return result;
+}
+
+double sum_of(double start, const std::vector<JointTerm>& joints, const VectorXd& q) {
+    for (const JointTerm& term : joints) start += term.coefficient * q[term.joint];
+    return start;
+}
+
+/// A joint function and its derivatives by u.
+struct FunctionValue {
+    double value, slope, curvature;
+};
+
+FunctionValue evaluate(const JointFunction& function, const VectorXd& q) {
+    if (function.torque != nullptr) return {function.torque->evaluate(q).value, 0, 0};
+    const double u = sum_of(function.phase, function.joints, q);
+    if (function.shape == JointFunction::Shape::Linear) return {u, 1, 0};
+    const double sine = std::sin(u);
+    return {sine, std::cos(u), -sine};
+}
+
+/// E's amount; `next` is the number of the element's first error parameter, then behind its last.
+double amount_of(const Element& element, const VectorXd& q, const VectorXd& parameters,
+                 Index& next) {
+    double amount = sum_of(element.value, element.joints, q);
+    if (!element.parameter.empty()) amount += parameters[next++];
+    for (const ErrorTerm& term : element.terms) {
+        amount += parameters[next++] * evaluate(term.function, q).value;
+    }
+    return amount;
+}
+
+/// What the terms of an element, error parameters `next` on, add to `motion`; returns what they add
+/// to its amount. Out of line, as add_term_rates() is, so that elements without terms stay fast.
+[[gnu::noinline]] double add_terms(const Element& element, const VectorXd& q,
+                                   const VectorXd& parameters, const Twist& twist, Index& next,
+                                   FlangeMotion& motion) {
+    double amount = 0;
+    for (const ErrorTerm& term : element.terms) {
+        const double pi = parameters[next];
+        double value = 0;
+        if (term.function.torque != nullptr) {
+            const TorqueShare share = term.function.torque->evaluate(q);
+            value = share.value;
+            motion.joint_twists += pi * twist * share.gradient.transpose();
+        } else {
+            const FunctionValue f = evaluate(term.function, q);
+            value = f.value;
+            for (const JointTerm& by : term.function.joints) {
+                if (by.joint >= motion.joint_twists.cols()) continue;  // a measured torque
+                motion.joint_twists.col(by.joint) += pi * f.slope * by.coefficient * twist;
+            }
+        }
+        motion.twists.col(6 + next++) = value * twist;
+        amount += pi * value;
+    }
+    return amount;
+}
+
+/// What a term adds to the rates by joint j of its element's twist, which changes by `change`:
+/// pi df/dq_i in the column of joint i.
+void add_term_rate(const JointFunction& function, const FunctionValue& f, double pi,
+                   const Twist& twist, const Twist& change, Index j, Index k,
+                   FlangeMotionRate& rate) {
+    double du_dqj = 0;
+    for (const JointTerm& by : function.joints) {
+        if (by.joint == j) du_dqj += by.coefficient;
+    }
+    rate.twists.col(6 + k) = f.value * change + f.slope * du_dqj * twist;
+    for (const JointTerm& by : function.joints) {
+        if (by.joint >= rate.joint_twists.cols()) continue;  // a measured torque
+        rate.joint_twists.col(by.joint) +=
+            pi * by.coefficient * (f.slope * change + f.curvature * du_dqj * twist);
+    }
+}
+
+/// What the terms of an element, error parameters k on, add to the rates: the element's twist,
+/// which joint j changes by its Lie bracket, is multiplied by f(q) in the term's column and by pi
+/// df/dq_i in that of joint i.
+[[gnu::noinline]] void add_term_rates(const Element& element, const VectorXd& q,
+                                      const VectorXd& parameters, const Twist& twist, Index k,
+                                      const TwistMatrix& joint_twists,
+                                      std::vector<FlangeMotionRate>& rates) {
+    for (const ErrorTerm& term : element.terms) {
+        const bool is_torque = term.function.torque != nullptr;
+        const TorqueShare share =
+            is_torque ? term.function.torque->evaluate_twice(q) : TorqueShare{};
+        const FunctionValue f = is_torque ? FunctionValue{} : evaluate(term.function, q);
+        for (Index j = 0; j < joint_twists.cols(); ++j) {
+            const Twist change = lie_bracket(joint_twists.col(j), twist);
+            FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
+            if (!is_torque) {
+                add_term_rate(term.function, f, parameters[k], twist, change, j, k, rate);
+                continue;
+            }
+            rate.twists.col(6 + k) = share.value * change + share.gradient[j] * twist;
+            rate.joint_twists += parameters[k] * (change * share.gradient.transpose() +
+                                                  twist * share.hessian.row(j));
+        }
+        ++k;
+    }
+}
+
+}  // namespace
+
+Isometry3d Chain::base_from_flange(const VectorXd& q, const VectorXd& parameters) const {
+    RunningProduct product{Matrix3d::Identity(), Vector3d::Zero()};
+    Index k = 0;
+    for (const Element& element : elements_) {
+        product.append(element.motion, element.axis, amount_of(element, q, parameters, k));
+    }
+    return product.pose();
+}
+
+/// One pass over the elements. After an element that moves something has added its twist to its
+/// columns of `motion`, visit(element, twist, parameter) is called with the number of its first
+/// error parameter.
+template <typename Visit>
+void Chain::walk(const Isometry3d& world_from_base, const VectorXd& q, const VectorXd& parameters,
+                 FlangeMotion& motion, const Visit& visit) const {
+    motion.twists.resize(6, 6 + parameter_count());
+    motion.joint_twists.setZero(6, joint_count());
+    const Vector3d base = world_from_base.translation();
+    for (Index axis = 0; axis < 3; ++axis) {
+        const Vector3d unit = Vector3d::Unit(axis);
+        motion.twists.col(axis) << Vector3d::Zero(), unit;
+        motion.twists.col(3 + axis) << unit, base.cross(unit);
+    }
+    RunningProduct product{world_from_base.linear(), base};
+    Index next = 0;
+    for (const Element& element : elements_) {
+        const Index first = next;
+        double amount = sum_of(element.value, element.joints, q);
+        if (!element.parameter.empty()) amount += parameters[next++];
+        if (next > first || !element.joints.empty() || !element.terms.empty()) {
+            const Twist twist = product.twist(element.motion, element.axis);
+            if (next > first) motion.twists.col(6 + first) = twist;
+            for (const JointTerm& term : element.joints) {
+                motion.joint_twists.col(term.joint) += term.coefficient * twist;
+            }
+            if (!element.terms.empty()) {
+                amount += add_terms(element, q, parameters, twist, next, motion);
+            }
+            visit(element, twist, first);
+        }
+        product.append(element.motion, element.axis, amount);
+    }
+    motion.world_from_flange = product.pose();
+}
+
+std::vector<Isometry3d> Chain::base_from_links(const VectorXd& q,
+                                               const VectorXd& parameters) const {
+    std::vector<Isometry3d> links(joints_.size() + 2, Isometry3d::Identity());
+    std::vector<bool> is_found(joints_.size(), false);
+    RunningProduct product{Matrix3d::Identity(), Vector3d::Zero()};
+    Index k = 0;
+    for (const Element& element : elements_) {
+        product.append(element.motion, element.axis, amount_of(element, q, parameters, k));
+        for (const JointTerm& term : element.joints) {
+            const auto joint = static_cast<std::size_t>(term.joint);
+            if (!is_found[joint]) links[joint + 1] = product.pose();
+            is_found[joint] = true;
+        }
+    }
+    links.back() = product.pose();
+    return links;
+}
+
+void Chain::differentiate(const Isometry3d& world_from_base, const VectorXd& q,
+                          const VectorXd& parameters, FlangeMotion& motion) const {
+    walk(world_from_base, q, parameters, motion, [](const Element&, const Twist&, Index) {});
+}
+
+void Chain::differentiate_twice(const Isometry3d& world_from_base, const VectorXd& q,
+                                const VectorXd& parameters, FlangeMotion& motion,
+                                std::vector<FlangeMotionRate>& rates) const {
+    rates.resize(joints_.size());
+    for (FlangeMotionRate& rate : rates) {
+        rate.twists.setZero(6, 6 + parameter_count());
+        rate.joint_twists.setZero(6, joint_count());
+    }
+    const auto visit = [&](const Element& element, const Twist& twist, Index first) {
+        const bool is_error = !element.parameter.empty();
+        for (Index j = 0; j < joint_count(); ++j) {
+            // So far motion.joint_twists holds what joint j moves up to this element.
+            const Twist change = lie_bracket(motion.joint_twists.col(j), twist);
+            FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
+            if (is_error) rate.twists.col(6 + first) = change;
+            for (const JointTerm& term : element.joints) {
+                rate.joint_twists.col(term.joint) += term.coefficient * change;
+            }
+        }
+        if (element.terms.empty()) return;
+        const Index next = element.parameter.empty() ? first : first + 1;
+        add_term_rates(element, q, parameters, twist, next, motion.joint_twists, rates);
+    };
+    walk(world_from_base, q, parameters, motion, visit);
+}
+
+}  // namespace posewise
