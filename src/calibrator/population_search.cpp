@@ -1,12 +1,10 @@
 #include "population_search.hpp"
 
-#include <nlopt.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
+#include "../core/nlopt_adapter.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise {
@@ -50,26 +48,18 @@ class Misfit {
     std::vector<Index> searched_;
 };
 
-double misfit_callback(unsigned size, const double* x, double*, void* misfit) {
-    return (*static_cast<const Misfit*>(misfit))(Eigen::Map<const VectorXd>(x, size));
-}
-
-/// CRS2 with local mutation [Kaelo & Ali 2006], ESCH [Santos et al. 2010], ISRES [Runarsson & Yao
-/// 2005], as NLopt has them.
-VectorXd search_by_nlopt(Misfit& misfit, nlopt_algorithm algorithm, Index evaluation_limit,
+/// The best that a population method of NLopt finds.
+VectorXd search_by_nlopt(const Misfit& misfit, detail::Method method, Index evaluation_limit,
                          RandomStream stream) {
-    const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> handle(
-        nlopt_create(algorithm, static_cast<unsigned>(misfit.size())), nlopt_destroy);
     constexpr Index seeds = Index{1} << 31;
-    nlopt_srand(static_cast<unsigned long>(stream.index(seeds)));  // of this thread
-    nlopt_set_min_objective(handle.get(), misfit_callback, &misfit);
-    nlopt_set_lower_bounds1(handle.get(), -1);
-    nlopt_set_upper_bounds1(handle.get(), 1);
-    nlopt_set_maxeval(handle.get(), static_cast<int>(evaluation_limit));
-    VectorXd x = VectorXd::Zero(misfit.size());
-    double value = hopeless;
-    nlopt_optimize(handle.get(), x.data(), &value);
-    return value < hopeless ? x : VectorXd::Zero(misfit.size());
+    detail::BoxProblem problem;
+    problem.value = [&](const VectorXd& x, VectorXd*) { return -misfit(x); };
+    problem.lower = VectorXd::Constant(misfit.size(), -1);
+    problem.upper = VectorXd::Constant(misfit.size(), 1);
+    detail::MaximiseOptions options{method, 0, 0};
+    options.evaluation_limit = static_cast<int>(evaluation_limit);
+    options.seed = static_cast<unsigned long>(stream.index(seeds));
+    return detail::maximise(problem, VectorXd::Zero(misfit.size()), options).x;
 }
 
 /// Covariance matrix adaptation with the constants of Hansen's tutorial (arXiv 1604.00772); what
@@ -193,18 +183,20 @@ class CovarianceAdaptation {
 VectorXd search_population(const Campaign& campaign, const Measurements& means,
                            const VectorXd& bounds, StartSearch search, Index evaluation_limit,
                            RandomStream stream) {
-    Misfit misfit(campaign, means, bounds);
+    const Misfit misfit(campaign, means, bounds);
     if (misfit.size() == 0) return VectorXd::Zero(bounds.size());
     switch (search) {
         case StartSearch::Random:
             break;
         case StartSearch::Crs2:
             return misfit.errors(
-                search_by_nlopt(misfit, NLOPT_GN_CRS2_LM, evaluation_limit, stream));
+                search_by_nlopt(misfit, detail::Method::Crs2, evaluation_limit, stream));
         case StartSearch::Esch:
-            return misfit.errors(search_by_nlopt(misfit, NLOPT_GN_ESCH, evaluation_limit, stream));
+            return misfit.errors(
+                search_by_nlopt(misfit, detail::Method::Esch, evaluation_limit, stream));
         case StartSearch::Isres:
-            return misfit.errors(search_by_nlopt(misfit, NLOPT_GN_ISRES, evaluation_limit, stream));
+            return misfit.errors(
+                search_by_nlopt(misfit, detail::Method::Isres, evaluation_limit, stream));
         case StartSearch::CmaEs:
             return misfit.errors(CovarianceAdaptation(misfit, stream).run(evaluation_limit));
     }

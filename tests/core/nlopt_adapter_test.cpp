@@ -1,12 +1,13 @@
-#include "../../src/planner/nlopt_adapter.hpp"
+#include "../../src/core/nlopt_adapter.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "posewise/core/errors.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 constexpr Method every_method[] = {Method::Lbfgs, Method::Mma, Method::Slsqp, Method::Sbplx,
@@ -33,6 +34,42 @@ TEST(Maximise, FindsTheTopByEveryMethod) {
     }
 }
 
+constexpr Method populations[] = {Method::Crs2, Method::Esch, Method::Isres};
+
+/// -x^2 - y^2 with many lower tops around the one at 0 [Rastrigin 1974].
+BoxProblem egg_box() {
+    BoxProblem problem;
+    problem.lower = VectorXd::Constant(2, -4.1);
+    problem.upper = VectorXd::Constant(2, 3.7);
+    problem.value = [](const VectorXd& x, VectorXd*) {
+        return -x.squaredNorm() - 10 * (1 - (2 * std::numbers::pi * x.array()).cos()).sum();
+    };
+    return problem;
+}
+
+TEST(Maximise, FindsTheHighestOfManyTopsByAPopulation) {
+    for (const Method method : populations) {
+        MaximiseOptions options{method, 0, 0};
+        options.evaluation_limit = 20000;
+        const Maximum top = maximise(egg_box(), VectorXd::Constant(2, 3), options);
+        EXPECT_GT(top.value, -0.01) << static_cast<int>(method);
+        EXPECT_LT(top.x.norm(), 0.01);
+    }
+}
+
+TEST(Maximise, DrawsPopulationsFromItsSeed) {
+    for (const Method method : populations) {
+        const auto top = [&](unsigned long seed) {
+            MaximiseOptions options{method, 0, 0};
+            options.evaluation_limit = 300;
+            options.seed = seed;
+            return maximise(egg_box(), VectorXd::Constant(2, 3), options).x;
+        };
+        EXPECT_EQ(top(5), top(5));
+        EXPECT_NE(top(5), top(6));
+    }
+}
+
 TEST(Maximise, StopsAtTheBoundsAndKeepsFixedCoordinates) {
     BoxProblem problem = paraboloid();
     problem.upper[0] = 0.25;
@@ -51,7 +88,9 @@ TEST(Maximise, LetsOurExceptionsThroughUnchanged) {
         if (++calls > 1) throw InputError("the very message");
         return 0;
     };
-    for (const Method method : every_method) {
+    std::vector<Method> methods(std::begin(every_method), std::end(every_method));
+    methods.insert(methods.end(), std::begin(populations), std::end(populations));
+    for (const Method method : methods) {
         calls = 0;
         try {
             maximise(problem, VectorXd::Zero(2), {method});
@@ -117,4 +156,4 @@ TEST(Maximise, StopsWhenAskedTo) {
 }
 
 }  // namespace
-}  // namespace posewise
+}  // namespace posewise::detail

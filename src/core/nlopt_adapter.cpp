@@ -7,7 +7,7 @@
 #include <memory>
 #include <new>
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 nlopt_algorithm algorithm_of(Method method) {
@@ -20,6 +20,12 @@ nlopt_algorithm algorithm_of(Method method) {
             return NLOPT_LN_SBPLX;
         case Method::Cobyla:
             return NLOPT_LN_COBYLA;
+        case Method::Crs2:
+            return NLOPT_GN_CRS2_LM;
+        case Method::Esch:
+            return NLOPT_GN_ESCH;
+        case Method::Isres:
+            return NLOPT_GN_ISRES;
         default:
             return NLOPT_LD_LBFGS;
     }
@@ -113,6 +119,7 @@ Maximum maximise(const BoxProblem& problem, const VectorXd& start, const Maximis
         nlopt_destroy);
     if (!handle) throw std::bad_alloc();
     Run run(problem, options, handle.get(), start, problem.value(start, nullptr));
+    nlopt_srand(options.seed);  // of this thread
     nlopt_set_max_objective(run.handle, value_callback, &run);
     nlopt_set_lower_bounds(run.handle, problem.lower.data());
     nlopt_set_upper_bounds(run.handle, problem.upper.data());
@@ -127,10 +134,8 @@ Maximum maximise(const BoxProblem& problem, const VectorXd& start, const Maximis
     double reported = 0;  // by NLopt, and not believed: `best` was evaluated by ourselves
     const nlopt_result result = nlopt_optimize(run.handle, x.data(), &reported);
     if (run.error) std::rethrow_exception(run.error);
-    run.best.ending = options.stop.is_interrupted() ? Ending::Interrupted
-                      : options.stop.is_late()      ? Ending::TimeLimit
-                                                    : ending_of(result);
+    run.best.ending = options.stop.ending_or(ending_of(result));
     return run.best;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

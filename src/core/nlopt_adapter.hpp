@@ -2,11 +2,11 @@
 
 #include <functional>
 
-#include "posewise/core/types.hpp"
 #include "posewise/core/stop.hpp"
+#include "posewise/core/types.hpp"
 
 /// All use of NLopt is behind this header.
-namespace posewise {
+namespace posewise::detail {
 
 /// Maximise value(x) in a box, where feasible.
 struct BoxProblem {
@@ -24,6 +24,9 @@ enum class Method {
     Slsqp,   ///< gradients, bounds
     Sbplx,   ///< derivative-free, bounds
     Cobyla,  ///< derivative-free, bounds and margin
+    Crs2,    ///< population, bounds: controlled random search [Kaelo & Ali 2006]
+    Esch,    ///< population, bounds: evolution [Santos et al. 2010]
+    Isres,   ///< population, bounds: evolution [Runarsson & Yao 2005]
 };
 
 struct MaximiseOptions {
@@ -32,6 +35,7 @@ struct MaximiseOptions {
     double step_tolerance = 1e-9;    ///< change of every coordinate to stop at
     double first_step = 0;           ///< of derivative-free methods; 0: theirs
     int evaluation_limit = 1000;
+    unsigned long seed = 1;  ///< of populations
     StopSignal stop{};
 };
 
@@ -46,4 +50,4 @@ struct Maximum {
 /// come out unchanged.
 Maximum maximise(const BoxProblem& problem, const VectorXd& start, const MaximiseOptions& options);
 
-}  // namespace posewise
+}  // namespace posewise::detail
