@@ -5,7 +5,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/targets.hpp"
@@ -48,7 +47,7 @@ class Search {
           upper_(nominal) {
         // What follows the joints, measured torques, stays as it is.
         for (Index j = 0; j < robot.joint_count(); ++j) {
-            const bool turns = robot.joint_motion(j) == Motion::Rotation;
+            const bool turns = robot.joint(j).motion == Motion::Rotation;
             const double change = turns ? options.largest_turn : options.largest_slide;
             lower_[j] = std::max(limits(j).lower, nominal[j] - change);
             upper_[j] = std::min(limits(j).upper, nominal[j] + change);
@@ -186,14 +185,14 @@ void check_options(const CorrectionOptions& options) {
 void check_limits(const Chain& robot, const VectorXd& nominal) {
     robot.check_configuration(nominal);
     for (Index j = 0; j < robot.joint_count(); ++j) {
-        const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
+        const Joint& joint = robot.joint(j);
         constexpr double rounding = 1e-9;  // of values that were converted, rad or m
         if (nominal[j] >= joint.lower - rounding && nominal[j] <= joint.upper + rounding) continue;
-        const bool turns = robot.joint_motion(j) == Motion::Rotation;
-        const double factor = turns ? 180 / std::numbers::pi : 1e3;
-        throw InputError(fmt::format(
-            "joint '{}' is at {:.6g} {}; must be within its limits, {:.6g} to {:.6g}", joint.name,
-            factor * nominal[j], turns ? "deg" : "mm", factor * joint.lower, factor * joint.upper));
+        const AmountUnits& units = units_of(joint.motion);
+        throw InputError(
+            fmt::format("joint '{}' is at {:.6g} {}; must be within its limits, {:.6g} to {:.6g}",
+                        joint.name, units.to_reading(nominal[j]), units.reading,
+                        units.to_reading(joint.lower), units.to_reading(joint.upper)));
     }
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posewise/core/statistics.hpp"
+
 namespace posewise {
 
 VectorXd standard_deviations(const Estimate& estimate) {
@@ -80,7 +82,7 @@ Metrics make_metrics(const RowMatrixXd& residuals) {
     metrics.distance_rms = distances.norm() / std::sqrt(count);
     metrics.distance_max = distances[metrics.point_count - 1];
     metrics.distance_mean = distances.mean();
-    metrics.distance_p95 = distances[static_cast<Index>(std::ceil(0.95 * count)) - 1];
+    metrics.distance_p95 = quantile(distances, 0.95, QuantileRule::Lower);
     for (Index axis = 0; axis < metrics.coordinate_count; ++axis) {
         const auto i = static_cast<std::size_t>(axis);
         metrics.coordinate_rms[i] = points.col(axis).norm() / std::sqrt(count);

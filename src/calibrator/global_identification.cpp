@@ -12,6 +12,7 @@
 #include "population_search.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/parallel.hpp"
 #include "posewise/core/random.hpp"
 
 namespace posewise {
@@ -108,16 +109,18 @@ GlobalEstimate identify_globally(const Campaign& campaign, const Measurements& m
     check_options(campaign, options);
     const IdentificationProblem problem = make_problem(campaign, measurements);
     const VectorXd bounds = error_bounds(campaign.robot, options);
+    ProgressCounter counter(options.progress, options.start_limit);
     std::vector<Run> runs;
     GlobalEstimate result;
     while (result.starts < options.start_limit && result.starts_at_best < options.agreeing_starts) {
         const Index count = std::min(batch_size, options.start_limit - result.starts);
         runs.resize(static_cast<std::size_t>(result.starts + count));
-#pragma omp parallel for schedule(dynamic)
-        for (Index i = result.starts; i < result.starts + count; ++i) {
+        for_each_index(count, [&](Index k) {
+            const Index i = result.starts + k;
             runs[static_cast<std::size_t>(i)] =
                 run_from(problem, draw_errors(problem, bounds, options, i), options.start_options);
-        }
+            counter.count();
+        });
         result.starts += count;
         const Run& best = *std::min_element(
             runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.cost < b.cost; });

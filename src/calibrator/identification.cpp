@@ -5,6 +5,7 @@
 
 #include "least_squares.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/parallel.hpp"
 #include "robust.hpp"
 
 namespace posewise {
@@ -101,7 +102,8 @@ Estimate identify(const Campaign& campaign, const Measurements& measurements,
 
 CrossValidation cross_validate(const Campaign& campaign, const Measurements& measurements,
                                const Parameters& start, Index folds,
-                               const LevenbergMarquardtOptions& options) {
+                               const LevenbergMarquardtOptions& options,
+                               const ProgressCallback& progress) {
     const Index count = measurements.configuration_count();
     if (folds < 2 || folds > count) {
         throw InputError("folds is " + std::to_string(folds) + ", must be 2 to the number of " +
@@ -112,8 +114,8 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
     std::vector<RowMatrixXd> means(fold_count);
     RowMatrixXd distances = RowMatrixXd::Zero(count, measurements.is_seen.cols());
     std::vector<std::string> failures(fold_count);
-#pragma omp parallel for schedule(dynamic)
-    for (Index fold = 0; fold < folds; ++fold) {
+    ProgressCounter counter(progress, folds);
+    for_each_index(folds, [&](Index fold) {
         const auto f = static_cast<std::size_t>(fold);
         const auto held_out = fold_members(count, folds, fold);
         try {
@@ -127,7 +129,8 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
         } catch (const InputError& error) {
             failures[f] = "fold " + std::to_string(fold + 1) + ": " + error.what();
         }
-    }
+        counter.count();
+    });
     const auto join = [&](const std::vector<RowMatrixXd>& parts) {
         RowMatrixXd all(0, campaign.sensor->rows_per_target());
         for (const RowMatrixXd& part : parts) {

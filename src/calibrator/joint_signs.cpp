@@ -6,6 +6,7 @@
 
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/parallel.hpp"
 
 namespace posewise {
 namespace {
@@ -38,19 +39,19 @@ double registered_rms(const Campaign& campaign, const Measurements& measurements
 /// Fits the first `count` patterns anew and sorts them.
 void fit(std::vector<SignPattern>& patterns, std::size_t count, const Campaign& campaign,
          const Measurements& measurements, Registration registration) {
-#pragma omp parallel for schedule(dynamic)
-    for (std::size_t k = 0; k < count; ++k) {
+    for_each_index(static_cast<Index>(count), [&](Index k) {
+        SignPattern& pattern = patterns[static_cast<std::size_t>(k)];
         Measurements turned = measurements;
         for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
-            const bool is_reversed = patterns[k].is_reversed[static_cast<std::size_t>(j)];
+            const bool is_reversed = pattern.is_reversed[static_cast<std::size_t>(j)];
             if (is_reversed) turned.configurations.col(j) *= -1;
         }
         try {
-            patterns[k].distance_rms = registered_rms(campaign, turned, registration);
+            pattern.distance_rms = registered_rms(campaign, turned, registration);
         } catch (const InputError&) {  // turned so, the tool does not turn in enough ways
-            patterns[k].distance_rms = std::numeric_limits<double>::infinity();
+            pattern.distance_rms = std::numeric_limits<double>::infinity();
         }
-    }
+    });
     const auto end = patterns.begin() + static_cast<std::ptrdiff_t>(count);
     std::stable_sort(patterns.begin(), end,
                      [](const auto& a, const auto& b) { return a.distance_rms < b.distance_rms; });

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/core/statistics.hpp"
 
 namespace posewise {
 
@@ -24,10 +25,8 @@ double robust_deviation(const IdentificationProblem& problem, const Parameters& 
     const Index equations = problem.equation_count();
     const Index freedom = equations - problem.scale.size();
     if (freedom <= 0) return 1;
-    VectorXd lengths = residual_lengths(problem, parameters);
-    double* const middle = lengths.data() + lengths.size() / 2;
-    std::nth_element(lengths.data(), middle, lengths.data() + lengths.size());
-    const double median = *middle / median_length(problem.campaign.sensor->rows_per_target());
+    const double middle = quantile(residual_lengths(problem, parameters), 0.5, QuantileRule::Upper);
+    const double median = middle / median_length(problem.campaign.sensor->rows_per_target());
     const double share = static_cast<double>(equations) / static_cast<double>(freedom);
     return std::max(median * std::sqrt(share), least);
 }

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <optional>
 
 #include "calibration_report.hpp"
@@ -16,6 +15,7 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/io/estimate_file.hpp"
 
 namespace posewise::cli {
@@ -105,7 +105,7 @@ Estimate identify_from_afar(const Arguments& arguments, const Campaign& campaign
     GlobalOptions options = arguments.global;
     options.search = start_searches.at(arguments.search);
     options.length_share = arguments.length_error_percent / 100;
-    options.angle = arguments.angle_error_deg * std::numbers::pi / 180;
+    options.angle = to_radians(arguments.angle_error_deg);
     Index& limit = options.start_options.iteration_limit;
     limit = arguments.iteration_limit.value_or(limit);
     GlobalEstimate found = identify_globally(campaign, measurements, options);

@@ -146,7 +146,7 @@ std::string describe_repeatability(const Campaign& campaign) {
         double least = std::numeric_limits<double>::infinity();
         double largest = 0;
         for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {
-            if (campaign.robot.joint_motion(j) != motion) continue;
+            if (campaign.robot.joint(j).motion != motion) continue;
             least = std::min(least, campaign.joint_repeatability[j]);
             largest = std::max(largest, campaign.joint_repeatability[j]);
         }
@@ -238,17 +238,17 @@ std::string format_error(double si_value, bool is_angle) {
     return format_short(mm_per_m * si_value, 4) + ' ' + std::string(units_of(is_angle).error);
 }
 
-Progress::Progress(std::string label, bool asked_for)
+ProgressLine::ProgressLine(std::string label, bool asked_for)
     : label_(std::move(label)), shown_(asked_for || isatty(STDERR_FILENO) == 1) {}
 
-void Progress::operator()(Index done, Index total, const std::string& note) {
-    const Index percent = 100 * done / total;
+void ProgressLine::operator()(const Progress& progress, const std::string& note) {
+    const Index percent = 100 * progress.done / progress.total;
     if (!shown_ || percent == last_percent_) return;
     last_percent_ = percent;
     // A note may be shorter than the one it overwrites.
     const std::string padded = note.empty() ? note : fmt::format("  {:<64}", note);
     std::fprintf(stderr, "\r%s %3ld %%%s%s", label_.c_str(), static_cast<long>(percent),
-                 padded.c_str(), done == total ? "\n" : "");
+                 padded.c_str(), progress.done == progress.total ? "\n" : "");
 }
 
 }  // namespace posewise::cli

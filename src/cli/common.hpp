@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "posewise/core/progress.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/report/table.hpp"
 
@@ -64,11 +65,11 @@ std::string describe_looseness(double efficiency, Index starts_at_best, Index st
 std::string format_error(double si_value, bool is_angle);
 
 /// A counter on standard error, shown if that is a terminal or the user asks for it.
-class Progress {
+class ProgressLine {
   public:
-    Progress(std::string label, bool asked_for);
+    ProgressLine(std::string label, bool asked_for);
     /// `note` is shown behind the percentage.
-    void operator()(Index done, Index total, const std::string& note = "");
+    void operator()(const Progress& progress, const std::string& note = "");
 
   private:
     std::string label_;

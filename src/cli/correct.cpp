@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <numbers>
 
 #include "commands.hpp"
 #include "common.hpp"
@@ -55,7 +54,7 @@ CorrectionOptions correction_options(const Arguments& arguments) {
     CorrectionOptions options;
     options.tool = Vector3d(arguments.tool_mm[0], arguments.tool_mm[1], arguments.tool_mm[2]) / 1e3;
     options.length_per_angle = arguments.mm_per_mrad;
-    options.largest_turn = arguments.largest_change_deg * std::numbers::pi / 180;
+    options.largest_turn = to_radians(arguments.largest_change_deg);
     options.largest_slide = arguments.largest_change_mm / 1e3;
     return options;
 }
@@ -122,10 +121,10 @@ Table change_table(const Campaign& campaign, const io::Configurations& poses,
             const double change = corrections[i].joints[j] - poses.joints(static_cast<Index>(i), j);
             largest = std::max(largest, std::abs(change));
         }
-        const bool turns = campaign.robot.joint_motion(j) == Motion::Rotation;
-        table.rows.push_back({campaign.robot.joints()[static_cast<std::size_t>(j)].name,
-                              turns ? format_fixed(to_degrees(largest), 4) : format_mm(largest),
-                              turns ? "deg" : "mm"});
+        const Joint& joint = campaign.robot.joint(j);
+        const AmountUnits& units = units_of(joint.motion);
+        table.rows.push_back(
+            {joint.name, format_fixed(units.to_reading(largest), 4), std::string(units.reading)});
     }
     return table;
 }

@@ -31,7 +31,7 @@ void Findings::conclude(const std::string& path) const {
 }
 
 bool is_same_value(Criterion criterion, double a, double b, double tolerance) {
-    const double least = criterion == Criterion::D ? 1 : 0;
+    const double least = is_logarithm(criterion) ? 1 : 0;
     if (!std::isfinite(a) || !std::isfinite(b)) return a == b;
     return std::abs(a - b) <= tolerance * std::max({least, std::abs(a), std::abs(b)});
 }

@@ -37,12 +37,8 @@ struct Arguments {
     Index directions = 3;
 };
 
-constexpr std::array all_criteria{Criterion::O1, Criterion::O2, Criterion::O3, Criterion::O4,
-                                  Criterion::O5, Criterion::A,  Criterion::D,  Criterion::E,
-                                  Criterion::G,  Criterion::V};
-
 double evaluate_blocks(Criterion criterion, const Blocks& blocks, const VectorXd& s) {
-    if (criterion == Criterion::G || criterion == Criterion::V) {
+    if (needs_test_poses(criterion)) {
         return evaluate(criterion, information(blocks), blocks.count(), &blocks);
     }
     return evaluate(criterion, s, blocks.count());

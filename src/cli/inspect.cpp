@@ -60,7 +60,9 @@ struct Arguments {
 /// "1 mm Tx2 = 1 mm Tx1 - 0.78 mrad dq2". Both units are a thousandth of SI, so coefficients stay.
 std::string format_absorbed(const DroppedParameter& dropped, const std::vector<std::string>& names,
                             const std::vector<bool>& is_angle) {
-    const auto unit = [&](Index k) { return units_of(is_angle[static_cast<std::size_t>(k)]).error; };
+    const auto unit = [&](Index k) {
+        return units_of(is_angle[static_cast<std::size_t>(k)]).error;
+    };
     const auto name = [&](Index k) { return names[static_cast<std::size_t>(k)]; };
     if (dropped.absorbed_by.empty()) return "moves no target";
     std::string text;
@@ -109,7 +111,7 @@ std::string describe_formula(const Campaign& campaign) {
     if (unknowns == 0) return "";
     Index revolute = 0;
     for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
-        revolute += campaign.robot.joint_motion(j) == Motion::Rotation ? 1 : 0;
+        revolute += campaign.robot.joint(j).motion == Motion::Rotation ? 1 : 0;
     }
     const Index prismatic = campaign.robot.joint_count() - revolute;
     Index terms = 0;
@@ -127,10 +129,10 @@ std::string describe_formula(const Campaign& campaign) {
 std::string describe_compliances(const Chain& robot) {
     std::string text;
     for (const Compliance& compliance : compliances(robot)) {
-        const bool turns = robot.joint_motion(compliance.joint) == Motion::Rotation;
+        const Joint& joint = robot.joint(compliance.joint);
         text += fmt::format("{}{} {} {}", text.empty() ? "compliances are stated at " : ", ",
-                            robot.joints()[static_cast<std::size_t>(compliance.joint)].name,
-                            format_short(compliance.largest, 4), turns ? "N m" : "N");
+                            joint.name, format_short(compliance.largest, 4),
+                            units_of(joint.motion).load);
     }
     return text.empty() ? "" : text + ", about the largest that occur\n";
 }

@@ -1,6 +1,5 @@
 #include "interrupt.hpp"
 
-#include <algorithm>
 #include <csignal>
 
 namespace posewise::cli {
@@ -24,11 +23,5 @@ InterruptFlag::InterruptFlag() {
 InterruptFlag::~InterruptFlag() { std::signal(SIGINT, SIG_DFL); }
 
 const std::atomic<bool>* InterruptFlag::get() const { return &is_interrupted; }
-
-double Stopwatch::left() const {
-    if (limit_ == 0) return 0;
-    const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - begin_;
-    return std::max(limit_ - gone.count(), 1e-3);
-}
 
 }  // namespace posewise::cli

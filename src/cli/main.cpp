@@ -94,8 +94,9 @@ int main(int argc, char** argv) {
     } catch (const posewise::InputError& error) {
         return fail(error.what(), input_error);
     } catch (const std::bad_alloc&) {
-        return fail("needs more memory than there is; take fewer candidates (--random, --pool)",
-                    input_error);
+        return fail(
+            "out of memory; take fewer candidates (--random, --pool) or set OMP_NUM_THREADS=1",
+            input_error);
     } catch (const std::exception& error) {
         return fail(std::string("internal error: ") + error.what(), internal_error);
     }

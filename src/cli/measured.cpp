@@ -11,6 +11,7 @@
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/format.hpp"
+#include "posewise/core/statistics.hpp"
 #include "posewise/core/text.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/model/joint_limits.hpp"
@@ -48,17 +49,15 @@ double measured_extent(const Campaign& campaign, const Measurements& measured) {
 
 /// Of residuals as mean_residuals() gives them, the median: some may be grossly wrong.
 double median_distance(const RowMatrixXd& residuals) {
-    VectorXd distances = residuals.leftCols(std::min<Index>(3, residuals.cols())).rowwise().norm();
-    const Index middle = distances.size() / 2;
-    std::nth_element(distances.begin(), distances.begin() + middle, distances.end());
-    return distances[middle];
+    const auto coordinates = residuals.leftCols(std::min<Index>(3, residuals.cols()));
+    return quantile(coordinates.rowwise().norm(), 0.5, QuantileRule::Upper);
 }
 
 /// Which unit is wrong by the look of it; empty if none is.
 std::string suspect_unit(const Campaign& campaign, const Measurements& measured) {
     double largest = 0;
     for (Index j = 0; j < measured.configurations.cols(); ++j) {
-        if (campaign.robot.joint_motion(j) != Motion::Rotation) continue;
+        if (campaign.robot.joint(j).motion != Motion::Rotation) continue;
         largest = std::max(largest, measured.configurations.col(j).cwiseAbs().maxCoeff());
     }
     constexpr double turn = 2 * std::numbers::pi;

@@ -56,38 +56,34 @@ struct Arguments {
 /// "best 12.3, efficiency 0.95, about 7 s left".
 class ProgressNote {
   public:
-    std::string operator()(const PlanProgress& state) const {
+    std::string operator()(const Progress& progress) const {
         using Seconds = std::chrono::duration<double>;
         const double elapsed = Seconds(std::chrono::steady_clock::now() - begin_).count();
-        const double left = elapsed * static_cast<double>(state.starts - state.starts_done) /
-                            static_cast<double>(state.starts_done);
+        const double left = elapsed * static_cast<double>(progress.total - progress.done) /
+                            static_cast<double>(progress.done);
         // Unknown while the choice from the whole pool is still being made.
         const std::string efficiency =
-            state.efficiency > 0
-                ? fmt::format(", efficiency {} over the pool", format_fixed(state.efficiency, 3))
+            progress.efficiency > 0
+                ? fmt::format(", efficiency {} over the pool", format_fixed(progress.efficiency, 3))
                 : "";
-        return fmt::format("best {}{}, about {:.0f} s left", format_short(state.value), efficiency,
-                           left);
+        return fmt::format("best {}{}, about {:.0f} s left", format_short(progress.value),
+                           efficiency, left);
     }
 
   private:
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-PlannedPoses search(PlanningProblem& problem, const Stopwatch& watch,
-                    const std::atomic<bool>* interrupted, bool shows_progress) {
+PlannedPoses search(PlanningProblem& problem, const StopSignal& stop, bool shows_progress) {
     PlanOptions options = problem.options;
-    options.time_limit = watch.left();
-    if (options.criterion == Criterion::G || options.criterion == Criterion::V) {
+    options.stop = stop;
+    if (needs_test_poses(options.criterion)) {
         options.test_poses = &problem.prediction;
     }
-    options.interrupted = interrupted;
-    Progress progress("planning", shows_progress);
+    ProgressLine line("planning", shows_progress);
     const ProgressNote note;
-    progress(0, options.starts, "choosing from the pool");
-    options.progress = [&](const PlanProgress& state) {
-        progress(state.starts_done, state.starts, note(state));
-    };
+    line({.total = options.starts}, "choosing from the pool");
+    options.progress = [&](const Progress& progress) { line(progress, note(progress)); };
     return plan_poses(problem.campaign, problem.constraints, problem.pool, problem.request.repeats,
                       options);
 }
@@ -181,10 +177,9 @@ void plan(Arguments arguments) {
     check_outputs({request.campaign, request.augment, request.repaired, request.workspace},
                   {out, arguments.csv});
     const InterruptFlag interrupted;
-    const Stopwatch watch(request.time_limit);
-    PlanningProblem problem =
-        read_planning_problem(asked, {interrupted.get(), deadline_after(request.time_limit / 2)});
-    PlannedPoses planned = search(problem, watch, interrupted.get(), arguments.progress);
+    const StopSignal stop{interrupted.get(), deadline_after(request.time_limit)};
+    PlanningProblem problem = read_planning_problem(asked, stop.with_half_the_time());
+    PlannedPoses planned = search(problem, stop, arguments.progress);
     planned.is_interrupted |= problem.pool.candidate_count < request.pool_count;
     const PredictedAccuracy accuracy = predict_accuracy(problem.prediction, planned.information);
     TourOptions tour_options;

@@ -28,7 +28,7 @@ std::string indent_lines(const std::string& text) {
 
 /// A criterion's value; V and G are inverse mean and worst squares of position errors.
 std::string format_value(Criterion criterion, double value) {
-    const bool has_unit = criterion == Criterion::V || criterion == Criterion::G;
+    const bool has_unit = needs_test_poses(criterion);
     return format_short(value, 8) + (has_unit ? " /m^2" : "");
 }
 
@@ -73,8 +73,7 @@ std::string describe_order(const Tour& tour) {
 }
 
 std::string format_joint(const Campaign& campaign, Index joint, double value) {
-    const bool turns = campaign.robot.joint_motion(joint) == Motion::Rotation;
-    return format_fixed(turns ? to_degrees(value) : mm_per_m * value, 2);
+    return format_fixed(units_of(campaign.robot.joint(joint).motion).to_reading(value), 2);
 }
 
 std::string describe_way(const Campaign& campaign, const io::ContinuousPose& pose) {
@@ -90,9 +89,8 @@ std::string describe_way(const Campaign& campaign, const io::ContinuousPose& pos
 Table pose_table(const Campaign& campaign, const std::vector<io::ContinuousPose>& poses) {
     Table table{{"pose"}, {}};
     for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
-        const bool turns = campaign.robot.joint_motion(j) == Motion::Rotation;
-        table.header.push_back(campaign.robot.joints()[static_cast<std::size_t>(j)].name +
-                               (turns ? "/deg" : "/mm"));
+        const Joint& joint = campaign.robot.joint(j);
+        table.header.push_back(fmt::format("{}/{}", joint.name, units_of(joint.motion).reading));
     }
     table.header.insert(table.header.end(), {"targets seen", "way there"});
     for (const io::ContinuousPose& pose : poses) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "common.hpp"
@@ -23,7 +22,7 @@ namespace {
 
 constexpr Index draws_per_workspace_pose = 20;
 /// New poses keep so far from those that could not be reached (some joint, rad).
-constexpr double distance_from_dropped = 5 * std::numbers::pi / 180;
+constexpr double distance_from_dropped = to_radians(5);
 
 // ---- Poses measured already ----
 
@@ -167,7 +166,6 @@ void apply_options(PlanningProblem& problem) {
     options.criterion = problem.request.criterion;
     options.starts = problem.request.starts;
     options.seed = problem.request.seed;
-    options.time_limit = problem.request.time_limit;
     if (problem.request.is_focused_on_robot) {
         options.nuisance = nuisance_of_robot(problem.campaign);
     }

@@ -45,13 +45,13 @@ FlangeMotion motion_at_zero(const Chain& robot) {
 Table element_table(const Chain& robot) {
     Table table{{"no", "transform", "nominal", "", "joint", "error parameter"}, {}};
     for (const Element& element : robot.elements()) {
-        const bool turns = element.motion == Motion::Rotation;
+        const AmountUnits& units = units_of(element.motion);
+        const char kind = element.motion == Motion::Rotation ? 'R' : 'T';
         const char axis = "xyz"[static_cast<std::size_t>(element.axis)];
         table.rows.push_back(
-            {std::to_string(table.rows.size() + 1), fmt::format("{}{}", turns ? 'R' : 'T', axis),
-             format_short(turns ? to_degrees(element.value) : mm_per_m * element.value, 9),
-             turns ? "deg" : "mm", format_terms(element.joints, robot),
-             format_parameters(element)});
+            {std::to_string(table.rows.size() + 1), fmt::format("{}{}", kind, axis),
+             format_short(units.to_reading(element.value), 9), std::string(units.reading),
+             format_terms(element.joints, robot), format_parameters(element)});
     }
     return table;
 }
@@ -59,13 +59,12 @@ Table element_table(const Chain& robot) {
 Table joint_table(const Chain& robot) {
     Table table{{"joint", "kind", "lower", "upper", ""}, {}};
     for (Index j = 0; j < robot.joint_count(); ++j) {
-        const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
-        const bool turns = robot.joint_motion(j) == Motion::Rotation;
-        const auto limit = [&](double value) {
-            return format_short(turns ? to_degrees(value) : mm_per_m * value, 6);
-        };
-        table.rows.push_back({joint.name, turns ? "revolute" : "prismatic", limit(joint.lower),
-                              limit(joint.upper), turns ? "deg" : "mm"});
+        const Joint& joint = robot.joint(j);
+        const AmountUnits& units = units_of(joint.motion);
+        const auto limit = [&](double value) { return format_short(units.to_reading(value), 6); };
+        const char* const kind = joint.motion == Motion::Rotation ? "revolute" : "prismatic";
+        table.rows.push_back(
+            {joint.name, kind, limit(joint.lower), limit(joint.upper), std::string(units.reading)});
     }
     return table;
 }
@@ -74,7 +73,7 @@ Table axis_table(const Chain& robot) {
     Table table{{"joint", "axis x", "y", "z", "through x/mm", "y/mm", "z/mm"}, {}};
     const TwistMatrix twists = motion_at_zero(robot).joint_twists;
     for (Index j = 0; j < robot.joint_count(); ++j) {
-        const bool turns = robot.joint_motion(j) == Motion::Rotation;
+        const bool turns = robot.joint(j).motion == Motion::Rotation;
         const Vector3d axis = turns ? twists.col(j).head<3>() : twists.col(j).tail<3>();
         const Vector3d direction = axis.normalized();
         std::vector<std::string> row{robot.joints()[static_cast<std::size_t>(j)].name};

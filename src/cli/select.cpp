@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 #include <optional>
 
 #include "commands.hpp"
@@ -12,6 +11,7 @@
 #include "interrupt.hpp"
 #include "options.hpp"
 #include "posewise/core/format.hpp"
+#include "posewise/core/units.hpp"
 #include "selection_problem.hpp"
 
 namespace posewise::cli {
@@ -57,7 +57,8 @@ struct Arguments {
     std::optional<std::uint64_t> seed;
     std::string out;
     bool progress = false;
-    SelectOptions search;  ///< how hard to try
+    SelectOptions search;   ///< how hard to try
+    double time_limit = 0;  ///< s; 0: none
 };
 
 // ---- From arguments to a request ----
@@ -113,7 +114,7 @@ io::SelectionRequest make_request(Arguments& arguments) {
     }
     source.path = arguments.measurements + arguments.candidates + arguments.blocks;  // one is given
     request.is_focused_on_robot = arguments.focus == "robot";
-    request.least_distance = arguments.least_distance_deg * std::numbers::pi / 180;
+    request.least_distance = to_radians(arguments.least_distance_deg);
     return request;
 }
 
@@ -167,17 +168,13 @@ std::string default_out(const io::CandidateSource& source) {
     return std::filesystem::path(path).stem().string() + ".plan.json";
 }
 
-Choice search(SelectionProblem& problem, const Arguments& arguments, const Stopwatch& watch,
-            const InterruptFlag& interrupted) {
+Choice search(SelectionProblem& problem, const Arguments& arguments, const StopSignal& stop) {
     SelectOptions& options = problem.options;
     options.starts = arguments.search.starts;
     options.seed = arguments.search.seed;
-    options.time_limit = watch.left();
-    options.interrupted = interrupted.get();
-    Progress progress("selecting", arguments.progress);
-    options.progress = [&](const SelectProgress& state) {
-        progress(state.starts_done, state.starts);
-    };
+    options.stop = stop;
+    ProgressLine line("selecting", arguments.progress);
+    options.progress = [&](const Progress& progress) { line(progress); };
     return select_poses(problem.blocks, options);
 }
 
@@ -188,17 +185,14 @@ void select(Arguments arguments) {
                    request.test_poses, request.groups},
                   {out});
     const InterruptFlag interrupted;
-    const double limit = arguments.search.time_limit;
-    const Stopwatch watch(limit);
-    SelectionProblem problem =
-        read_problem(request, {interrupted.get(), deadline_after(limit / 2)});
+    const StopSignal stop{interrupted.get(), deadline_after(arguments.time_limit)};
+    SelectionProblem problem = read_problem(request, stop.with_half_the_time());
     if (problem.request.source.count < request.source.count) {
         print_warning(
             fmt::format("only {} of the {} random candidates were drawn in the time there was",
                         problem.request.source.count, request.source.count));
     }
-    const io::PlanFile file =
-        make_plan_file(problem, search(problem, arguments, watch, interrupted));
+    const io::PlanFile file = make_plan_file(problem, search(problem, arguments, stop));
     const io::CampaignFile* campaign = problem.campaign ? &*problem.campaign : nullptr;
     io::write_plan(out, file, campaign);
     print_plan(file);
@@ -286,7 +280,7 @@ void add_search(CLI::App& command, Arguments& arguments) {
         .add_option("--seed", arguments.seed,
                     "Of the random starts and of --random (default: the campaign's, else 1)")
         ->check(whole_number(0, largest_seed));
-    command.add_option("--time", arguments.search.time_limit, "Seconds after which to stop")
+    command.add_option("--time", arguments.time_limit, "Seconds after which to stop")
         ->check(real_number(1e-3, 1e9));
     command
         .add_option("-o,--out", arguments.out,

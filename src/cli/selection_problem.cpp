@@ -191,7 +191,7 @@ void focus_on_robot(SelectionProblem& problem) {
 RowMatrixXd turning_joints(const Chain& robot, const RowMatrixXd& configurations) {
     std::vector<Index> turning;
     for (Index j = 0; j < robot.joint_count(); ++j) {
-        if (robot.joint_motion(j) == Motion::Rotation) turning.push_back(j);
+        if (robot.joint(j).motion == Motion::Rotation) turning.push_back(j);
     }
     return configurations(Eigen::all, turning);
 }
@@ -256,8 +256,7 @@ void state_limits(SelectionProblem& problem) {
 }
 
 void check_test_poses(const io::SelectionRequest& request) {
-    if (request.test_poses.empty() || request.criterion == Criterion::G ||
-        request.criterion == Criterion::V) {
+    if (request.test_poses.empty() || needs_test_poses(request.criterion)) {
         return;
     }
     throw InputError("test poses are " + request.test_poses + ", but criterion " +

@@ -150,10 +150,10 @@ void study(const Arguments& arguments) {
     options.criteria = arguments.criteria;
     if (options.criteria.empty()) options.criteria = {file.criterion};
 
-    Progress progress("calibrating", arguments.progress);
+    ProgressLine line("calibrating", arguments.progress);
+    options.progress = [&](const Progress& progress) { line(progress); };
     const auto rows = compute_from(arguments.paths.measurements, [&] {
-        return study_pose_counts(file, measurements, options,
-                                 [&](Index done, Index total) { progress(done, total); });
+        return study_pose_counts(file, measurements, options);
     });
     print(format_table(study_table(options.criteria, rows)));
     if (!arguments.csv.empty()) {

@@ -72,7 +72,7 @@ void check_numbers(const PlanningProblem& problem, const io::PosePlanFile& file,
     SelectOptions options;
     options.criterion = file.request.criterion;
     options.pose_count = blocks.count();
-    const bool has_tests = options.criterion == Criterion::G || options.criterion == Criterion::V;
+    const bool has_tests = needs_test_poses(options.criterion);
     if (has_tests) options.test_poses = &problem.prediction;
     options.nuisance = problem.options.nuisance;
     options.held = problem.options.held.information;

@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "posewise/core/parallel.hpp"
 #include "posewise/core/simd.hpp"
 
 namespace posewise {
@@ -76,11 +77,14 @@ VectorXd row_norms(const RowMatrixXd& rows, const MatrixXd& lower) {
     constexpr Index chunk = 1024;
     const std::vector<PaddedColumns> F = pad_columns(lower);
     VectorXd norms(rows.rows());
-#pragma omp parallel for schedule(static) if (rows.rows() > 8 * chunk)
-    for (Index first = 0; first < rows.rows(); first += chunk) {
-        simd::run(SquaredNorms{rows.data() + first * rows.cols(),
-                               std::min(chunk, rows.rows() - first), rows.cols(), F,
+    const auto fill = [&](Index first, Index last) {
+        simd::run(SquaredNorms{rows.data() + first * rows.cols(), last - first, rows.cols(), F,
                                norms.data() + first});
+    };
+    if (rows.rows() > 8 * chunk) {
+        for_each_range(rows.rows(), chunk, fill);
+    } else {
+        fill(0, rows.rows());
     }
     return norms;
 }
@@ -100,11 +104,12 @@ VectorXd sensitivities(const Blocks& candidates, const MatrixXd& Z) {
         }
         return result;
     }
-#pragma omp parallel for schedule(static) if (candidates.count() > 1000)
-    for (Index i = 0; i < candidates.count(); ++i) {
-        const auto block = candidates[i];
-        result[i] = (block * Z).cwiseProduct(block).sum();
-    }
+    for_each_range(candidates.count(), 1000, [&](Index first, Index last) {
+        for (Index i = first; i < last; ++i) {
+            const auto block = candidates[i];
+            result[i] = (block * Z).cwiseProduct(block).sum();
+        }
+    });
     return result;
 }
 

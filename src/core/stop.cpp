@@ -6,6 +6,12 @@
 
 namespace posewise {
 
+StopSignal StopSignal::with_half_the_time() const {
+    if (deadline == std::chrono::steady_clock::time_point::max()) return *this;
+    const auto now = std::chrono::steady_clock::now();
+    return {interrupted, now + (deadline - now) / 2};
+}
+
 Ending StopSignal::ending_or(Ending ending) const {
     if (is_interrupted()) return Ending::Interrupted;
     return is_late() ? Ending::TimeLimit : ending;

@@ -172,7 +172,7 @@ void read_reflectors(const YamlValue& value, Index target_count, Sight& sight) {
 VectorXd read_joint_angles(const YamlMeasure& measure, const Chain& robot) {
     VectorXd angles = measure.list_to_si(static_cast<std::size_t>(robot.joint_count()));
     for (Index j = 0; j < angles.size(); ++j) {
-        if (robot.joint_motion(j) != Motion::Rotation) {
+        if (robot.joint(j).motion != Motion::Rotation) {
             throw measure.value.error("is in '" + std::string(measure.unit->name) +
                                       "', but joint '" +
                                       robot.joints()[static_cast<std::size_t>(j)].name +
@@ -186,7 +186,7 @@ void read_fixed(const YamlValue& value, const Chain& robot, Cell& cell) {
     for (const YamlEntry& entry : value.entries()) {
         const Index index = find_joint(robot, entry.key, entry.key_location);
         const double amount =
-            read_amount(entry.value, quantity_of(robot.joint_motion(index)), Sign::Any);
+            read_amount(entry.value, quantity_of(robot.joint(index).motion), Sign::Any);
         const Joint& joint = robot.joints()[static_cast<std::size_t>(index)];
         if (amount < joint.lower || amount > joint.upper) {
             throw entry.value.error("is " + quote(entry.value.text()) +

@@ -12,7 +12,7 @@ namespace posewise::io {
 namespace {
 
 double in_file_unit(Motion motion, double si) {
-    return find_unit(motion == Motion::Rotation ? "deg" : "mm")->from_si(si);
+    return find_unit(units_of(motion).reading)->from_si(si);
 }
 
 /// "-q3 + 0.98*q2".
@@ -45,7 +45,7 @@ std::string joint_text(const Chain& chain, const DhRow& row, Index own) {
     const Joint& joint = chain.joints()[static_cast<std::size_t>(own)];
     const bool turns = row.motion == Motion::Rotation;
     std::string text =
-        fmt::format(", limits_{}: [{}, {}]", turns ? "deg" : "mm",
+        fmt::format(", limits_{}: [{}, {}]", units_of(row.motion).reading,
                     in_file_unit(row.motion, joint.lower), in_file_unit(row.motion, joint.upper));
     if (!turns) text += ", kind: prismatic";
     const std::string drive = drive_text(chain, row.joints);

@@ -61,12 +61,12 @@ VectorXd read_robot(const JsonValue& robot, const Campaign& campaign) {
             throw robot.error("has no parameter " + quote(name) +
                               "; must be an estimate of this campaign");
         }
-        const JsonValue value = robot[name][turns ? "value_rad" : "value_m"];
+        const JsonValue value = robot[name]["value" + si_suffix(turns)];
         values[k] = check_size(value.number(), turns ? Quantity::Angle : Quantity::Length, value);
     }
     // What gives way is in proportion to the load, which limits or payload may have changed.
     for (const Compliance& compliance : compliances(campaign.robot)) {
-        const bool turns = campaign.robot.joint_motion(compliance.joint) == Motion::Rotation;
+        const bool turns = campaign.robot.joint(compliance.joint).motion == Motion::Rotation;
         const JsonValue load =
             robot[names[static_cast<std::size_t>(compliance.parameter)]][load_key(turns)];
         if (!(load.number() > 0)) throw load.error("must be above 0");

@@ -137,7 +137,7 @@ bool is_document_of(const std::string& path, const std::string& kind) {
     return found != document.end() && *found == "posewise " + kind;
 }
 
-const char* si_suffix(bool is_angle) { return is_angle ? "_rad" : "_m"; }
+std::string si_suffix(bool is_angle) { return '_' + std::string(units_of(is_angle).si); }
 
 const char* load_key(bool turns) { return turns ? "at_Nm" : "at_N"; }
 
@@ -156,7 +156,7 @@ Json assumptions_to_json(const Campaign& campaign) {
     }
     assumptions["model_error_m"] = campaign.model_error;
     for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {
-        const bool turns = campaign.robot.joint_motion(j) == Motion::Rotation;
+        const bool turns = campaign.robot.joint(j).motion == Motion::Rotation;
         assumptions["joint_repeatability"]
                    [campaign.robot.joints()[static_cast<std::size_t>(j)].name + si_suffix(turns)] =
                        campaign.joint_repeatability[j];

@@ -25,7 +25,7 @@ Json read_document(const std::string& path, const std::string& kind);
 bool is_document_of(const std::string& path, const std::string& kind);
 
 /// `_rad` or `_m`.
-const char* si_suffix(bool is_angle);
+std::string si_suffix(bool is_angle);
 
 /// The key of the torque or force under which a compliance's value is what gives way.
 const char* load_key(bool turns);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <iterator>
-#include <numbers>
 
 namespace posewise::io {
 namespace {
@@ -33,7 +32,7 @@ std::vector<WantedColumn> wanted_columns(const Campaign& campaign) {
     std::vector<WantedColumn> wanted;
     for (Index j = 0; j < robot.joint_count(); ++j) {
         wanted.push_back({robot.joints()[static_cast<std::size_t>(j)].name, Role::Joint, j,
-                          quantity_of(robot.joint_motion(j))});
+                          quantity_of(robot.joint(j).motion)});
     }
     Index next = robot.joint_count();
     for (const MeasuredTorque& torque : robot.torques()) {
@@ -50,8 +49,7 @@ std::vector<WantedColumn> wanted_columns(const Campaign& campaign) {
 
 double for_people(const Campaign& campaign, Index joint, double value) {
     if (joint >= campaign.robot.joint_count()) return value;
-    const bool turns = campaign.robot.joint_motion(joint) == Motion::Rotation;
-    return turns ? value * 180 / std::numbers::pi : 1e3 * value;
+    return units_of(campaign.robot.joint(joint).motion).to_reading(value);
 }
 
 std::string joint_header(const Campaign& campaign) {

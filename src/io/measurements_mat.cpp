@@ -16,7 +16,7 @@ MatrixXd read_joints(const MatReader& file, const std::string& path, const Chain
     const Index count = robot.joint_count();
     MatrixXd joints = file.read(mapping.joints, count);
     for (Index j = 0; j < count; ++j) {
-        const bool turns = robot.joint_motion(j) == Motion::Rotation;
+        const bool turns = robot.joint(j).motion == Motion::Rotation;
         joints.col(j) *= turns ? mapping.angle_unit : mapping.length_unit;
         if (mapping.angle_unit != 1) continue;
         for (Index row = 0; row < joints.rows(); ++row) {

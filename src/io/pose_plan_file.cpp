@@ -19,7 +19,7 @@ namespace {
 constexpr const char* kind = "pose plan";
 
 bool turns(const Campaign& campaign, Index joint) {
-    return campaign.robot.joint_motion(joint) == Motion::Rotation;
+    return campaign.robot.joint(joint).motion == Motion::Rotation;
 }
 
 const std::string& joint_name(const Campaign& campaign, Index joint) {
@@ -37,8 +37,8 @@ Json joints_to_json(const Campaign& campaign, const VectorXd& q) {
 Json pose_to_json(const Campaign& campaign, const ContinuousPose& pose) {
     Json json = {{"id", pose.id}, {"joints", joints_to_json(campaign, pose.joints)}};
     for (Index j = 0; j < pose.joints.size(); ++j) {
-        const char* const unit = turns(campaign, j) ? "_deg" : "_mm";
-        json["readable"][joint_name(campaign, j) + unit] =
+        const AmountUnits& units = units_of(campaign.robot.joint(j).motion);
+        json["readable"][fmt::format("{}_{}", joint_name(campaign, j), units.reading)] =
             std::round(1e4 * for_people(campaign, j, pose.joints[j])) / 1e4;
     }
     json["visible_targets"] = Json::array();

@@ -131,7 +131,7 @@ void check_not_degrees(const Chain& robot, Index joint, double value,
                        const std::function<FileLocation()>& locate) {
     const Joint& limits = robot.joints()[static_cast<std::size_t>(joint)];
     constexpr double turn = 2 * std::numbers::pi;
-    if (robot.joint_motion(joint) != Motion::Rotation ||
+    if (robot.joint(joint).motion != Motion::Rotation ||
         (value >= limits.lower - turn && value <= limits.upper + turn)) {
         return;
     }

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <numbers>
 
 #include "json.hpp"
 #include "posewise/core/text.hpp"
@@ -32,11 +31,10 @@ std::string quote_for_yaml(const std::string& text) {
 }
 
 std::string joint_line(const UrdfJoint& joint) {
-    const bool turns = joint_motion(joint) == Motion::Rotation;
-    const double factor = turns ? 180 / std::numbers::pi : 1e3;
+    const AmountUnits& units = units_of(joint_motion(joint));
     return fmt::format("    {}: {{limits_{}: [{:.9g}, {:.9g}]}}{}\n", chain_joint_name(joint.name),
-                       turns ? "deg" : "mm", factor * joint.limits->lower,
-                       factor * joint.limits->upper,
+                       units.reading, units.to_reading(joint.limits->lower),
+                       units.to_reading(joint.limits->upper),
                        joint.kind == UrdfJointKind::Continuous ? "  # continuous in the URDF" : "");
 }
 

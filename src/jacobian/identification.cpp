@@ -1,10 +1,13 @@
 #include "posewise/jacobian/identification.hpp"
 
 #include "posewise/core/errors.hpp"
+#include "posewise/core/parallel.hpp"
 #include "posewise/measurement/noise.hpp"
 
 namespace posewise {
 namespace {
+
+constexpr Index grain = 8;  // configurations that share memory to work in
 
 void check_repeats(const Campaign& campaign, Index configuration_count,
                    const RowMatrixXd& repeats) {
@@ -36,14 +39,12 @@ Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
         blocks.first_row.push_back(blocks.first_row.back() + seen * sensor.rows_per_target());
     }
     blocks.matrix.resize(blocks.first_row.back(), parameter_count(campaign));
-#pragma omp parallel
-    {
+    for_each_range(configurations.rows(), grain, [&](Index first, Index last) {
         FlangeMotion motion;
         RowMatrixXd J(sensor.row_count(), blocks.parameter_count());
         VectorXd q(configurations.cols());
         VectorXd times(repeats.cols());
-#pragma omp for schedule(static)
-        for (Index i = 0; i < configurations.rows(); ++i) {
+        for (Index i = first; i < last; ++i) {
             q = configurations.row(i).transpose();
             times = repeats.row(i).transpose();
             differentiate_pose(campaign, parameters, q, motion, J);
@@ -53,7 +54,7 @@ Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
             block = J(seen, Eigen::all);
             finish(motion, times, block);
         }
-    }
+    });
     return blocks;
 }
 
@@ -93,17 +94,15 @@ Blocks make_position_blocks(const Campaign& campaign, const Parameters& paramete
         blocks.first_row.push_back(blocks.first_row.back() + rows);
     }
     blocks.matrix.resize(blocks.first_row.back(), parameter_count(campaign));
-#pragma omp parallel
-    {
+    for_each_range(configurations.rows(), grain, [&](Index first, Index last) {
         FlangeMotion motion;
-#pragma omp for schedule(static)
-        for (Index i = 0; i < configurations.rows(); ++i) {
+        for (Index i = first; i < last; ++i) {
             differentiate_flange(campaign, parameters, configurations.row(i).transpose(), motion);
             campaign.sensor->differentiate_positions(motion.world_from_flange, motion.twists,
                                                      parameters.sensor,
                                                      blocks.matrix.middleRows(rows * i, rows));
         }
-    }
+    });
     return blocks;
 }
 

@@ -4,12 +4,14 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <exception>
 #include <limits>
 #include <numeric>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/core/parallel.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/core/text.hpp"
 #include "posewise/planner/searched_bound.hpp"
@@ -28,7 +30,6 @@ struct Problem {
     const RowMatrixXd& pool;
     const Blocks& blocks;
     const PlanOptions& options;
-    StopSignal stop;
     Objective objective;
 };
 
@@ -56,7 +57,7 @@ SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
     select.held_pose_count = options.held_pose_count;
     select.column_names = space.parameter_names;
     select.seed = options.seed;
-    select.interrupted = options.interrupted;
+    select.stop.interrupted = options.stop.interrupted;
     // Refinement mends what a short selection leaves; exchange by the worst of many test poses is
     // dear.
     const bool is_dear = options.criterion == Criterion::G;
@@ -80,17 +81,8 @@ SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
 
 /// A smooth criterion that is quick to select by and leads near the optimum of one with kinks.
 Criterion smooth_relative(Criterion criterion) {
-    switch (criterion) {
-        case Criterion::G:
-            return Criterion::V;
-        case Criterion::E:
-        case Criterion::O2:
-        case Criterion::O3:
-        case Criterion::O4:
-            return Criterion::A;
-        default:
-            return criterion;
-    }
+    if (is_smooth(criterion)) return criterion;
+    return needs_test_poses(criterion) ? Criterion::V : Criterion::A;
 }
 
 /// A choice from a random part of the pool, so that starts differ.
@@ -112,56 +104,38 @@ RowMatrixXd choose_from_part(const Problem& problem, Index start) {
 /// is made beside the other starts, since by G it takes as long as many of them.
 std::vector<Refinement> refine_starts(const Problem& problem, const SelectOptions& select,
                                       Choice& pool_choice) {
-    double pool_bound = std::numeric_limits<double>::infinity();  // until the choice is made
-    const Index starts = problem.options.starts;
-    std::vector<Refinement> results(static_cast<std::size_t>(starts));
-    std::vector<std::exception_ptr> errors(results.size());
+    std::atomic<double> pool_bound = std::numeric_limits<double>::infinity();  // until it is made
+    const PlanOptions& options = problem.options;
+    std::vector<Refinement> results(static_cast<std::size_t>(options.starts));
     std::exception_ptr first_error;
-    PlanProgress progress;
-    progress.starts = starts;
+    ProgressCounter counter(options.progress, options.starts);
     RefineOptions refine;
     refine.kink_rounds = 0;  // the best start alone is made sharper and finished
     refine.tolerance = 1e-6;
     refine.sharpness = {4, 16, 64};
-    refine.stop = problem.stop;
-#pragma omp parallel for schedule(dynamic)
-    for (Index start = 0; start < starts; ++start) {
-        const auto s = static_cast<std::size_t>(start);
-        if (start > 0 && problem.stop.is_set()) continue;
+    refine.stop = options.stop;
+    for_each_index(options.starts, [&](Index start) {
+        if (start > 0 && options.stop.is_set()) return;
         if (start == 0) {
-            try {
-                pool_choice = select_poses(problem.blocks, select);
-            } catch (...) {
-                errors[s] = std::current_exception();
-                continue;
-            }
-#pragma omp critical(posewise_plan_progress)
+            pool_choice = select_poses(problem.blocks, select);
             pool_bound = pool_choice.bound;
         }
+        Refinement& result = results[static_cast<std::size_t>(start)];
         try {
             const RowMatrixXd chosen =
                 start == 0 ? RowMatrixXd(problem.pool(pool_choice.poses, Eigen::all))
                            : choose_from_part(problem, start);
-            results[s] = refine_poses(problem.space, problem.objective, problem.options.held,
-                                      chosen, refine);
+            result = refine_poses(problem.space, problem.objective, options.held, chosen, refine);
         } catch (const InputError&) {
             if (start == 0) first_error = std::current_exception();  // others may do better
-        } catch (...) {
-            errors[s] = std::current_exception();
         }
-        if (!problem.options.progress) continue;
-#pragma omp critical(posewise_plan_progress)
-        {
-            ++progress.starts_done;
-            progress.value = std::max(progress.value, results[s].value);
-            progress.efficiency = efficiency(problem.options.criterion, progress.value, pool_bound,
+        counter.count([&](Progress& progress) {
+            progress.value = std::max(progress.value, result.value);
+            progress.bound = pool_bound;
+            progress.efficiency = efficiency(options.criterion, progress.value, progress.bound,
                                              interesting_count(problem));
-            problem.options.progress(progress);
-        }
-    }
-    for (const std::exception_ptr& error : errors) {
-        if (error) std::rethrow_exception(error);
-    }
+        });
+    });
     const bool is_any_usable = std::any_of(results.begin(), results.end(), [](const auto& result) {
         return std::isfinite(result.value);
     });
@@ -210,9 +184,8 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
                          std::to_string(blocks.count()));
     }
     PlanOptions options = asked_for;
-    const bool has_tests = options.criterion == Criterion::G || options.criterion == Criterion::V;
     Blocks test_poses;
-    if (has_tests && options.test_poses == nullptr) {
+    if (needs_test_poses(options.criterion) && options.test_poses == nullptr) {
         test_poses = default_test_poses(blocks);
         options.test_poses = &test_poses;
     }
@@ -220,13 +193,8 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
         throw InputError("starts is " + std::to_string(options.starts) + ", must be at least 1");
     }
     SelectOptions select = select_options(space, pool, options);
-    const Problem problem{space,
-                          pool,
-                          blocks,
-                          options,
-                          {options.interrupted, deadline_after(options.time_limit)},
-                          make_objective(blocks, select)};
-    select.time_limit = options.time_limit / 2;
+    const Problem problem{space, pool, blocks, options, make_objective(blocks, select)};
+    select.stop = options.stop.with_half_the_time();
     PlannedPoses planned;
     planned.criterion = options.criterion;
     planned.seed = options.seed;
@@ -240,7 +208,7 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
         if (behind <= 1e-6 * std::abs(best.value)) ++planned.starts_at_best;
     }
     RefineOptions finish;
-    finish.stop = problem.stop;
+    finish.stop = problem.options.stop;
     finish.sharpness = {256};
     best = refine_poses(space, problem.objective, options.held, best.configurations, finish);
     report(problem, std::move(best), planned);
@@ -253,10 +221,10 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     planned.searched_bound =
         search_bound(space, relaxed, options.held, options.pose_count,
                      certificate.M.size() > 0 ? certificate.M : planned.information, pool,
-                     options.bound_iterations, problem.stop);
+                     options.bound_iterations, problem.options.stop);
     planned.efficiency = efficiency(options.criterion, planned.value, planned.searched_bound,
                                     interesting_count(problem));
-    planned.is_interrupted = problem.stop.is_set();
+    planned.is_interrupted = problem.options.stop.is_set();
     return planned;
 }
 

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/core/parallel.hpp"
 
 namespace posewise {
 namespace {
@@ -74,13 +75,11 @@ Pool join(const std::vector<Pool>& parts) {
 
 Pool filter_pool(const Constraints& constraints, const RowMatrixXd& candidates) {
     std::vector<ConstraintReport> reports(static_cast<std::size_t>(candidates.rows()));
-    for (Index i = 0; i < candidates.rows(); ++i) {
-        constraints.robot().check_configuration(candidates.row(i).transpose());
-    }
-#pragma omp parallel for schedule(dynamic, 64)
-    for (Index i = 0; i < candidates.rows(); ++i) {
-        reports[static_cast<std::size_t>(i)] = constraints.check(candidates.row(i).transpose());
-    }
+    for_each_range(candidates.rows(), 64, [&](Index first, Index last) {
+        for (Index i = first; i < last; ++i) {
+            reports[static_cast<std::size_t>(i)] = constraints.check(candidates.row(i).transpose());
+        }
+    });
     Pool pool;
     pool.candidate_count = candidates.rows();
     std::vector<Index> feasible;

@@ -6,6 +6,7 @@
 
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
+#include "posewise/core/statistics.hpp"
 #include "posewise/jacobian/identification.hpp"
 
 namespace posewise {
@@ -41,7 +42,7 @@ PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
     // Error of a position = J0 dx with dx = L^-T z, M = L L^T.
     const MatrixXd spread = cholesky.matrixL().solve(prediction.matrix.transpose());
     PredictedAccuracy accuracy;
-    std::vector<double> errors;
+    VectorXd errors(draws * positions);
     double sum = 0;
     for (Index i = 0; i < positions; ++i) {
         const auto W = spread.middleCols(3 * i, 3);
@@ -53,13 +54,11 @@ PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
         RandomStream random(seed, static_cast<std::uint64_t>(i));
         for (Index k = 0; k < draws; ++k) {
             const Vector3d z(random.normal(), random.normal(), random.normal());
-            errors.push_back((L * z).norm());
+            errors[draws * i + k] = (L * z).norm();
         }
     }
     accuracy.rms = std::sqrt(sum / static_cast<double>(positions));
-    const auto rank = static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(errors.size()));
-    std::nth_element(errors.begin(), errors.begin() + rank, errors.end());
-    accuracy.percentile95 = errors[static_cast<std::size_t>(rank)];
+    accuracy.percentile95 = quantile(std::move(errors), 0.95, QuantileRule::Upper);
     return accuracy;
 }
 

@@ -3,21 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nlopt_adapter.hpp"
+#include "../core/nlopt_adapter.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise {
 namespace {
 
-bool has_kinks(Criterion criterion) {
-    return criterion == Criterion::E || criterion == Criterion::G || criterion == Criterion::O2 ||
-           criterion == Criterion::O3 || criterion == Criterion::O4;
-}
+using namespace detail;
 
 /// What is maximised: D as it is, the others' logarithm, so that differences are relative.
 double merit(const Objective& objective, const MatrixXd& M) {
     const double value = evaluate(objective, M);
-    return objective.criterion == Criterion::D || !std::isfinite(value) ? value : std::log(value);
+    return is_logarithm(objective.criterion) || !std::isfinite(value) ? value : std::log(value);
 }
 
 /// The merit and the symmetric Z with d merit = trace(Z dM).
@@ -29,7 +26,7 @@ struct SlopedMerit {
 SlopedMerit sloped_merit(const Objective& objective, const MatrixXd& M) {
     SlopedMerit merit;
     merit.Z = gradient(objective, M, &merit.value);
-    if (objective.criterion == Criterion::D || !std::isfinite(merit.value)) return merit;
+    if (is_logarithm(objective.criterion) || !std::isfinite(merit.value)) return merit;
     merit.Z /= merit.value;
     merit.value = std::log(merit.value);
     return merit;
@@ -220,9 +217,8 @@ class Refiner {
 
 /// Values of the criterion for a merit.
 double value_of(const Objective& objective, double merit_value) {
-    return objective.criterion == Criterion::D || !std::isfinite(merit_value)
-               ? merit_value
-               : std::exp(merit_value);
+    return is_logarithm(objective.criterion) || !std::isfinite(merit_value) ? merit_value
+                                                                            : std::exp(merit_value);
 }
 
 void check_shape(const DesignSpace& space, const RowMatrixXd& start) {
@@ -281,18 +277,14 @@ Refinement refine_poses(const DesignSpace& space, const Objective& objective, co
     if (!std::isfinite(result.value)) {
         throw InputError("the plan to refine does not identify all parameters");
     }
-    if (has_kinks(objective.criterion)) {
+    if (!is_smooth(objective.criterion)) {
         refine_with_kinks(space, objective, held, options, result);
     } else {
         refiner.climb(objective, options.tolerance);
         keep_better(objective, refiner, result);
         result.ending = refiner.ending();
     }
-    if (options.stop.is_interrupted()) {
-        result.ending = Ending::Interrupted;
-    } else if (options.stop.is_late()) {
-        result.ending = Ending::TimeLimit;
-    }
+    result.ending = options.stop.ending_or(result.ending);
     return result;
 }
 

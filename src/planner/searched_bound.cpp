@@ -4,11 +4,14 @@
 #include <cmath>
 #include <numeric>
 
-#include "nlopt_adapter.hpp"
+#include "../core/nlopt_adapter.hpp"
+#include "posewise/core/parallel.hpp"
 #include "posewise/criteria/information_function.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 constexpr Index start_limit = 4000;  // looked at
 constexpr Index search_count = 12;   // followed uphill
@@ -22,10 +25,11 @@ std::vector<Index> most_sensitive(const DesignSpace& space, const MatrixXd& Z,
                                   const RowMatrixXd& starts) {
     const Index count = std::min(starts.rows(), start_limit);
     VectorXd values(count);
-#pragma omp parallel for schedule(static)
-    for (Index i = 0; i < count; ++i) {
-        values[i] = sensitivity(space, starts.row(i).transpose(), Z);
-    }
+    for_each_range(count, 64, [&](Index first, Index last) {
+        for (Index i = first; i < last; ++i) {
+            values[i] = sensitivity(space, starts.row(i).transpose(), Z);
+        }
+    });
     std::vector<Index> order(static_cast<std::size_t>(count));
     std::iota(order.begin(), order.end(), Index{0});
     std::stable_sort(order.begin(), order.end(),
@@ -72,10 +76,10 @@ double search_bound(const DesignSpace& space, const Objective& objective, const 
         const MatrixXd Z = supporting_matrix(objective, relaxed);
         const auto order = most_sensitive(space, Z, starts);
         std::vector<Maximum> maxima(order.size());
-#pragma omp parallel for schedule(dynamic)
-        for (std::size_t s = 0; s < order.size(); ++s) {
+        for_each_index(static_cast<Index>(order.size()), [&](Index i) {
+            const auto s = static_cast<std::size_t>(i);
             maxima[s] = climb(space, Z, starts.row(order[s]).transpose(), stop);
-        }
+        });
         if (maxima.empty() || stop.is_set()) break;
         const auto best =
             std::max_element(maxima.begin(), maxima.end(),

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/core/parallel.hpp"
 #include "posewise/core/random.hpp"
 
 namespace posewise {
@@ -91,13 +92,12 @@ class Roadmap {
     void find_free_moves() {
         const auto count = static_cast<Index>(nodes_.size());
         is_free_ = Eigen::Matrix<char, Eigen::Dynamic, Eigen::Dynamic>::Ones(count, count);
-#pragma omp parallel for schedule(dynamic)
-        for (Index i = 1; i < count; ++i) {
+        for_each_index(count, [&](Index i) {
             for (Index j = has_home() ? 0 : 1; j < i; ++j) {
                 is_free_(i, j) =
                     is_move_free(constraints_, node(i), node(j), options_.resolution) ? 1 : 0;
             }
-        }
+        });
     }
 
     /// The quickest of the free ways over home and over random points about the middle of the

@@ -72,9 +72,10 @@ Table value_table(const Campaign& campaign, const Parameters& parameters) {
         const auto i = static_cast<std::size_t>(k);
         // The base's turn is no small error.
         const bool in_degrees = k < base_parameter_count(campaign) && is_angle[i];
-        const double value = in_degrees ? to_degrees(values[k]) : mm_per_m * values[k];
+        const AmountUnits& units = units_of(is_angle[i]);
+        const double value = in_degrees ? units.to_reading(values[k]) : mm_per_m * values[k];
         table.rows.push_back({names[i], format_fixed(value, 4),
-                              in_degrees ? "deg" : std::string(units_of(is_angle[i]).error)});
+                              std::string(in_degrees ? units.reading : units.error)});
     }
     return table;
 }
@@ -100,12 +101,11 @@ Table compliance_table(const Campaign& campaign, const Estimate& estimate) {
         const double value = estimate.parameters.robot[compliance.parameter];
         const double deviation = deviations[robot_begin + compliance.parameter];
         const double factor = 1e6 / compliance.largest;
-        const bool turns = campaign.robot.joint_motion(compliance.joint) == Motion::Rotation;
+        const Joint& joint = campaign.robot.joint(compliance.joint);
         table.rows.push_back(
-            {campaign.robot.joints()[static_cast<std::size_t>(compliance.joint)].name,
-             format_short(factor * value, 4), format_short(factor * deviation, 2),
-             turns ? "urad/(N m)" : "um/N", format_short(compliance.largest, 4),
-             turns ? "N m" : "N"});
+            {joint.name, format_short(factor * value, 4), format_short(factor * deviation, 2),
+             joint.motion == Motion::Rotation ? "urad/(N m)" : "um/N",
+             format_short(compliance.largest, 4), std::string(units_of(joint.motion).load)});
     }
     return table;
 }

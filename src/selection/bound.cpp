@@ -98,7 +98,7 @@ Objective make_objective(const Blocks& candidates, const SelectOptions& options)
 }
 
 double choice_value(const Blocks& candidates, const SelectOptions& options,
-                  const std::vector<Index>& poses) {
+                    const std::vector<Index>& poses) {
     return evaluate(make_objective(candidates, options),
                     held_information(candidates, options) + information(candidates, poses));
 }
@@ -129,7 +129,7 @@ double upper_bound(const Blocks& candidates, const SelectOptions& options,
 
 double efficiency(Criterion criterion, double value, double bound, Index parameter_count) {
     if (!std::isfinite(value) || !std::isfinite(bound)) return 0;
-    const double ratio = criterion == Criterion::D
+    const double ratio = is_logarithm(criterion)
                              ? std::exp((value - bound) / static_cast<double>(parameter_count))
                              : value / bound;
     return std::clamp(ratio, 0.0, 1.0);

@@ -1,7 +1,6 @@
 #include "posewise/selection/exchange.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -9,6 +8,7 @@
 #include "enumeration.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/parallel.hpp"
 #include "posewise/core/sensitivities.hpp"
 #include "relaxation.hpp"
 #include "validation.hpp"
@@ -18,25 +18,6 @@ namespace {
 
 constexpr Index sweep_limit = 50;  // of the last sweeps over all candidates
 constexpr Index sweep_size = 4096;
-
-/// When to give up early, and why.
-class Deadline {
-  public:
-    explicit Deadline(const SelectOptions& options) : options_(options) {}
-
-    bool is_interrupted() const {
-        return options_.interrupted != nullptr && options_.interrupted->load();
-    }
-    bool is_over() const {
-        if (is_interrupted()) return true;
-        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
-        return options_.time_limit > 0 && elapsed.count() > options_.time_limit;
-    }
-
-  private:
-    const SelectOptions& options_;
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
 
 std::vector<Index> by_decreasing(const VectorXd& values) {
     std::vector<Index> order(static_cast<std::size_t>(values.size()));
@@ -100,8 +81,8 @@ ScoredPoses make_identifying(const SearchProblem& problem, const Shortlist& shor
                              const ScoredPoses& choice, RandomStream& random) {
     if (choice.score.identifies || problem.objective.criterion == Criterion::D) return choice;
     const Objective determinant;
-    SearchProblem by_determinant{problem.candidates, problem.options, determinant,
-                                 problem.held,       problem.ridge,   problem.must_stop};
+    SearchProblem by_determinant{problem.candidates, problem.options, determinant, problem.held,
+                                 problem.ridge};
     const ScoredPoses changed =
         improve_with_kicks(by_determinant, make_shortlist(problem.candidates, shortlist.members),
                            make_choice(by_determinant, choice.poses), random);
@@ -127,47 +108,26 @@ Shortlist shortlist_by_sensitivity(const SearchProblem& problem, const Relaxatio
     return make_shortlist(problem.candidates, std::move(members));
 }
 
-/// Counts finished starts and tells the caller, one thread at a time.
-class Reporter {
-  public:
-    Reporter(const SelectOptions& options, double bound) : options_(options) {
-        progress_.starts = options.starts;
-        progress_.bound = bound;
-    }
-    void report(const ScoredPoses& choice) {
-        if (!options_.progress) return;
-#pragma omp critical(posewise_select_progress)
-        {
-            ++progress_.starts_done;
-            if (choice.score.identifies) {
-                progress_.value = std::max(progress_.value, choice.score.value);
-            }
-            options_.progress(progress_);
-        }
-    }
-
-  private:
-    const SelectOptions& options_;
-    SelectProgress progress_;
-};
-
 /// Searches from `first`, the start of the relaxation, and from random ones.
 std::vector<ScoredPoses> run_starts(const SearchProblem& problem, const Relaxation& relaxation,
                                     const Shortlist& shortlist, const ScoredPoses& first) {
     const SelectOptions& options = problem.options;
-    Reporter reporter(options, relaxation.bound);
+    ProgressCounter counter(options.progress, {.total = options.starts, .bound = relaxation.bound});
     std::vector<std::optional<ScoredPoses>> ends(static_cast<std::size_t>(options.starts));
-#pragma omp parallel for schedule(dynamic)
-    for (Index start = 0; start < options.starts; ++start) {
-        if (start > 0 && problem.must_stop()) continue;
+    for_each_index(options.starts, [&](Index start) {
+        if (start > 0 && options.stop.is_set()) return;
         RandomStream random(options.seed, static_cast<std::uint64_t>(start));
         ScoredPoses choice = first;
         if (start > 0) choice = make_random_start(problem, relaxation, random).value_or(first);
         choice = make_identifying(problem, shortlist, choice, random);
         choice = improve_with_kicks(problem, shortlist, choice, random);
-        reporter.report(choice);
+        counter.count([&](Progress& progress) {
+            if (choice.score.identifies) {
+                progress.value = std::max(progress.value, choice.score.value);
+            }
+        });
         ends[static_cast<std::size_t>(start)] = std::move(choice);
-    }
+    });
     std::vector<ScoredPoses> choices;  // of the starts there was time for
     for (const auto& end : ends) {
         if (end) choices.push_back(*end);
@@ -178,7 +138,7 @@ std::vector<ScoredPoses> run_starts(const SearchProblem& problem, const Relaxati
 /// Exchanges with every candidate that could improve the choice, shortlisted or not, until none
 /// does.
 ScoredPoses sweep_all(const SearchProblem& problem, ScoredPoses choice) {
-    for (Index sweep = 0; sweep < sweep_limit && !problem.must_stop(); ++sweep) {
+    for (Index sweep = 0; sweep < sweep_limit && !problem.options.stop.is_set(); ++sweep) {
         const VectorXd d = sensitivities(
             problem.candidates,
             gradient(problem.objective, problem.regularised_information(choice.poses)));
@@ -223,7 +183,7 @@ Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
         if (is_better(choice.score, outcome.best.score)) outcome.best = choice;
     }
     outcome.best = sweep_all(problem, outcome.best);
-    if (problem.must_stop()) return outcome;
+    if (problem.options.stop.is_set()) return outcome;
     if (auto optimum = enumerate_open_choices(problem, relaxation, outcome.best)) {
         outcome.best = *optimum;
         outcome.is_optimal = true;
@@ -235,15 +195,10 @@ Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
 
 Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     validate(candidates, options);
-    const Deadline deadline(options);
     const Objective objective = make_objective(candidates, options);
-    const SearchProblem problem{candidates,
-                                options,
-                                objective,
-                                held_information(candidates, options),
-                                ridge_of(candidates),
-                                [&] { return deadline.is_over(); }};
-    const Relaxation relaxation = relax(objective, candidates, options, problem.must_stop);
+    const SearchProblem problem{candidates, options, objective,
+                                held_information(candidates, options), ridge_of(candidates)};
+    const Relaxation relaxation = relax(objective, candidates, options);
     const Outcome outcome = search(problem, relaxation);
     const ScoredPoses& best = outcome.best;
     if (!best.score.identifies) {
@@ -259,10 +214,7 @@ Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
             return choice.score.identifies && best.score.value - choice.score.value <=
                                                   1e-9 * std::max(1.0, std::abs(best.score.value));
         });
-    plan.ending = outcome.is_optimal          ? Ending::Optimal
-                       : deadline.is_interrupted() ? Ending::Interrupted
-                       : deadline.is_over()        ? Ending::TimeLimit
-                                                   : Ending::Converged;
+    plan.ending = outcome.is_optimal ? Ending::Optimal : options.stop.ending_or(Ending::Converged);
     plan.bound = outcome.is_optimal ? best.score.value : relaxation.bound;
     plan.poses = best.poses;
     std::sort(plan.poses.begin(), plan.poses.end());

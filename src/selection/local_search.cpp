@@ -15,7 +15,7 @@ class LocalSearch {
         : problem_(problem),
           shortlist_(shortlist),
           neighbourhood_(problem.objective, problem.candidates, shortlist, most_evaluated,
-                         problem.must_stop),
+                         problem.options.stop),
           occupancy_(problem.candidates.count(), problem.options) {}
 
     const ScoredPoses& choice() const { return choice_; }
@@ -28,7 +28,8 @@ class LocalSearch {
     void improve() {
         const std::size_t K = choice_.poses.size();
         std::size_t unimproved = 0;
-        for (std::size_t at = 0; unimproved < K && !problem_.must_stop(); at = (at + 1) % K) {
+        for (std::size_t at = 0; unimproved < K && !problem_.options.stop.is_set();
+             at = (at + 1) % K) {
             unimproved = exchange_at(at) ? 0 : unimproved + 1;
         }
     }
@@ -153,7 +154,7 @@ ScoredPoses improve_with_kicks(const SearchProblem& problem, const Shortlist& sh
     search.improve();
     ScoredPoses best = search.choice();
     const Index most_failures = patience(problem, shortlist);
-    for (Index failures = 0; failures < most_failures && !problem.must_stop();) {
+    for (Index failures = 0; failures < most_failures && !problem.options.stop.is_set();) {
         search.start_near(best, random);
         search.improve();
         if (is_better(search.choice().score, best.score)) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include "neighbourhood.hpp"
 #include "posewise/core/random.hpp"
 
@@ -23,7 +21,6 @@ struct SearchProblem {
     const Objective& objective;
     MatrixXd held;
     double ridge = 0;  ///< times the identity: small, but makes every matrix positive definite
-    std::function<bool()> must_stop;
 
     MatrixXd regularised_information(const std::vector<Index>& poses) const;
     Score score(const MatrixXd& regularised) const;

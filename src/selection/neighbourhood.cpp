@@ -39,12 +39,12 @@ std::vector<RowMatrixXd> worst_predicted(const Blocks& test_poses, const MatrixX
 
 Neighbourhood::Neighbourhood(const Objective& objective, const Blocks& candidates,
                              const Shortlist& shortlist, Index most_evaluated,
-                             const std::function<bool()>& must_stop)
+                             const StopSignal& stop)
     : objective_(objective),
       candidates_(candidates),
       shortlist_(shortlist),
       most_evaluated_(most_evaluated),
-      must_stop_(must_stop),
+      stop_(stop),
       ranking_(Ranking::Estimate),
       gains_(candidates, shortlist) {
     if (!objective.nuisance.empty()) return;
@@ -152,7 +152,7 @@ Index Neighbourhood::best_by_gains(Index removed, double value, const Occupancy&
     Index best = -1;
     double best_value = value;
     Index evaluated = 0;
-    for (; !ranked.empty() && !must_stop_(); ranked.pop_back()) {
+    for (; !ranked.empty() && !stop_.is_set(); ranked.pop_back()) {
         const auto [position, gain] = ranked.front();
         if (is_ceiling && 1 / (gains_.remaining_trace() - gain) <= best_value) break;
         if (ranking_ == Ranking::Estimate && evaluated++ == most_evaluated_) break;
@@ -175,7 +175,7 @@ Index Neighbourhood::best_by_eigenvalues(Index removed, double value, const Occu
     Index best = -1;
     double best_value = value;
     const auto size = static_cast<Index>(shortlist_.members.size());
-    for (Index position = 0; position < size && !must_stop_(); ++position) {
+    for (Index position = 0; position < size && !stop_.is_set(); ++position) {
         if (!ritz_->may_exceed(position, best_value)) continue;
         if (!is_allowed(position, removed, occupancy)) continue;
         const auto added = candidates_[shortlist_.members[static_cast<std::size_t>(position)]];

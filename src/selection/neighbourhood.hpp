@@ -1,10 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "gains.hpp"
 #include "limits.hpp"
+#include "posewise/core/stop.hpp"
 #include "posewise/criteria/objective.hpp"
 #include "rayleigh_ritz.hpp"
 
@@ -19,7 +19,7 @@ class Neighbourhood {
   public:
     /// Where gains are estimates, at most `most_evaluated` exchanges are evaluated at a time.
     Neighbourhood(const Objective& objective, const Blocks& candidates, const Shortlist& shortlist,
-                  Index most_evaluated, const std::function<bool()>& must_stop);
+                  Index most_evaluated, const StopSignal& stop);
 
     /// The plan's information matrix is now M (positive definite).
     void move_to(const MatrixXd& M);
@@ -56,7 +56,7 @@ class Neighbourhood {
     const Blocks& candidates_;
     const Shortlist& shortlist_;
     Index most_evaluated_;
-    const std::function<bool()>& must_stop_;
+    const StopSignal& stop_;
     Ranking ranking_;
     MatrixXd M_;
     Gains gains_;

@@ -56,19 +56,19 @@ VectorXd project_on_capped_simplex(const VectorXd& point, const VectorXd& upper,
 
 double log_value(const Objective& objective, const MatrixXd& M) {
     const double value = evaluate(objective, M);
-    if (objective.criterion != Criterion::D) return value > 0 ? std::log(value) : value;
+    if (!is_logarithm(objective.criterion)) return value > 0 ? std::log(value) : value;
     return value / static_cast<double>(interest_count(objective, M.rows()));
 }
 
 MatrixXd log_gradient(const Objective& objective, const MatrixXd& M) {
-    const double scale = objective.criterion == Criterion::D
+    const double scale = is_logarithm(objective.criterion)
                              ? static_cast<double>(interest_count(objective, M.rows()))
                              : evaluate(objective, M);
     return gradient(objective, M) / scale;
 }
 
 WeightSearch ascend(const WeightProblem& problem, const VectorXd& start, double tolerance,
-                    Index iteration_limit, const std::function<bool()>& must_stop) {
+                    Index iteration_limit, const StopSignal& stop) {
     constexpr std::size_t memory = 10;
     const auto M_of = [&](const VectorXd& w) -> MatrixXd {
         return problem.held + problem.set.weighted_information(w);
@@ -82,7 +82,8 @@ WeightSearch ascend(const WeightProblem& problem, const VectorXd& start, double 
     while (true) {
         const LinearGain linear = linear_gain(g, search.weights, problem);
         search.threshold = linear.threshold;
-        if (linear.gain <= tolerance || search.iterations == iteration_limit || must_stop()) break;
+        if (linear.gain <= tolerance || search.iterations == iteration_limit || stop.is_set())
+            break;
         const VectorXd direction =
             project_on_capped_simplex(search.weights + step * g, problem.upper, problem.total) -
             search.weights;

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <functional>
-
+#include "posewise/core/stop.hpp"
 #include "posewise/criteria/objective.hpp"
 #include "working_set.hpp"
 
@@ -33,6 +32,6 @@ struct WeightSearch {
 
 /// Ascends from `start` until the linear model promises less than `tolerance` of log_value().
 WeightSearch ascend(const WeightProblem& problem, const VectorXd& start, double tolerance,
-                    Index iteration_limit, const std::function<bool()>& must_stop);
+                    Index iteration_limit, const StopSignal& stop);
 
 }  // namespace posewise

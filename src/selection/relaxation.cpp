@@ -20,11 +20,6 @@ constexpr Index round_limit = 40;
 constexpr double first_sharpness = 8;
 constexpr double last_sharpness = 512;
 
-bool is_smooth(Criterion criterion) {
-    return criterion == Criterion::D || criterion == Criterion::A || criterion == Criterion::V ||
-           criterion == Criterion::O1 || criterion == Criterion::O5;
-}
-
 /// The `count` allowed candidates of largest value outside the set (all with more than `least`).
 std::vector<Index> best_outside(const VectorXd& values, const std::vector<char>& is_inside,
                                 double least, Index count) {
@@ -59,20 +54,21 @@ class Relaxer {
         start_set();
     }
 
-    Relaxation run(const std::function<bool()>& must_stop) {
+    Relaxation run() {
         for (Index round = 0; round < round_limit; ++round) {
             const double tolerance =
                 std::isinf(objective_.sharpness)
                     ? 0.5 * options_.gap
                     : std::max(0.5 * options_.gap, 0.02 / objective_.sharpness);
-            const WeightSearch search = ascend(
-                {objective_, set_, held_, upper_, static_cast<double>(options_.pose_count)},
-                weights_, tolerance,
-                is_smooth(options_.criterion) ? iteration_limit : rough_iteration_limit, must_stop);
+            const WeightSearch search =
+                ascend({objective_, set_, held_, upper_, static_cast<double>(options_.pose_count)},
+                       weights_, tolerance,
+                       is_smooth(options_.criterion) ? iteration_limit : rough_iteration_limit,
+                       options_.stop);
             weights_ = search.weights;
             result_.iterations += search.iterations;
             keep_if_better(search.M);
-            if (must_stop() || is_closed(search.M)) break;
+            if (options_.stop.is_set() || is_closed(search.M)) break;
             const bool grown = grow(search);
             if (!grown && !sharpen()) break;
         }
@@ -168,9 +164,9 @@ class Relaxer {
 
 }  // namespace
 
-Relaxation relax(const Objective& objective, const Blocks& candidates, const SelectOptions& options,
-                 const std::function<bool()>& must_stop) {
-    return Relaxer(objective, candidates, options).run(must_stop);
+Relaxation relax(const Objective& objective, const Blocks& candidates,
+                 const SelectOptions& options) {
+    return Relaxer(objective, candidates, options).run();
 }
 
 }  // namespace posewise

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include "posewise/selection/bound.hpp"
 
 namespace posewise {
@@ -18,8 +16,8 @@ struct Relaxation {
 /// Maximises the (softened) objective over the weights by spectral projected gradient [Birgin,
 /// Martinez, Raydan 2000] on a working set of candidates; all candidates are priced between rounds
 /// and the most sensitive join the set, until the bound is within options.gap of the value.
-/// Criteria that are not smooth are sharpened step by step. `must_stop` is asked between steps.
-Relaxation relax(const Objective& objective, const Blocks& candidates, const SelectOptions& options,
-                 const std::function<bool()>& must_stop);
+/// Criteria that are not smooth are sharpened step by step. options.stop is asked between steps.
+Relaxation relax(const Objective& objective, const Blocks& candidates,
+                 const SelectOptions& options);
 
 }  // namespace posewise

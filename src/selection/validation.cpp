@@ -123,10 +123,6 @@ void validate(const Blocks& candidates, const SelectOptions& options) {
     if (!(options.gap > 0)) {
         throw InputError("gap is " + std::to_string(options.gap) + ", must be positive");
     }
-    if (!(options.time_limit >= 0)) {
-        throw InputError("time limit is " + std::to_string(options.time_limit) +
-                         " s, must not be negative");
-    }
     validate_limits(candidates, options);
     validate_held(options, candidates.parameter_count());
     Index open = 0;

@@ -1,5 +1,7 @@
 #include "working_set.hpp"
 
+#include "posewise/core/parallel.hpp"
+
 namespace posewise {
 
 void WorkingSet::add(const std::vector<Index>& candidates) {
@@ -7,8 +9,7 @@ void WorkingSet::add(const std::vector<Index>& candidates) {
     const Index first = size();
     members_.insert(members_.end(), candidates.begin(), candidates.end());
     packed_.conservativeResize(size(), L * (L + 1) / 2);
-#pragma omp parallel for schedule(static)
-    for (Index m = first; m < size(); ++m) {
+    const auto pack = [&](Index m) {
         const auto block = (*candidates_)[members_[static_cast<std::size_t>(m)]];
         const MatrixXd H = block.transpose() * block;
         Index k = 0;
@@ -16,7 +17,10 @@ void WorkingSet::add(const std::vector<Index>& candidates) {
             packed_.row(m).segment(k, L - i) = H.col(i).tail(L - i).transpose();
             k += L - i;
         }
-    }
+    };
+    for_each_range(size() - first, 64, [&](Index begin, Index end) {
+        for (Index m = begin; m < end; ++m) pack(first + m);
+    });
 }
 
 MatrixXd WorkingSet::weighted_information(const VectorXd& weights) const {

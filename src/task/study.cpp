@@ -1,12 +1,13 @@
 #include "posewise/task/study.hpp"
 
 #include <algorithm>
-#include <exception>
 #include <limits>
 
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/parallel.hpp"
 #include "posewise/core/random.hpp"
+#include "posewise/core/statistics.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/selection/exchange.hpp"
@@ -112,35 +113,10 @@ std::vector<Job> list_jobs(std::vector<StudyRow>& rows) {
     return jobs;
 }
 
-/// Runs all jobs over the threads. No exception may leave a parallel region: that of the first job
-/// (by number, whatever finished first) is thrown behind it.
-void run_all(const Setting& setting, const std::vector<Job>& jobs,
-             const std::function<void(Index, Index)>& progress) {
-    std::vector<std::exception_ptr> failures(jobs.size());
-    Index done = 0;
-#pragma omp parallel for schedule(dynamic)
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-        try {
-            run(setting, jobs[i]);
-        } catch (...) {
-            failures[i] = std::current_exception();
-        }
-#pragma omp critical(posewise_study_progress)
-        {
-            ++done;
-            if (progress) progress(done, static_cast<Index>(jobs.size()));
-        }
-    }
-    for (const auto& failure : failures) {
-        if (failure) std::rethrow_exception(failure);
-    }
-}
-
 }  // namespace
 
 std::vector<StudyRow> study_pose_counts(const Campaign& campaign, const Measurements& measurements,
-                                        const StudyOptions& options,
-                                        const std::function<void(Index, Index)>& progress) {
+                                        const StudyOptions& options) {
     if (options.random_subsets < 0 || options.starts < 1) {
         throw InputError("random subsets and starts must be at least 0 and 1, are " +
                          std::to_string(options.random_subsets) + " and " +
@@ -157,7 +133,13 @@ std::vector<StudyRow> study_pose_counts(const Campaign& campaign, const Measurem
         row.random.resize(static_cast<std::size_t>(options.random_subsets));
         rows.push_back(std::move(row));
     }
-    run_all(setting, list_jobs(rows), progress);
+    const std::vector<Job> jobs = list_jobs(rows);
+    const auto count = static_cast<Index>(jobs.size());
+    ProgressCounter counter(options.progress, count);
+    for_each_index(count, [&](Index i) {
+        run(setting, jobs[static_cast<std::size_t>(i)]);
+        counter.count();
+    });
     return rows;
 }
 
@@ -172,13 +154,11 @@ std::optional<double> held_out_quantile(const std::vector<StudyCase>& cases, dou
         }
     }
     if (errors.empty()) return std::nullopt;
-    std::sort(errors.begin(), errors.end());
-    const double position = std::clamp(p, 0.0, 1.0) * static_cast<double>(errors.size() - 1);
-    const auto lower = static_cast<std::size_t>(position);
-    const double part = position - static_cast<double>(lower);
-    const double upper_error = errors[part > 0 ? lower + 1 : lower];
-    if (upper_error == worst) return std::nullopt;
-    return errors[lower] + part * (upper_error - errors[lower]);
+    const double error =
+        quantile(Eigen::Map<const VectorXd>(errors.data(), static_cast<Index>(errors.size())),
+                 std::clamp(p, 0.0, 1.0), QuantileRule::Linear);
+    if (error == worst) return std::nullopt;
+    return error;
 }
 
 }  // namespace posewise

@@ -115,8 +115,8 @@ void BM_SelectPoses(benchmark::State& state) {
     const Blocks pool = testing::fanuc_pool(state.range(0), 1);
     SelectOptions options;
     options.pose_count = state.range(1);
-    options.time_limit = state.range(0) <= 10000 ? 10 : 0;
     options.starts = state.range(0) <= 10000 ? 20 : 4;
+    options.stop.deadline = deadline_after(state.range(0) <= 10000 ? 10 : 0);  // one iteration
     Choice plan;
     for (auto _ : state) plan = select_poses(pool, options);
     state.counters["efficiency"] = plan.efficiency;

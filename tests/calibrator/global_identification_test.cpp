@@ -125,6 +125,20 @@ TEST(GlobalIdentification, RegistersARobotWithErrorsExactly) {
     EXPECT_TRUE(found.world_from_base.isApprox(truth.world_from_base, 1e-9));
 }
 
+TEST(GlobalIdentification, TellsItsProgressAndPassesOnWhatTheCallbackThrows) {
+    const Campaign campaign = tracked_campaign(testing::fanuc());
+    const Measurements measurements = simulate(campaign, {.pose_count = 24}).measurements;
+    GlobalOptions options;
+    Index told = 0;
+    options.progress = [&](const Progress& progress) {
+        EXPECT_EQ(progress.done, ++told);
+        EXPECT_EQ(progress.total, options.start_limit);
+    };
+    EXPECT_EQ(identify_globally(campaign, measurements, options).starts, told);
+    options.progress = [](const Progress&) { throw std::domain_error("enough"); };
+    EXPECT_THROW(identify_globally(campaign, measurements, options), std::domain_error);
+}
+
 TEST(GlobalIdentification, RefusesWhatItCannotUse) {
     Campaign campaign = tracked_campaign(testing::fanuc());
     const Measurements measurements = simulate(campaign, {.pose_count = 24}).measurements;

@@ -194,6 +194,27 @@ TEST(IdentifyTwoStep, ReportsTheJointCovariance) {
     EXPECT_LT((joint.covariance - two_step.covariance).norm(), 1e-6 * joint.covariance.norm());
 }
 
+TEST(Identify, OfNothingUnknownJudgesTheStatedModel) {
+    Campaign campaign = with_sigma(5e-5);
+    campaign.robot = without_parameters(campaign.robot);
+    campaign.nominal.robot.resize(0);
+    std::vector<std::optional<Vector3d>> targets;
+    for (Index j = 0; j < 3; ++j) {
+        targets.emplace_back(Vector3d(campaign.nominal.sensor.segment<3>(3 * j)));
+    }
+    campaign.sensor = std::make_shared<PointSensor>(targets, 5e-5);
+    campaign.nominal.sensor.resize(0);
+    campaign.base_is_known.fill(true);
+    ASSERT_EQ(parameter_count(campaign), 0);
+    const auto measurements = simulate_measurements(
+        campaign, campaign.nominal, random_configurations(campaign.robot, 30, 1), 1, 2);
+    const Estimate estimate = identify(campaign, measurements, campaign.nominal);
+    EXPECT_EQ(estimate.ending, Ending::Converged);
+    EXPECT_EQ(estimate.degrees_of_freedom, 270);
+    EXPECT_NEAR(estimate.variance_factor, 1, 0.3);
+    EXPECT_EQ(estimate.covariance.size(), 0);
+}
+
 TEST(IdentifyTwoStep, RefusesAStepSizeOutsideZeroToOne) {
     const Campaign campaign = with_sigma(5e-5);
     const auto measurements = simulate(campaign, {24, 1, 7, 8}).measurements;
@@ -218,6 +239,20 @@ TEST(CrossValidate, LeavesOutEachConfigurationOnce) {
         make_metrics(residuals(campaign, without.parameters, take(measurements, {4}))).distance_max;
     EXPECT_LE(left_out, result.samples.distance_max);
     EXPECT_GT(result.samples.distance_rms, calibrate(campaign, measurements).fit.distance_rms);
+}
+
+TEST(CrossValidate, TellsItsProgressAndPassesOnWhatTheCallbackThrows) {
+    const Campaign campaign = with_sigma(5e-5);
+    const auto measurements = simulate(campaign, {12, 1, 7, 8}).measurements;
+    const Parameters start = register_base_and_targets(campaign, measurements);
+    Index told = 0;
+    cross_validate(campaign, measurements, start, 4, {}, [&](const Progress& progress) {
+        EXPECT_EQ(progress.done, ++told);
+        EXPECT_EQ(progress.total, 4);
+    });
+    EXPECT_EQ(told, 4);
+    const auto fail = [](const Progress&) { throw std::bad_alloc(); };
+    EXPECT_THROW(cross_validate(campaign, measurements, start, 4, {}, fail), std::bad_alloc);
 }
 
 TEST(CrossValidate, CountsFoldsThatCannotBeIdentified) {

@@ -28,6 +28,16 @@ TEST(StopSignal, IsSetByTheFlagOrTheDeadline) {
     EXPECT_EQ(stop.ending_or(Ending::Converged), Ending::Interrupted);
 }
 
+TEST(StopSignal, CanBeHalved) {
+    StopSignal stop;
+    EXPECT_EQ(stop.with_half_the_time().deadline, Clock::time_point::max());
+    std::atomic<bool> flag = false;
+    stop = {&flag, Clock::now() + std::chrono::seconds(100)};
+    const StopSignal half = stop.with_half_the_time();
+    EXPECT_EQ(half.interrupted, &flag);
+    EXPECT_NEAR(std::chrono::duration<double>(stop.deadline - half.deadline).count(), 50, 1);
+}
+
 TEST(DeadlineAfter, LiesAheadAndZeroIsNone) {
     const auto now = Clock::now();
     const auto deadline = deadline_after(100);

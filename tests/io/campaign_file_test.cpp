@@ -29,7 +29,7 @@ TEST(ReadCampaign, TakesJointsWithLimitsInAnyUnit) {
     EXPECT_DOUBLE_EQ(robot.joints()[0].upper, pi / 2);
     EXPECT_EQ(robot.joints()[1].upper, 1.5);
     EXPECT_EQ(robot.joints()[2].upper, 0.5);
-    EXPECT_EQ(robot.joint_motion(2), Motion::Translation);
+    EXPECT_EQ(robot.joint(2).motion, Motion::Translation);
 }
 
 TEST(ReadCampaign, TakesElementsWithSignsOffsetsAndCoupling) {

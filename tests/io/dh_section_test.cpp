@@ -51,7 +51,7 @@ TEST(DhSection, IsReadWithOffsetsSignsCouplingsAndFixedRows) {
     EXPECT_EQ(robot.joints()[0].name, "rail");
     EXPECT_DOUBLE_EQ(robot.joints()[0].upper, 0.9);
     EXPECT_DOUBLE_EQ(robot.joints()[1].lower, -90 * degree);
-    EXPECT_EQ(robot.joint_motion(0), Motion::Translation);
+    EXPECT_EQ(robot.joint(0).motion, Motion::Translation);
     EXPECT_NEAR(file.joint_repeatability[1], 1e-4, 1e-18);
     EXPECT_EQ(file.error_model, ErrorModel::Complete);
 

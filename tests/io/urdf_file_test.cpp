@@ -88,7 +88,7 @@ TEST(ReadUrdf, TakesLimitsAndNames) {
     EXPECT_EQ(chain.joints()[1].lower, -1.5);
     EXPECT_EQ(chain.joints()[1].upper, 2);
     EXPECT_EQ(chain.joints()[2].upper, std::numbers::pi);
-    EXPECT_EQ(chain.joint_motion(0), Motion::Translation);
+    EXPECT_EQ(chain.joint(0).motion, Motion::Translation);
     const std::string faster = replaced(text, "<origin xyz=\"0.4 0 0\"/>", "<limit velocity='4'/>");
     EXPECT_EQ(joint_speeds(read(faster)), Vector3d(0.5, 1.5, 4));
 }

@@ -75,6 +75,23 @@ TEST(PlanPoses, TestsGAndVOnPartOfThePoolUnlessToldOtherwise) {
     EXPECT_EQ(plan.endings.size(), 2U);
 }
 
+TEST(PlanPoses, TellsItsProgressAndPassesOnWhatTheCallbackThrows) {
+    const Scene scene(100, 12);
+    PlanOptions options = scene.options(Criterion::D, 9, 3);
+    options.bound_iterations = 0;
+    std::vector<Progress> told;
+    options.progress = [&](const Progress& progress) { told.push_back(progress); };
+    const PlannedPoses plan = plan_poses(scene.space, scene.pool, scene.blocks, options);
+    ASSERT_EQ(told.size(), 3U);
+    EXPECT_EQ(told.back().done, 3);
+    EXPECT_EQ(told.back().total, 3);
+    EXPECT_NEAR(told.back().value, plan.value, 1e-3);
+    EXPECT_EQ(told.back().bound, plan.pool_choice.bound);
+
+    options.progress = [](const Progress&) { throw std::domain_error("enough"); };
+    EXPECT_THROW(plan_poses(scene.space, scene.pool, scene.blocks, options), std::domain_error);
+}
+
 TEST(PlanPoses, IsTheSameForAnyNumberOfThreads) {
     const Scene scene(300, 30);
     const PlanOptions options = scene.options(Criterion::D, 10, 4);

@@ -11,10 +11,6 @@ namespace {
 
 using namespace testing;
 
-constexpr Criterion every_criterion[] = {Criterion::O1, Criterion::O2, Criterion::O3, Criterion::O4,
-                                         Criterion::O5, Criterion::A,  Criterion::D,  Criterion::E,
-                                         Criterion::G,  Criterion::V};
-
 /// Each criterion of a whole plan, those with kinks smoothed, by one pose of it.
 TEST(DesignSpace, GivesTheGradientOfEveryCriterion) {
     Campaign campaign = fanuc_planning_campaign();
@@ -28,7 +24,7 @@ TEST(DesignSpace, GivesTheGradientOfEveryCriterion) {
     MatrixXd rest = MatrixXd::Zero(33, 33);
     for (Index i = 1; i < 12; ++i) rest += space.information(plan.row(i).transpose());
     const VectorXd q = plan.row(0).transpose();
-    for (const Criterion criterion : every_criterion) {
+    for (const Criterion criterion : all_criteria) {
         for (const bool robot_only : {false, true}) {
             if (robot_only && (criterion == Criterion::G || criterion == Criterion::V)) continue;
             Objective objective = make_objective(criterion, 12, &test_poses);
@@ -65,7 +61,7 @@ TEST(RefinePoses, StaysFeasibleAndIsNeverWorseForAnyCriterion) {
     options.tolerance = 1e-3;
     options.sharpness = {16};
     options.kink_rounds = 1;
-    for (const Criterion criterion : every_criterion) {
+    for (const Criterion criterion : all_criteria) {
         const Objective objective = make_objective(criterion, 8, &test_poses);
         const Refinement refined = refine_poses(space, objective, {}, start, options);
         EXPECT_GT(refined.value, refined.start_value) << criterion_name(criterion);

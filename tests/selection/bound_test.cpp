@@ -14,9 +14,6 @@ namespace posewise {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr std::array all = {Criterion::O1, Criterion::O2, Criterion::O3, Criterion::O4,
-                            Criterion::O5, Criterion::A,  Criterion::D,  Criterion::E,
-                            Criterion::G,  Criterion::V};
 
 double best_value(const Blocks& candidates, const SelectOptions& options) {
     double best = -infinity;
@@ -47,7 +44,7 @@ TEST(UpperBound, IsNeverBelowTheBestChoice) {
         const auto seed = static_cast<std::uint64_t>(problem);
         const Blocks candidates = test::random_blocks(7, 1 + problem % 3, 3, seed);
         SelectOptions options = random_options(candidates, seed);
-        options.criterion = all[static_cast<std::size_t>(problem) % all.size()];
+        options.criterion = all_criteria[static_cast<std::size_t>(problem) % all_criteria.size()];
         const bool may_have_nuisance = options.criterion == Criterion::D ||
                                        options.criterion == Criterion::A ||
                                        options.criterion == Criterion::E;
@@ -80,7 +77,7 @@ TEST(UpperBound, IsTheValueItselfAtTheOptimumOfThePlanarArm) {
 
 TEST(UpperBound, IsInfiniteWhereTheMatrixIsSingular) {
     const Blocks candidates = test::random_blocks(9, 1, 4, 1);
-    for (const Criterion criterion : all) {
+    for (const Criterion criterion : all_criteria) {
         SelectOptions options;
         options.criterion = criterion;
         options.pose_count = 4;

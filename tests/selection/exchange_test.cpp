@@ -13,10 +13,6 @@
 namespace posewise {
 namespace {
 
-constexpr std::array all = {Criterion::O1, Criterion::O2, Criterion::O3, Criterion::O4,
-                            Criterion::O5, Criterion::A,  Criterion::D,  Criterion::E,
-                            Criterion::G,  Criterion::V};
-
 SelectOptions make_options(Criterion criterion, Index pose_count) {
     SelectOptions options;
     options.criterion = criterion;
@@ -86,7 +82,7 @@ TEST(SelectPoses, RefusesTestPosesOfOtherParameters) {
 TEST(SelectPoses, FindsAnIdentifyingChoiceWhereFewAreWhateverTheCriterion) {
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
         const Blocks edges = random_edges(8, 40, seed);
-        for (const Criterion criterion : all) {
+        for (const Criterion criterion : all_criteria) {
             SelectOptions options = make_options(criterion, 7);
             options.starts = 1;
             options.kicks = 0;
@@ -103,7 +99,7 @@ TEST(SelectByExchange, FindsTheBestSubsetOfASmallSet) {
     for (std::uint64_t seed = 0; seed < shapes.size(); ++seed) {
         const auto [rows, parameters] = shapes[seed];
         const Blocks candidates = test::random_blocks(12, rows, parameters, seed);
-        for (const Criterion criterion : all) {
+        for (const Criterion criterion : all_criteria) {
             expect_best(candidates, make_options(criterion, 5));
         }
     }
@@ -139,7 +135,7 @@ TEST(SelectByExchange, HonoursEveryLimit) {
 
 TEST(SelectByExchange, AddsToWhatIsHeld) {
     const Blocks candidates = test::random_blocks(12, 2, 9, 8);
-    for (const Criterion criterion : all) {
+    for (const Criterion criterion : all_criteria) {
         SelectOptions options = make_options(criterion, 3);  // six rows, nine parameters
         options.held = MatrixXd::Identity(9, 9) + information(candidates, {0, 1});
         options.held_pose_count = 2;
@@ -197,12 +193,12 @@ TEST(SelectByExchange, FindsThePosesThatJustIdentifyTheParameters) {
 TEST(SelectByExchange, StopsInTimeOrWhenAskedWithABound) {
     const Blocks candidates = test::random_blocks(2000, 3, 12, 5);
     SelectOptions options = make_options(Criterion::D, 20);
-    options.time_limit = 0.05;
+    options.stop.deadline = deadline_after(0.05);
     const Choice timed = select_poses(candidates, options);
     EXPECT_EQ(timed.ending, Ending::TimeLimit);
     EXPECT_GE(timed.bound, timed.value);
     const std::atomic<bool> interrupted = true;
-    options.interrupted = &interrupted;
+    options.stop.interrupted = &interrupted;
     const Choice stopped = select_poses(candidates, options);
     EXPECT_EQ(stopped.ending, Ending::Interrupted);
     EXPECT_TRUE(std::isfinite(stopped.bound));
@@ -212,12 +208,19 @@ TEST(SelectByExchange, StopsInTimeOrWhenAskedWithABound) {
 TEST(SelectByExchange, TellsItsProgress) {
     const Blocks candidates = test::random_blocks(20, 1, 4, 5);
     SelectOptions options = make_options(Criterion::D, 6);
-    std::vector<SelectProgress> reports;
-    options.progress = [&](const SelectProgress& progress) { reports.push_back(progress); };
+    std::vector<Progress> reports;
+    options.progress = [&](const Progress& progress) { reports.push_back(progress); };
     const Choice plan = select_poses(candidates, options);
     ASSERT_EQ(static_cast<Index>(reports.size()), options.starts);
-    EXPECT_EQ(reports.back().starts_done, options.starts);
+    EXPECT_EQ(reports.back().done, options.starts);
     EXPECT_NEAR(reports.back().value, plan.value, 1e-9);
+}
+
+TEST(SelectByExchange, PassesOnWhatTheProgressCallbackThrows) {
+    SelectOptions options = make_options(Criterion::D, 6);
+    options.enumeration = 0;
+    options.progress = [](const Progress&) { throw std::domain_error("enough"); };
+    EXPECT_THROW(select_poses(test::random_blocks(20, 1, 4, 5), options), std::domain_error);
 }
 
 TEST(SelectByExchange, RefusesUnusableInput) {

@@ -165,14 +165,23 @@ TEST(StudyPoseCounts, ReportsProgressToTheEnd) {
     const Example example;
     Index last = 0;
     Index total = 0;
-    study_pose_counts(example.campaign, example.measurements, small_options(),
-                      [&](Index done, Index all) {
-                          EXPECT_EQ(done, last + 1);
-                          last = done;
-                          total = all;
-                      });
+    StudyOptions options = small_options();
+    options.progress = [&](const Progress& progress) {
+        EXPECT_EQ(progress.done, last + 1);
+        last = progress.done;
+        total = progress.total;
+    };
+    study_pose_counts(example.campaign, example.measurements, options);
     EXPECT_EQ(last, 20);
     EXPECT_EQ(total, 20);
+}
+
+TEST(StudyPoseCounts, PassesOnWhatTheProgressCallbackThrows) {
+    const Example example;
+    StudyOptions options = small_options();
+    options.progress = [](const Progress&) { throw std::domain_error("enough"); };
+    EXPECT_THROW(study_pose_counts(example.campaign, example.measurements, options),
+                 std::domain_error);
 }
 
 TEST(StudyPoseCounts, RefusesWhatCannotBeStudied) {

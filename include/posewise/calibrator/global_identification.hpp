@@ -22,6 +22,7 @@ struct GlobalOptions {
     Index agreeing_starts = 3;  ///< stop when so many ended at the best sum of squares
     std::uint64_t seed = 1;     ///< start i draws from stream (seed, i)
     LevenbergMarquardtOptions start_options{};  ///< of each start; its loss must be squares
+    ProgressCallback progress{};  ///< of the starts; agreeing ones end them before the total
 };
 
 /// Largest error searched of each of the robot's parameters, m or rad; 0 for error terms.

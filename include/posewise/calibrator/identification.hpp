@@ -1,6 +1,7 @@
 #pragma once
 
 #include "posewise/calibrator/estimate.hpp"
+#include "posewise/core/progress.hpp"
 
 namespace posewise {
 
@@ -43,7 +44,8 @@ Estimate identify_two_step(const Campaign& campaign, const Measurements& measure
 
 /// Held-out residuals: the measurements are split into `folds` groups of configurations (in turn:
 /// configuration i is in group i mod folds), each predicted by an identification of the others
-/// that starts at `start`. folds = configuration count is leave-one-configuration-out.
+/// that starts at `start`. folds = configuration count is leave-one-configuration-out. `progress`
+/// is that of the folds.
 struct CrossValidation {
     Index folds = 0;
     Metrics samples;  ///< over all samples of all groups
@@ -53,6 +55,7 @@ struct CrossValidation {
 };
 CrossValidation cross_validate(const Campaign& campaign, const Measurements& measurements,
                                const Parameters& start, Index folds,
-                               const LevenbergMarquardtOptions& options = {});
+                               const LevenbergMarquardtOptions& options = {},
+                               const ProgressCallback& progress = {});
 
 }  // namespace posewise

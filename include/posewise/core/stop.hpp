@@ -19,6 +19,8 @@ struct StopSignal {
                std::chrono::steady_clock::now() >= deadline;
     }
     bool is_set() const { return is_interrupted() || is_late(); }
+    /// With half of the time that is left.
+    StopSignal with_half_the_time() const;
     /// Interrupted or TimeLimit if it is set, else `ending`.
     Ending ending_or(Ending ending) const;
 };

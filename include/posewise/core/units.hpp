@@ -17,6 +17,7 @@ struct AmountUnits {
     std::string_view si;       ///< "m" or "rad"
     std::string_view reading;  ///< "mm" or "deg": joint values, limits, poses
     std::string_view error;    ///< "mm" or "mrad": small errors, a thousand of them to the SI unit
+    std::string_view load;     ///< "N" or "N m": what gives way by this amount gives way to it
     double factor = 1;         ///< reading = si * factor / divisor
     double divisor = 1;
 
@@ -24,8 +25,8 @@ struct AmountUnits {
     constexpr double to_si(double reading_value) const { return reading_value * divisor / factor; }
 };
 
-inline constexpr AmountUnits length_units{"m", "mm", "mm", mm_per_m, 1};
-inline constexpr AmountUnits angle_units{"rad", "deg", "mrad", 180, std::numbers::pi};
+inline constexpr AmountUnits length_units{"m", "mm", "mm", "N", mm_per_m, 1};
+inline constexpr AmountUnits angle_units{"rad", "deg", "mrad", "N m", 180, std::numbers::pi};
 
 constexpr const AmountUnits& units_of(bool is_angle) {
     return is_angle ? angle_units : length_units;

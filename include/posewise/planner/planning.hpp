@@ -1,21 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 
 #include "posewise/planner/pool.hpp"
 #include "posewise/planner/refinement.hpp"
 #include "posewise/selection/exchange.hpp"
 
 namespace posewise {
-
-/// How far planning has come; handed to PlanOptions::progress.
-struct PlanProgress {
-    Index starts_done = 0;
-    Index starts = 0;
-    double value = -std::numeric_limits<double>::infinity();  ///< best so far
-    double efficiency = 0;  ///< of it against the bound over the pool; 1 if it passes that
-};
 
 struct PlanOptions {
     Criterion criterion = Criterion::V;
@@ -30,9 +21,9 @@ struct PlanOptions {
     Index starts = 16;           ///< plans that are refined; the first is the best of the pool
     Index bound_iterations = 8;  ///< of search_bound(); 0: no bound over the continuous region
     std::uint64_t seed = 1;      ///< start i draws from stream (seed, i)
-    double time_limit = 0;       ///< s; 0: none. With a limit, results depend on the machine
-    const std::atomic<bool>* interrupted = nullptr;       ///< set to stop with the best so far
-    std::function<void(const PlanProgress&)> progress{};  ///< called from one thread at a time
+    StopSignal stop{};           ///< ends the search with the best so far
+    ProgressCallback
+        progress{};  ///< of the starts; its efficiency is against the bound over the pool
 };
 
 /// A plan over continuous configurations.

@@ -1,21 +1,13 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <functional>
 #include <string>
 
+#include "posewise/core/progress.hpp"
+#include "posewise/core/stop.hpp"
 #include "posewise/selection/choice.hpp"
 
 namespace posewise {
-
-/// How far a selection has come; handed to SelectOptions::progress.
-struct SelectProgress {
-    Index starts_done = 0;
-    Index starts = 0;
-    double value = -std::numeric_limits<double>::infinity();  ///< of the best plan so far
-    double bound = std::numeric_limits<double>::infinity();
-};
 
 /// What to choose (the problem, up to and including `least_distance`) and how hard to try.
 struct SelectOptions {
@@ -47,9 +39,8 @@ struct SelectOptions {
     Index enumeration = 5000;  ///< most choices left open by the bound that are all tried; 0: none
     double gap = 1e-5;       ///< relative gap of the information function to end the relaxation at
     std::uint64_t seed = 1;  ///< start i draws from stream (seed, i)
-    double time_limit = 0;   ///< s; 0: none. With a limit, results depend on the machine
-    const std::atomic<bool>* interrupted = nullptr;         ///< set to stop with the best so far
-    std::function<void(const SelectProgress&)> progress{};  ///< called from one thread at a time
+    StopSignal stop{};       ///< ends the search with the best so far
+    ProgressCallback progress{};  ///< of the starts
 };
 
 /// The best K of the candidates, and a proven bound. The continuous relaxation gives the bound, a

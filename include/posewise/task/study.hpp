@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
 #include "posewise/calibrator/identification.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/criteria/criterion.hpp"
 
 namespace posewise {
@@ -32,17 +32,16 @@ struct StudyOptions {
     Index random_subsets = 100;
     Index starts = 20;  ///< of the exchange
     std::uint64_t seed = 1;
+    ProgressCallback progress{};  ///< of the cases
 };
 
 /// Accuracy against number of poses: choose k of the measured configurations by each criterion and
 /// at random, calibrate with them from registration on, and judge on the configurations left out.
-/// `progress(done, total)` is called from one thread at a time and must not throw. The same result
-/// for any number of threads.
+/// The same result for any number of threads.
 /// Throws InputError if not even all configurations identify the model, or for a pose count that is
 /// not in [1, configurations].
 std::vector<StudyRow> study_pose_counts(const Campaign& campaign, const Measurements& measurements,
-                                        const StudyOptions& options,
-                                        const std::function<void(Index, Index)>& progress = {});
+                                        const StudyOptions& options);
 
 /// The p-quantile (0..1, linear between order statistics) of the held-out distance RMS. Cases that
 /// are not identified count as worse than any other, so that dropping them cannot flatter the rest;
