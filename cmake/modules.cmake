@@ -46,7 +46,7 @@ function(posewise_library)
     "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
   target_link_libraries(posewise
     PUBLIC Eigen3::Eigen OpenMP::OpenMP_CXX
-    PRIVATE yaml-cpp fmt::fmt MatIO::MatIO NLopt::nlopt tinyxml2::tinyxml2)
+    PRIVATE yaml-cpp fmt::fmt MatIO::MatIO NLopt::nlopt pugixml::pugixml)
   target_compile_definitions(posewise PUBLIC EIGEN_DONT_PARALLELIZE)
   target_compile_features(posewise PUBLIC cxx_std_20)
   set_target_properties(posewise PROPERTIES LINKER_LANGUAGE CXX

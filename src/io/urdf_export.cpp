@@ -8,13 +8,14 @@
 namespace posewise::io {
 namespace {
 
-using tinyxml2::XMLElement;
+using namespace detail;
+using pugi::xml_node;
 
 Isometry3d product_of(const std::vector<Element>& elements, const VectorXd& parameters) {
     return Chain({}, elements).base_from_flange(VectorXd(), parameters);
 }
 
-/// What is constant before, between and behind the joints of a chain: base_from_flange(q) =
+/// What is constant before, between and after the joints of a chain: base_from_flange(q) =
 /// C_0 M_1(q_1) C_1 ... M_n(q_n) C_n. The constant part of a joint's element counts to what is
 /// before it, error terms to none.
 std::vector<Isometry3d> constants_of(const Chain& robot, const VectorXd& parameters) {
@@ -73,14 +74,14 @@ std::vector<Correction> correct_origins(const std::vector<UrdfJoint>& joints,
         const Isometry3d A = alignment_of(joints[k]);
         corrections.push_back({k, A * nominal[j].inverse() * calibrated[j] * A.inverse()});
     }
-    const std::size_t first_behind = corrections.back().joint + 1;
-    if (first_behind < joints.size()) {
-        Isometry3d others_behind = Isometry3d::Identity();
-        for (std::size_t k = first_behind + 1; k < joints.size(); ++k) {
-            others_behind = others_behind * origin_of(joints[k]);
+    const std::size_t first_after = corrections.back().joint + 1;
+    if (first_after < joints.size()) {
+        Isometry3d others_after = Isometry3d::Identity();
+        for (std::size_t k = first_after + 1; k < joints.size(); ++k) {
+            others_after = others_after * origin_of(joints[k]);
         }
         const Isometry3d change = nominal.back().inverse() * calibrated.back();
-        corrections.push_back({first_behind, others_behind * change * others_behind.inverse()});
+        corrections.push_back({first_after, others_after * change * others_after.inverse()});
     }
     return corrections;
 }
@@ -89,7 +90,7 @@ std::string numbers(const Vector3d& v) {
     return fmt::format("{} {} {}", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);  // never "-0"
 }
 
-/// A tag with an attribute set: its value replaced, or the attribute put in behind the name.
+/// A tag with an attribute set: its value replaced, or the attribute put in after the name.
 std::string with_attribute(const std::string& tag, const std::string& name,
                            const std::string& value) {
     constexpr const char* blanks = " \t\r\n";
@@ -118,21 +119,20 @@ struct Edit {
 };
 
 /// The joint's origin at its new place; what does not change keeps its words.
-Edit edit_origin(const XmlDocument& document, const XMLElement& element, const UrdfJoint& joint,
+Edit edit_origin(const XmlDocument& document, xml_node element, const UrdfJoint& joint,
                  const Isometry3d& origin) {
     constexpr double same = 1e-15;
-    const XMLElement* const stated = find_child(document, element, "origin");
+    const xml_node stated = find_child(document, element, "origin");
     const std::string& content = document.content();
-    const StartTag& tag = document.tag(stated == nullptr ? element : *stated);
-    std::string text =
-        stated == nullptr ? "<origin/>" : content.substr(tag.begin, tag.end - tag.begin);
+    const StartTag tag = document.start_tag(stated ? stated : element);
+    std::string text = stated ? content.substr(tag.begin, tag.end - tag.begin) : "<origin/>";
     if (!(rotation_from_rpy(joint.rpy) - origin.linear()).isZero(same)) {
         text = with_attribute(text, "rpy", numbers(rpy_from_rotation(origin.linear())));
     }
     if (!(joint.xyz - origin.translation()).isZero(same)) {
         text = with_attribute(text, "xyz", numbers(origin.translation()));
     }
-    if (stated != nullptr) return {tag.begin, tag.end, text};
+    if (stated) return {tag.begin, tag.end, text};
     // A line of its own in front of the first child, if the children stand so.
     const std::size_t first = content.find_first_not_of(" \t\r\n", tag.end);
     return {tag.end, tag.end, content.substr(tag.end, first - tag.end) + text};
@@ -158,8 +158,8 @@ void check_same_robot(const std::vector<UrdfJoint>& joints, std::size_t constant
     }
 }
 
-/// Names of the parameters behind the last joint that are not zero.
-std::vector<std::string> errors_behind(const Chain& robot, const VectorXd& parameters) {
+/// Names of the parameters after the last joint that are not zero.
+std::vector<std::string> errors_after_last_joint(const Chain& robot, const VectorXd& parameters) {
     std::vector<std::string> names;
     Index next = 0;
     for (const Element& element : robot.elements()) {
@@ -191,7 +191,7 @@ CalibratedUrdf make_calibrated_urdf(const UrdfSource& source, const Chain& robot
     const XmlDocument document(source.path);
     const UrdfPath path = find_path(document, source);
     std::vector<UrdfJoint> joints;
-    for (const XMLElement* joint : path.joints) joints.push_back(read_urdf_joint(document, *joint));
+    for (const xml_node joint : path.joints) joints.push_back(read_urdf_joint(document, joint));
 
     const auto nominal = constants_of(robot, VectorXd::Zero(robot.parameter_count()));
     const auto calibrated = constants_of(robot, parameters);
@@ -202,12 +202,12 @@ CalibratedUrdf make_calibrated_urdf(const UrdfSource& source, const Chain& robot
     for (const auto& [k, change] : corrections) {
         if (change.isApprox(Isometry3d::Identity(), unchanged)) continue;
         const Isometry3d origin = origin_of(joints[k]) * change;
-        edits.push_back(edit_origin(document, *path.joints[k], joints[k], origin));
+        edits.push_back(edit_origin(document, path.joints[k], joints[k], origin));
         result.changes.push_back({joints[k].name, change.translation().norm(),
                                   Eigen::AngleAxisd(change.linear()).angle()});
     }
     if (corrections.size() < nominal.size()) {
-        result.not_expressed = errors_behind(robot, parameters);
+        result.not_expressed = errors_after_last_joint(robot, parameters);
     }
     result.terms = terms_of(robot, parameters);
     result.text = apply(document.content(), std::move(edits));

@@ -11,13 +11,14 @@
 namespace posewise::io {
 namespace {
 
-using tinyxml2::XMLElement;
+using namespace detail;
+using pugi::xml_node;
 
 /// Reads one <joint>.
 class JointReader {
   public:
-    JointReader(const XmlDocument& document, const XMLElement& element)
-        : document_(document), element_(element), name_(element.Attribute("name")) {}
+    JointReader(const XmlDocument& document, xml_node element)
+        : document_(document), element_(element), name_(element.attribute("name").value()) {}
 
     UrdfJoint read() const {
         refuse_misspelt_children();
@@ -25,12 +26,12 @@ class JointReader {
         joint.name = name_;
         joint.location = document_.location(element_);
         joint.kind = read_kind();
-        if (const XMLElement* origin = find("origin", {"xyz", "rpy"})) {
-            joint.xyz = read_vector(*origin, "xyz").value_or(joint.xyz);
-            joint.rpy = read_vector(*origin, "rpy").value_or(joint.rpy);
+        if (const xml_node origin = find("origin", {"xyz", "rpy"})) {
+            joint.xyz = read_vector(origin, "xyz").value_or(joint.xyz);
+            joint.rpy = read_vector(origin, "rpy").value_or(joint.rpy);
         }
         if (joint.kind == UrdfJointKind::Fixed) return joint;
-        if (element_.FirstChildElement("mimic") != nullptr) {
+        if (element_.child("mimic")) {
             throw error(element_,
                         "mimics another joint; only joints that move by themselves can "
                         "be part of the chain");
@@ -41,7 +42,7 @@ class JointReader {
     }
 
   private:
-    InputError error(const XMLElement& at, const std::string& problem) const {
+    InputError error(xml_node at, const std::string& problem) const {
         return document_.error(at, "joint " + quote(name_) + ' ' + problem);
     }
 
@@ -50,35 +51,33 @@ class JointReader {
         const std::vector<std::string> known{"origin", "parent",   "child",
                                              "axis",   "limit",    "calibration",
                                              "mimic",  "dynamics", "safety_controller"};
-        for (auto* child = element_.FirstChildElement(); child != nullptr;
-             child = child->NextSiblingElement()) {
-            const std::string name = child->Name();
+        for (const xml_node child : element_.children()) {
+            if (child.type() != pugi::node_element) continue;
+            const std::string name = child.name();
             if (std::find(known.begin(), known.end(), name) != known.end()) continue;
             const std::string advice = suggest(name, known);
             if (!advice.starts_with("did you mean")) continue;
-            throw error(*child, "has an element " + quote(name) + "; " + advice);
+            throw error(child, "has an element " + quote(name) + "; " + advice);
         }
     }
 
-    const XMLElement* find(const char* name, const std::vector<std::string>& attributes) const {
-        const XMLElement* const found = find_child(document_, element_, name);
-        if (found == nullptr) return nullptr;
-        for (auto* attribute = found->FirstAttribute(); attribute != nullptr;
-             attribute = attribute->Next()) {
-            const std::string stated = attribute->Name();
+    xml_node find(const char* name, const std::vector<std::string>& attributes) const {
+        const xml_node found = find_child(document_, element_, name);
+        for (const pugi::xml_attribute attribute : found.attributes()) {
+            const std::string stated = attribute.name();
             if (std::find(attributes.begin(), attributes.end(), stated) != attributes.end()) {
                 continue;
             }
-            throw error(*found, std::string("has ") + name + " with unknown attribute " +
-                                    quote(stated) + "; " + suggest(stated, attributes));
+            throw error(found, std::string("has ") + name + " with unknown attribute " +
+                                   quote(stated) + "; " + suggest(stated, attributes));
         }
         return found;
     }
 
     UrdfJointKind read_kind() const {
-        const char* const type = element_.Attribute("type");
-        if (type == nullptr) throw error(element_, "has no type; it must be stated");
-        const std::string word = type;
+        const pugi::xml_attribute type = element_.attribute("type");
+        if (!type) throw error(element_, "has no type; it must be stated");
+        const std::string word = type.value();
         if (word == "fixed") return UrdfJointKind::Fixed;
         if (word == "revolute") return UrdfJointKind::Revolute;
         if (word == "continuous") return UrdfJointKind::Continuous;
@@ -92,43 +91,43 @@ class JointReader {
                                        : "; " + suggest(word, known)));
     }
 
-    std::optional<Vector3d> read_vector(const XMLElement& element, const char* attribute) const {
-        return io::read_vector(document_, element, attribute, "joint " + quote(name_));
+    std::optional<Vector3d> read_vector(xml_node element, const char* attribute) const {
+        return detail::read_vector(document_, element, attribute, "joint " + quote(name_));
     }
 
     void read_axis(UrdfJoint& joint) const {
-        const XMLElement* const axis = find("axis", {"xyz"});
-        if (axis == nullptr) return;  // x, says the format
-        const Vector3d direction = read_vector(*axis, "xyz").value_or(joint.axis);
+        const xml_node axis = find("axis", {"xyz"});
+        if (!axis) return;  // x, says the format
+        const Vector3d direction = read_vector(axis, "xyz").value_or(joint.axis);
         constexpr double least = 1e-6;
         if (direction.norm() < least) {
-            throw error(*axis, "has the axis " + quote(axis->Attribute("xyz")) +
-                                   ", which has no direction; must not be zero");
+            throw error(axis, "has the axis " + quote(axis.attribute("xyz").value()) +
+                                  ", which has no direction; must not be zero");
         }
         joint.axis = direction.normalized();
     }
 
     void read_limit(UrdfJoint& joint) const {
-        const XMLElement* const limit = find("limit", {"lower", "upper", "effort", "velocity",
-                                                       "acceleration", "deceleration", "jerk"});
+        const xml_node limit = find("limit", {"lower", "upper", "effort", "velocity",
+                                              "acceleration", "deceleration", "jerk"});
         const auto read = [&](const char* attribute) {
-            if (limit == nullptr) return 0.0;
-            return read_number(document_, *limit, attribute, "joint " + quote(name_)).value_or(0);
+            if (!limit) return 0.0;
+            return read_number(document_, limit, attribute, "joint " + quote(name_)).value_or(0);
         };
         joint.speed = read("velocity");
-        if (joint.speed < 0) throw error(*limit, "has a negative velocity; must be positive");
+        if (joint.speed < 0) throw error(limit, "has a negative velocity; must be positive");
         joint.limits = Interval{read("lower"), read("upper")};
         if (joint.kind == UrdfJointKind::Continuous) {
             joint.limits = Interval{-std::numbers::pi, std::numbers::pi};
         } else if (joint.limits->lower > joint.limits->upper) {
-            throw error(*limit, "has limits that are not in order; lower must be below upper");
+            throw error(limit, "has limits that are not in order; lower must be below upper");
         } else if (joint.limits->lower == joint.limits->upper) {
             joint.limits.reset();
         }
     }
 
     const XmlDocument& document_;
-    const XMLElement& element_;
+    const xml_node element_;
     std::string name_;
 };
 
@@ -154,7 +153,7 @@ void check_joint_count(const UrdfRobot& robot) {
 
 }  // namespace
 
-UrdfJoint read_urdf_joint(const XmlDocument& document, const XMLElement& element) {
+UrdfJoint detail::read_urdf_joint(const XmlDocument& document, xml_node element) {
     return JointReader(document, element).read();
 }
 
@@ -163,10 +162,9 @@ UrdfRobot read_urdf(const UrdfSource& source) {
     const UrdfPath path = find_path(document, source);
     UrdfRobot robot;
     robot.source = path.source;
-    const char* const name = document.root().Attribute("name");
-    if (name != nullptr) robot.name = escape_controls(name);
-    for (const XMLElement* joint : path.joints) {
-        robot.joints.push_back(read_urdf_joint(document, *joint));
+    robot.name = escape_controls(document.root().attribute("name").value());
+    for (const xml_node joint : path.joints) {
+        robot.joints.push_back(read_urdf_joint(document, joint));
     }
     check_joint_count(robot);
     return robot;

@@ -7,16 +7,14 @@
 
 #include "text.hpp"
 
-namespace posewise::io {
+namespace posewise::io::detail {
 namespace {
 
-using tinyxml2::XMLElement;
+using pugi::xml_node;
 
-std::string require_attribute(const XmlDocument& document, const XMLElement& element,
-                              const char* name) {
-    const char* const text = element.Attribute(name);
-    const std::string value = text == nullptr ? "" : text;
-    const std::string what = "a <" + std::string(element.Name()) + "> has ";
+std::string require_attribute(const XmlDocument& document, xml_node element, const char* name) {
+    const std::string value = element.attribute(name).value();
+    const std::string what = "a <" + std::string(element.name()) + "> has ";
     if (value.empty()) {
         throw document.error(element, what + "no " + name + "; it must be stated");
     }
@@ -27,23 +25,21 @@ std::string require_attribute(const XmlDocument& document, const XMLElement& ele
     return value;
 }
 
+std::string name_of(xml_node element) { return element.attribute("name").value(); }
+
 /// All links, and the joint above each.
 class Tree {
   public:
     explicit Tree(const XmlDocument& document) : document_(document) {
-        const XMLElement& robot = document.root();
-        if (std::string_view(robot.Name()) != "robot") {
+        const xml_node robot = document.root();
+        if (std::string_view(robot.name()) != "robot") {
             throw document.error(robot, "is no URDF: its root element is <" +
-                                            escape_controls(robot.Name()) + ">; must be <robot>");
+                                            escape_controls(robot.name()) + ">; must be <robot>");
         }
-        for (auto* link = robot.FirstChildElement("link"); link != nullptr;
-             link = link->NextSiblingElement("link")) {
-            add_unique(links_, *link, "link");
-        }
-        for (auto* joint = robot.FirstChildElement("joint"); joint != nullptr;
-             joint = joint->NextSiblingElement("joint")) {
-            add_unique(joints_, *joint, "joint");
-            join(*joint);
+        for (const xml_node link : robot.children("link")) add_unique(links_, link, "link");
+        for (const xml_node joint : robot.children("joint")) {
+            add_unique(joints_, joint, "joint");
+            join(joint);
         }
         if (links_.empty()) throw document.error(robot, "has no <link>; a robot must have links");
     }
@@ -79,12 +75,12 @@ class Tree {
                              "has no link " + quote(name) + "; " + suggest(name, link_names()));
     }
 
-    const XMLElement* link(const std::string& name) const { return links_.at(name); }
+    xml_node link(const std::string& name) const { return links_.at(name); }
 
-    const XMLElement* child(const XMLElement& joint) const { return link(end_of(joint, "child")); }
+    xml_node child(xml_node joint) const { return link(end_of(joint, "child")); }
 
-    std::vector<const XMLElement*> path(const std::string& base, const std::string& tip) const {
-        std::vector<const XMLElement*> joints;
+    std::vector<xml_node> path(const std::string& base, const std::string& tip) const {
+        std::vector<xml_node> joints;
         std::string link = tip;
         while (link != base) {
             const auto above = above_.find(link);
@@ -95,8 +91,8 @@ class Tree {
                                          " only; must be below it");
             }
             if (joints.size() > joints_.size()) {
-                throw document_.error(*above->second.joint,
-                                      "joint " + quote(above->second.joint->Attribute("name")) +
+                throw document_.error(above->second.joint,
+                                      "joint " + quote(name_of(above->second.joint)) +
                                           " closes a cycle; links must form a tree");
             }
             joints.push_back(above->second.joint);
@@ -107,47 +103,45 @@ class Tree {
     }
 
   private:
-    using Elements = std::map<std::string, const XMLElement*>;
+    using Elements = std::map<std::string, xml_node>;
     struct Above {
-        const XMLElement* joint;
+        xml_node joint;
         std::string parent;
     };
 
-    void add_unique(Elements& elements, const XMLElement& element, const char* what) const {
+    void add_unique(Elements& elements, xml_node element, const char* what) const {
         const std::string name = require_attribute(document_, element, "name");
-        const auto [first, is_new] = elements.emplace(name, &element);
+        const auto [first, is_new] = elements.emplace(name, element);
         if (is_new) return;
-        const long line = first->second->GetLineNum();
+        const long line = document_.location(first->second).line;
         throw document_.error(element, std::string(what) + ' ' + quote(name) +
                                            " occurs twice, first in line " + std::to_string(line) +
                                            "; must have a name of its own");
     }
 
-    std::string end_of(const XMLElement& joint, const char* end) const {
-        const XMLElement* const element = find_child(document_, joint, end);
-        if (element == nullptr) {
-            throw document_.error(joint, "joint " + quote(joint.Attribute("name")) + " has no <" +
-                                             end + ">; it must be stated");
+    std::string end_of(xml_node joint, const char* end) const {
+        const xml_node element = find_child(document_, joint, end);
+        if (!element) {
+            throw document_.error(joint, "joint " + quote(name_of(joint)) + " has no <" + end +
+                                             ">; it must be stated");
         }
-        const std::string link = require_attribute(document_, *element, "link");
+        const std::string link = require_attribute(document_, element, "link");
         if (links_.count(link) == 0) {
-            throw document_.error(*element, "joint " + quote(joint.Attribute("name")) + " has " +
-                                                end + ' ' + quote(link) +
-                                                ", which is no link of this robot; " +
-                                                suggest(link, link_names()));
+            throw document_.error(element, "joint " + quote(name_of(joint)) + " has " + end + ' ' +
+                                               quote(link) + ", which is no link of this robot; " +
+                                               suggest(link, link_names()));
         }
         return link;
     }
 
-    void join(const XMLElement& joint) {
+    void join(xml_node joint) {
         const std::string child = end_of(joint, "child");
         const std::string parent = end_of(joint, "parent");
-        const auto [first, is_new] = above_.emplace(child, Above{&joint, parent});
+        const auto [first, is_new] = above_.emplace(child, Above{joint, parent});
         if (!is_new) {
             throw document_.error(joint, "link " + quote(child) + " is the child of two joints, " +
-                                             quote(first->second.joint->Attribute("name")) +
-                                             " and " + quote(joint.Attribute("name")) +
-                                             "; links must form a tree");
+                                             quote(name_of(first->second.joint)) + " and " +
+                                             quote(name_of(joint)) + "; links must form a tree");
         }
         children_.emplace(parent, child);
     }
@@ -166,47 +160,47 @@ class Tree {
 };
 
 void refuse_template(const XmlDocument& document) {
-    for (const StartTag& tag : document.tags()) {
-        if (!tag.name.starts_with("xacro:")) continue;
-        throw input_error_at(document.location(tag.begin),
-                             "is a template for xacro; must be what xacro makes of it");
+    for (const xml_node element : document.elements()) {
+        if (!std::string_view(element.name()).starts_with("xacro:")) continue;
+        throw document.error(element, "is a template for xacro; must be what xacro makes of it");
     }
 }
 
 constexpr double most = 1e6;  // m, rad or kg: no robot has more
 
-double parse(const XmlDocument& document, const XMLElement& element, const char* attribute,
+double parse(const XmlDocument& document, xml_node element, const char* attribute,
              std::string_view text, const std::string& subject, const char* rule) {
     const ParsedNumber number = parse_number(text);
     if (number.ok() && std::abs(number.value) <= most) return number.value;
-    throw document.error(element, subject + " has " + std::string(element.Name()) + ' ' +
-                                      attribute + ' ' + quote(element.Attribute(attribute)) +
-                                      "; must be " + rule);
+    throw document.error(element,
+                         subject + " has " + std::string(element.name()) + ' ' + attribute + ' ' +
+                             quote(element.attribute(attribute).value()) + "; must be " + rule);
 }
 
 }  // namespace
 
-std::optional<double> read_number(const XmlDocument& document, const XMLElement& element,
+std::optional<double> read_number(const XmlDocument& document, xml_node element,
                                   const char* attribute, const std::string& subject) {
-    const char* const text = element.Attribute(attribute);
-    if (text == nullptr) return std::nullopt;
-    return parse(document, element, attribute, text, subject,
+    const pugi::xml_attribute stated = element.attribute(attribute);
+    if (!stated) return std::nullopt;
+    return parse(document, element, attribute, stated.value(), subject,
                  "a number of at most 1e+06 in magnitude");
 }
 
-std::optional<Vector3d> read_vector(const XmlDocument& document, const XMLElement& element,
+std::optional<Vector3d> read_vector(const XmlDocument& document, xml_node element,
                                     const char* attribute, const std::string& subject) {
-    const char* const text = element.Attribute(attribute);
-    if (text == nullptr) return std::nullopt;
+    const pugi::xml_attribute stated = element.attribute(attribute);
+    if (!stated) return std::nullopt;
     constexpr const char* rule = "three numbers, each at most 1e+06 in magnitude";
-    std::istringstream words(text);
+    std::istringstream words(stated.value());
     std::vector<double> values;
     for (std::string word; words >> word;) {
         values.push_back(parse(document, element, attribute, word, subject, rule));
     }
     if (values.size() == 3) return Vector3d(values[0], values[1], values[2]);
-    throw document.error(element, subject + " has " + std::string(element.Name()) + ' ' +
-                                      attribute + ' ' + quote(text) + "; must be " + rule);
+    throw document.error(element, subject + " has " + std::string(element.name()) + ' ' +
+                                      attribute + ' ' + quote(stated.value()) + "; must be " +
+                                      rule);
 }
 
 UrdfPath find_path(const XmlDocument& document, const UrdfSource& source) {
@@ -221,19 +215,17 @@ UrdfPath find_path(const XmlDocument& document, const UrdfSource& source) {
     tree.check_link(tip);
     path.joints = tree.path(base, tip);
     path.links.push_back(tree.link(base));
-    for (const XMLElement* joint : path.joints) path.links.push_back(tree.child(*joint));
+    for (const xml_node joint : path.joints) path.links.push_back(tree.child(joint));
     return path;
 }
 
-const XMLElement* find_child(const XmlDocument& document, const XMLElement& parent,
-                             const char* name) {
-    const XMLElement* const child = parent.FirstChildElement(name);
-    if (child == nullptr) return nullptr;
-    if (const auto* second = child->NextSiblingElement(name)) {
-        throw document.error(*second, std::string("a second <") + name + "> in one <" +
-                                          parent.Name() + ">; must be one");
+xml_node find_child(const XmlDocument& document, xml_node parent, const char* name) {
+    const xml_node child = parent.child(name);
+    if (const xml_node second = child.next_sibling(name)) {
+        throw document.error(second, std::string("a second <") + name + "> in one <" +
+                                         parent.name() + ">; must be one");
     }
     return child;
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::io::detail

@@ -3,31 +3,29 @@
 #include "posewise/io/urdf_file.hpp"
 #include "xml_document.hpp"
 
-namespace posewise::io {
+namespace posewise::io::detail {
 
 /// The way from a base link to a tip link in the tree of a URDF document.
 struct UrdfPath {
-    UrdfSource source;                                ///< links filled in
-    std::vector<const tinyxml2::XMLElement*> links;   ///< base to tip
-    std::vector<const tinyxml2::XMLElement*> joints;  ///< one less
+    UrdfSource source;                   ///< links filled in
+    std::vector<pugi::xml_node> links;   ///< base to tip
+    std::vector<pugi::xml_node> joints;  ///< one less
 };
 
 /// Throws InputError as read_urdf() does for what is wrong with the tree.
 UrdfPath find_path(const XmlDocument& document, const UrdfSource& source);
 
-/// The only child of that name; nullptr if there is none. Throws InputError if there are two.
-const tinyxml2::XMLElement* find_child(const XmlDocument& document,
-                                       const tinyxml2::XMLElement& parent, const char* name);
+/// The only child of that name; an empty node if there is none. Throws InputError if there are two.
+pugi::xml_node find_child(const XmlDocument& document, pugi::xml_node parent, const char* name);
 
 /// A number, or three, in an attribute; nothing if it is not there. `subject` is whose it is, for
 /// messages. Throws InputError unless each is at most 1e6 in magnitude.
-std::optional<double> read_number(const XmlDocument& document, const tinyxml2::XMLElement& element,
+std::optional<double> read_number(const XmlDocument& document, pugi::xml_node element,
                                   const char* attribute, const std::string& subject);
-std::optional<Vector3d> read_vector(const XmlDocument& document,
-                                    const tinyxml2::XMLElement& element, const char* attribute,
-                                    const std::string& subject);
+std::optional<Vector3d> read_vector(const XmlDocument& document, pugi::xml_node element,
+                                    const char* attribute, const std::string& subject);
 
 /// The joint in an element <joint> on the way from base to tip.
-UrdfJoint read_urdf_joint(const XmlDocument& document, const tinyxml2::XMLElement& element);
+UrdfJoint read_urdf_joint(const XmlDocument& document, pugi::xml_node element);
 
-}  // namespace posewise::io
+}  // namespace posewise::io::detail

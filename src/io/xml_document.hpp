@@ -1,21 +1,17 @@
 #pragma once
 
-#include <tinyxml2.h>
-
+#include <pugixml.hpp>
 #include <string>
-#include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "posewise/core/errors.hpp"
 
-namespace posewise::io {
+namespace posewise::io::detail {
 
-/// `<name ...>` or `<name .../>` in a text.
+/// The bytes [begin, end) of `<name ...>` or `<name .../>` in a text.
 struct StartTag {
-    std::size_t begin = 0;  ///< of the '<'
-    std::size_t end = 0;    ///< behind the '>'
-    std::string name;
+    std::size_t begin = 0;
+    std::size_t end = 0;
 };
 
 /// A whole XML file that knows where each element stands. Nothing is ever expanded or fetched.
@@ -28,31 +24,29 @@ class XmlDocument {
 
     const std::string& path() const { return path_; }
     const std::string& content() const { return content_; }
-    const tinyxml2::XMLElement& root() const { return *document_.RootElement(); }
+    pugi::xml_node root() const { return document_.document_element(); }
+    /// In the order of the file.
+    const std::vector<pugi::xml_node>& elements() const { return elements_; }
 
-    const StartTag& tag(const tinyxml2::XMLElement& element) const;
-    /// The start tags in the order of the file.
-    const std::vector<StartTag>& tags() const { return tags_; }
-
-    FileLocation location(std::size_t position) const;
+    StartTag start_tag(pugi::xml_node element) const;
     /// Where the element begins.
-    FileLocation location(const tinyxml2::XMLElement& element) const;
+    FileLocation location(pugi::xml_node element) const;
     /// `path:line:column: problem` of the element.
-    InputError error(const tinyxml2::XMLElement& element, const std::string& problem) const;
+    InputError error(pugi::xml_node element, const std::string& problem) const;
 
   private:
-    long column(std::size_t position) const;
-    void scan();
-    std::size_t skip_start_tag(std::size_t position);
-    std::size_t find_end(std::size_t position, std::string_view ending, const char* what) const;
-    void parse();
-    void number(const tinyxml2::XMLElement& element);
+    FileLocation location_at(std::size_t position) const;
+    void collect_elements(pugi::xml_node parent, int depth);
+    void check_top_level() const;
+    void check_tags() const;
+    InputError parse_error(const pugi::xml_parse_result& result) const;
+    InputError mismatch_error(std::size_t end_tag) const;
 
     std::string path_;
     std::string content_;
-    std::vector<StartTag> tags_;
-    tinyxml2::XMLDocument document_;
-    std::unordered_map<const tinyxml2::XMLElement*, std::size_t> tag_of_;
+    std::vector<std::size_t> line_begins_;
+    pugi::xml_document document_;
+    std::vector<pugi::xml_node> elements_;
 };
 
-}  // namespace posewise::io
+}  // namespace posewise::io::detail

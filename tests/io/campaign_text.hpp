@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "support/slips.hpp"
+
 namespace posewise::testing {
 
 /// A small campaign file with everything in it: one sliding and two turning joints.
@@ -30,11 +32,5 @@ seed: 7
 measurements:
   mat: {joints: q, points: [mA, mB], angle_unit: deg, length_unit: mm}
 )";
-
-/// The text with one part replaced by another; empty if the part is not there.
-inline std::string replaced(std::string text, const std::string& part, const std::string& by) {
-    const auto position = text.find(part);
-    return position == std::string::npos ? "" : text.replace(position, part.size(), by);
-}
 
 }  // namespace posewise::testing

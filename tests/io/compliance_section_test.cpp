@@ -227,7 +227,7 @@ TEST(UrdfLoads, AreTakenByACampaignThatAsksForThem) {
         read_campaign(folder.write("c.yaml", sensor + "robot: {urdf: arm.urdf, base_link: base, "
                                                       "tip_link: tool, errors: stated, "
                                                       "compliance: {links: urdf}}\n"))
-            .campaign.robot;
+            .robot;
     ASSERT_EQ(compliances(robot).size(), 1U);
     EXPECT_EQ(robot.parameter_names(), std::vector<std::string>{"turn.compliance"});
 }

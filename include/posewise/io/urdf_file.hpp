@@ -80,7 +80,7 @@ struct CalibratedUrdf {
     /// The file as it was, but for numbers in the origins of the joints below.
     std::string text;
     std::vector<OriginChange> changes;
-    /// Parameters whose errors no origin between base and tip link can express: those behind the
+    /// Parameters whose errors no origin between base and tip link can express: those after the
     /// last joint if no fixed joint follows it.
     std::vector<std::string> not_expressed;
     /// Error terms that are not zero: a URDF has no errors that depend on the configuration.
@@ -90,7 +90,7 @@ struct CalibratedUrdf {
 /// The URDF that predicts the pose of the tip link as `robot` does with error parameters
 /// `parameters`, its error terms left out. `robot` is make_chain() of the source, with error
 /// parameters. Each constant transform between two moving joints goes into the origin of the second
-/// one, that behind the last into the first fixed joint there.
+/// one, that after the last into the first fixed joint there.
 CalibratedUrdf make_calibrated_urdf(const UrdfSource& source, const Chain& robot,
                                     const VectorXd& parameters);
 
