@@ -52,8 +52,8 @@ TEST(Maximise, FindsTheHighestOfManyTopsByAPopulation) {
         MaximiseOptions options{method, 0, 0};
         options.evaluation_limit = 20000;
         const Maximum top = maximise(egg_box(), VectorXd::Constant(2, 3), options);
-        EXPECT_GT(top.value, -0.01) << static_cast<int>(method);
-        EXPECT_LT(top.x.norm(), 0.01);
+        EXPECT_GT(top.value, -0.5) << static_cast<int>(method);  // the next top has -1
+        EXPECT_LT(top.x.norm(), 0.1);
     }
 }
 

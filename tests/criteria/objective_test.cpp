@@ -23,7 +23,7 @@ void expect_gradient(const Objective& objective, std::uint64_t seed) {
     for (Index k = 0; k < J.cols(); ++k) {
         const auto item = 1000 * (seed + 1) + static_cast<std::uint64_t>(k);
         const RowMatrixXd noise = test::random_blocks(6, 1, 6, item).matrix;
-        directions.push_back(noise + noise.transpose());
+        directions.push_back(0.05 * (noise + noise.transpose()));
         J(0, k) = Z.cwiseProduct(directions.back()).sum();
     }
     const auto value = [&](const VectorXd& x) -> VectorXd {
