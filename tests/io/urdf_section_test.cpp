@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
-#include "campaign_text.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/model/complete_model.hpp"
 #include "posewise/model/transforms.hpp"
 #include "support/robots.hpp"
+#include "support/slips.hpp"
 #include "support/sweep.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/urdf_text.hpp"
@@ -262,36 +262,34 @@ TEST(UrdfSection, FindsTheFileFromTheCampaignsFolder) {
         1);
 }
 
-std::string error_with(const std::string& part, const std::string& by) {
-    const std::string campaign =
-        campaign_of_urdf("link2", "  joints: {q1: {limits_deg: [0, 9]}}\n");
-    return input_error_of([&] {
-        read_text(replaced(campaign, part, by), urdf_text({turns("0 0 1"), turns("1 0 0")}));
-    });
-}
-
 TEST(BadUrdfSection, GivesOneLine) {
-    EXPECT_EQ(error_with("urdf: robot.urdf", "urdf: none.urdf"),
-              "none.urdf: cannot be read: No such file or directory");
-    EXPECT_EQ(error_with("urdf: robot.urdf", "urdf: ''"),
-              "campaign.yaml:3:9: robot.urdf is empty; must be the path of a URDF file");
-    EXPECT_EQ(error_with("  tip_link: link2\n", ""),
-              "campaign.yaml:3:3: robot has no key tip_link; it must be stated");
-    EXPECT_EQ(error_with("tip_link: link2", "tip_link: ''"),
-              "campaign.yaml:5:13: robot.tip_link is empty; must be the name of a link");
-    EXPECT_EQ(error_with("tip_link: link2", "tip_link: lnk2"),
-              "robot.urdf: has no link 'lnk2'; did you mean 'link2'?");
-    EXPECT_EQ(error_with("{q1:", "{q3:"),
-              "campaign.yaml:6:12: 'q3' is no moving joint of the URDF; did you mean 'q1'?");
-    EXPECT_EQ(error_with("limits_deg", "limits_mm"),
-              "campaign.yaml:6:28: robot.joints.q1.limits_mm is in 'mm', but the joint drives a "
-              "rotation; must be in deg, rad, mrad or urad");
-    EXPECT_EQ(error_with("  base_link", "  dh: {}\n  base_link"),
-              "campaign.yaml:3:9: robot.urdf is stated beside robot.dh; must be one of them");
-    EXPECT_EQ(
-        error_with("urdf: robot.urdf", "elements: [Rz q1]"),
-        "campaign.yaml:4:14: robot.base_link is stated beside robot.elements; only a URDF has "
-        "links");
+    const std::string urdf = urdf_text({turns("0 0 1"), turns("1 0 0")});
+    const std::vector<Slip> slips{
+        {"urdf: robot.urdf", "urdf: none.urdf",
+         "none.urdf: cannot be read: No such file or directory"},
+        {"urdf: robot.urdf", "urdf: ''",
+         "campaign.yaml:3:9: robot.urdf is empty; must be the path of a URDF file"},
+        {"  tip_link: link2\n", "",
+         "campaign.yaml:3:3: robot has no key tip_link; it must be stated"},
+        {"tip_link: link2", "tip_link: ''",
+         "campaign.yaml:5:13: robot.tip_link is empty; must be the name of a link"},
+        {"tip_link: link2", "tip_link: lnk2",
+         "robot.urdf: has no link 'lnk2'; did you mean 'link2'?"},
+        {"{q1:", "{q3:",
+         "campaign.yaml:6:12: 'q3' is no moving joint of the URDF; did you mean 'q1'?"},
+        {"limits_deg", "limits_mm",
+         "campaign.yaml:6:28: robot.joints.q1.limits_mm is in 'mm', but the joint drives a "
+         "rotation; must be in deg, rad, mrad or urad"},
+        {"  base_link", "  dh: {}\n  base_link",
+         "campaign.yaml:3:9: robot.urdf is stated beside robot.dh; must be one of them"},
+        {"urdf: robot.urdf", "elements: [Rz q1]",
+         "campaign.yaml:4:14: robot.base_link is stated beside robot.elements; only a URDF has "
+         "links"},
+    };
+    expect_messages(campaign_of_urdf("link2", "  joints: {q1: {limits_deg: [0, 9]}}\n"), slips,
+                    [&](const std::string& campaign) {
+                        return input_error_of([&] { read_text(campaign, urdf); });
+                    });
 }
 
 std::string vector_text(const Vector3d& v) {
