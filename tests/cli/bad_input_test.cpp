@@ -14,14 +14,6 @@ class BadInput : public Program {
         run_well("simulate c.yaml --truth 7 --seed 3 --poses 12 --repeats 2 -o s.csv");
     }
 
-    void expect_usage_error(const std::string& arguments, const std::string& words) const {
-        const Outcome outcome = run(arguments);
-        EXPECT_EQ(outcome.code, 2) << arguments;
-        EXPECT_EQ(outcome.out, "") << arguments;
-        EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1) << outcome.err;
-        EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
-    }
-
     /// A program of that name, first in the PATH that is returned for run().
     std::string with_program(const std::string& name, const std::string& script) const {
         std::filesystem::create_directory(folder_ / "bin");
@@ -122,27 +114,6 @@ TEST_F(BadInput, ColumnsInTheWrongUnitAreSuspected) {
     const Outcome outcome = run("calibrate c.yaml -m m.csv --folds 0");
     EXPECT_NE(outcome.err.find("are points in mm where the file says m?"), std::string::npos)
         << outcome.err;
-}
-
-TEST_F(BadInput, WrongUsageIsOneLineThatSaysWhereToLook) {
-    for (const auto& [arguments, words] : std::vector<std::pair<std::string, std::string>>{
-             {"calibrated", "'calibrated' is no command; did you mean 'calibrate'?; see posewise"},
-             {"study c.yaml", "see posewise study --help"},
-             {"simulate c.yaml -k 5 -o a.csv --seed -1", "'-1'"},
-             {"simulate c.yaml -k 5 -o a.csv --seed 18446744073709551616", "18446744073709551615"},
-             {"simulate c.yaml -k 0x5 -o a.csv", "'0x5'"},
-             {"simulate c.yaml -k ' 5' -o a.csv", "' 5'"},
-             {"simulate c.yaml -k 5 -o ''", "name of a file"},
-             {"inspect ''", "name of a file"},
-             {"calibrate c.yaml -m s.csv --alpha nan", "'nan'"},
-             {"calibrate c.yaml -m s.csv --folds ''", "''"},
-             {"study c.yaml -m s.csv -c ,", "criteri"},
-             {"select c.yaml -m s.csv -k 8 -c o6",
-              "--criterion: 'o6' is no criterion; must be one"},
-             {"study c.yaml -m s.csv -k 8:6", "the first must not be above the last"}}) {
-        expect_usage_error(arguments, words);
-    }
-    EXPECT_FALSE(has_file("a.csv"));
 }
 
 TEST_F(BadInput, TheLargestSeedIsTaken) {
