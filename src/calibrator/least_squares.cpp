@@ -39,7 +39,8 @@ void check_size(const Campaign& campaign, const Measurements& measurements) {
 RowMatrixXd whiten_seen(const IdentificationProblem& problem, Index i, const FlangeMotion& motion,
                         const Parameters& parameters, const RowMatrixXd& all) {
     const VectorXd repeats = problem.repeats.row(i).transpose();
-    RowMatrixXd seen = all(seen_rows(*problem.campaign.sensor, repeats), Eigen::all);
+    RowMatrixXd seen =
+        all(seen_rows(repeats.array() > 0, problem.campaign.sensor->rows_per_target()), Eigen::all);
     whiten(mean_covariance(problem.campaign, motion, parameters.sensor, repeats), seen);
     return seen;
 }

@@ -61,7 +61,7 @@ struct MeanError {
     double mean = 0;
     double standard_error = 0;
 };
-MeanError average(const RowMatrixXd& squared_errors, const RowArrayXb& is_judged) {
+MeanError average(const RowMatrixXd& squared_errors, const Seen& is_judged) {
     const RowMatrixXd judged = is_judged.select(squared_errors, 0);
     const VectorXd sums = judged.rowwise().sum();
     const VectorXd counts = is_judged.cast<double>().rowwise().sum().matrix();
@@ -73,7 +73,7 @@ MeanError average(const RowMatrixXd& squared_errors, const RowArrayXb& is_judged
 }
 
 /// Fills the trial; the mean squared errors held out.
-MeanError judge(Candidate& candidate, const Measurements& measurements, const RowArrayXb& is_judged,
+MeanError judge(Candidate& candidate, const Measurements& measurements, const Seen& is_judged,
                 Index folds, const LevenbergMarquardtOptions& options) {
     ModelTrial& trial = candidate.trial;
     const CrossValidation held_out =
@@ -139,7 +139,7 @@ ModelSelection select_model(const Campaign& campaign, const Measurements& measur
             selection.not_judged = candidates.back().estimate.outliers;
         }
     }
-    RowArrayXb is_judged = times_seen(measurements).array() > 0;
+    Seen is_judged = times_seen(measurements).array() > 0;
     for (const Outlier& outlier : selection.not_judged) {
         is_judged(outlier.configuration, outlier.target) = false;
     }

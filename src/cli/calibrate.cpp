@@ -155,7 +155,7 @@ std::optional<io::WithoutOutliers> judge_without_outliers(const Campaign& campai
                                                           const io::CalibrationReport& report) {
     const Estimate& estimate = report.estimate;
     if (estimate.outliers.empty()) return std::nullopt;
-    RowArrayXb is_judged = times_seen(measurements).array() > 0;
+    Seen is_judged = times_seen(measurements).array() > 0;
     for (const Outlier& outlier : estimate.outliers) {
         is_judged(outlier.configuration, outlier.target) = false;
     }

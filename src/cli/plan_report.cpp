@@ -10,6 +10,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/format.hpp"
 #include "posewise/core/units.hpp"
+#include "posewise/jacobian/identification.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -98,11 +99,9 @@ Table pose_table(const Campaign& campaign, const std::vector<io::ContinuousPose>
         for (Index j = 0; j < pose.joints.size(); ++j) {
             row.push_back(format_joint(campaign, j, pose.joints[j]));
         }
-        std::string seen;
-        for (const Index target : pose.visible) {
-            seen += (seen.empty() ? "" : " ") + std::to_string(target + 1);
-        }
-        row.insert(row.end(), {seen, describe_way(campaign, pose)});
+        const Index targets = campaign.sensor->target_count();
+        row.insert(row.end(), {target_numbers(seen_targets(pose.visible, targets)),
+                               describe_way(campaign, pose)});
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -118,11 +117,9 @@ struct PoolPart {
 PoolPart take_part(const PlanningProblem& problem) {
     PoolPart part;
     const Index count = std::min(problem.pool.configurations.rows(), pool_part);
-    auto is_visible = problem.pool.is_visible;
-    if (!is_visible.empty()) is_visible.resize(static_cast<std::size_t>(count));
-    part.blocks = make_visible_blocks(problem.campaign, problem.campaign.nominal,
-                                      problem.pool.configurations.topRows(count), is_visible,
-                                      problem.request.repeats);
+    part.blocks = make_blocks(
+        problem.campaign, problem.campaign.nominal, problem.pool.configurations.topRows(count),
+        times_seen(problem.pool.is_seen.topRows(count), problem.request.repeats));
     SelectOptions& options = part.options;
     options.criterion = problem.options.criterion;
     if (options.criterion == Criterion::G) options.criterion = Criterion::V;  // much quicker

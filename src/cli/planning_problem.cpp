@@ -233,16 +233,13 @@ PlanningProblem state_planning_problem(const PlanningArguments& arguments) {
 
 Blocks blocks_of(const PlanningProblem& problem, const std::vector<io::ContinuousPose>& poses) {
     const Campaign& campaign = problem.campaign;
-    std::vector<std::vector<bool>> is_visible;
-    for (const io::ContinuousPose& pose : poses) {
-        is_visible.emplace_back(static_cast<std::size_t>(campaign.sensor->target_count()));
-        for (const Index target : pose.visible) {
-            is_visible.back()[static_cast<std::size_t>(target)] = true;
-        }
+    Seen is_seen(static_cast<Index>(poses.size()), campaign.sensor->target_count());
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        is_seen.row(static_cast<Index>(i)) = seen_targets(poses[i].visible, is_seen.cols());
     }
-    return make_visible_blocks(campaign, campaign.nominal,
-                               configurations_of(poses, campaign.robot.joint_count()), is_visible,
-                               problem.request.repeats);
+    return make_blocks(campaign, campaign.nominal,
+                       configurations_of(poses, campaign.robot.joint_count()),
+                       times_seen(is_seen, problem.request.repeats));
 }
 
 std::string describe_violation(const Constraints& constraints, const VectorXd& q) {
@@ -259,14 +256,7 @@ std::string describe_violation(const Constraints& constraints, const VectorXd& q
 }
 
 std::vector<Index> visible_targets(const PlanningProblem& problem, const VectorXd& q) {
-    const std::vector<bool> is_visible = problem.constraints.check(q).is_visible;
-    std::vector<Index> visible;
-    for (Index target = 0; target < problem.campaign.sensor->target_count(); ++target) {
-        if (is_visible.empty() || is_visible[static_cast<std::size_t>(target)]) {
-            visible.push_back(target);
-        }
-    }
-    return visible;
+    return targets_seen(problem.constraints.seen(q));
 }
 
 }  // namespace posewise::cli

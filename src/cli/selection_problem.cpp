@@ -95,10 +95,10 @@ Candidates read_candidates(SelectionProblem& problem) {
     const io::CandidateSource& source = problem.request.source;
     Candidates candidates;
     if (source.kind == Kind::Configurations) {
-        auto [ids, joints, is_visible] = io::read_configurations(source.path, *problem.campaign);
+        auto [ids, joints, is_seen] = io::read_configurations(source.path, *problem.campaign);
         problem.ids = std::move(ids);
         problem.configurations = std::move(joints);
-        candidates.share = is_visible.cast<double>();
+        candidates.share = is_seen.cast<double>();
     } else if (source.kind == Kind::Measurements) {
         const Measurements& measured =
             candidates.measured.emplace(read_measured(source.path, *problem.campaign));

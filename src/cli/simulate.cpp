@@ -51,7 +51,7 @@ std::vector<std::string> make_comments(const Arguments& arguments, const Campaig
 Simulation simulate_as_asked(const Arguments& arguments, const io::CampaignFile& file) {
     if (arguments.configurations.empty()) return simulate(file, arguments.options);
     const auto asked = io::read_configurations(arguments.configurations, file);
-    Simulation simulation = simulate(file, asked.joints, asked.is_visible, arguments.options);
+    Simulation simulation = simulate(file, asked.joints, asked.is_seen, arguments.options);
     simulation.measurements.ids = asked.ids;
     return simulation;
 }

@@ -14,7 +14,7 @@ Configurations read_any(const std::string& path, const CampaignFile& file) {
     Measurements read = read_measurements_mat(path, file, file.mat);
     const Index count = read.configuration_count();
     return {std::move(read.ids), std::move(read.configurations),
-            RowArrayXb::Constant(count, file.sensor->target_count(), true)};
+            all_seen(count, file.sensor->target_count())};
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
             q = configurations.row(i).transpose();
             times = repeats.row(i).transpose();
             differentiate_pose(campaign, parameters, q, motion, J);
-            const std::vector<Index> seen = seen_rows(sensor, times);
+            const std::vector<Index> seen = seen_rows(times.array() > 0, sensor.rows_per_target());
             auto block = blocks.matrix.middleRows(blocks.first_row[static_cast<std::size_t>(i)],
                                                   static_cast<Index>(seen.size()));
             block = J(seen, Eigen::all);
@@ -59,8 +59,9 @@ Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
 }
 
 /// All targets, each so often.
-RowMatrixXd all_seen(const Campaign& campaign, const RowMatrixXd& configurations, double repeats) {
-    return RowMatrixXd::Constant(configurations.rows(), campaign.sensor->target_count(), repeats);
+RowMatrixXd all_so_often(const Campaign& campaign, const RowMatrixXd& configurations,
+                         double repeats) {
+    return times_seen(all_seen(configurations.rows(), campaign.sensor->target_count()), repeats);
 }
 
 }  // namespace
@@ -82,7 +83,7 @@ Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
 Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
                          const RowMatrixXd& configurations) {
     return make_plain_blocks(campaign, parameters, configurations,
-                             all_seen(campaign, configurations, 1));
+                             all_so_often(campaign, configurations, 1));
 }
 
 Blocks make_position_blocks(const Campaign& campaign, const Parameters& parameters,
@@ -121,7 +122,7 @@ Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,
 Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,
                    const RowMatrixXd& configurations, double repeats) {
     return make_blocks(campaign, parameters, configurations,
-                       all_seen(campaign, configurations, repeats));
+                       all_so_often(campaign, configurations, repeats));
 }
 
 }  // namespace posewise

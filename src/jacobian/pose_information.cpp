@@ -10,7 +10,15 @@
 namespace posewise {
 namespace {
 
-/// Rows that a pose does not show leave; none listed: all stay.
+bool is_blind(const SeenTargets& is_seen) { return is_seen.size() > 0 && !is_seen.any(); }
+
+/// Rows of the sensor that a pose shows; empty: all.
+std::vector<Index> rows_shown(const Sensor& sensor, const SeenTargets& is_seen) {
+    if (is_seen.all()) return {};
+    return seen_rows(is_seen, sensor.rows_per_target());
+}
+
+/// Rows that a pose does not show leave.
 void keep_rows(const std::vector<Index>& rows, RowMatrixXd& A) {
     if (!rows.empty()) A = A(rows, Eigen::all).eval();
 }
@@ -31,7 +39,9 @@ PoseInformation::PoseInformation(const Campaign& campaign, Parameters parameters
     }
 }
 
-MatrixXd PoseInformation::evaluate(const VectorXd& q, const std::vector<Index>& rows) const {
+MatrixXd PoseInformation::evaluate(const VectorXd& q, const SeenTargets& is_seen) const {
+    if (is_blind(is_seen)) return MatrixXd::Zero(parameter_count(), parameter_count());
+    const std::vector<Index> rows = rows_shown(*campaign_.sensor, is_seen);
     FlangeMotion motion;
     RowMatrixXd B(campaign_.sensor->row_count(), parameter_count());
     differentiate_pose(campaign_, parameters_, q, motion, B);
@@ -47,8 +57,10 @@ MatrixXd PoseInformation::evaluate(const VectorXd& q, const std::vector<Index>& 
 }
 
 VectorXd PoseInformation::differentiate(const VectorXd& q, const MatrixXd& Z,
-                                        const std::vector<Index>& rows) const {
+                                        const SeenTargets& is_seen) const {
+    if (is_blind(is_seen)) return VectorXd::Zero(q.size());
     const Sensor& sensor = *campaign_.sensor;
+    const std::vector<Index> rows = rows_shown(sensor, is_seen);
     FlangeMotion motion;
     std::vector<FlangeMotionRate> rates;
     differentiate_flange_twice(campaign_, parameters_, q, motion, rates);

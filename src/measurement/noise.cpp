@@ -70,22 +70,14 @@ VectorXd model_error_of_rows(const Campaign& campaign) {
     return errors;
 }
 
-std::vector<Index> seen_rows(const Sensor& sensor, const VectorXd& repeats) {
-    const Index width = sensor.rows_per_target();
-    std::vector<Index> rows;
-    for (Index row = 0; row < sensor.row_count(); ++row) {
-        if (repeats[row / width] > 0) rows.push_back(row);
-    }
-    return rows;
-}
-
 MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
                          const VectorXd& sensor_unknowns, const VectorXd& repeats) {
     const Sensor& sensor = *campaign.sensor;
-    const std::vector<Index> rows = seen_rows(sensor, repeats);
+    const Index width = sensor.rows_per_target();
+    const std::vector<Index> rows = seen_rows(repeats.array() > 0, width);
     MatrixXd covariance = sensor.covariance(motion.world_from_flange, sensor_unknowns)(rows, rows);
     for (Index k = 0; k < covariance.rows(); ++k) {  // targets are independent of each other
-        covariance.row(k) /= repeats[rows[static_cast<std::size_t>(k)] / sensor.rows_per_target()];
+        covariance.row(k) /= repeats[rows[static_cast<std::size_t>(k)] / width];
     }
     covariance.diagonal() += model_error_of_rows(campaign)(rows).cwiseAbs2();
     if (campaign.joint_repeatability.size() > 0) {

@@ -74,11 +74,11 @@ Simulation simulate(const Campaign& campaign, const SimulateOptions& options) {
     const Index targets = campaign.sensor->target_count();
     return simulate(campaign,
                     random_configurations(campaign.robot, options.pose_count, configuration_seed),
-                    RowArrayXb::Constant(options.pose_count, targets, true), options);
+                    all_seen(options.pose_count, targets), options);
 }
 
 Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
-                    const RowArrayXb& is_visible, const SimulateOptions& options) {
+                    const Seen& is_seen, const SimulateOptions& options) {
     if (options.repeats < 1) {
         throw InputError("repeats must be at least 1, are " + std::to_string(options.repeats));
     }
@@ -87,11 +87,10 @@ Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
             "to simulate, the campaign must state where base and targets are (keys 'base' and "
             "'sensor.targets.position_mm' or 'sensor.tool')");
     }
-    if (is_visible.rows() != configurations.rows() ||
-        is_visible.cols() != campaign.sensor->target_count()) {
-        throw InputError("visibility is stated for " + std::to_string(is_visible.rows()) + " x " +
-                         std::to_string(is_visible.cols()) +
-                         " configurations and targets, must be " +
+    if (is_seen.rows() != configurations.rows() ||
+        is_seen.cols() != campaign.sensor->target_count()) {
+        throw InputError("visibility is stated for " + std::to_string(is_seen.rows()) + " x " +
+                         std::to_string(is_seen.cols()) + " configurations and targets, must be " +
                          std::to_string(configurations.rows()) + " x " +
                          std::to_string(campaign.sensor->target_count()));
     }
@@ -100,7 +99,7 @@ Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
     simulation.measurements = simulate_measurements(campaign, simulation.truth, configurations,
                                                     options.repeats, options.seed);
     for (Index sample = 0; sample < simulation.measurements.is_seen.rows(); ++sample) {
-        simulation.measurements.is_seen.row(sample) = is_visible.row(sample / options.repeats);
+        simulation.measurements.is_seen.row(sample) = is_seen.row(sample / options.repeats);
     }
     return simulation;
 }

@@ -62,6 +62,7 @@ double ConstraintReport::margin() const {
 Constraints::Constraints(const Campaign& campaign, Cell cell)
     : cell_(std::move(cell)),
       robot_(without_parameters(with_margin(campaign.robot, cell_.limit_margin))),
+      target_count_(campaign.sensor->target_count()),
       tracker_from_base_(campaign.nominal.world_from_base),
       targets_(planner::nominal_targets(campaign, cell_)),
       pairs_(planner::colliding_pairs(cell_.links)),
@@ -172,7 +173,7 @@ void Constraints::check_sight(const Posture& posture, ConstraintReport& report) 
                                             line_clearance(posture, posture.targets[j]),
                                             infinity};
         of_target.back() = *std::min_element(of_target.begin(), of_target.end());
-        report.is_visible.push_back(of_target.back() >= 0);
+        report.is_seen[static_cast<Index>(j)] = of_target.back() >= 0;
         for (std::size_t k = 0; k < kinds; ++k) clearances[k].push_back(of_target[k]);
     }
     const auto needed =
@@ -190,6 +191,7 @@ ConstraintReport Constraints::check(const VectorXd& q) const {
     const Posture posture = pose_links(q);
     ConstraintReport report;
     report.clearance.fill(infinity);
+    report.is_seen.setConstant(target_count_, true);
     const auto set = [&report](Constraint constraint, double value) {
         report.clearance[static_cast<std::size_t>(constraint)] = value;
     };
@@ -200,6 +202,10 @@ ConstraintReport Constraints::check(const VectorXd& q) const {
     set(Constraint::SelfCollision, self_clearance(posture));
     if (cell_.sight) check_sight(posture, report);
     return report;
+}
+
+SeenTargets Constraints::seen(const VectorXd& q) const {
+    return cell_.sight ? check(q).is_seen : SeenTargets::Constant(target_count_, true);
 }
 
 double Constraints::collision_clearance(const VectorXd& q) const {

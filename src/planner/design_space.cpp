@@ -3,26 +3,10 @@
 #include "posewise/jacobian/pose_information.hpp"
 
 namespace posewise {
-namespace {
-
-/// Sensor rows of the targets a pose shows, `width` each.
-std::vector<Index> seen_rows(const Constraints& constraints, Index width, const VectorXd& q) {
-    const std::vector<bool> is_visible = constraints.check(q).is_visible;
-    std::vector<Index> rows;
-    for (std::size_t target = 0; target < is_visible.size(); ++target) {
-        const Index first = width * static_cast<Index>(target);
-        for (Index k = 0; k < width && is_visible[target]; ++k) rows.push_back(first + k);
-    }
-    return rows;
-}
-
-}  // namespace
-
 DesignSpace make_design_space(const Campaign& campaign, const Parameters& parameters,
                               double repeats, const Constraints* constraints) {
     const auto pose = std::make_shared<PoseInformation>(campaign, parameters, repeats);
     const Chain& robot = constraints == nullptr ? campaign.robot : constraints->robot();
-    const Index width = campaign.sensor->rows_per_target();
     DesignSpace space;
     space.parameter_count = pose->parameter_count();
     space.parameter_names = parameter_names(campaign);
@@ -33,24 +17,13 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
         space.lower[j] = joint.lower;
         space.upper[j] = joint.upper;
     }
-    if (constraints == nullptr || !constraints->cell().sight) {
-        space.information = [pose](const VectorXd& q) { return pose->evaluate(q); };
-        space.information_gradient = [pose](const VectorXd& q, const MatrixXd& Z) {
-            return pose->differentiate(q, Z);
-        };
-    } else {
-        space.information = [pose, constraints, width](const VectorXd& q) -> MatrixXd {
-            const auto rows = seen_rows(*constraints, width, q);
-            const Index size = pose->parameter_count();
-            return rows.empty() ? MatrixXd(MatrixXd::Zero(size, size)) : pose->evaluate(q, rows);
-        };
-        space.information_gradient = [pose, constraints, width](const VectorXd& q,
-                                                                const MatrixXd& Z) -> VectorXd {
-            const auto rows = seen_rows(*constraints, width, q);
-            return rows.empty() ? VectorXd(VectorXd::Zero(q.size()))
-                                : pose->differentiate(q, Z, rows);
-        };
-    }
+    const auto seen = [constraints](const VectorXd& q) {
+        return constraints == nullptr ? SeenTargets() : constraints->seen(q);
+    };
+    space.information = [pose, seen](const VectorXd& q) { return pose->evaluate(q, seen(q)); };
+    space.information_gradient = [pose, seen](const VectorXd& q, const MatrixXd& Z) {
+        return pose->differentiate(q, Z, seen(q));
+    };
     if (constraints == nullptr) return space;
     for (const auto& [joint, value] : constraints->cell().fixed_joints) {
         space.lower[joint] = space.upper[joint] = value;

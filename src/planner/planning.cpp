@@ -14,6 +14,7 @@
 #include "posewise/core/parallel.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/core/text.hpp"
+#include "posewise/jacobian/identification.hpp"
 #include "posewise/planner/searched_bound.hpp"
 #include "posewise/selection/bound.hpp"
 
@@ -233,8 +234,8 @@ PlannedPoses plan_poses(const Campaign& campaign, const Constraints& constraints
     check_pool_size(pool, options.pose_count);
     const DesignSpace space = make_design_space(campaign, campaign.nominal, repeats, &constraints);
     return plan_poses(space, pool.configurations,
-                      make_visible_blocks(campaign, campaign.nominal, pool.configurations,
-                                          pool.is_visible, repeats),
+                      make_blocks(campaign, campaign.nominal, pool.configurations,
+                                  times_seen(pool.is_seen, repeats)),
                       options);
 }
 

@@ -56,12 +56,12 @@ Pool join(const std::vector<Pool>& parts) {
     Index rows = 0;
     for (const Pool& part : parts) rows += part.configurations.rows();
     pool.configurations.resize(rows, parts.front().configurations.cols());
+    pool.is_seen.resize(rows, parts.front().is_seen.cols());
     Index row = 0;
     for (const Pool& part : parts) {
         pool.configurations.middleRows(row, part.configurations.rows()) = part.configurations;
+        pool.is_seen.middleRows(row, part.configurations.rows()) = part.is_seen;
         row += part.configurations.rows();
-        pool.is_visible.insert(pool.is_visible.end(), part.is_visible.begin(),
-                               part.is_visible.end());
         pool.candidate_count += part.candidate_count;
         for (std::size_t k = 0; k < constraint_count; ++k) {
             pool.rejections[k].first += part.rejections[k].first;
@@ -84,13 +84,16 @@ Pool filter_pool(const Constraints& constraints, const RowMatrixXd& candidates) 
     pool.candidate_count = candidates.rows();
     std::vector<Index> feasible;
     for (Index i = 0; i < candidates.rows(); ++i) {
-        ConstraintReport& report = reports[static_cast<std::size_t>(i)];
+        const ConstraintReport& report = reports[static_cast<std::size_t>(i)];
         count_rejections(report, pool.rejections);
-        if (!report.is_feasible()) continue;
-        feasible.push_back(i);
-        if (constraints.cell().sight) pool.is_visible.push_back(std::move(report.is_visible));
+        if (report.is_feasible()) feasible.push_back(i);
     }
     pool.configurations = candidates(feasible, Eigen::all);
+    pool.is_seen.resize(pool.configurations.rows(), constraints.target_count());
+    for (Index k = 0; k < pool.is_seen.rows(); ++k) {
+        const auto i = static_cast<std::size_t>(feasible[static_cast<std::size_t>(k)]);
+        pool.is_seen.row(k) = reports[i].is_seen;
+    }
     return pool;
 }
 

@@ -34,11 +34,11 @@ TEST_F(ReadConfigurations, DoesNotLookAtWhatWasMeasured) {
 
 TEST_F(ReadConfigurations, MayListTheTargetsThatAreVisible) {
     const std::string header = "config,q1_rad,q2_rad,lift_mm";
-    const RowArrayXb all = RowArrayXb::Constant(2, 2, true);
-    EXPECT_TRUE((read(header + "\na,0.5,0.25,125\nb,1,0.5,250\n").is_visible == all).all());
+    const Seen all = Seen::Constant(2, 2, true);
+    EXPECT_TRUE((read(header + "\na,0.5,0.25,125\nb,1,0.5,250\n").is_seen == all).all());
     const Configurations some =
         read(header + ",visible_targets\na,0.5,0.25,125,2\nb,1,0.5,250,\"2  1\"\n");
-    EXPECT_TRUE((some.is_visible == RowArrayXb{{false, true}, {true, true}}).all());
+    EXPECT_TRUE((some.is_seen == Seen{{false, true}, {true, true}}).all());
     for (const std::string bad : {"", "0", "3", "1,2", "1.5", "-1", "one", "1 3", "1e999"}) {
         const std::string error = testing::input_error_of(
             [&] { read(header + ",visible_targets\na,0.5,0.25,125,\"" + bad + "\"\n"); });

@@ -73,8 +73,7 @@ TEST(ReadMeasurementsCsv, EmptyCellsAreATargetThatWasNotSeen) {
     EXPECT_TRUE(read(good).is_seen.all());
     const Measurements measurements = read(replaced(
         replaced(good, "a,1,0.1,0.2,0.3,1.5,2,3,", "a,1,0.1,0.2,0.3,, ,\"\","), "10,11,12", ",,"));
-    EXPECT_TRUE(
-        (measurements.is_seen == RowArrayXb{{true, true}, {false, true}, {true, false}}).all());
+    EXPECT_TRUE((measurements.is_seen == Seen{{true, true}, {false, true}, {true, false}}).all());
     EXPECT_EQ(measurements.observations.row(1).tail(3), Eigen::RowVector3d(4, 5, 6));
     EXPECT_EQ(measurements.observations.row(2).head(3), Eigen::RowVector3d(7, 8, 9));
     EXPECT_TRUE(measurements.observations.allFinite());

@@ -137,11 +137,11 @@ TEST_F(ReadMeasurementsMat, ARowOfNaNIsATargetThatWasNotSeen) {
         write(good_q, compression, MAT_FT_MAT5, {1, 2, nan, 4, 5, nan, 7, 8, nan});
         const Measurements measurements = read();
         EXPECT_TRUE(
-            (measurements.is_seen == RowArrayXb{{true, true}, {false, true}, {true, true}}).all());
+            (measurements.is_seen == Seen{{true, true}, {false, true}, {true, true}}).all());
         EXPECT_TRUE(measurements.observations.allFinite());
         EXPECT_NEAR(measurements.observations(0, 0), 1e-3, 1e-15);
         EXPECT_NEAR(measurements.observations(1, 3), 13e-3, 1e-15);
-        EXPECT_TRUE(read_configurations(path_, campaign_).is_visible.all());
+        EXPECT_TRUE(read_configurations(path_, campaign_).is_seen.all());
     }
 }
 

@@ -126,6 +126,35 @@ TEST(MakeBlocks, RefuseRepeatsThatDoNotFit) {
     EXPECT_NO_THROW(make(RowMatrixXd::Zero(2, 3)));
 }
 
+TEST(MakeBlocks, HaveTheRowsOfTargetsSeenOnly) {
+    Campaign campaign = tracked_campaign(fanuc());
+    campaign.joint_repeatability = VectorXd::Constant(6, 1e-5);  // correlates the targets
+    const RowMatrixXd q = random_configurations(campaign.robot, 3, 1);
+    const Seen seen{{true, true, true}, {false, true, false}, {false, false, false}};
+    const Blocks blocks = make_blocks(campaign, campaign.nominal, q, times_seen(seen, 1));
+    EXPECT_EQ(blocks.first_row, (std::vector<Index>{0, 9, 12, 12}));
+    const Blocks all = make_blocks(campaign, campaign.nominal, q);
+    EXPECT_LT((blocks[0] - all[0]).cwiseAbs().maxCoeff(), 1e-12);
+
+    // A sensor that has the second target only must tell the same of the robot.
+    Campaign one = campaign;
+    const auto& sensor = dynamic_cast<const PointSensor&>(*campaign.sensor);
+    one.sensor =
+        std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(1), sensor.noise());
+    one.nominal.sensor = campaign.nominal.sensor.segment<3>(3);
+    const Blocks expected = make_blocks(one, one.nominal, q);
+    EXPECT_LT((blocks[1].leftCols(24) - expected[1].leftCols(24)).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_LT((blocks[1].middleCols(27, 3) - expected[1].rightCols(3)).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_EQ(blocks[1].middleCols(24, 3).norm(), 0);
+
+    EXPECT_EQ(make_blocks(campaign, campaign.nominal, q, times_seen(all_seen(3, 3), 1)).matrix,
+              all.matrix);
+    EXPECT_THROW(make_blocks(campaign, campaign.nominal, q, times_seen(all_seen(1, 1), 1)),
+                 InputError);
+    EXPECT_THROW(make_blocks(campaign, campaign.nominal, q, times_seen(all_seen(3, 1), 1)),
+                 InputError);
+}
+
 TEST(MakeBlocks, RefuseConfigurationsTheRobotCannotTake) {
     const Campaign campaign = tracked_campaign(fanuc());
     EXPECT_THROW(make_blocks(campaign, campaign.nominal, RowMatrixXd::Zero(2, 5)), InputError);

@@ -116,8 +116,8 @@ TEST(PoseInformation, DerivativeAgreesWithDifferencesForEverySensor) {
     }
 }
 
-TEST(PoseInformation, CountsOnlyTheRowsThatAreSeen) {
-    const std::vector<Index> seen{0, 1, 2, 6, 7, 8};
+TEST(PoseInformation, CountsOnlyTheTargetsThatAreSeen) {
+    const SeenTargets seen = seen_targets({0, 2}, 3);
     for (const Campaign& campaign : campaigns_of_every_noise(fanuc())) {
         // Unseen rows as if they were measured infinitely badly.
         const PoseInformation pose(campaign, campaign.nominal);
@@ -140,6 +140,15 @@ TEST(PoseInformation, CountsOnlyTheRowsThatAreSeen) {
         const VectorXd expected = numerical_jacobian(trace, q).transpose();
         EXPECT_LE((pose.differentiate(q, Z, seen) - expected).norm(), 1e-8 * expected.norm());
     }
+}
+
+TEST(PoseInformation, IsNothingWhereNoTargetIsSeen) {
+    const Campaign campaign = tracked_campaign(fanuc());
+    const PoseInformation pose(campaign, campaign.nominal);
+    const SeenTargets none = seen_targets({}, 3);
+    const VectorXd q = VectorXd::Constant(6, 0.3);
+    EXPECT_EQ(pose.evaluate(q, none), MatrixXd::Zero(33, 33));
+    EXPECT_EQ(pose.differentiate(q, MatrixXd::Identity(33, 33), none), VectorXd::Zero(6));
 }
 
 TEST(PoseInformation, RefusesRepeatsThatAreNotPositive) {

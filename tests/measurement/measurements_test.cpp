@@ -53,7 +53,7 @@ TEST(MeanMeasurements, AverageTheSamplesOfEachConfiguration) {
 TEST(MeanMeasurements, AverageEachTargetOverTheSamplesThatShowIt) {
     const Measurements means = mean_measurements(two_lengths, with_gaps());
     EXPECT_EQ(means.observations, (RowMatrixXd{{2, 10}, {5, 0}, {4.5, 0}}));
-    EXPECT_TRUE((means.is_seen == RowArrayXb{{true, true}, {true, false}, {true, true}}).all());
+    EXPECT_TRUE((means.is_seen == Seen{{true, true}, {true, false}, {true, true}}).all());
 }
 
 TEST(TimesSeen, CountTheSamplesThatShowEachTarget) {
@@ -88,7 +88,7 @@ TEST(TakeMeasurements, KeepsTheOrderAskedFor) {
     EXPECT_EQ(taken.configurations, Eigen::Vector2d(0.3, 0.1));
     EXPECT_EQ(taken.observations.topRows(3), all.observations.bottomRows(3));
     EXPECT_EQ(taken.observations.bottomRows(2), all.observations.topRows(2));
-    const RowArrayXb seen = with_gaps().is_seen;
+    const Seen seen = with_gaps().is_seen;
     EXPECT_TRUE((take(with_gaps(), {2, 0}).is_seen.topRows(3) == seen.bottomRows(3)).all());
 }
 

@@ -96,7 +96,7 @@ TEST(Simulate, MeansOfTheSamplesThatShowATargetHaveTheStatedCovariance) {
                                      simulation.truth.robot, motion);
         const VectorXd repeats = times.row(i).transpose();
         const VectorXd all = errors.row(i).transpose();
-        RowMatrixXd error = all(seen_rows(*campaign.sensor, repeats));
+        RowMatrixXd error = all(seen_rows(repeats.array() > 0, campaign.sensor->rows_per_target()));
         whiten(mean_covariance(campaign, motion, simulation.truth.sensor, repeats), error);
         chi_square += error.squaredNorm();
     }
@@ -109,7 +109,7 @@ TEST(Simulate, AtGivenConfigurationsShowsWhatIsVisibleThere) {
     const Campaign campaign = tracked_campaign(fanuc());
     const SimulateOptions options{.pose_count = 2, .repeats = 2};
     const Measurements all = simulate(campaign, options).measurements;
-    const RowArrayXb visible{{true, false, true}, {true, true, true}};
+    const Seen visible{{true, false, true}, {true, true, true}};
     const Measurements some = simulate(campaign, all.configurations, visible, options).measurements;
     EXPECT_EQ(some.observations, all.observations);
     for (const Index sample : {0, 1}) {

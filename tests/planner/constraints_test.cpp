@@ -45,7 +45,7 @@ TEST(Constraints, OfAnEmptyCellAreTheJointLimits) {
     EXPECT_EQ(report.margin(), report[Constraint::JointLimits]);
     EXPECT_EQ(report[Constraint::KeepOuts], infinity);
     EXPECT_EQ(report[Constraint::LineOfSight], infinity);
-    EXPECT_TRUE(report.is_visible.empty());
+    EXPECT_TRUE(report.is_seen.all());
     EXPECT_FALSE(check({}, angles(190, 0)).is_feasible());
 }
 
@@ -106,10 +106,10 @@ TEST(Constraints, MeasureRangeAzimuthAndElevationInTheTrackersFrame) {
     EXPECT_NEAR(stretched[Constraint::Range], -0.5, 1e-12);
     EXPECT_NEAR(stretched[Constraint::Azimuth], 10 * degree, 1e-12);
     EXPECT_NEAR(stretched[Constraint::Elevation], 5 * degree, 1e-12);
-    EXPECT_FALSE(stretched.is_visible[0]);
+    EXPECT_FALSE(stretched.is_seen[0]);
     const ConstraintReport left = check(cell, angles(-90, 0));  // at (0, -2, 0): y = 2 for tracker
     EXPECT_NEAR(left[Constraint::Azimuth], 30 * degree - std::atan2(2, 5), 1e-12);
-    EXPECT_TRUE(left.is_visible[0]);
+    EXPECT_TRUE(left.is_seen[0]);
     cell.sight->azimuth = {170 * degree, 200 * degree};  // across 180 deg
     EXPECT_NEAR(check(cell, angles(-90, 0))[Constraint::Azimuth], std::atan2(2, 5) - 170 * degree,
                 1e-12);
@@ -154,7 +154,7 @@ TEST(Constraints, AskForAsManyTargetsAsMustBeSeenAtOnce) {
         const Constraints constraints(campaign, cell);
         for (Index i = 0; i < q.rows(); ++i) {
             const ConstraintReport report = constraints.check(q.row(i).transpose());
-            const auto seen = std::count(report.is_visible.begin(), report.is_visible.end(), true);
+            const auto seen = report.is_seen.count();
             const bool is_enough = report[Constraint::VisibleTargets] >= 0;
             EXPECT_EQ(is_enough, seen >= needed);
             for (const auto kind : {Constraint::Range, Constraint::Azimuth, Constraint::Elevation,

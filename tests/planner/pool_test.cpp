@@ -4,7 +4,6 @@
 #include <omp.h>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/jacobian/identification.hpp"
 #include "support/cell_recheck.hpp"
 #include "support/cells.hpp"
 
@@ -26,7 +25,7 @@ TEST(MakePool, KeepsOnlyPosesThatASeparateDenseCheckAccepts) {
         const auto violations = recheck.violations(pool.configurations.row(i).transpose());
         EXPECT_TRUE(violations.empty()) << "pose " << i << ": " << violations.front();
         for (std::size_t j = 0; j < 3; ++j) {
-            EXPECT_EQ(pool.is_visible[static_cast<std::size_t>(i)][j], recheck.is_seen_[j]);
+            EXPECT_EQ(pool.is_seen(i, static_cast<Index>(j)), recheck.is_seen_[j]);
         }
     }
 }
@@ -58,7 +57,7 @@ TEST(MakePool, StopsWhenToldAndSaysHowMuchWasDrawn) {
     EXPECT_EQ(whole.configurations.topRows(some.configurations.rows()), some.configurations);
     const Pool same = make_pool(constraints, some.candidate_count, 1);
     EXPECT_EQ(same.configurations, some.configurations);
-    EXPECT_EQ(same.is_visible, some.is_visible);
+    EXPECT_TRUE((same.is_seen == some.is_seen).all());
     EXPECT_EQ(describe_rejections(same), describe_rejections(some));
 }
 
@@ -95,7 +94,7 @@ TEST(MakePool, IsTheSameForAnyNumberOfThreads) {
     omp_set_num_threads(2);
     const Pool two = make_pool(constraints, 3000, 7);
     EXPECT_EQ(one.configurations, two.configurations);
-    EXPECT_EQ(one.is_visible, two.is_visible);
+    EXPECT_TRUE((one.is_seen == two.is_seen).all());
     EXPECT_NE(make_pool(constraints, 3000, 8).configurations.row(0), one.configurations.row(0));
 }
 
@@ -123,32 +122,6 @@ TEST(MakePool, SaysWhichConstraintLeavesNothing) {
             << text;
     }
     EXPECT_THROW(make_pool(Constraints(cell_campaign(), demo_cell()), 0, 1), InputError);
-}
-
-TEST(MakeVisibleBlocks, HaveTheRowsOfVisibleTargetsOnly) {
-    Campaign campaign = cell_campaign();
-    campaign.joint_repeatability = VectorXd::Constant(6, 1e-5);  // correlates the targets
-    const RowMatrixXd q = halton_configurations(campaign.robot, 3);
-    const std::vector<std::vector<bool>> visible{
-        {true, true, true}, {false, true, false}, {false, false, false}};
-    const Blocks blocks = make_visible_blocks(campaign, campaign.nominal, q, visible);
-    EXPECT_EQ(blocks.first_row, (std::vector<Index>{0, 9, 12, 12}));
-    const Blocks all = make_blocks(campaign, campaign.nominal, q);
-    EXPECT_LT((blocks[0] - all[0]).cwiseAbs().maxCoeff(), 1e-12);
-
-    // A sensor that has the second target only must tell the same of the robot.
-    Campaign one = campaign;
-    one.sensor = std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(1), 5e-5);
-    one.nominal.sensor = campaign.nominal.sensor.segment<3>(3);
-    const Blocks expected = make_blocks(one, one.nominal, q);
-    EXPECT_LT((blocks[1].leftCols(24) - expected[1].leftCols(24)).cwiseAbs().maxCoeff(), 1e-9);
-    EXPECT_LT((blocks[1].middleCols(27, 3) - expected[1].rightCols(3)).cwiseAbs().maxCoeff(), 1e-9);
-    EXPECT_EQ(blocks[1].middleCols(24, 3).norm(), 0);
-
-    EXPECT_EQ(make_visible_blocks(campaign, campaign.nominal, q, {}).matrix, all.matrix);
-    EXPECT_THROW(make_visible_blocks(campaign, campaign.nominal, q, {{true}}), InputError);
-    EXPECT_THROW(make_visible_blocks(campaign, campaign.nominal, q, {{true}, {true}, {true}}),
-                 InputError);
 }
 
 }  // namespace

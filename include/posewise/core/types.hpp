@@ -16,9 +16,6 @@ using Eigen::VectorXd;
 /// Rows are observations, so one pose's rows are contiguous in memory.
 using RowMatrixXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Yes or no for each row and column, stored as RowMatrixXd is.
-using RowArrayXb = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
 /// How a rigid body moves: angular velocity w; velocity v of the point at the world origin. A point
 /// x of the body moves by v + w cross x.
 using Twist = Eigen::Matrix<double, 6, 1>;

@@ -19,8 +19,8 @@ Measurements read_measurements(const std::string& path, const CampaignFile& file
 /// Named configurations, none of them measured (or not of interest whether).
 struct Configurations {
     std::vector<std::string> ids;
-    RowMatrixXd joints;     ///< configurations x joints, rad or m
-    RowArrayXb is_visible;  ///< configurations x targets: those to be measured
+    RowMatrixXd joints;  ///< configurations x joints, rad or m
+    Seen is_seen;        ///< which targets are to be measured there
 };
 
 /// Reads configurations as read_measurements() does; a CSV need not have the sensor's columns, and

@@ -14,9 +14,9 @@ void differentiate_pose(const Campaign& campaign, const Parameters& parameters,
                         Eigen::Ref<RowMatrixXd> J_measured_parameters);
 
 /// Blocks without whitening or scaling, one per row of `configurations` (m x joints): the stacked
-/// identification Jacobian in SI units. `repeats` (m x targets): a target with 0 is not seen, and
-/// its rows are left out. Computed over OpenMP threads. Throws InputError for a configuration of
-/// the wrong size or not finite, or repeats of another shape or below 0.
+/// identification Jacobian in SI units. `repeats` (m x targets, times_seen() makes them): a target
+/// with 0 is not seen, and its rows are left out. Computed over OpenMP threads. Throws InputError
+/// for a configuration of the wrong size or not finite, or repeats of another shape or below 0.
 Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
                          const RowMatrixXd& configurations, const RowMatrixXd& repeats);
 /// The same with all targets seen.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/seen.hpp"
 
 namespace posewise {
 
@@ -16,16 +17,16 @@ class PoseInformation {
     Index joint_count() const { return campaign_.robot.joint_count(); }
     Index parameter_count() const { return scale_.size(); }
 
-    /// B^T B: parameter_count() square, without units. `rows` are those of the sensor that the pose
-    /// shows, in ascending order; empty: all.
-    MatrixXd evaluate(const VectorXd& q, const std::vector<Index>& rows = {}) const;
+    /// B^T B: parameter_count() square, without units. `is_seen` are the targets that the pose
+    /// shows; empty: all.
+    MatrixXd evaluate(const VectorXd& q, const SeenTargets& is_seen = {}) const;
 
     /// Derivative of trace(Z B^T B) by the joints, for a symmetric Z (per rad or m). With Z the
     /// gradient of a criterion by the information matrix, this is the criterion's by this pose:
     /// with J the scaled Jacobian, S the covariance of the mean, P = S^-1 J,
     /// d trace = 2 trace(Z P^T dJ) - trace(P Z P^T dS).
     VectorXd differentiate(const VectorXd& q, const MatrixXd& Z,
-                           const std::vector<Index>& rows = {}) const;
+                           const SeenTargets& is_seen = {}) const;
 
   private:
     const Campaign& campaign_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "posewise/core/types.hpp"
+#include "posewise/measurement/seen.hpp"
 #include "posewise/measurement/sensor.hpp"
 
 namespace posewise {
@@ -16,7 +17,7 @@ struct Measurements {
     RowMatrixXd observations;      ///< samples x sensor rows, m or rad; grouped by configuration
     /// samples x targets: which targets each sample shows. What stands in `observations` for the
     /// others is never looked at.
-    RowArrayXb is_seen;
+    Seen is_seen;
     std::vector<Index> first_sample{0};  ///< m + 1; samples of configuration i start at [i]
 
     Index configuration_count() const { return static_cast<Index>(ids.size()); }

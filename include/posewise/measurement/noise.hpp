@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/seen.hpp"
 
 namespace posewise {
 
@@ -13,14 +14,11 @@ void check_noise(const Campaign& campaign);
 /// What repeats do not reduce: the model error of each of the sensor's rows (m or rad).
 VectorXd model_error_of_rows(const Campaign& campaign);
 
-/// Rows of the sensor that belong to the targets seen: those with repeats above 0. Ascending.
-std::vector<Index> seen_rows(const Sensor& sensor, const VectorXd& repeats);
-
 /// Covariance of the mean observation of the targets seen at a pose, target j over repeats[j]
 /// observations (0: not seen): the sensor's divided by repeats, plus what repeats do not reduce:
 /// model_error^2 on the diagonal, and J_q diag(s^2) J_q^T of the joints' repeatability s (the
-/// robot stands still while it is observed again), which correlates the targets. seen_rows()
-/// square, m^2.
+/// robot stands still while it is observed again), which correlates the targets. Square, its rows
+/// those of seen_rows(), m^2.
 MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
                          const VectorXd& sensor_unknowns, const VectorXd& repeats);
 

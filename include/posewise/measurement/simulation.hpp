@@ -39,6 +39,6 @@ Simulation simulate(const Campaign& campaign, const SimulateOptions& options);
 /// The same at given configurations (m x joints), each of which shows some targets (m x targets);
 /// options.pose_count is not looked at.
 Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
-                    const RowArrayXb& is_visible, const SimulateOptions& options);
+                    const Seen& is_seen, const SimulateOptions& options);
 
 }  // namespace posewise

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/seen.hpp"
 #include "posewise/model/cell.hpp"
 
 namespace posewise {
@@ -34,7 +35,7 @@ struct ConstraintReport {
     /// By Constraint, in m or rad: at least 0 if it is met; infinite if the cell has no such
     /// constraint.
     std::array<double, constraint_count> clearance;
-    std::vector<bool> is_visible;  ///< each target; empty if the cell does not speak of sight
+    SeenTargets is_seen;  ///< all if the cell does not speak of sight
 
     double operator[](Constraint constraint) const {
         return clearance[static_cast<std::size_t>(constraint)];
@@ -58,11 +59,14 @@ class Constraints {
     const Cell& cell() const { return cell_; }
     /// The robot with its limits drawn in by the margin; fixed joints keep theirs.
     const Chain& robot() const { return robot_; }
+    Index target_count() const { return target_count_; }
 
     /// Nominal geometry throughout. Throws InputError as Chain::check_configuration().
     ConstraintReport check(const VectorXd& q) const;
     /// check(q).margin(): at least 0 where q is feasible, continuous in q.
     double margin(const VectorXd& q) const { return check(q).margin(); }
+    /// check(q).is_seen.
+    SeenTargets seen(const VectorXd& q) const;
     /// The smaller of the clearances KeepOuts and SelfCollision.
     double collision_clearance(const VectorXd& q) const;
     /// A bound on the rate of collision_clearance() along a joint: m per rad (m per m), by the
@@ -82,6 +86,7 @@ class Constraints {
 
     Cell cell_;
     Chain robot_;
+    Index target_count_;
     Isometry3d tracker_from_base_;
     std::vector<Vector3d> targets_;                           // in the flange frame
     std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // of links that may collide

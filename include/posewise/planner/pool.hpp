@@ -2,7 +2,6 @@
 
 #include <cstdint>
 
-#include "posewise/core/blocks.hpp"
 #include "posewise/planner/constraints.hpp"
 #include "posewise/core/stop.hpp"
 
@@ -17,9 +16,7 @@ struct Rejections {
 /// The candidates that satisfy all constraints, in the order they were drawn.
 struct Pool {
     RowMatrixXd configurations;  ///< feasible x joints
-    /// Of each configuration, whether each target is seen; empty if the cell does not speak of
-    /// sight.
-    std::vector<std::vector<bool>> is_visible;
+    Seen is_seen;                ///< feasible x targets
     Index candidate_count = 0;
     std::array<Rejections, constraint_count> rejections{};  ///< by Constraint
 };
@@ -39,11 +36,5 @@ std::string describe_rejections(const Pool& pool);
 
 /// The configurations checked as they are, not drawn.
 Pool filter_pool(const Constraints& constraints, const RowMatrixXd& candidates);
-
-/// As make_blocks(), with the rows of visible targets only: `is_visible[i]` says which targets
-/// configuration i shows; without entries, all of all.
-Blocks make_visible_blocks(const Campaign& campaign, const Parameters& parameters,
-                           const RowMatrixXd& configurations,
-                           const std::vector<std::vector<bool>>& is_visible, double repeats = 1);
 
 }  // namespace posewise
