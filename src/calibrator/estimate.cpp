@@ -58,22 +58,24 @@ RowMatrixXd squared_distances(const Campaign& campaign, const Parameters& parame
                               const Measurements& measurements) {
     const Measurements means = mean_measurements(*campaign.sensor, measurements);
     const RowMatrixXd r = residuals(campaign, parameters, means);
+    const Index lengths = campaign.sensor->lengths_per_target();
+    const Index width = campaign.sensor->rows_per_target();
     RowMatrixXd squares = RowMatrixXd::Zero(means.is_seen.rows(), means.is_seen.cols());
     Index row = 0;
     for (Index i = 0; i < squares.rows(); ++i) {
         for (Index j = 0; j < squares.cols(); ++j) {
             if (means.is_seen(i, j))
-                squares(i, j) = r.row(row++).head(std::min<Index>(r.cols(), 3)).squaredNorm();
+                squares(i, j) = r.row(row++).head(lengths > 0 ? lengths : width).squaredNorm();
         }
     }
     return squares;
 }
 
-Metrics make_metrics(const RowMatrixXd& residuals) {
+Metrics make_metrics(const RowMatrixXd& residuals, Index length_count) {
     Metrics metrics;
     metrics.point_count = residuals.rows();
-    metrics.coordinate_count = std::min<Index>(residuals.cols(), 3);
-    metrics.has_orientation = residuals.cols() > 3;
+    metrics.coordinate_count = std::min({length_count, residuals.cols(), Index{3}});
+    metrics.has_orientation = residuals.cols() > length_count;
     if (metrics.point_count == 0) return metrics;
     const auto points = residuals.leftCols(metrics.coordinate_count);
     VectorXd distances = points.rowwise().norm();
@@ -89,7 +91,8 @@ Metrics make_metrics(const RowMatrixXd& residuals) {
         metrics.coordinate_max[i] = points.col(axis).cwiseAbs().maxCoeff();
     }
     if (metrics.has_orientation) {
-        const VectorXd angles = residuals.rightCols(3).rowwise().norm();
+        const VectorXd angles =
+            residuals.rightCols(residuals.cols() - length_count).rowwise().norm();
         metrics.orientation_rms = angles.norm() / std::sqrt(count);
         metrics.orientation_max = angles.maxCoeff();
     }

@@ -138,7 +138,7 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
             all.conservativeResize(all.rows() + part.rows(), all.cols());
             all.bottomRows(part.rows()) = part;
         }
-        return make_metrics(all);
+        return make_metrics(all, campaign.sensor->lengths_per_target());
     };
     CrossValidation result{folds, join(samples), join(means), distances, {}};
     std::copy_if(failures.begin(), failures.end(), std::back_inserter(result.failures),

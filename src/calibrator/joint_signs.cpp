@@ -33,7 +33,9 @@ using Registration = Parameters (&)(const Campaign&, const Measurements&);
 double registered_rms(const Campaign& campaign, const Measurements& measurements,
                       Registration registration) {
     const Parameters registered = registration(campaign, measurements);
-    return make_metrics(residuals(campaign, registered, measurements)).distance_rms;
+    return make_metrics(residuals(campaign, registered, measurements),
+                        campaign.sensor->lengths_per_target())
+        .rms();
 }
 
 /// Fits the first `count` patterns anew and sorts them.

@@ -9,7 +9,6 @@
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/noise.hpp"
-#include "posewise/measurement/point_sensor.hpp"
 #include "robust.hpp"
 
 namespace posewise {
@@ -36,13 +35,11 @@ void check_size(const Campaign& campaign, const Measurements& measurements) {
 }
 
 /// The equations of configuration i, whitened, out of all that it would have.
-RowMatrixXd whiten_seen(const IdentificationProblem& problem, Index i, const FlangeMotion& motion,
-                        const Parameters& parameters, const RowMatrixXd& all) {
-    const VectorXd repeats = problem.repeats.row(i).transpose();
-    RowMatrixXd seen =
-        all(seen_rows(repeats.array() > 0, problem.campaign.sensor->rows_per_target()), Eigen::all);
-    whiten(mean_covariance(problem.campaign, motion, parameters.sensor, repeats), seen);
-    return seen;
+RowMatrixXd whiten_equations(const IdentificationProblem& problem, Index i,
+                             const FlangeMotion& motion, const Parameters& parameters,
+                             const RowMatrixXd& all) {
+    return whiten_seen(problem.campaign, motion, parameters.sensor,
+                       problem.repeats.row(i).transpose(), all);
 }
 
 /// Lengths of the whitened residual, the last column of `seen`, of one target after another.
@@ -72,9 +69,12 @@ VectorXd scaled_errors(const IdentificationProblem& problem, const Parameters& p
 }  // namespace
 
 void check_all_seen(const Campaign& campaign, const Measurements& measurements) {
-    const auto* points = dynamic_cast<const PointSensor*>(campaign.sensor.get());
-    for (Index j = 0; points != nullptr && j < points->target_count(); ++j) {
-        if (points->targets().is_known(j) || measurements.is_seen.col(j).any()) continue;
+    const Sensor& sensor = *campaign.sensor;
+    const Targets& targets = sensor.targets();
+    const Index seen_of_each = sensor.target_count() / targets.count();
+    for (Index j = 0; j < targets.count(); ++j) {
+        const auto of_target = measurements.is_seen.middleCols(seen_of_each * j, seen_of_each);
+        if (targets.is_known(j) || of_target.any()) continue;
         throw InputError(fmt::format(
             "target {} is seen in no sample of these {} configurations, so its position cannot be "
             "found; measure it, or leave it out of the campaign's targets",
@@ -113,7 +113,7 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
         augmented.col(size) = campaign.sensor->deviation(
             problem.means.observations.row(i).transpose(),
             campaign.sensor->predict(motion.world_from_flange, parameters.sensor));
-        RowMatrixXd seen = whiten_seen(problem, i, motion, parameters, augmented);
+        RowMatrixXd seen = whiten_equations(problem, i, motion, parameters, augmented);
         weigh_targets(problem, seen);
         system.J.middleRows(row, seen.rows()) = seen.leftCols(size) * problem.scale.asDiagonal();
         system.r.segment(row, seen.rows()) = seen.col(size);
@@ -143,7 +143,7 @@ VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters
             problem.means.observations.row(i).transpose(),
             campaign.sensor->predict(motion.world_from_flange, parameters.sensor));
         const VectorXd of_pose =
-            target_lengths(problem, whiten_seen(problem, i, motion, parameters, r));
+            target_lengths(problem, whiten_equations(problem, i, motion, parameters, r));
         lengths.segment(count, of_pose.size()) = of_pose;
         count += of_pose.size();
     }
@@ -213,10 +213,11 @@ void finish(const IdentificationProblem& problem, Estimate& estimate) {
     estimate.names = parameter_names(problem.campaign);
     estimate.loss = problem.loss;
     if (is_robust) estimate.outliers = find_outliers(problem, estimate.parameters);
-    estimate.fit =
-        make_metrics(residuals(problem.campaign, estimate.parameters, problem.measurements));
-    estimate.fit_means =
-        make_metrics(mean_residuals(problem.campaign, estimate.parameters, problem.measurements));
+    const Index lengths = problem.campaign.sensor->lengths_per_target();
+    estimate.fit = make_metrics(
+        residuals(problem.campaign, estimate.parameters, problem.measurements), lengths);
+    estimate.fit_means = make_metrics(
+        mean_residuals(problem.campaign, estimate.parameters, problem.measurements), lengths);
 }
 
 }  // namespace posewise

@@ -35,7 +35,9 @@ class Misfit {
     double operator()(const VectorXd& x) const {
         try {
             const Parameters found = register_roughly_with_errors(campaign_, means_, errors(x));
-            return make_metrics(residuals(campaign_, found, means_)).distance_rms;
+            return make_metrics(residuals(campaign_, found, means_),
+                                campaign_.sensor->lengths_per_target())
+                .rms();
         } catch (const InputError&) {
             return hopeless;
         }

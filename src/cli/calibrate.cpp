@@ -173,7 +173,8 @@ std::optional<io::WithoutOutliers> judge_without_outliers(const Campaign& campai
 
 Metrics metrics_of(const Campaign& campaign, const Measurements& measurements,
                    const Estimate& estimate) {
-    return make_metrics(residuals(campaign, estimate.parameters, measurements));
+    return make_metrics(residuals(campaign, estimate.parameters, measurements),
+                        campaign.sensor->lengths_per_target());
 }
 
 /// All but what needs another file.

@@ -189,7 +189,7 @@ void warn_about_calibration(const std::string& measurements_path, const Campaign
     if (!misfit.empty()) print_warning(measurements_path + ": " + misfit);
     const std::string planes = misfit.empty() ? suspect_planes(campaign, used) : "";
     if (!planes.empty()) print_warning(measurements_path + ": " + planes);
-    warn_about_outliers(measurements_path, words_of(*campaign.sensor).readings, report.nominal);
+    warn_about_outliers(measurements_path, campaign.sensor->words().readings, report.nominal);
     warn_about_orientation(measurements_path, campaign, used, report.nominal);
     warn_about_sizes(campaign, report.estimate);
 }
@@ -202,13 +202,13 @@ void print_calibration(const Campaign& campaign, const Measurements& used,
     if (!used.is_seen.all()) {
         print(fmt::format("{} of {} {} are missing: targets that were not seen\n",
                           used.is_seen.size() - used.is_seen.count(), used.is_seen.size(),
-                          words_of(*campaign.sensor).readings));
+                          campaign.sensor->words().readings));
     }
     print(describe_ending(report.method, report.estimate) + judge_residuals(report.estimate));
     print_accuracy(report);
     print_outliers(report);
     print_section(fmt::format("Parameters (errors of the robot, base, {})",
-                              words_of(*campaign.sensor).unknowns),
+                              campaign.sensor->words().unknowns),
                   parameter_table(campaign, report.estimate));
     const Table compliance = compliance_table(campaign, report.estimate);
     if (!compliance.rows.empty()) {

@@ -14,9 +14,6 @@
 #include "posewise/core/text.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/io/plan_file.hpp"
-#include "posewise/measurement/point_sensor.hpp"
-#include "posewise/measurement/pose_sensor.hpp"
-#include "posewise/measurement/scalar_sensor.hpp"
 
 namespace posewise::cli {
 
@@ -116,29 +113,6 @@ void check_memory(const Campaign& campaign, Index count, const std::string& opti
 
 namespace {
 
-std::string describe_noise(const IsotropicNoise& noise) {
-    return fmt::format("sigma {} mm", format_short(mm_per_m * noise.sigma));
-}
-
-std::string describe_noise(const PerAxisNoise& noise) {
-    return fmt::format(
-        "sigma {}, {} and {} mm along x, y and z", format_short(mm_per_m * noise.sigma.x()),
-        format_short(mm_per_m * noise.sigma.y()), format_short(mm_per_m * noise.sigma.z()));
-}
-
-std::string describe_noise(const LaserTrackerNoise& noise) {
-    return fmt::format("laser tracker with sigma {} um in range and {} urad in angle",
-                       format_short(1e6 * noise.range_sigma),
-                       format_short(1e6 * noise.angle_sigma));
-}
-
-std::string describe(const Targets& targets) {
-    Index known = 0;
-    for (Index j = 0; j < targets.count(); ++j) known += targets.is_known(j) ? 1 : 0;
-    return fmt::format("{} targets ({} known, {} to be identified)", targets.count(), known,
-                       targets.count() - known);
-}
-
 /// ", joints repeat to 0.01 mrad"; nothing if they repeat exactly. Several values as a range.
 std::string describe_repeatability(const Campaign& campaign) {
     std::string text;
@@ -160,46 +134,19 @@ std::string describe_repeatability(const Campaign& campaign) {
 
 }  // namespace
 
-std::string describe(const Sensor& sensor) {
-    const auto noise = [](const PointNoise& of_point) {
-        return std::visit([](const auto& each) { return describe_noise(each); }, of_point);
-    };
-    if (const auto* const points = dynamic_cast<const PointSensor*>(&sensor)) {
-        return "points of " + describe(points->targets()) + ", " + noise(points->noise());
-    }
-    if (const auto* const poses = dynamic_cast<const PoseSensor*>(&sensor)) {
-        return fmt::format("poses of a tool ({}), {} and {} mrad in orientation",
-                           sensor.unknown_names().empty() ? "known" : "to be identified",
-                           noise(poses->noise()),
-                           format_short(mrad_per_rad * poses->sigma_orientation()));
-    }
-    const auto& lengths = dynamic_cast<const ScalarSensor&>(sensor);
-    return fmt::format("{} lengths a pose at {}, sigma {} mm", sensor.row_count(),
-                       describe(lengths.targets()), format_short(mm_per_m * lengths.sigma()));
-}
-
-SensorWords words_of(const Sensor& sensor) {
-    if (dynamic_cast<const PoseSensor*>(&sensor) != nullptr) {
-        return {"poses", "tool in the flange frame", "sensor.tool"};
-    }
-    SensorWords words;
-    if (dynamic_cast<const PointSensor*>(&sensor) != nullptr) return words;
-    words.readings = "lengths";
-    words.unknowns +=
-        dynamic_cast<const PlaneSensor*>(&sensor) != nullptr ? ", planes" : ", anchors";
-    return words;
-}
-
 std::string describe_model_error(const Campaign& campaign) {
-    const std::string text = format_short(mm_per_m * campaign.model_error) + " mm";
-    if (!campaign.sensor->is_angle(campaign.sensor->row_count() - 1)) return text;
-    return text + " and " + format_short(mrad_per_rad * campaign.model_error_orientation) + " mrad";
+    const Sensor& sensor = *campaign.sensor;
+    std::string text;
+    if (sensor.has_lengths()) text = format_short(mm_per_m * campaign.model_error) + " mm";
+    if (!sensor.has_angles()) return text;
+    return text + (text.empty() ? "" : " and ") +
+           format_short(mrad_per_rad * campaign.model_error_orientation) + " mrad";
 }
 
 std::string describe_scaling(const Campaign& campaign, double repeats) {
     std::string text = fmt::format(
         "noise: {}, {}{}, model error {}\nscale: {} mm and {} mrad a parameter",
-        describe(*campaign.sensor),
+        campaign.sensor->words().sentence,
         repeats == 1 ? "single samples" : "mean of " + format_short(repeats) + " samples",
         describe_repeatability(campaign), describe_model_error(campaign),
         format_short(mm_per_m * campaign.spread.length),

@@ -39,24 +39,14 @@ void print_warning(const std::string& text);
 /// `option` is what says how many.
 void check_memory(const Campaign& campaign, Index count, const std::string& option);
 
-/// One sentence each: "3 targets at unknown places, sigma 0.05 mm", the model error (that of
-/// orientations if they are measured), and the noise and column scales that whitened, scaled
-/// numbers rest on.
-std::string describe(const Sensor& sensor);
+/// One sentence each: the model error (of what is measured: lengths, angles), and the noise and
+/// column scales that whitened, scaled numbers rest on.
 std::string describe_model_error(const Campaign& campaign);
 std::string describe_scaling(const Campaign& campaign, double repeats);
 
 /// Throws InputError for a robot whose torques are measured with each configuration: of poses that
 /// are drawn nobody knows them.
 void check_torques_known(const std::string& campaign_path, const Chain& robot);
-
-/// What a sensor's readings and unknowns are called, and the key that places what it measures.
-struct SensorWords {
-    std::string readings = "points";
-    std::string unknowns = "targets in the flange frame";
-    std::string key = "sensor.targets.position_mm";
-};
-SensorWords words_of(const Sensor& sensor);
 
 /// Says, where little is proven about a choice, what tells more; empty where it is nearly optimal.
 std::string describe_looseness(double efficiency, Index starts_at_best, Index starts);

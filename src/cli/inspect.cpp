@@ -18,8 +18,6 @@
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/jacobian/identifiability.hpp"
-#include "posewise/measurement/point_sensor.hpp"
-#include "posewise/measurement/pose_sensor.hpp"
 #include "posewise/model/complete_model.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "robot_tables.hpp"
@@ -100,9 +98,8 @@ std::pair<std::string, Index> count_unknowns(const Campaign& campaign) {
     if (base_parameter_count(campaign) < 6) return {};
     const Sensor& sensor = *campaign.sensor;
     const auto unknowns = static_cast<Index>(sensor.unknown_names().size());
-    if (dynamic_cast<const PoseSensor*>(&sensor) != nullptr && unknowns == 6) return {"6", 6};
-    const auto* points = dynamic_cast<const PointSensor*>(&sensor);
-    if (points == nullptr || unknowns < 3 * points->target_count()) return {};
+    if (sensor.has_orientation() && unknowns == 6) return {"6", 6};
+    if (!sensor.observes_targets() || unknowns < 3 * sensor.target_count()) return {};
     return {"3n", unknowns};
 }
 
@@ -198,8 +195,8 @@ void print_reduced(const io::CampaignFile& file) {
 
 void print_campaign(const io::CampaignFile& file) {
     const Campaign& campaign = file;
-    print(fmt::format("{}\nsensor: {}; model error {}\n", campaign.name, describe(*campaign.sensor),
-                      describe_model_error(campaign)));
+    print(fmt::format("{}\nsensor: {}; model error {}\n", campaign.name,
+                      campaign.sensor->words().sentence, describe_model_error(campaign)));
     if (file.urdf) {
         print(fmt::format("robot: {}, from base link {} to tip link {}\n",
                           escape_controls(file.urdf->path), quote(file.urdf->base_link),

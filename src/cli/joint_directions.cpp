@@ -56,7 +56,7 @@ void print_joint_directions(const io::CampaignFile& file,
         print(
             fmt::format("joint directions: as stated{}; the registered robot misses the {} by "
                         "{} mm (RMS), otherwise by {} mm at least\n",
-                        others, words_of(*file.sensor).readings, format_mm(stated.distance_rms),
+                        others, file.sensor->words().readings, format_mm(stated.distance_rms),
                         alike_end == patterns.end() ? "-" : format_mm(alike_end->distance_rms)));
         return;
     }

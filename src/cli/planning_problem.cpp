@@ -29,7 +29,7 @@ constexpr double distance_from_dropped = to_radians(5);
 void settle_base(Campaign& campaign, const std::optional<Measurements>& measured) {
     if (campaign.has_nominal_base && campaign.has_nominal_targets) return;
     if (!measured) {
-        const std::string key = words_of(*campaign.sensor).key;
+        const std::string key = campaign.sensor->words().key;
         throw InputError(campaign.name + ": the campaign file states no " +
                          (campaign.has_nominal_base ? key : "base") + "; must state base and " +
                          key + " to plan, or measured poses (--augment) must tell them");

@@ -160,7 +160,7 @@ Parameters find_parameters(const SelectionProblem& problem,
     if (candidates) return register_from(problem.request.source.path, *candidates);
     if (campaign.has_nominal_base && campaign.has_nominal_targets) return campaign.nominal;
     if (augment) return register_from(problem.request.augment, *augment);
-    const std::string key = words_of(*campaign.sensor).key;
+    const std::string key = campaign.sensor->words().key;
     throw InputError(campaign.name + ": the campaign file states no " +
                      (campaign.has_nominal_base ? key : "base") +
                      ", and nothing was measured to find them from; state base and " + key +

@@ -67,7 +67,7 @@ void run_simulation(Arguments arguments) {
                       simulation.measurements.configuration_count(),
                       simulation.measurements.observations.rows(), arguments.out));
     print_section(fmt::format("True parameters (errors of the robot, base, {})",
-                              words_of(*file.sensor).unknowns),
+                              file.sensor->words().unknowns),
                   value_table(file, simulation.truth));
 }
 

@@ -73,6 +73,7 @@ Measurements read_otherwise(const Measurements& measured, const OtherSense& sens
 }  // namespace
 
 std::string suspect_planes(const Campaign& campaign, const Measurements& measured) {
+    // Only a plane can be stated reversed, and only its sensor knows how the plane was stated.
     const auto* const sensor = dynamic_cast<const PlaneSensor*>(campaign.sensor.get());
     if (sensor == nullptr) return "";
     const Campaign freed = with_unknown_planes(campaign, *sensor);

@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "json.hpp"
-#include "posewise/measurement/point_sensor.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/model/transforms.hpp"
 
@@ -16,11 +15,13 @@ Json metrics_to_json(const Metrics& metrics) {
     const auto millimetres = [](const std::array<double, 3>& xyz) {
         return Json{{"x", mm * xyz[0]}, {"y", mm * xyz[1]}, {"z", mm * xyz[2]}};
     };
-    Json json = {{"point_count", metrics.point_count},
-                 {"distance_rms_mm", mm * metrics.distance_rms},
-                 {"distance_max_mm", mm * metrics.distance_max},
-                 {"distance_mean_mm", mm * metrics.distance_mean},
-                 {"distance_p95_mm", mm * metrics.distance_p95}};
+    Json json = {{"point_count", metrics.point_count}};
+    if (metrics.coordinate_count > 0) {
+        json["distance_rms_mm"] = mm * metrics.distance_rms;
+        json["distance_max_mm"] = mm * metrics.distance_max;
+        json["distance_mean_mm"] = mm * metrics.distance_mean;
+        json["distance_p95_mm"] = mm * metrics.distance_p95;
+    }
     if (metrics.coordinate_count == 3) {
         json["coordinate_rms_mm"] = millimetres(metrics.coordinate_rms);
         json["coordinate_max_mm"] = millimetres(metrics.coordinate_max);
@@ -41,7 +42,7 @@ Json base_to_json(const Isometry3d& world_from_base) {
                                        (180 / std::numbers::pi))}};
 }
 
-Json targets_to_json(const PointSensor& sensor, const VectorXd& unknowns) {
+Json targets_to_json(const Sensor& sensor, const VectorXd& unknowns) {
     Json targets = Json::object();
     for (Index j = 0; j < sensor.target_count(); ++j) {
         targets["target" + std::to_string(j + 1)] = {
@@ -191,8 +192,8 @@ void write_estimate(const std::string& path, const Campaign& campaign,
     document["variance_factor"] = estimate.variance_factor;
     document["base"] = base_to_json(estimate.parameters.world_from_base);
     document["robot"] = robot_to_json(campaign, estimate, sigmas);
-    if (const auto* const points = dynamic_cast<const PointSensor*>(campaign.sensor.get())) {
-        document["targets"] = targets_to_json(*points, estimate.parameters.sensor);
+    if (campaign.sensor->observes_targets()) {
+        document["targets"] = targets_to_json(*campaign.sensor, estimate.parameters.sensor);
     } else {
         document["sensor"] = unknowns_to_json(*campaign.sensor, estimate.parameters.sensor);
     }

@@ -6,7 +6,6 @@
 #include "json_reader.hpp"
 #include "posewise/core/text.hpp"
 #include "posewise/io/estimate_file.hpp"
-#include "posewise/measurement/point_sensor.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "units.hpp"
 
@@ -44,7 +43,7 @@ Isometry3d read_base(const JsonValue& base) {
     const std::vector<double> wxyz = read_numbers(quaternion, 4);
     const Eigen::Quaterniond q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
     if (!(std::abs(q.norm() - 1) < 1e-6)) {
-        throw quaternion.error("has length " + std::to_string(q.norm()) + "; must be 1");
+        throw quaternion.error(fmt::format("has length {:g}; must be 1", q.norm()));
     }
     Isometry3d world_from_base(q.normalized());
     world_from_base.translation() = read_position(base["position_m"]);
@@ -80,7 +79,7 @@ VectorXd read_robot(const JsonValue& robot, const Campaign& campaign) {
     return values;
 }
 
-VectorXd read_targets(const JsonValue& targets, const PointSensor& sensor) {
+VectorXd read_targets(const JsonValue& targets, const Sensor& sensor) {
     VectorXd unknowns(static_cast<Index>(sensor.unknown_names().size()));
     for (Index j = 0; j < sensor.target_count(); ++j) {
         if (sensor.targets().is_known(j)) continue;
@@ -114,8 +113,8 @@ Parameters read_estimate(const std::string& path, const Campaign& campaign) {
     Parameters parameters;
     parameters.world_from_base = read_base(root["base"]);
     parameters.robot = read_robot(root["robot"], campaign);
-    if (const auto* const points = dynamic_cast<const PointSensor*>(campaign.sensor.get())) {
-        parameters.sensor = read_targets(root["targets"], *points);
+    if (campaign.sensor->observes_targets()) {
+        parameters.sensor = read_targets(root["targets"], *campaign.sensor);
     } else {
         parameters.sensor = read_unknowns(root["sensor"], *campaign.sensor);
     }

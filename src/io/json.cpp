@@ -8,9 +8,6 @@
 #include "posewise/core/text.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/io/atomic_file.hpp"
-#include "posewise/measurement/point_sensor.hpp"
-#include "posewise/measurement/pose_sensor.hpp"
-#include "posewise/measurement/scalar_sensor.hpp"
 
 namespace posewise::io {
 namespace {
@@ -66,18 +63,11 @@ class RepeatedKey {
     std::optional<std::string> key_;
 };
 
-void add_noise(Json& assumptions, const IsotropicNoise& noise) {
-    assumptions["sigma_m"] = noise.sigma;
-}
-
-void add_noise(Json& assumptions, const PerAxisNoise& noise) {
-    assumptions["sigma_m"] = vector_to_json(noise.sigma);
-}
-
-void add_noise(Json& assumptions, const LaserTrackerNoise& noise) {
-    assumptions["range_sigma_m"] = noise.range_sigma;
-    assumptions["angle_sigma_rad"] = noise.angle_sigma;
-    assumptions["tracker_position_m"] = vector_to_json(noise.position);
+/// Of a sensor, the standard deviations of what its noise is made of.
+void add_noise(Json& assumptions, const Sensor& sensor) {
+    for (const auto& [name, values] : sensor.noise_numbers()) {
+        assumptions[name] = values.size() == 1 ? Json(values.front()) : Json(values);
+    }
 }
 
 }  // namespace
@@ -145,14 +135,9 @@ Json vector_to_json(const Vector3d& vector) { return {vector.x(), vector.y(), ve
 
 Json assumptions_to_json(const Campaign& campaign) {
     Json assumptions;
-    if (const auto* const points = dynamic_cast<const PointSensor*>(campaign.sensor.get())) {
-        std::visit([&](const auto& noise) { add_noise(assumptions, noise); }, points->noise());
-    } else if (const auto* const poses = dynamic_cast<const PoseSensor*>(campaign.sensor.get())) {
-        std::visit([&](const auto& noise) { add_noise(assumptions, noise); }, poses->noise());
-        assumptions["sigma_orientation_rad"] = poses->sigma_orientation();
+    add_noise(assumptions, *campaign.sensor);
+    if (campaign.sensor->has_angles()) {
         assumptions["model_error_orientation_rad"] = campaign.model_error_orientation;
-    } else {
-        assumptions["sigma_m"] = dynamic_cast<const ScalarSensor&>(*campaign.sensor).sigma();
     }
     assumptions["model_error_m"] = campaign.model_error;
     for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {

@@ -8,7 +8,6 @@
 #include "csv_reader.hpp"
 #include "measurement_columns.hpp"
 #include "posewise/io/measurements_file.hpp"
-#include "posewise/measurement/scalar_sensor.hpp"
 #include "posewise/model/transforms.hpp"
 #include "sample_collector.hpp"
 #include "text.hpp"
@@ -36,7 +35,7 @@ class HeaderReader {
           content_(content),
           joints_(campaign.robot.joints()),
           wanted_(wanted_columns(campaign)),
-          has_orientation_(campaign.sensor->is_angle(campaign.sensor->row_count() - 1)),
+          has_orientation_(campaign.sensor->has_orientation()),
           examples_{"config", "sample"} {
         for (const WantedColumn& column : wanted_) examples_.push_back(column.example());
     }
@@ -178,7 +177,6 @@ class RowReader {
               std::vector<Column> columns)
         : csv_(csv),
           campaign_(campaign),
-          is_of_distances_(dynamic_cast<const DistanceSensor*>(campaign.sensor.get()) != nullptr),
           content_(content),
           columns_(std::move(columns)),
           field_of_joint_(static_cast<std::size_t>(campaign.robot.configuration_size())),
@@ -331,7 +329,8 @@ class RowReader {
 
     /// No target is at its anchor, or behind it.
     void check_distance(std::size_t k) const {
-        if (!is_of_distances_ || row_.observation[static_cast<Index>(k)] > 0) return;
+        const auto row = static_cast<Index>(k);
+        if (!campaign_.sensor->is_distance(row) || row_.observation[row] > 0) return;
         const std::size_t field = field_of_observation_[k];
         throw input_error_at(csv_.locate(field),
                              fmt::format("{} is {}; must be a distance above 0", name_of(field),
@@ -373,7 +372,6 @@ class RowReader {
 
     const CsvReader& csv_;
     const Campaign& campaign_;
-    bool is_of_distances_;
     Content content_;
     std::vector<Column> columns_;
     std::vector<std::size_t> field_of_joint_;

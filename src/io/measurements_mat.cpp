@@ -4,7 +4,6 @@
 
 #include "mat_reader.hpp"
 #include "posewise/io/measurements_file.hpp"
-#include "posewise/measurement/point_sensor.hpp"
 #include "sample_collector.hpp"
 
 namespace posewise::io {
@@ -53,7 +52,7 @@ void take_seen(const VectorXd& points, Sample& sample) {
 
 Measurements read_measurements_mat(const std::string& path, const Campaign& campaign,
                                    const MatMapping& mapping) {
-    if (dynamic_cast<const PointSensor*>(campaign.sensor.get()) == nullptr) {
+    if (!campaign.sensor->observes_targets()) {
         throw input_error_at({path},
                              "is a MATLAB file, which is read for sensors of points only; "
                              "must be CSV");

@@ -22,7 +22,7 @@ void check_repeats(const Campaign& campaign, Index configuration_count,
     }
 }
 
-/// Every pose's rows of the targets it shows, finished by `finish(motion, repeats, rows)`.
+/// Every pose's rows of the targets it shows: of all rows J, `finish(motion, repeats, J)`.
 template <typename Finish>
 Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
                    const RowMatrixXd& configurations, const RowMatrixXd& repeats,
@@ -48,11 +48,9 @@ Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
             q = configurations.row(i).transpose();
             times = repeats.row(i).transpose();
             differentiate_pose(campaign, parameters, q, motion, J);
-            const std::vector<Index> seen = seen_rows(times.array() > 0, sensor.rows_per_target());
-            auto block = blocks.matrix.middleRows(blocks.first_row[static_cast<std::size_t>(i)],
-                                                  static_cast<Index>(seen.size()));
-            block = J(seen, Eigen::all);
-            finish(motion, times, block);
+            const Index row = blocks.first_row[static_cast<std::size_t>(i)];
+            const Index count = blocks.first_row[static_cast<std::size_t>(i) + 1] - row;
+            blocks.matrix.middleRows(row, count) = finish(motion, times, J);
         }
     });
     return blocks;
@@ -76,8 +74,11 @@ void differentiate_pose(const Campaign& campaign, const Parameters& parameters,
 
 Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
                          const RowMatrixXd& configurations, const RowMatrixXd& repeats) {
+    const Index width = campaign.sensor->rows_per_target();
     return fill_blocks(campaign, parameters, configurations, repeats,
-                       [](const auto&, const auto&, auto&) {});
+                       [width](const FlangeMotion&, const VectorXd& times, const RowMatrixXd& J) {
+                           return RowMatrixXd(J(seen_rows(times.array() > 0, width), Eigen::all));
+                       });
 }
 
 Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
@@ -111,12 +112,13 @@ Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,
                    const RowMatrixXd& configurations, const RowMatrixXd& repeats) {
     const VectorXd scale = parameter_scale(campaign);
     // Hidden rows are left out before whitening: what is not observed has no covariance.
-    return fill_blocks(campaign, parameters, configurations, repeats,
-                       [&](const FlangeMotion& motion, const VectorXd& times, auto& block) {
-                           whiten(mean_covariance(campaign, motion, parameters.sensor, times),
-                                  block);
-                           block *= scale.asDiagonal();
-                       });
+    return fill_blocks(
+        campaign, parameters, configurations, repeats,
+        [&](const FlangeMotion& motion, const VectorXd& times, const RowMatrixXd& J) {
+            RowMatrixXd block = whiten_seen(campaign, motion, parameters.sensor, times, J);
+            block *= scale.asDiagonal();
+            return block;
+        });
 }
 
 Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,

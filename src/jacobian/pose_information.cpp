@@ -1,5 +1,7 @@
 #include "posewise/jacobian/pose_information.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <cmath>
 
@@ -35,7 +37,7 @@ PoseInformation::PoseInformation(const Campaign& campaign, Parameters parameters
       scale_(parameter_scale(campaign)) {
     check_noise(campaign);
     if (!(repeats > 0) || !std::isfinite(repeats)) {
-        throw InputError("repeats is " + std::to_string(repeats) + ", must be positive and finite");
+        throw InputError(fmt::format("repeats is {:g}, must be positive and finite", repeats));
     }
 }
 

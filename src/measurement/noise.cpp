@@ -42,8 +42,8 @@ bool is_sigma(double value) { return std::isfinite(value) && value >= 0; }
 void check_noise(const Campaign& campaign) {
     const auto check_model_error = [](double value, const char* unit) {
         if (is_sigma(value)) return;
-        throw InputError("model error is " + std::to_string(value) + ' ' + unit +
-                         ", must be finite and not negative");
+        throw InputError(
+            fmt::format("model error is {:g} {}, must be finite and not negative", value, unit));
     };
     check_model_error(campaign.model_error, "m");
     check_model_error(campaign.model_error_orientation, "rad");
@@ -55,9 +55,9 @@ void check_noise(const Campaign& campaign) {
     }
     for (Index j = 0; j < s.size(); ++j) {
         if (is_sigma(s[j])) continue;
-        throw InputError("repeatability of joint '" +
-                         campaign.robot.joints()[static_cast<std::size_t>(j)].name + "' is " +
-                         std::to_string(s[j]) + ", must be finite and not negative");
+        throw InputError(
+            fmt::format("repeatability of joint '{}' is {:g}, must be finite and not negative",
+                        campaign.robot.joints()[static_cast<std::size_t>(j)].name, s[j]));
     }
 }
 
@@ -126,6 +126,15 @@ void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows) {
     }
     const MatrixXd L = cholesky_factor(covariance);
     L.triangularView<Eigen::Lower>().solveInPlace(rows);
+}
+
+RowMatrixXd whiten_seen(const Campaign& campaign, const FlangeMotion& motion,
+                        const VectorXd& sensor_unknowns, const VectorXd& repeats,
+                        const RowMatrixXd& rows) {
+    const Index width = campaign.sensor->rows_per_target();
+    RowMatrixXd seen = rows(seen_rows(repeats.array() > 0, width), Eigen::all);
+    whiten(mean_covariance(campaign, motion, sensor_unknowns, repeats), seen);
+    return seen;
 }
 
 MatrixXd cholesky_factor(const MatrixXd& covariance) {

@@ -1,32 +1,27 @@
 #include "posewise/measurement/point_noise.hpp"
 
 #include <cmath>
-#include <string>
 
+#include "noise_words.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise {
 namespace {
 
-constexpr double least_sigma = 1e-15;    // its square is a normal number, its inverse finite
 constexpr double least_distance = 1e-3;  // m; no reflector is nearer
 
-void check_sigma(const char* name, double sigma, const char* unit) {
-    if (sigma >= least_sigma && std::isfinite(sigma)) return;
-    throw InputError(std::string(name) + " is " + std::to_string(sigma) + " " + unit +
-                     ", must be finite and at least 1e-15 " + unit);
-}
-
 struct Check {
-    void operator()(const IsotropicNoise& noise) const { check_sigma("sigma", noise.sigma, "m"); }
+    void operator()(const IsotropicNoise& noise) const {
+        detail::check_sigma("sigma", noise.sigma, "m");
+    }
     void operator()(const PerAxisNoise& noise) const {
-        check_sigma("sigma in x", noise.sigma.x(), "m");
-        check_sigma("sigma in y", noise.sigma.y(), "m");
-        check_sigma("sigma in z", noise.sigma.z(), "m");
+        detail::check_sigma("sigma in x", noise.sigma.x(), "m");
+        detail::check_sigma("sigma in y", noise.sigma.y(), "m");
+        detail::check_sigma("sigma in z", noise.sigma.z(), "m");
     }
     void operator()(const LaserTrackerNoise& noise) const {
-        check_sigma("range sigma", noise.range_sigma, "m");
-        check_sigma("angle sigma", noise.angle_sigma, "rad");
+        detail::check_sigma("range sigma", noise.range_sigma, "m");
+        detail::check_sigma("angle sigma", noise.angle_sigma, "rad");
         if (noise.position.allFinite()) return;
         throw InputError("the laser tracker's position has a value that is not a finite number");
     }

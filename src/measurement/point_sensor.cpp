@@ -1,5 +1,7 @@
 #include "posewise/measurement/point_sensor.hpp"
 
+#include "noise_words.hpp"
+
 namespace posewise {
 
 PointSensor::PointSensor(Targets targets, PointNoise noise)
@@ -24,10 +26,6 @@ std::vector<std::string> PointSensor::observation_names() const {
     return names;
 }
 
-std::vector<bool> PointSensor::unknown_is_angle() const {
-    return std::vector<bool>(static_cast<std::size_t>(targets_.unknown_count()), false);
-}
-
 VectorXd PointSensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const {
     VectorXd points(row_count());
     for (Index j = 0; j < target_count(); ++j) {
@@ -48,16 +46,6 @@ void PointSensor::differentiate_along(const Isometry3d& world_from_flange,
                                       Eigen::Ref<RowMatrixXd> J_rate) const {
     targets_.differentiate_along(world_from_flange, twists, direction, twist_rates, unknowns,
                                  J_rate);
-}
-
-Vector3d PointSensor::target_position(Index target, const VectorXd& unknowns) const {
-    return targets_.position(target, unknowns);
-}
-
-void PointSensor::differentiate_positions(const Isometry3d& world_from_flange,
-                                          const TwistMatrix& twists, const VectorXd& unknowns,
-                                          Eigen::Ref<RowMatrixXd> J_positions_parameters) const {
-    targets_.differentiate(world_from_flange, twists, unknowns, J_positions_parameters);
 }
 
 MatrixXd PointSensor::covariance(const Isometry3d& world_from_flange,
@@ -83,6 +71,21 @@ MatrixXd PointSensor::covariance_rate(const Isometry3d& world_from_flange, const
 
 bool PointSensor::has_constant_covariance() const {
     return !std::holds_alternative<LaserTrackerNoise>(noise_);
+}
+
+std::vector<NoiseNumber> PointSensor::noise_numbers() const {
+    return detail::noise_numbers(noise_);
+}
+
+SensorWords PointSensor::words() const {
+    SensorWords words;
+    words.sentence = "points of " + describe(targets_) + ", " + detail::describe(noise_);
+    return words;
+}
+
+std::optional<ObservedPoints> PointSensor::observed_points() const {
+    const auto as_they_are = [](const VectorXd& values) { return values; };
+    return ObservedPoints{targets_, as_they_are, as_they_are};
 }
 
 }  // namespace posewise

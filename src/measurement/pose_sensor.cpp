@@ -1,8 +1,13 @@
 #include "posewise/measurement/pose_sensor.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "noise_words.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/format.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/model/transforms.hpp"
 
 namespace posewise {
@@ -14,6 +19,31 @@ std::vector<std::optional<Vector3d>> origin_of(const std::optional<Isometry3d>& 
     return {Vector3d(tool->translation())};
 }
 
+// ---- A body as four points: its origin and one on each axis ----
+
+constexpr double along_axis = 0.3;  // m
+
+Eigen::Matrix3Xd points_of(const Isometry3d& frame) {
+    Eigen::Matrix3Xd points = frame.translation().replicate<1, 4>();
+    points.rightCols<3>() += along_axis * frame.linear();
+    return points;
+}
+
+Isometry3d frame_of(const VectorXd& points) {
+    Isometry3d frame = Isometry3d::Identity();
+    frame.translation() = points.head<3>();
+    const Eigen::Map<const Matrix3d> tips(points.data() + 3);
+    frame.linear() = nearest_rotation((tips.colwise() - points.head<3>()) / along_axis);
+    return frame;
+}
+
+VectorXd points_observed(const VectorXd& pose) {
+    Isometry3d body = Isometry3d::Identity();
+    body.translation() = pose.head<3>();
+    body.linear() = rotation_from_vector(pose.tail<3>());
+    return points_of(body).reshaped();
+}
+
 }  // namespace
 
 PoseSensor::PoseSensor(std::optional<Isometry3d> known_tool, PointNoise position_noise,
@@ -23,10 +53,7 @@ PoseSensor::PoseSensor(std::optional<Isometry3d> known_tool, PointNoise position
       noise_(position_noise),
       sigma_orientation_(sigma_orientation) {
     check_noise(noise_);
-    if (!(sigma_orientation >= 1e-15) || !std::isfinite(sigma_orientation)) {
-        throw InputError("sigma of the orientation is " + std::to_string(sigma_orientation) +
-                         " rad, must be finite and at least 1e-15");
-    }
+    detail::check_sigma("sigma of the orientation", sigma_orientation, "rad");
     if (known_tool_ && !known_tool_->matrix().allFinite()) {
         throw InputError("the known tool has a value that is not a finite number");
     }
@@ -80,7 +107,7 @@ void PoseSensor::differentiate(const Isometry3d& world_from_flange, const TwistM
                                const VectorXd& unknowns,
                                Eigen::Ref<RowMatrixXd> J_measured_parameters) const {
     auto& J = J_measured_parameters;
-    differentiate_positions(world_from_flange, twists, unknowns, J.topRows(3));
+    origin_.differentiate(world_from_flange, twists, unknowns, J.topRows(3));
     J.bottomLeftCorner(3, twists.cols()) = twists.topRows<3>();
     auto J_tool = J.bottomRightCorner(3, J.cols() - twists.cols());
     if (J_tool.cols() == 0) return;
@@ -103,16 +130,6 @@ void PoseSensor::differentiate_along(const Isometry3d& world_from_flange, const 
                             rotation_vector_rate(unknowns.segment<3>(3));
 }
 
-Vector3d PoseSensor::target_position(Index target, const VectorXd& unknowns) const {
-    return origin_.position(target, unknowns);
-}
-
-void PoseSensor::differentiate_positions(const Isometry3d& world_from_flange,
-                                         const TwistMatrix& twists, const VectorXd& unknowns,
-                                         Eigen::Ref<RowMatrixXd> J_positions_parameters) const {
-    origin_.differentiate(world_from_flange, twists, unknowns, J_positions_parameters);
-}
-
 MatrixXd PoseSensor::covariance(const Isometry3d& world_from_flange,
                                 const VectorXd& unknowns) const {
     MatrixXd covariance = MatrixXd::Zero(6, 6);
@@ -132,6 +149,29 @@ MatrixXd PoseSensor::covariance_rate(const Isometry3d& world_from_flange, const 
 
 bool PoseSensor::has_constant_covariance() const {
     return !std::holds_alternative<LaserTrackerNoise>(noise_);
+}
+
+std::vector<NoiseNumber> PoseSensor::noise_numbers() const {
+    std::vector<NoiseNumber> numbers = detail::noise_numbers(noise_);
+    numbers.push_back({"sigma_orientation_rad", {sigma_orientation_}});
+    return numbers;
+}
+
+SensorWords PoseSensor::words() const {
+    return {"poses", "tool", "tool in the flange frame", "sensor.tool",
+            fmt::format("poses of a tool ({}), {} and {} mrad in orientation",
+                        known_tool_ ? "known" : "to be identified", detail::describe(noise_),
+                        format_short(mrad_per_rad * sigma_orientation_))};
+}
+
+std::optional<ObservedPoints> PoseSensor::observed_points() const {
+    std::vector<std::optional<Vector3d>> points(4);
+    const Eigen::Matrix3Xd known = points_of(known_tool_.value_or(Isometry3d::Identity()));
+    for (Index k = 0; k < 4 && known_tool_; ++k) points[static_cast<std::size_t>(k)] = known.col(k);
+    const auto unknowns = [is_known = known_tool_.has_value()](const VectorXd& coordinates) {
+        return is_known ? coordinates : tool_unknowns(frame_of(coordinates));
+    };
+    return ObservedPoints{Targets(points), points_observed, unknowns};
 }
 
 VectorXd tool_unknowns(const Isometry3d& flange_from_tool) {

@@ -1,9 +1,14 @@
 #include "posewise/measurement/scalar_sensor.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "noise_words.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/format.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/model/transforms.hpp"
 
 namespace posewise {
@@ -18,10 +23,7 @@ ScalarSensor::ScalarSensor(Targets targets, Index feature_count, bool are_known,
       letter_(std::move(letter)),
       sigma_(sigma) {
     if (feature_count < 1) throw InputError("a sensor of lengths needs an anchor or a plane");
-    if (!(sigma >= 1e-15) || !std::isfinite(sigma)) {
-        throw InputError("sigma is " + std::to_string(sigma) +
-                         " m, must be finite and at least 1e-15");
-    }
+    detail::check_sigma("sigma", sigma, "m");
 }
 
 std::vector<std::string> ScalarSensor::observation_names() const {
@@ -86,26 +88,17 @@ void ScalarSensor::differentiate_along(const Isometry3d& world_from_flange,
     }
 }
 
-Vector3d ScalarSensor::target_position(Index target, const VectorXd& unknowns) const {
-    return targets_.position(target / feature_count_, unknowns);
-}
-
-void ScalarSensor::differentiate_positions(const Isometry3d& world_from_flange,
-                                           const TwistMatrix& twists, const VectorXd& unknowns,
-                                           Eigen::Ref<RowMatrixXd> J_positions_parameters) const {
-    RowMatrixXd J(3 * targets_.count(), J_positions_parameters.cols());
-    targets_.differentiate(world_from_flange, twists, unknowns, J);
-    for (Index row = 0; row < row_count(); ++row) {
-        J_positions_parameters.middleRows<3>(3 * row) = J.middleRows<3>(3 * (row / feature_count_));
-    }
-}
-
 MatrixXd ScalarSensor::covariance(const Isometry3d&, const VectorXd&) const {
     return sigma_ * sigma_ * MatrixXd::Identity(row_count(), row_count());
 }
 
-MatrixXd ScalarSensor::covariance_rate(const Isometry3d&, const Twist&, const VectorXd&) const {
-    return MatrixXd::Zero(row_count(), row_count());
+SensorWords ScalarSensor::words() const {
+    SensorWords words;
+    words.readings = "lengths";
+    words.unknowns += ", " + features();
+    words.sentence = fmt::format("{} lengths a pose at {}, sigma {} mm", row_count(),
+                                 describe(targets_), format_short(mm_per_m * sigma_));
+    return words;
 }
 
 // ---- Distances ----
@@ -128,10 +121,6 @@ std::vector<std::string> DistanceSensor::unknown_names() const {
         }
     }
     return names;
-}
-
-std::vector<bool> DistanceSensor::unknown_is_angle() const {
-    return std::vector<bool>(unknown_names().size(), false);
 }
 
 ScalarSensor::Length DistanceSensor::measure(const Vector3d& x, Index anchor,

@@ -1,5 +1,7 @@
 #include "posewise/measurement/targets.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "posewise/core/errors.hpp"
@@ -136,6 +138,13 @@ void Targets::differentiate_along(const Isometry3d& world_from_flange, const Twi
             J_unknowns.block<3, 1>(3 * j, index) = w.cross(world_from_flange.linear().col(axis));
         }
     }
+}
+
+std::string describe(const Targets& targets) {
+    Index known = 0;
+    for (Index j = 0; j < targets.count(); ++j) known += targets.is_known(j) ? 1 : 0;
+    return fmt::format("{} targets ({} known, {} to be identified)", targets.count(), known,
+                       targets.count() - known);
 }
 
 }  // namespace posewise

@@ -1,5 +1,6 @@
 #include "posewise/model/transforms.hpp"
 
+#include <Eigen/SVD>
 #include <cmath>
 
 namespace posewise {
@@ -27,6 +28,13 @@ Matrix3d rotation_from_vector(const Vector3d& vector) {
 Vector3d vector_from_rotation(const Matrix3d& R) {
     const Eigen::AngleAxisd turn(R);
     return turn.angle() * turn.axis();
+}
+
+Matrix3d nearest_rotation(const Matrix3d& X) {
+    const Eigen::JacobiSVD<Matrix3d> svd(X, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Matrix3d D = Matrix3d::Identity();
+    D(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+    return svd.matrixU() * D * svd.matrixV().transpose();
 }
 
 Matrix3d rotation_vector_rate(const Vector3d& vector) {

@@ -14,12 +14,15 @@ namespace {
 using MetricRow = std::pair<std::string, std::function<double(const Metrics&)>>;
 
 std::vector<MetricRow> list_metric_rows(const Metrics& example) {
-    std::vector<MetricRow> rows{
-        {"distance RMS", [](const Metrics& m) { return m.distance_rms; }},
-        {"distance max", [](const Metrics& m) { return m.distance_max; }},
-        {"distance mean", [](const Metrics& m) { return m.distance_mean; }},
-        {"distance 95 %", [](const Metrics& m) { return m.distance_p95; }},
-    };
+    std::vector<MetricRow> rows;
+    if (example.coordinate_count > 0) {
+        rows = {
+            {"distance RMS", [](const Metrics& m) { return m.distance_rms; }},
+            {"distance max", [](const Metrics& m) { return m.distance_max; }},
+            {"distance mean", [](const Metrics& m) { return m.distance_mean; }},
+            {"distance 95 %", [](const Metrics& m) { return m.distance_p95; }},
+        };
+    }
     const Index axes = example.coordinate_count == 3 ? 3 : 0;
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(axes); ++axis) {
         const std::string name(1, static_cast<char>('x' + axis));

@@ -90,8 +90,9 @@ void run(const Setting& setting, const Job& job) {
         const Estimate estimate = identify(setting.campaign, chosen, start);
         const auto left_out = all_but(measurements.configuration_count(), result.poses);
         if (!left_out.empty()) {
-            result.held_out = make_metrics(mean_residuals(setting.campaign, estimate.parameters,
-                                                          take(measurements, left_out)));
+            result.held_out = make_metrics(
+                mean_residuals(setting.campaign, estimate.parameters, take(measurements, left_out)),
+                setting.campaign.sensor->lengths_per_target());
         }
         result.identified = true;
     } catch (const InputError&) {

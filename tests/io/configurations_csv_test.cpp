@@ -71,7 +71,7 @@ TEST_F(ReadConfigurations, ACampaignMayStateAPrior) {
     EXPECT_FALSE(campaign_.spread.is_prior);
     const auto with_prior =
         folder_.write("p.yaml", std::string(testing::campaign_text) + "prior: true\n");
-    EXPECT_TRUE(read_campaign(with_prior).campaign.spread.is_prior);
+    EXPECT_TRUE(read_campaign(with_prior).spread.is_prior);
     const auto with_word =
         folder_.write("p.yaml", std::string(testing::campaign_text) + "prior: maybe\n");
     EXPECT_NE(testing::input_error_of([&] { read_campaign(with_word); }).find("true or false"),

@@ -94,6 +94,63 @@ TEST(EverySensor, DeviatesByWhatItDeviated) {
     }
 }
 
+TEST(EverySensor, ChangesWithThePoseAsTheDifferencesSayThatAreTheDefault) {
+    for (const auto& [name, campaign] : campaigns_of_every_sensor(fanuc())) {
+        SCOPED_TRACE(name);
+        const Sensor& sensor = *campaign.sensor;
+        const VectorXd& unknowns = campaign.nominal.sensor;
+        RandomStream stream(46);
+        FlangeMotion motion;
+        std::vector<FlangeMotionRate> rates;
+        differentiate_flange_twice(campaign, campaign.nominal, random_vector(stream, 6, 1), motion,
+                                   rates);
+        const Isometry3d& flange = motion.world_from_flange;
+        for (Index joint = 0; joint < 6; ++joint) {
+            const Twist direction = motion.joint_twists.col(joint);
+            const TwistMatrix& twist_rates = rates[static_cast<std::size_t>(joint)].twists;
+            RowMatrixXd own(sensor.row_count(), parameter_count(campaign));
+            RowMatrixXd by_differences = own;
+            sensor.differentiate_along(flange, motion.twists, direction, twist_rates, unknowns,
+                                       own);
+            sensor.Sensor::differentiate_along(flange, motion.twists, direction, twist_rates,
+                                               unknowns, by_differences);
+            EXPECT_LE((own - by_differences).norm(), 1e-10 * own.norm());
+            const MatrixXd rate = sensor.covariance_rate(flange, direction, unknowns);
+            EXPECT_LE((rate - sensor.Sensor::covariance_rate(flange, direction, unknowns)).norm(),
+                      1e-10 * sensor.covariance(flange, unknowns).norm());
+        }
+    }
+}
+
+TEST(EverySensor, SaysWhatItsNoiseIsAndWhatMessagesCallIt) {
+    for (const auto& [name, campaign] : campaigns_of_every_sensor(fanuc())) {
+        SCOPED_TRACE(name);
+        const Sensor& sensor = *campaign.sensor;
+        EXPECT_FALSE(sensor.noise_numbers().empty());
+        for (const NoiseNumber& number : sensor.noise_numbers()) {
+            EXPECT_TRUE(number.values.size() == 1 || number.values.size() == 3) << number.name;
+        }
+        const SensorWords words = sensor.words();
+        for (const std::string& word :
+             {words.readings, words.place, words.unknowns, words.key, words.sentence}) {
+            EXPECT_FALSE(word.empty());
+        }
+        EXPECT_EQ(sensor.observes_targets(), words.readings == "points");
+    }
+}
+
+TEST(PoseSensor, NamesEachOfItsNoiseNumbers) {
+    const PoseSensor sensor(std::nullopt, LaserTrackerNoise{1e-5, 2e-5, Vector3d(1, 2, 3)}, 1e-4);
+    std::vector<std::string> names;
+    for (const NoiseNumber& number : sensor.noise_numbers()) names.push_back(number.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"range_sigma_m", "angle_sigma_rad",
+                                               "tracker_position_m", "sigma_orientation_rad"}));
+    EXPECT_EQ(sensor.noise_numbers()[2].values, (std::vector<double>{1, 2, 3}));
+    EXPECT_EQ(sensor.words().sentence,
+              "poses of a tool (to be identified), laser tracker with sigma 10 um in range and 20 "
+              "urad in angle and 0.1 mrad in orientation");
+}
+
 TEST(PoseSensor, ObservesToolsPositionAndRotationVector) {
     Isometry3d tool(Eigen::AngleAxisd(0.5, Vector3d::UnitX()));
     tool.translation() = Vector3d(0, 0, 0.1);

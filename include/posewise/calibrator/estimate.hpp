@@ -16,7 +16,7 @@ namespace posewise {
 /// numbers of the seed report.
 struct Metrics {
     Index point_count = 0;
-    Index coordinate_count = 3;  ///< 1: a length each
+    Index coordinate_count = 3;  ///< 1: a length each; 0: angles only
     bool has_orientation = false;
     double distance_rms = 0;
     double distance_max = 0;
@@ -26,6 +26,9 @@ struct Metrics {
     std::array<double, 3> coordinate_max{};
     double orientation_rms = 0;  ///< of the angle of the rotation that is left
     double orientation_max = 0;
+
+    /// Of the distances; of the angles where no length is measured (rad).
+    double rms() const { return coordinate_count > 0 ? distance_rms : orientation_rms; }
 };
 
 /// A target of a configuration whose mean is too far from what the other points say.
@@ -79,12 +82,12 @@ RowMatrixXd mean_residuals(const Campaign& campaign, const Parameters& parameter
                            const Measurements& measurements);
 
 /// Squared distances of the means from what is predicted, configurations x targets, m^2; 0 where a
-/// target was not seen. Orientations do not count.
+/// target was not seen. Angles count only where no length is measured (rad^2).
 RowMatrixXd squared_distances(const Campaign& campaign, const Parameters& parameters,
                               const Measurements& measurements);
 
-/// Metrics of residuals as residuals() returns them: of 1 column (lengths), 3 (points) or 6 (poses:
-/// position, orientation).
-Metrics make_metrics(const RowMatrixXd& residuals);
+/// Metrics of residuals as residuals() returns them, of which at most so many columns are lengths
+/// (Sensor::lengths_per_target()), the others angles.
+Metrics make_metrics(const RowMatrixXd& residuals, Index length_count = 3);
 
 }  // namespace posewise

@@ -39,6 +39,12 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
 /// covariance become independent with variance 1. Throws as cholesky_factor().
 void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows);
 
+/// Of `rows`, one for each number of an observation, those of the targets seen, whitened by the
+/// mean_covariance() of target j over repeats[j] observations (0: not seen).
+RowMatrixXd whiten_seen(const Campaign& campaign, const FlangeMotion& motion,
+                        const VectorXd& sensor_unknowns, const VectorXd& repeats,
+                        const RowMatrixXd& rows);
+
 /// L such that covariance = L L^T, for drawing noise. Throws InputError if the covariance is not
 /// positive definite.
 MatrixXd cholesky_factor(const MatrixXd& covariance);

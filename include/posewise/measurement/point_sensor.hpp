@@ -5,7 +5,6 @@
 
 #include "posewise/measurement/point_noise.hpp"
 #include "posewise/measurement/sensor.hpp"
-#include "posewise/measurement/targets.hpp"
 
 namespace posewise {
 
@@ -25,14 +24,11 @@ class PointSensor final : public Sensor {
     /// Standard deviation of one coordinate of one observation, m (root mean square over the axes;
     /// a laser tracker's at 3 m).
     double sigma() const { return coordinate_sigma(noise_, 3); }
-    const Targets& targets() const { return targets_; }
 
-    Index row_count() const override { return 3 * target_count(); }
-    Index target_count() const override { return targets_.count(); }
+    const Targets& targets() const override { return targets_; }
+    Index row_count() const override { return 3 * targets_.count(); }
     std::vector<std::string> observation_names() const override;
-    bool is_angle(Index) const override { return false; }
     std::vector<std::string> unknown_names() const override { return targets_.unknown_names(); }
-    std::vector<bool> unknown_is_angle() const override;
     VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const override;
     void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                        const VectorXd& unknowns,
@@ -41,15 +37,14 @@ class PointSensor final : public Sensor {
                              const Twist& direction, const TwistMatrix& twist_rates,
                              const VectorXd& unknowns,
                              Eigen::Ref<RowMatrixXd> J_rate) const override;
-    Vector3d target_position(Index target, const VectorXd& unknowns) const override;
-    void differentiate_positions(const Isometry3d& world_from_flange, const TwistMatrix& twists,
-                                 const VectorXd& unknowns,
-                                 Eigen::Ref<RowMatrixXd> J_positions_parameters) const override;
     MatrixXd covariance(const Isometry3d& world_from_flange,
                         const VectorXd& unknowns) const override;
     MatrixXd covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
                              const VectorXd& unknowns) const override;
     bool has_constant_covariance() const override;
+    std::vector<NoiseNumber> noise_numbers() const override;
+    SensorWords words() const override;
+    std::optional<ObservedPoints> observed_points() const override;
 
   private:
     Targets targets_;

@@ -4,7 +4,6 @@
 
 #include "posewise/measurement/point_noise.hpp"
 #include "posewise/measurement/sensor.hpp"
-#include "posewise/measurement/targets.hpp"
 
 namespace posewise {
 
@@ -25,10 +24,12 @@ class PoseSensor final : public Sensor {
     /// The body in the flange frame.
     Isometry3d tool(const VectorXd& unknowns) const;
 
+    /// The origin of the body.
+    const Targets& targets() const override { return origin_; }
     Index row_count() const override { return 6; }
-    Index target_count() const override { return 1; }
     std::vector<std::string> observation_names() const override;
     bool is_angle(Index row) const override { return row >= 3; }
+    bool has_orientation() const override { return true; }
     std::vector<std::string> unknown_names() const override;
     std::vector<bool> unknown_is_angle() const override;
     VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const override;
@@ -41,15 +42,15 @@ class PoseSensor final : public Sensor {
                              const Twist& direction, const TwistMatrix& twist_rates,
                              const VectorXd& unknowns,
                              Eigen::Ref<RowMatrixXd> J_rate) const override;
-    Vector3d target_position(Index target, const VectorXd& unknowns) const override;
-    void differentiate_positions(const Isometry3d& world_from_flange, const TwistMatrix& twists,
-                                 const VectorXd& unknowns,
-                                 Eigen::Ref<RowMatrixXd> J_positions_parameters) const override;
     MatrixXd covariance(const Isometry3d& world_from_flange,
                         const VectorXd& unknowns) const override;
     MatrixXd covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
                              const VectorXd& unknowns) const override;
     bool has_constant_covariance() const override;
+    std::vector<NoiseNumber> noise_numbers() const override;
+    SensorWords words() const override;
+    /// Four points of the body: its origin and one on each axis.
+    std::optional<ObservedPoints> observed_points() const override;
 
   private:
     std::optional<Isometry3d> known_tool_;

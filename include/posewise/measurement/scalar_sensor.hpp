@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "posewise/measurement/sensor.hpp"
-#include "posewise/measurement/targets.hpp"
 
 namespace posewise {
 
@@ -12,12 +11,11 @@ namespace posewise {
 /// first. Every length has the same standard deviation.
 class ScalarSensor : public Sensor {
   public:
-    const Targets& targets() const { return targets_; }
     double sigma() const { return sigma_; }
 
+    const Targets& targets() const final { return targets_; }
     Index row_count() const final { return targets_.count() * feature_count_; }
     Index target_count() const final { return row_count(); }
-    bool is_angle(Index) const final { return false; }
     std::vector<std::string> observation_names() const final;
     VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const final;
     void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
@@ -26,13 +24,10 @@ class ScalarSensor : public Sensor {
     void differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                              const Twist& direction, const TwistMatrix& twist_rates,
                              const VectorXd& unknowns, Eigen::Ref<RowMatrixXd> J_rate) const final;
-    Vector3d target_position(Index target, const VectorXd& unknowns) const final;
-    void differentiate_positions(const Isometry3d& world_from_flange, const TwistMatrix& twists,
-                                 const VectorXd& unknowns,
-                                 Eigen::Ref<RowMatrixXd> J_positions_parameters) const final;
     MatrixXd covariance(const Isometry3d&, const VectorXd&) const final;
-    MatrixXd covariance_rate(const Isometry3d&, const Twist&, const VectorXd&) const final;
     bool has_constant_covariance() const final { return true; }
+    std::vector<NoiseNumber> noise_numbers() const final { return {{"sigma_m", {sigma_}}}; }
+    SensorWords words() const final;
 
   protected:
     /// A length as a function of the target's position x in the world and of the feature.
@@ -46,6 +41,8 @@ class ScalarSensor : public Sensor {
     /// Throws InputError if there is no feature, or sigma (m) is not finite or below 1e-15.
     ScalarSensor(Targets targets, Index feature_count, bool are_known, std::string letter,
                  double sigma);
+    /// "anchors", "planes".
+    virtual std::string features() const = 0;
     virtual Length measure(const Vector3d& x, Index feature, const VectorXd& unknowns) const = 0;
 
     Index feature_count() const { return feature_count_; }
@@ -69,10 +66,11 @@ class DistanceSensor final : public ScalarSensor {
     /// ScalarSensor does, or if one that is known is not finite.
     DistanceSensor(Targets targets, std::vector<Vector3d> anchors, bool are_known, double sigma);
 
+    bool is_distance(Index) const override { return true; }
     std::vector<std::string> unknown_names() const override;
-    std::vector<bool> unknown_is_angle() const override;
 
   protected:
+    std::string features() const override { return "anchors"; }
     Length measure(const Vector3d& x, Index anchor, const VectorXd& unknowns) const override;
 
   private:
@@ -100,6 +98,7 @@ class PlaneSensor final : public ScalarSensor {
     std::vector<bool> unknown_is_angle() const override;
 
   protected:
+    std::string features() const override { return "planes"; }
     Length measure(const Vector3d& x, Index plane, const VectorXd& unknowns) const override;
 
   private:

@@ -50,6 +50,9 @@ class Targets {
     Index unknown_count_ = 0;
 };
 
+/// "3 targets (1 known, 2 to be identified)".
+std::string describe(const Targets& targets);
+
 /// Velocity of a point that moves with a twist (angular w; velocity v of the point at the origin).
 inline Vector3d velocity_of(const Vector3d& point, const Twist& twist) {
     return twist.tail<3>() + twist.head<3>().cross(point);

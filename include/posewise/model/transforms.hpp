@@ -16,6 +16,9 @@ Matrix3d rotation_from_vector(const Vector3d& vector);
 /// The rotation vector of a rotation matrix, its norm at most pi.
 Vector3d vector_from_rotation(const Matrix3d& R);
 
+/// The rotation nearest to a matrix (least squares), by its singular values.
+Matrix3d nearest_rotation(const Matrix3d& X);
+
 /// The left Jacobian of the rotations [Barfoot 2017, (7.77)]: while a rotation vector changes at
 /// the rate r, its rotation turns with the angular velocity (this matrix) r.
 Matrix3d rotation_vector_rate(const Vector3d& vector);
