@@ -1,5 +1,7 @@
 #include "robust.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,8 +12,8 @@ namespace posewise {
 
 Loss complete_loss(const Loss& loss, const Campaign& campaign) {
     if (!std::isfinite(loss.width) || loss.width < 0) {
-        throw InputError("width of the loss is " + std::to_string(loss.width) +
-                         ", must be finite and not negative");
+        throw InputError(
+            fmt::format("width of the loss is {:g}, must be finite and not negative", loss.width));
     }
     Loss complete = loss;
     if (loss.width == 0 && loss.kind != LossKind::Squares) {

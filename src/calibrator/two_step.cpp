@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <Eigen/QR>
 
 #include "least_squares.hpp"
@@ -54,7 +56,7 @@ Parameters cycle(const IdentificationProblem& problem, const Split& split, Param
 Estimate identify_two_step(const Campaign& campaign, const Measurements& measurements,
                            const Parameters& start, const TwoStepOptions& options) {
     if (!(options.alpha > 0 && options.alpha <= 1)) {
-        throw InputError("alpha is " + std::to_string(options.alpha) + ", must be in (0, 1]");
+        throw InputError(fmt::format("alpha is {:g}, must be in (0, 1]", options.alpha));
     }
     const IdentificationProblem problem = make_problem(campaign, measurements);
     check_identifiable(problem, start);

@@ -1,5 +1,7 @@
 #include "chain_checks.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <optional>
 #include <set>
@@ -16,9 +18,9 @@ void add_unique(std::set<std::string>& names, const std::string& name, const cha
 
 void check_joint(const Joint& joint) {
     if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper) || joint.lower >= joint.upper) {
-        throw InputError("joint '" + joint.name + "' has limits " + std::to_string(joint.lower) +
-                         " to " + std::to_string(joint.upper) +
-                         " (rad or m): must be finite, the lower one first");
+        throw InputError(fmt::format(
+            "joint '{}' has limits {:g} to {:g} (rad or m): must be finite, the lower one first",
+            joint.name, joint.lower, joint.upper));
     }
 }
 

@@ -1,5 +1,7 @@
 #include "posewise/model/halton.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -114,10 +116,10 @@ Chain with_margin(const Chain& chain, const JointMargin& margin) {
     for (Joint& joint : joints) {
         const double inset = joint.motion == Motion::Rotation ? margin.angle : margin.length;
         if (!(inset >= 0) || !(joint.lower + inset < joint.upper - inset)) {
-            throw InputError("margin " + std::to_string(inset) + " of joint '" + joint.name +
-                             "' must not be negative and must leave something of its range " +
-                             std::to_string(joint.lower) + " to " + std::to_string(joint.upper) +
-                             " (rad or m)");
+            throw InputError(
+                fmt::format("margin {:g} of joint '{}' must not be negative and must leave "
+                            "something of its range {:g} to {:g} (rad or m)",
+                            inset, joint.name, joint.lower, joint.upper));
         }
         joint.lower += inset;
         joint.upper -= inset;

@@ -1,5 +1,7 @@
 #include "cell_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -15,8 +17,8 @@ void require(bool is_met, const std::string& problem) {
 
 void check_interval(const Interval& interval, const char* name) {
     require(interval.lower <= interval.upper,
-            std::string("tracker.") + name + " is " + std::to_string(interval.lower) + " to " +
-                std::to_string(interval.upper) + " (m or rad); the lower end must come first");
+            fmt::format("tracker.{} is {:g} to {:g} (m or rad); the lower end must come first",
+                        name, interval.lower, interval.upper));
 }
 
 bool is_direction(const Vector3d& normal) { return std::abs(normal.norm() - 1) < 1e-9; }
@@ -36,9 +38,10 @@ void check_sight(const Sight& sight, std::size_t target_count) {
     const bool is_turn = std::isinf(sight.azimuth.upper - sight.azimuth.lower) ||
                          sight.azimuth.upper - sight.azimuth.lower <= 2 * std::numbers::pi + 1e-9;
     require(is_turn, "tracker.azimuth is wider than a full turn");
-    require(sight.acceptance_half_angle > 0 && sight.acceptance_half_angle <= std::numbers::pi,
-            "reflectors.acceptance_half_angle is " + std::to_string(sight.acceptance_half_angle) +
-                " rad, must be above 0 and at most pi");
+    require(
+        sight.acceptance_half_angle > 0 && sight.acceptance_half_angle <= std::numbers::pi,
+        fmt::format("reflectors.acceptance_half_angle is {:g} rad, must be above 0 and at most pi",
+                    sight.acceptance_half_angle));
     require(sight.normals.empty() || sight.normals.size() == target_count,
             "reflectors.normals are " + std::to_string(sight.normals.size()) + ", must be " +
                 std::to_string(target_count) + ", one a target");
@@ -75,9 +78,9 @@ void check_fixed(const Cell& cell, const Chain& robot) {
                     std::to_string(robot.joint_count()) + " joints");
         const Joint& joint = robot.joints()[static_cast<std::size_t>(index)];
         require(value >= joint.lower && value <= joint.upper,
-                "fixed joint '" + joint.name + "' is " + std::to_string(value) +
-                    ", must lie within its limits and margin, " + std::to_string(joint.lower) +
-                    " to " + std::to_string(joint.upper) + " (rad or m)");
+                fmt::format("fixed joint '{}' is {:g}, must lie within its limits and margin, {:g} "
+                            "to {:g} (rad or m)",
+                            joint.name, value, joint.lower, joint.upper));
     }
 }
 
@@ -146,11 +149,11 @@ void check_cell(const Cell& cell, const Chain& robot, const std::vector<Vector3d
     for (const KeepOut& keep_out : cell.keep_outs) check_shape(keep_out.solid);
     check_links(cell, robot, targets);
     require(std::isfinite(cell.safety_distance) && cell.safety_distance >= 0,
-            "safety_distance is " + std::to_string(cell.safety_distance) +
-                " m, must be finite and not negative");
+            fmt::format("safety_distance is {:g} m, must be finite and not negative",
+                        cell.safety_distance));
     require(std::isfinite(cell.least_joint_distance) && cell.least_joint_distance >= 0,
-            "least_joint_distance is " + std::to_string(cell.least_joint_distance) +
-                " rad or m, must be finite and not negative");
+            fmt::format("least_joint_distance is {:g} rad or m, must be finite and not negative",
+                        cell.least_joint_distance));
     if (cell.sight) check_sight(*cell.sight, targets.size());
     check_fixed(cell, robot);
     check_motion(cell, robot);

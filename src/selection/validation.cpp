@@ -1,5 +1,7 @@
 #include "validation.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -34,8 +36,8 @@ void validate_limits(const Blocks& candidates, const SelectOptions& options) {
                          " labels, must have one for each of " + std::to_string(N) + " candidates");
     }
     if (!(options.least_distance >= 0) || !std::isfinite(options.least_distance)) {
-        throw InputError("least distance is " + std::to_string(options.least_distance) +
-                         ", must be finite and not negative");
+        throw InputError(fmt::format("least distance is {:g}, must be finite and not negative",
+                                     options.least_distance));
     }
     if (options.least_distance > 0 &&
         (options.positions.rows() != N || !options.positions.allFinite())) {
@@ -56,9 +58,9 @@ void validate_held(const SelectOptions& options, Index L) {
     }
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(options.held, Eigen::EigenvaluesOnly);
     if (eigen.eigenvalues()[0] < -1e-9 * std::abs(eigen.eigenvalues()[L - 1])) {
-        throw InputError("held information has the negative eigenvalue " +
-                         std::to_string(eigen.eigenvalues()[0]) +
-                         ", must be positive semidefinite");
+        throw InputError(fmt::format(
+            "held information has the negative eigenvalue {:g}, must be positive semidefinite",
+            eigen.eigenvalues()[0]));
     }
 }
 
@@ -121,7 +123,7 @@ void validate(const Blocks& candidates, const SelectOptions& options) {
     require_at_least("shortlist", options.shortlist, 0);
     require_at_least("held pose count", options.held_pose_count, 0);
     if (!(options.gap > 0)) {
-        throw InputError("gap is " + std::to_string(options.gap) + ", must be positive");
+        throw InputError(fmt::format("gap is {:g}, must be positive", options.gap));
     }
     validate_limits(candidates, options);
     validate_held(options, candidates.parameter_count());

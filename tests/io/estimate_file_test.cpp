@@ -190,7 +190,7 @@ TEST_F(EstimateFile, WithAQuaternionThatIsNoRotationIsRefused) {
     document["base"]["quaternion_wxyz"] = {2, 0, 0, 0};
     folder_.write("estimate.json", document.dump());
     EXPECT_EQ(testing::input_error_of([&] { read_estimate(path_, campaign_); }),
-              "estimate.json: base.quaternion_wxyz: has length 2.000000; must be 1");
+              "estimate.json: base.quaternion_wxyz: has length 2; must be 1");
 }
 
 TEST_F(EstimateFile, OfASizeThatDoesNotOccurIsRefused) {
