@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <optional>
 
 #include "least_squares.hpp"
 #include "population_search.hpp"
@@ -55,22 +53,23 @@ VectorXd draw_errors(const IdentificationProblem& problem, const VectorXd& bound
 
 /// One run from a start.
 struct Run {
-    std::optional<Estimate> estimate;
-    double cost = std::numeric_limits<double>::infinity();
-    std::exception_ptr failure;
+    Estimate estimate;
+    double cost = std::numeric_limits<double>::infinity();  ///< where it could not be identified
 };
 
 Run run_from(const IdentificationProblem& problem, const VectorXd& errors,
              const LevenbergMarquardtOptions& options) {
     Run run;
-    try {
-        const Parameters start =
-            register_roughly_with_errors(problem.campaign, problem.measurements, errors);
-        Estimate estimate = identify(problem.campaign, problem.measurements, start, options);
-        run.cost = total_loss(problem, estimate.parameters);
-        run.estimate = std::move(estimate);
-    } catch (const InputError&) {
-        run.failure = std::current_exception();
+    Registration start =
+        register_roughly_with_errors(problem.campaign, problem.measurements, errors);
+    if (!start.is_determined()) {
+        run.estimate.ending = Ending::NotIdentifiable;
+        run.estimate.undetermined = std::move(start.undetermined);
+        return run;
+    }
+    run.estimate = identify(problem.campaign, problem.measurements, start.parameters, options);
+    if (run.estimate.ending != Ending::NotIdentifiable) {
+        run.cost = total_loss(problem, run.estimate.parameters);
     }
     return run;
 }
@@ -90,8 +89,9 @@ VectorXd error_bounds(const Chain& robot, const GlobalOptions& options) {
     return bounds;
 }
 
-Parameters register_roughly_with_errors(const Campaign& campaign, const Measurements& measurements,
-                                        const VectorXd& robot_errors) {
+Registration register_roughly_with_errors(const Campaign& campaign,
+                                          const Measurements& measurements,
+                                          const VectorXd& robot_errors) {
     std::vector<Element> elements = campaign.robot.elements();
     Index next = 0;
     for (Element& element : elements) {
@@ -99,8 +99,8 @@ Parameters register_roughly_with_errors(const Campaign& campaign, const Measurem
         next += static_cast<Index>(element.terms.size());
     }
     const Chain moved = campaign.robot.with_elements(std::move(elements));
-    Parameters registered = register_roughly(with_robot(campaign, moved), measurements);
-    registered.robot = robot_errors;
+    Registration registered = register_roughly(with_robot(campaign, moved), measurements);
+    registered.parameters.robot = robot_errors;
     return registered;
 }
 
@@ -112,7 +112,17 @@ GlobalEstimate identify_globally(const Campaign& campaign, const Measurements& m
     ProgressCounter counter(options.progress, options.start_limit);
     std::vector<Run> runs;
     GlobalEstimate result;
-    while (result.starts < options.start_limit && result.starts_at_best < options.agreeing_starts) {
+    result.estimate.undetermined = describe_missing_equations(problem);
+    if (!result.estimate.undetermined.empty()) {
+        result.estimate.ending = Ending::NotIdentifiable;
+        return result;
+    }
+    const auto is_open = [&] {
+        return result.starts < options.start_limit &&
+               result.starts_at_best < options.agreeing_starts &&
+               (result.starts == 0 || !options.start_options.stop.is_set());
+    };
+    while (is_open()) {
         const Index count = std::min(batch_size, options.start_limit - result.starts);
         runs.resize(static_cast<std::size_t>(result.starts + count));
         for_each_index(count, [&](Index k) {
@@ -124,13 +134,12 @@ GlobalEstimate identify_globally(const Campaign& campaign, const Measurements& m
         result.starts += count;
         const Run& best = *std::min_element(
             runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.cost < b.cost; });
-        if (!best.estimate) continue;
-        result.estimate = *best.estimate;
+        result.estimate = std::isfinite(best.cost) ? best.estimate : runs.front().estimate;
+        if (!std::isfinite(best.cost)) continue;
         const double alike = best.cost * (1 + 1e-6) + 1e-12;
         result.starts_at_best = std::count_if(
             runs.begin(), runs.end(), [alike](const Run& run) { return run.cost <= alike; });
     }
-    if (result.starts_at_best == 0) std::rethrow_exception(runs.front().failure);
     return result;
 }
 

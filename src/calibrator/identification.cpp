@@ -83,17 +83,17 @@ std::vector<Index> fold_members(Index count, Index folds, Index fold) {
 Estimate identify(const Campaign& campaign, const Measurements& measurements,
                   const Parameters& start, const LevenbergMarquardtOptions& options) {
     IdentificationProblem problem = make_problem(campaign, measurements);
-    check_identifiable(problem, start);
+    Estimate estimate = begin_estimate(problem, start);
     problem.loss = complete_loss(options.loss, campaign);
-    Estimate estimate;
-    estimate.parameters = start;
+    if (estimate.ending == Ending::NotIdentifiable) return estimate;
     LevenbergMarquardt search{problem, options, estimate};
     while (estimate.ending == Ending::NotRun) {
         if (estimate.iterations >= options.iteration_limit) {
             estimate.ending = Ending::IterationLimit;
             break;
         }
-        search.iterate();
+        estimate.ending = options.stop.ending_or(Ending::NotRun);
+        if (estimate.ending == Ending::NotRun) search.iterate();
         if (estimate.ending == Ending::NotRun) ++estimate.iterations;
     }
     finish(problem, estimate);
@@ -118,16 +118,16 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
     for_each_index(folds, [&](Index fold) {
         const auto f = static_cast<std::size_t>(fold);
         const auto held_out = fold_members(count, folds, fold);
-        try {
-            const Estimate estimate =
-                identify(campaign, take(measurements, all_but(count, held_out)), start, options);
+        const Estimate estimate =
+            identify(campaign, take(measurements, all_but(count, held_out)), start, options);
+        if (estimate.ending == Ending::NotIdentifiable) {
+            failures[f] = "fold " + std::to_string(fold + 1) + ": " + estimate.undetermined;
+        } else {
             const Measurements judged = take(measurements, held_out);
             samples[f] = residuals(campaign, estimate.parameters, judged);
             means[f] = mean_residuals(campaign, estimate.parameters, judged);
             distances(held_out, Eigen::all) =
                 squared_distances(campaign, estimate.parameters, judged);
-        } catch (const InputError& error) {
-            failures[f] = "fold " + std::to_string(fold + 1) + ": " + error.what();
         }
         counter.count();
     });

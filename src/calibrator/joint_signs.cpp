@@ -28,19 +28,21 @@ Measurements thin_out(const Campaign& campaign, const Measurements& measurements
     return shown(some) < shown(means) ? means : some;
 }
 
-using Registration = Parameters (&)(const Campaign&, const Measurements&);
+using Register = Registration (&)(const Campaign&, const Measurements&);
 
+/// Infinity where the tool, turned so, does not turn in enough ways.
 double registered_rms(const Campaign& campaign, const Measurements& measurements,
-                      Registration registration) {
-    const Parameters registered = registration(campaign, measurements);
-    return make_metrics(residuals(campaign, registered, measurements),
+                      Register registers) {
+    const Registration registered = registers(campaign, measurements);
+    if (!registered.is_determined()) return std::numeric_limits<double>::infinity();
+    return make_metrics(residuals(campaign, registered.parameters, measurements),
                         campaign.sensor->lengths_per_target())
         .rms();
 }
 
 /// Fits the first `count` patterns anew and sorts them.
 void fit(std::vector<SignPattern>& patterns, std::size_t count, const Campaign& campaign,
-         const Measurements& measurements, Registration registration) {
+         const Measurements& measurements, Register registers) {
     for_each_index(static_cast<Index>(count), [&](Index k) {
         SignPattern& pattern = patterns[static_cast<std::size_t>(k)];
         Measurements turned = measurements;
@@ -48,11 +50,7 @@ void fit(std::vector<SignPattern>& patterns, std::size_t count, const Campaign& 
             const bool is_reversed = pattern.is_reversed[static_cast<std::size_t>(j)];
             if (is_reversed) turned.configurations.col(j) *= -1;
         }
-        try {
-            pattern.distance_rms = registered_rms(campaign, turned, registration);
-        } catch (const InputError&) {  // turned so, the tool does not turn in enough ways
-            pattern.distance_rms = std::numeric_limits<double>::infinity();
-        }
+        pattern.distance_rms = registered_rms(campaign, turned, registers);
     });
     const auto end = patterns.begin() + static_cast<std::ptrdiff_t>(count);
     std::stable_sort(patterns.begin(), end,
@@ -72,8 +70,8 @@ std::vector<SignPattern> all_patterns(Index joints) {
 
 }  // namespace
 
-std::vector<SignPattern> fit_joint_signs(const Campaign& campaign, const Measurements& measurements,
-                                         Index most_configurations) {
+JointSigns fit_joint_signs(const Campaign& campaign, const Measurements& measurements,
+                           Index most_configurations) {
     const Index joints = campaign.robot.joint_count();
     if (joints > most_joints) {
         throw InputError("the robot has " + std::to_string(joints) +
@@ -81,12 +79,15 @@ std::vector<SignPattern> fit_joint_signs(const Campaign& campaign, const Measure
                          std::to_string(most_joints));
     }
     const Measurements thinned = thin_out(campaign, measurements, most_configurations);
-    register_roughly(campaign, thinned);  // throws what is wrong with the measurements themselves
-    std::vector<SignPattern> patterns = all_patterns(joints);
+    // What is wrong with the measurements themselves is said once, of the robot as stated.
+    JointSigns signs{{}, register_roughly(campaign, thinned).undetermined};
+    if (!signs.undetermined.empty()) return signs;
+    std::vector<SignPattern>& patterns = signs.patterns;
+    patterns = all_patterns(joints);
     fit(patterns, patterns.size(), campaign, thinned, register_roughly);
     fit(patterns, std::min(polished_count, patterns.size()), campaign, thinned,
         register_base_and_targets);
-    return patterns;
+    return signs;
 }
 
 }  // namespace posewise

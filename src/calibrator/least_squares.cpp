@@ -68,33 +68,34 @@ VectorXd scaled_errors(const IdentificationProblem& problem, const Parameters& p
 
 }  // namespace
 
-void check_all_seen(const Campaign& campaign, const Measurements& measurements) {
+std::string describe_unseen_target(const Campaign& campaign, const Measurements& measurements) {
     const Sensor& sensor = *campaign.sensor;
     const Targets& targets = sensor.targets();
     const Index seen_of_each = sensor.target_count() / targets.count();
     for (Index j = 0; j < targets.count(); ++j) {
         const auto of_target = measurements.is_seen.middleCols(seen_of_each * j, seen_of_each);
         if (targets.is_known(j) || of_target.any()) continue;
-        throw InputError(fmt::format(
+        return fmt::format(
             "target {} is seen in no sample of these {} configurations, so its position cannot be "
             "found; measure it, or leave it out of the campaign's targets",
-            j + 1, measurements.configuration_count()));
+            j + 1, measurements.configuration_count());
     }
+    return "";
 }
 
 IdentificationProblem make_problem(const Campaign& campaign, const Measurements& measurements) {
     check_noise(campaign);
     check_size(campaign, measurements);
-    check_all_seen(campaign, measurements);
-    IdentificationProblem problem{campaign, measurements,
-                                  mean_measurements(*campaign.sensor, measurements),
-                                  times_seen(measurements), parameter_scale(campaign)};
-    if (problem.equation_count() < problem.scale.size()) {
-        throw InputError(fmt::format(
-            "{} configurations give {} equations, {} parameters need at least as many",
-            measurements.configuration_count(), problem.equation_count(), problem.scale.size()));
-    }
-    return problem;
+    return {campaign, measurements, mean_measurements(*campaign.sensor, measurements),
+            times_seen(measurements), parameter_scale(campaign)};
+}
+
+std::string describe_missing_equations(const IdentificationProblem& problem) {
+    std::string unseen = describe_unseen_target(problem.campaign, problem.measurements);
+    if (!unseen.empty() || problem.equation_count() >= problem.scale.size()) return unseen;
+    return fmt::format("{} configurations give {} equations, {} parameters need at least as many",
+                       problem.means.configuration_count(), problem.equation_count(),
+                       problem.scale.size());
 }
 
 LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters) {
@@ -169,16 +170,19 @@ Triangle triangularise(const LinearisedSystem& system) {
             augmented.col(size).head(size)};
 }
 
-void check_identifiable(const IdentificationProblem& problem, const Parameters& parameters) {
+std::string describe_undetermined(const IdentificationProblem& problem,
+                                  const Parameters& parameters) {
+    std::string missing = describe_missing_equations(problem);
+    if (!missing.empty()) return missing;
     Parameters nominal = parameters;
     nominal.robot.setZero();
     MatrixXd R = triangularise(linearise(problem, nominal)).R;
-    if (R.cols() == 0) return;  // a registration where base and sensor are known
+    if (R.cols() == 0) return "";  // a registration where base and sensor are known
     const VectorXd norms = R.colwise().norm().transpose().cwiseMax(1e-300);
     R.array().rowwise() /= norms.transpose().array();
     const WeakDirection weakest = weakest_directions(R, 1).front();
     const double largest = std::sqrt(static_cast<double>(R.cols()));  // unit columns: s1 <= sqrt(L)
-    if (weakest.singular_value > 1e-9 * largest) return;
+    if (weakest.singular_value > 1e-9 * largest) return "";
 
     const auto names = parameter_names(problem.campaign);
     std::string words;
@@ -186,10 +190,18 @@ void check_identifiable(const IdentificationProblem& problem, const Parameters& 
         if (std::abs(term.coefficient) < 1e-6) continue;
         words += (words.empty() ? "" : ", ") + names[static_cast<std::size_t>(term.parameter)];
     }
-    throw InputError(fmt::format(
+    return fmt::format(
         "these {} configurations cannot tell apart the effects of: {}; measure more or more "
         "different configurations, or leave one of these parameters out",
-        problem.means.configuration_count(), words));
+        problem.means.configuration_count(), words);
+}
+
+Estimate begin_estimate(const IdentificationProblem& problem, const Parameters& start) {
+    Estimate estimate;
+    estimate.parameters = start;
+    estimate.undetermined = describe_undetermined(problem, start);
+    if (!estimate.undetermined.empty()) estimate.ending = Ending::NotIdentifiable;
+    return estimate;
 }
 
 void finish(const IdentificationProblem& problem, Estimate& estimate) {

@@ -35,12 +35,15 @@ struct IdentificationProblem {
 };
 
 /// Throws InputError if the measurements do not fit the campaign (count of joints, columns or
-/// targets), never show a target whose position is unknown, or give fewer equations than there are
-/// parameters.
+/// targets).
 IdentificationProblem make_problem(const Campaign& campaign, const Measurements& measurements);
 
-/// Throws InputError if a target whose position is unknown is seen in no sample, by its number.
-void check_all_seen(const Campaign& campaign, const Measurements& measurements);
+/// Says that a target whose position is unknown is seen in no sample, by its number; empty if there
+/// is none.
+std::string describe_unseen_target(const Campaign& campaign, const Measurements& measurements);
+
+/// The same, or that there are fewer equations than parameters.
+std::string describe_missing_equations(const IdentificationProblem& problem);
 
 LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters);
 
@@ -59,10 +62,15 @@ struct Triangle {
 };
 Triangle triangularise(const LinearisedSystem& system);
 
-/// Throws InputError naming the parameters in it if a direction of parameter space is not seen by
-/// these configurations: a singular value of the column-normalised Jacobian below 1e-9 of the
-/// largest, with the robot at nominal, where a lost rank is exactly lost.
-void check_identifiable(const IdentificationProblem& problem, const Parameters& parameters);
+/// What keeps all parameters from being identified, as a sentence: equations that are missing, or a
+/// direction of parameter space that these configurations do not see (a singular value of the
+/// column-normalised Jacobian below 1e-9 of the largest, with the robot at nominal, where a lost
+/// rank is exactly lost), by the parameters in it. Empty: all are identifiable.
+std::string describe_undetermined(const IdentificationProblem& problem,
+                                  const Parameters& parameters);
+
+/// An estimate at `start` that has not run, or that says why it cannot.
+Estimate begin_estimate(const IdentificationProblem& problem, const Parameters& start);
 
 /// Fills covariance, variance factor and metrics of an estimate from its parameters.
 void finish(const IdentificationProblem& problem, Estimate& estimate);

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "posewise/calibrator/registration.hpp"
-#include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 
 namespace posewise {
@@ -48,11 +46,8 @@ Candidate calibrate_set(const Campaign& campaign, const Measurements& measuremen
     candidate.trial.set = std::move(set);
     candidate.trial.parameter_count = parameter_count(candidate.campaign);
     candidate.start.robot = VectorXd::Zero(candidate.campaign.robot.parameter_count());
-    try {
-        candidate.estimate = identify(candidate.campaign, measurements, candidate.start, options);
-    } catch (const InputError& error) {
-        candidate.trial.failure = error.what();
-    }
+    candidate.estimate = identify(candidate.campaign, measurements, candidate.start, options);
+    candidate.trial.failure = candidate.estimate.undetermined;
     return candidate;
 }
 
@@ -126,9 +121,10 @@ std::vector<ParameterSet> nested_parameter_sets(const Chain& chain) {
     return sets;
 }
 
-ModelSelection select_model(const Campaign& campaign, const Measurements& measurements, Index folds,
-                            const LevenbergMarquardtOptions& options) {
-    const Parameters registered = register_base_and_targets(campaign, measurements);
+ModelSelection select_model(const Campaign& campaign, const Measurements& measurements,
+                            const Parameters& registered, Index folds,
+                            const LevenbergMarquardtOptions& options,
+                            const ProgressCallback& progress) {
     ModelSelection selection;
     selection.folds = folds;
     std::vector<Candidate> candidates;
@@ -143,6 +139,7 @@ ModelSelection select_model(const Campaign& campaign, const Measurements& measur
     for (const Outlier& outlier : selection.not_judged) {
         is_judged(outlier.configuration, outlier.target) = false;
     }
+    ProgressCounter counter(progress, static_cast<Index>(candidates.size()));
     std::vector<MeanError> errors;
     for (Candidate& candidate : candidates) {
         errors.emplace_back();
@@ -150,6 +147,7 @@ ModelSelection select_model(const Campaign& campaign, const Measurements& measur
             errors.back() = judge(candidate, measurements, is_judged, folds, options);
         }
         selection.trials.push_back(std::move(candidate.trial));
+        counter.count();
     }
     recommend(errors, selection);
     return selection;

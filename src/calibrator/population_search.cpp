@@ -33,14 +33,11 @@ class Misfit {
 
     /// Distance RMS, m.
     double operator()(const VectorXd& x) const {
-        try {
-            const Parameters found = register_roughly_with_errors(campaign_, means_, errors(x));
-            return make_metrics(residuals(campaign_, found, means_),
-                                campaign_.sensor->lengths_per_target())
-                .rms();
-        } catch (const InputError&) {
-            return hopeless;
-        }
+        const Registration found = register_roughly_with_errors(campaign_, means_, errors(x));
+        if (!found.is_determined()) return hopeless;
+        return make_metrics(residuals(campaign_, found.parameters, means_),
+                            campaign_.sensor->lengths_per_target())
+            .rms();
     }
 
   private:

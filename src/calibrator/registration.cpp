@@ -61,25 +61,27 @@ LinearEquations state_equations(const Campaign& campaign, const Targets& points,
     return equations;
 }
 
-InputError not_determined(const Sensor& sensor, const Measurements& means) {
+std::string describe_shortage(const Sensor& sensor, const Measurements& means) {
     const std::string place = sensor.words().place;
     const std::string what = sensor.has_orientation() ? "poses"
                                                       : fmt::format("configurations with {} points",
                                                                     means.is_seen.count());
-    return InputError(fmt::format(
+    return fmt::format(
         "these {} {} do not determine base and {}; more configurations that turn the tool in "
         "different ways are needed or, where all axes are parallel (SCARA), base or {} known along "
         "them, like known: [z]",
-        means.configuration_count(), what, place, place));
+        means.configuration_count(), what, place, place);
 }
 
 /// Base and sensor's unknowns that solve the linear equations, X projected on the rotations.
-Parameters solve_linear(const Campaign& campaign, const ObservedPoints& observed,
-                        const Measurements& means) {
+Registration solve_linear(const Campaign& campaign, const ObservedPoints& observed,
+                          const Measurements& means) {
     const auto [A, b] = state_equations(campaign, observed.points, as_points(means, observed));
     Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
     qr.setThreshold(1e-9);
-    if (A.rows() < A.cols() || qr.rank() < A.cols()) throw not_determined(*campaign.sensor, means);
+    if (A.rows() < A.cols() || qr.rank() < A.cols()) {
+        return {campaign.nominal, describe_shortage(*campaign.sensor, means)};
+    }
     const VectorXd solution = qr.solve(b);
     Parameters found = campaign.nominal;
     const Matrix3d R =
@@ -89,12 +91,14 @@ Parameters solve_linear(const Campaign& campaign, const ObservedPoints& observed
     found.world_from_base.linear() = R;
     found.world_from_base.translation() = -R * solution.segment<3>(9);
     found.sensor = observed.unknowns(solution.tail(observed.points.unknown_count()));
-    return found;
+    return {found, {}};
 }
 
 /// Where the polish begins; the robot has no parameters.
-Parameters find_start(const Campaign& campaign, const Measurements& measurements) {
+Registration find_start(const Campaign& campaign, const Measurements& measurements) {
     const Sensor& sensor = *campaign.sensor;
+    std::string unseen = describe_unseen_target(campaign, measurements);
+    if (!unseen.empty()) return {campaign.nominal, std::move(unseen)};
     const std::optional<ObservedPoints> observed = sensor.observed_points();
     if (observed && base_parameter_count(campaign) == 6) {
         return solve_linear(campaign, *observed, mean_measurements(sensor, measurements));
@@ -105,25 +109,32 @@ Parameters find_start(const Campaign& campaign, const Measurements& measurements
             "partly known; the campaign must state base and targets, if only roughly",
             observed ? "lengths" : sensor.words().readings));
     }
-    return campaign.nominal;
+    return {campaign.nominal, {}};
 }
 
 }  // namespace
 
-Parameters register_roughly(const Campaign& campaign, const Measurements& measurements) {
+Registration register_roughly(const Campaign& campaign, const Measurements& measurements) {
     const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
-    check_all_seen(nominal, measurements);
-    Parameters start = find_start(nominal, measurements);
-    start.robot = VectorXd::Zero(campaign.robot.parameter_count());
+    Registration start = find_start(nominal, measurements);
+    start.parameters.robot = VectorXd::Zero(campaign.robot.parameter_count());
     return start;
 }
 
-Parameters register_base_and_targets(const Campaign& campaign, const Measurements& measurements) {
+Registration register_base_and_targets(const Campaign& campaign, const Measurements& measurements) {
     const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
-    Parameters registered =
-        identify(nominal, measurements, register_roughly(nominal, measurements)).parameters;
-    registered.robot = VectorXd::Zero(campaign.robot.parameter_count());
+    Registration registered = register_roughly(nominal, measurements);
+    if (registered.is_determined()) {
+        Estimate polished = identify(nominal, measurements, registered.parameters);
+        registered = {std::move(polished.parameters), std::move(polished.undetermined)};
+    }
+    registered.parameters.robot = VectorXd::Zero(campaign.robot.parameter_count());
     return registered;
+}
+
+Parameters determined(Registration registration) {
+    if (!registration.is_determined()) throw InputError(registration.undetermined);
+    return std::move(registration.parameters);
 }
 
 }  // namespace posewise

@@ -59,13 +59,16 @@ Estimate identify_two_step(const Campaign& campaign, const Measurements& measure
         throw InputError(fmt::format("alpha is {:g}, must be in (0, 1]", options.alpha));
     }
     const IdentificationProblem problem = make_problem(campaign, measurements);
-    check_identifiable(problem, start);
     const Split split{base_parameter_count(campaign), start.robot.size(), start.sensor.size()};
-    Estimate estimate;
-    estimate.parameters = start;
+    Estimate estimate = begin_estimate(problem, start);
+    if (estimate.ending == Ending::NotIdentifiable) return estimate;
     double cost = total_loss(problem, start);
     estimate.ending = Ending::IterationLimit;
     while (estimate.iterations < options.iteration_limit) {
+        if (options.stop.is_set()) {
+            estimate.ending = options.stop.ending_or(estimate.ending);
+            break;
+        }
         const Parameters moved = cycle(problem, split, estimate.parameters, options.alpha);
         const double moved_cost = total_loss(problem, moved);
         if (!(moved_cost < cost)) {

@@ -1,22 +1,19 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
 
-#include "calibration_report.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "measured.hpp"
 #include "options.hpp"
-#include "posewise/calibrator/global_identification.hpp"
-#include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/io/estimate_file.hpp"
+#include "posewise/report/calibration_report.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -48,209 +45,113 @@ round a joint that the campaign file has reversed (inspect --measurements tells)
 start is the best of a population search of NLopt (crs2, esch, isres) or of covariance matrix adaptation
 (cmaes), which takes hundreds of times as long as a random one and rarely finds more.)";
 
-constexpr Index leave_one_out_limit = 100;
-constexpr Index default_folds = 10;
-
 const std::map<std::string, StartSearch> start_searches{{"random", StartSearch::Random},
                                                         {"crs2", StartSearch::Crs2},
                                                         {"esch", StartSearch::Esch},
                                                         {"isres", StartSearch::Isres},
                                                         {"cmaes", StartSearch::CmaEs}};
+const std::map<std::string, LossKind> losses{
+    {"squares", LossKind::Squares}, {"huber", LossKind::Huber}, {"cauchy", LossKind::Cauchy}};
+
+const std::map<std::string, CalibrationMethod> methods{{"lm", CalibrationMethod::Joint},
+                                                       {"two-step", CalibrationMethod::TwoStep},
+                                                       {"global", CalibrationMethod::Global}};
 
 struct Arguments {
     InputPaths paths;
     std::string plan;
+    std::string validate;
+    std::string out;
     std::string method = "lm";
-    TwoStepOptions two_step;
-    std::optional<Index> iteration_limit;
-    GlobalOptions global;
     std::string search = "random";
+    std::string loss = "squares";
     double length_error_percent = 30;
     double angle_error_deg = 20;
-    std::string validate;
-    std::optional<Index> folds;
+    std::optional<Index> iteration_limit;
     std::optional<bool> prior;
-    std::string loss = "squares";
-    double loss_width = 0;
-    bool model_selection = false;
-    std::string out;
+    CalibrationOptions options;  ///< with the numbers that are options as they are
 };
 
-/// The measured configurations, split by the plan if there is one.
-struct Split {
-    Measurements used;
-    std::optional<Measurements> left_out;
-};
-
-Split read_split(const Arguments& arguments, const io::CampaignFile& file) {
-    auto all = read_measured(arguments.paths.measurements, file);
-    if (arguments.plan.empty()) return {std::move(all), std::nullopt};
-    const auto planned = find_planned(all, arguments.plan);
-    const auto others = all_but(all.configuration_count(), planned);
-    Split split{take(all, planned), std::nullopt};
-    if (!others.empty()) split.left_out = take(all, others);
-    return split;
-}
-
-LevenbergMarquardtOptions with_loss(const Arguments& arguments) {
-    LevenbergMarquardtOptions options;
-    for (const LossKind kind : {LossKind::Huber, LossKind::Cauchy}) {
-        if (arguments.loss == loss_name(kind)) options.loss = {kind, arguments.loss_width};
+CalibrationOptions make_options(const Arguments& arguments, std::uint64_t seed) {
+    CalibrationOptions options = arguments.options;
+    options.method = methods.at(arguments.method);
+    options.joint.loss.kind = losses.at(arguments.loss);
+    options.global.seed = seed;
+    options.global.search = start_searches.at(arguments.search);
+    options.global.length_share = arguments.length_error_percent / 100;
+    options.global.angle = to_radians(arguments.angle_error_deg);
+    for (Index* const limit : {&options.joint.iteration_limit, &options.two_step.iteration_limit,
+                               &options.global.start_options.iteration_limit}) {
+        *limit = arguments.iteration_limit.value_or(*limit);
     }
     return options;
 }
 
-Estimate identify_from_afar(const Arguments& arguments, const Campaign& campaign,
-                            const Measurements& measurements) {
-    GlobalOptions options = arguments.global;
-    options.search = start_searches.at(arguments.search);
-    options.length_share = arguments.length_error_percent / 100;
-    options.angle = to_radians(arguments.angle_error_deg);
-    Index& limit = options.start_options.iteration_limit;
-    limit = arguments.iteration_limit.value_or(limit);
-    GlobalEstimate found = identify_globally(campaign, measurements, options);
-    print(fmt::format("{} starts, {} of them ended at the best{}\n", found.starts,
-                      found.starts_at_best,
-                      found.starts_at_best > 1 ? "" : "; there may be a better one"));
-    return std::move(found.estimate);
+/// The library knows groups, the message the option that asks for them.
+void check_folds(const CalibrationOptions& options, Index all) {
+    const Index count = options.used.empty() ? all : static_cast<Index>(options.used.size());
+    const Index folds = options.folds.value_or(0);
+    if (folds == 0 || (folds >= 2 && folds <= count)) return;
+    throw InputError(fmt::format(
+        "--folds is {}, must be 0 or from 2 to the number of configurations, {}", folds, count));
 }
 
-Estimate identify_by_method(const Arguments& arguments, const Campaign& campaign,
-                            const Measurements& measurements, const Parameters& start) {
-    if (arguments.method == "global") return identify_from_afar(arguments, campaign, measurements);
-    if (arguments.method == "two-step") {
-        TwoStepOptions options = arguments.two_step;
-        options.iteration_limit = arguments.iteration_limit.value_or(options.iteration_limit);
-        return identify_two_step(campaign, measurements, start, options);
-    }
-    LevenbergMarquardtOptions options = with_loss(arguments);
-    options.iteration_limit = arguments.iteration_limit.value_or(options.iteration_limit);
-    return identify(campaign, measurements, start, options);
-}
-
-/// Base and targets fitted, the robot as its maker says.
-Metrics fit_nominal(const Arguments& arguments, const Campaign& campaign,
-                    const Measurements& measurements) {
-    const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
-    const Parameters start = register_base_and_targets(nominal, measurements);
-    return identify(nominal, measurements, start, with_loss(arguments)).fit;
-}
-
-/// Groups to hold out in turn, 0: none.
-Index choose_folds(const Arguments& arguments, const Measurements& measurements) {
-    const Index count = measurements.configuration_count();
-    const Index folds =
-        arguments.folds.value_or(count <= leave_one_out_limit ? count : default_folds);
-    if (folds != 0 && (folds < 2 || folds > count)) {
-        throw InputError(
-            fmt::format("--folds is {}, must be 0 or from 2 to the number of configurations, {}",
-                        folds, count));
-    }
-    return folds;
-}
-
-/// How far the other points are off; nothing without outliers.
-std::optional<io::WithoutOutliers> judge_without_outliers(const Campaign& campaign,
-                                                          const Measurements& measurements,
-                                                          const io::CalibrationReport& report) {
-    const Estimate& estimate = report.estimate;
-    if (estimate.outliers.empty()) return std::nullopt;
-    Seen is_judged = times_seen(measurements).array() > 0;
-    for (const Outlier& outlier : estimate.outliers) {
-        is_judged(outlier.configuration, outlier.target) = false;
-    }
-    const auto rms = [&](const RowMatrixXd& squares) {
-        return std::sqrt(is_judged.select(squares, 0).sum() /
-                         static_cast<double>(is_judged.count()));
-    };
-    io::WithoutOutliers result{rms(squared_distances(campaign, estimate.parameters, measurements)),
-                               std::nullopt};
-    if (report.held_out && report.held_out->failures.empty()) {
-        result.held_out_rms = rms(report.held_out->squared_distances);
-    }
-    return result;
-}
-
-Metrics metrics_of(const Campaign& campaign, const Measurements& measurements,
-                   const Estimate& estimate) {
-    return make_metrics(residuals(campaign, estimate.parameters, measurements),
-                        campaign.sensor->lengths_per_target());
-}
-
-/// All but what needs another file.
-io::CalibrationReport make_report(const Arguments& arguments, const Campaign& campaign,
-                                  const Split& split) {
-    const Measurements& used = split.used;
-    Parameters start = register_base_and_targets(campaign, used);
-    io::CalibrationReport report;
-    report.method = arguments.method;
-    report.measurements = arguments.paths.measurements;
-    report.estimate = identify_by_method(arguments, campaign, used, start);
-    if (arguments.method == "global") start = report.estimate.parameters;  // for those held out
-    report.nominal = fit_nominal(arguments, campaign, used);
-    report.repeatability = repeatability(*campaign.sensor, used);
-    const Index folds = choose_folds(arguments, used);
-    if (folds > 0) {
-        report.held_out = cross_validate(campaign, used, start, folds, with_loss(arguments));
-    }
-    report.without_outliers = judge_without_outliers(campaign, used, report);
-    if (split.left_out) {
-        report.left_out = metrics_of(campaign, *split.left_out, report.estimate);
-    }
-    return report;
-}
-
-void check_usage(const Arguments& arguments) {
-    const auto require = [](bool is_right, const char* option, const char* rule) {
+/// Options of one method beside another would have no effect.
+void check_usage(const CLI::App& command, const Arguments& arguments) {
+    const auto require = [](bool is_right, const std::string& option, const std::string& rule) {
         if (!is_right) throw CLI::ValidationError(option, rule);
     };
+    for (const char* const option :
+         {"--alpha", "--length-error-percent", "--angle-error-deg", "--search", "--starts"}) {
+        const std::string owner = std::string(option) == "--alpha" ? "two-step" : "global";
+        require(arguments.method == owner || command.count(option) == 0, option,
+                "needs --method " + owner);
+    }
+    const CalibrationOptions& options = arguments.options;
     const bool is_squares = arguments.loss == "squares";
     const bool is_lm = arguments.method == "lm";
     require(is_squares || is_lm, "--loss", "needs --method lm; the others know squares only");
-    require(!is_squares || arguments.loss_width == 0, "--loss-width",
+    require(!is_squares || options.joint.loss.width == 0, "--loss-width",
             "needs --loss huber or cauchy");
-    require(!arguments.model_selection || is_lm, "--model-selection", "needs --method lm");
-    require(!arguments.model_selection || arguments.folds != 0, "--model-selection",
-            "needs --folds of 2 or more");
+    if (!options.model_selection) return;
+    require(is_lm, "--model-selection", "needs --method lm");
+    require(options.folds != 0, "--model-selection", "needs --folds of 2 or more");
 }
 
-void calibrate(Arguments arguments) {
-    check_usage(arguments);
+void calibrate(const Arguments& arguments) {
     const InputPaths& paths = arguments.paths;
     check_outputs({paths.campaign, paths.measurements, arguments.plan, arguments.validate},
                   {arguments.out});
     auto file = io::read_campaign(paths.campaign);
-    arguments.global.seed = file.seed;
-    bool& is_prior = file.spread.is_prior;
-    is_prior = arguments.prior.value_or(is_prior);
-    const Split split = read_split(arguments, file);
-    std::optional<ModelSelection> selection;
-    if (arguments.model_selection) {
-        selection = compute_from(paths.measurements, [&] {
-            return select_model(file, split.used, choose_folds(arguments, split.used),
-                                with_loss(arguments));
-        });
-        print_model_selection(*selection);
+    file.spread.is_prior = arguments.prior.value_or(file.spread.is_prior);
+    const Measurements measured = read_measured(paths.measurements, file);
+    CalibrationOptions options = make_options(arguments, file.seed);
+    if (!arguments.plan.empty()) options.used = find_planned(measured, arguments.plan);
+    std::optional<Measurements> validation;
+    if (!arguments.validate.empty()) validation = read_measured(arguments.validate, file);
+    options.validation = validation ? &*validation : nullptr;
+    const Calibration result = compute_from(paths.measurements, [&] {
+        check_folds(options, measured.configuration_count());
+        return posewise::calibrate(file, measured, options);
+    });
+    if (!result.is_identified()) {
+        if (result.selection) print(format(*result.selection));
+        throw input_error_at({paths.measurements}, result.estimate.undetermined);
     }
-    io::CalibrationReport report =
-        compute_from(paths.measurements, [&] { return make_report(arguments, file, split); });
-    report.selection = std::move(selection);
-    if (!arguments.validate.empty()) {
-        report.validation =
-            metrics_of(file, read_measured(arguments.validate, file), report.estimate);
-    }
-    if (!arguments.out.empty()) io::write_estimate(arguments.out, file, report);
-    warn_about_calibration(paths.measurements, file, split.used, report);
-    print_calibration(file, split.used, report);
+    if (!arguments.out.empty()) io::write_estimate(arguments.out, result, paths.measurements);
+    std::ranges::for_each(describe_doubts(result, paths.measurements), print_warning);
+    print(format(result));
 }
+
 void add_options(CLI::App& command, Arguments& arguments) {
+    CalibrationOptions& options = arguments.options;
     command.add_option("--plan", arguments.plan, "Use only the configurations of this plan file")
         ->check(file_name());
     command.add_option("--method", arguments.method, "lm, two-step or global")
         ->check(CLI::IsMember({"lm", "two-step", "global"}))
         ->capture_default_str();
     command
-        .add_option("--alpha", arguments.two_step.alpha, "two-step: part of each robot step taken")
+        .add_option("--alpha", options.two_step.alpha, "two-step: part of each robot step taken")
         ->check(real_number(1e-6, 1.0))
         ->capture_default_str();
     command
@@ -273,7 +174,7 @@ void add_options(CLI::App& command, Arguments& arguments) {
                     "isres or cmaes")
         ->check(CLI::IsMember({"random", "crs2", "esch", "isres", "cmaes"}))
         ->capture_default_str();
-    command.add_option("--starts", arguments.global.start_limit, "global: most starts")
+    command.add_option("--starts", options.global.start_limit, "global: most starts")
         ->check(whole_number(1, 1000000))
         ->capture_default_str();
     command
@@ -281,7 +182,7 @@ void add_options(CLI::App& command, Arguments& arguments) {
                     "Second measurement file, to judge the result on")
         ->check(file_name());
     command
-        .add_option("--folds", arguments.folds,
+        .add_option("--folds", options.folds,
                     "Groups to hold out in turn; 0: none (default: every configuration by "
                     "itself up to 100 of them, else 10)")
         ->check(whole_number(0, 1000000));
@@ -289,29 +190,15 @@ void add_options(CLI::App& command, Arguments& arguments) {
         ->check(CLI::IsMember({"squares", "huber", "cauchy"}))
         ->capture_default_str();
     command
-        .add_option("--loss-width", arguments.loss_width,
+        .add_option("--loss-width", options.joint.loss.width,
                     "Where the loss leaves squares, in robust standard deviations (default: 95 % "
                     "efficiency; three coordinates a target: huber 1.63, cauchy 2.67)")
         ->check(real_number(0.1, 1e6));
-    command.add_flag("--model-selection", arguments.model_selection,
+    command.add_flag("--model-selection", options.model_selection,
                      "Compare nested parameter sets by their held-out error");
     add_prior_option(command, arguments.prior, ": fewer poses than parameters will do");
     command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
         ->check(file_name());
-}
-
-/// Options of one method beside another would have no effect.
-void check_method_options(const CLI::App& command, const std::string& method) {
-    const std::vector<std::pair<std::string, std::string>> owners{
-        {"--alpha", "two-step"},
-        {"--length-error-percent", "global"},
-        {"--angle-error-deg", "global"},
-        {"--search", "global"},
-        {"--starts", "global"}};
-    for (const auto& [option, owner] : owners) {
-        if (method == owner || command.count(option) == 0) continue;
-        throw CLI::ValidationError(option, "needs --method " + owner);
-    }
 }
 
 }  // namespace
@@ -325,7 +212,7 @@ void add_calibrate(CLI::App& program) {
     add_options(*command, *arguments);
     command->footer(footer);
     command->callback([arguments, command] {
-        check_method_options(*command, arguments->method);
+        check_usage(*command, *arguments);
         calibrate(*arguments);
     });
 }

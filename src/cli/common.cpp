@@ -85,7 +85,7 @@ std::vector<Index> find_planned(const Measurements& measurements, const std::str
 void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 
 void print_section(const std::string& title, const Table& table) {
-    print('\n' + title + "\n\n" + format_table(table));
+    print(format_section(title, table));
 }
 
 void print_warning(const std::string& text) {
@@ -111,78 +111,12 @@ void check_memory(const Campaign& campaign, Index count, const std::string& opti
                     needed / bytes_per_gb, there / bytes_per_gb, option));
 }
 
-namespace {
-
-/// ", joints repeat to 0.01 mrad"; nothing if they repeat exactly. Several values as a range.
-std::string describe_repeatability(const Campaign& campaign) {
-    std::string text;
-    for (const Motion motion : {Motion::Rotation, Motion::Translation}) {
-        double least = std::numeric_limits<double>::infinity();
-        double largest = 0;
-        for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {
-            if (campaign.robot.joint(j).motion != motion) continue;
-            least = std::min(least, campaign.joint_repeatability[j]);
-            largest = std::max(largest, campaign.joint_repeatability[j]);
-        }
-        if (largest == 0) continue;
-        text += ", joints repeat to ";
-        if (least < largest) text += format_short(mm_per_m * least) + " to ";
-        text += format_error(largest, motion == Motion::Rotation);
-    }
-    return text;
-}
-
-}  // namespace
-
-std::string describe_model_error(const Campaign& campaign) {
-    const Sensor& sensor = *campaign.sensor;
-    std::string text;
-    if (sensor.has_lengths()) text = format_short(mm_per_m * campaign.model_error) + " mm";
-    if (!sensor.has_angles()) return text;
-    return text + (text.empty() ? "" : " and ") +
-           format_short(mrad_per_rad * campaign.model_error_orientation) + " mrad";
-}
-
-std::string describe_scaling(const Campaign& campaign, double repeats) {
-    std::string text = fmt::format(
-        "noise: {}, {}{}, model error {}\nscale: {} mm and {} mrad a parameter",
-        campaign.sensor->words().sentence,
-        repeats == 1 ? "single samples" : "mean of " + format_short(repeats) + " samples",
-        describe_repeatability(campaign), describe_model_error(campaign),
-        format_short(mm_per_m * campaign.spread.length),
-        format_short(mrad_per_rad * campaign.spread.angle));
-    const auto add = [&](TermKind kind, const char* what, double size) {
-        for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
-            const ErrorTerm* const term = campaign.robot.parameter_term(k);
-            if (term == nullptr || term->kind != kind) continue;
-            text += fmt::format(", {} mrad a {} term", format_short(mrad_per_rad * size), what);
-            return;
-        }
-    };
-    add(TermKind::Gravity, "gravity", campaign.spread.gravity);
-    add(TermKind::Harmonic, "harmonic", campaign.spread.harmonic);
-    if (!campaign.spread.by_name.empty()) text += ", others by name in the campaign file";
-    return text + '\n';
-}
-
 void check_torques_known(const std::string& campaign_path, const Chain& robot) {
     if (robot.torques().empty()) return;
     throw input_error_at(
         {campaign_path},
         "its torques are measured with each configuration, and of poses that are drawn nobody "
         "knows them; state robot.compliance.links and payload instead of torques_Nm");
-}
-
-std::string describe_looseness(double efficiency, Index starts_at_best, Index starts) {
-    constexpr double loose_efficiency = 0.9;
-    if (efficiency >= loose_efficiency) return "";
-    return fmt::format(
-        "the bound is loose at so few poses: {} of {} independent starts ended at this value",
-        starts_at_best, starts);
-}
-
-std::string format_error(double si_value, bool is_angle) {
-    return format_short(mm_per_m * si_value, 4) + ' ' + std::string(units_of(is_angle).error);
 }
 
 ProgressLine::ProgressLine(std::string label, bool asked_for)

@@ -6,6 +6,7 @@
 
 #include "posewise/core/progress.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/report/sentences.hpp"
 #include "posewise/report/table.hpp"
 
 /// What several subcommands share: their arguments, how they print.
@@ -39,20 +40,9 @@ void print_warning(const std::string& text);
 /// `option` is what says how many.
 void check_memory(const Campaign& campaign, Index count, const std::string& option);
 
-/// One sentence each: the model error (of what is measured: lengths, angles), and the noise and
-/// column scales that whitened, scaled numbers rest on.
-std::string describe_model_error(const Campaign& campaign);
-std::string describe_scaling(const Campaign& campaign, double repeats);
-
 /// Throws InputError for a robot whose torques are measured with each configuration: of poses that
 /// are drawn nobody knows them.
 void check_torques_known(const std::string& campaign_path, const Chain& robot);
-
-/// Says, where little is proven about a choice, what tells more; empty where it is nearly optimal.
-std::string describe_looseness(double efficiency, Index starts_at_best, Index starts);
-
-/// "1 mm", "-0.5 mrad": a small error with its unit.
-std::string format_error(double si_value, bool is_angle);
 
 /// A counter on standard error, shown if that is a terminal or the user asks for it.
 class ProgressLine {

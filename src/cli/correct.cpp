@@ -1,20 +1,17 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "options.hpp"
-#include "posewise/calibrator/correction.hpp"
-#include "posewise/core/errors.hpp"
-#include "posewise/core/format.hpp"
 #include "posewise/core/text.hpp"
-#include "posewise/core/units.hpp"
 #include "posewise/io/correction_file.hpp"
 #include "posewise/io/estimate_file.hpp"
+#include "posewise/report/correction_report.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -59,109 +56,27 @@ CorrectionOptions correction_options(const Arguments& arguments) {
     return options;
 }
 
-/// From the base frame of the estimate to that which the nominal poses are in.
-Isometry3d estimated_base_from_base(const Arguments& arguments, const Campaign& campaign,
-                                    const Parameters& found) {
-    if (arguments.base == "estimate") return Isometry3d::Identity();
-    if (!campaign.has_nominal_base) {
-        throw input_error_at({arguments.paths.campaign},
-                             "does not state a base; --base campaign needs it");
-    }
-    return found.world_from_base.inverse() * campaign.nominal.world_from_base;
-}
-
-std::vector<Correction> correct_all(const Arguments& arguments, const Campaign& campaign,
-                                    const Parameters& found, const io::Configurations& poses) {
-    const CorrectionOptions options = correction_options(arguments);
-    const Isometry3d base = estimated_base_from_base(arguments, campaign, found);
-    const VectorXd no_errors = VectorXd::Zero(campaign.robot.parameter_count());
-    std::vector<Correction> corrections;
-    for (Index i = 0; i < poses.joints.rows(); ++i) {
-        const VectorXd nominal = poses.joints.row(i).transpose();
-        try {
-            corrections.push_back(correct_configuration(
-                campaign.robot, found.robot, nominal,
-                base * campaign.robot.base_from_flange(nominal, no_errors), options));
-        } catch (const InputError& error) {
-            throw input_error_at(
-                {arguments.poses},
-                fmt::format("configuration {}: {}", quote(poses.ids[static_cast<std::size_t>(i)]),
-                            error.what()));
-        }
-    }
-    return corrections;
-}
-
-/// RMS and maximum before and after.
-Table error_table(const std::vector<Correction>& corrections) {
-    const auto count = static_cast<Index>(corrections.size());
-    Eigen::ArrayXXd errors(count, 4);
-    for (Index i = 0; i < count; ++i) {
-        const Correction& correction = corrections[static_cast<std::size_t>(i)];
-        errors.row(i) << correction.uncorrected.position, correction.residual.position,
-            correction.uncorrected.orientation, correction.residual.orientation;
-    }
-    const auto row = [&](const char* name, Index first, const auto& measure) {
-        return std::vector<std::string>{name, format_mm(measure(errors.col(first))),
-                                        format_mm(measure(errors.col(first + 1)))};
-    };
-    const auto rms = [&](const auto& column) { return std::sqrt(column.square().mean()); };
-    const auto largest = [](const auto& column) { return column.maxCoeff(); };
-    return {{"pose error", "uncorrected", "corrected"},
-            {row("position RMS/mm", 0, rms), row("position max/mm", 0, largest),
-             row("orientation RMS/mrad", 2, rms), row("orientation max/mrad", 2, largest)}};
-}
-
-Table change_table(const Campaign& campaign, const io::Configurations& poses,
-                   const std::vector<Correction>& corrections) {
-    Table table{{"joint", "largest change", ""}, {}};
-    for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
-        double largest = 0;
-        for (std::size_t i = 0; i < corrections.size(); ++i) {
-            const double change = corrections[i].joints[j] - poses.joints(static_cast<Index>(i), j);
-            largest = std::max(largest, std::abs(change));
-        }
-        const Joint& joint = campaign.robot.joint(j);
-        const AmountUnits& units = units_of(joint.motion);
-        table.rows.push_back(
-            {joint.name, format_fixed(units.to_reading(largest), 4), std::string(units.reading)});
-    }
-    return table;
-}
-
-/// The poses whose correction is not complete, the first ones.
-void print_shortfalls(const Campaign& campaign, const io::Configurations& poses,
-                      const std::vector<Correction>& corrections) {
-    constexpr std::size_t most = 20;
-    Table table{{"config", "left/mm", "left/mrad", "why"}, {}};
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < corrections.size(); ++i) {
-        const std::string why = describe_shortfall(campaign.robot, corrections[i]);
-        if (why.empty() || ++count > most) continue;
-        const PoseError& left = corrections[i].residual;
-        table.rows.push_back({escape_controls(poses.ids[i]), format_mm(left.position),
-                              format_mm(left.orientation), why});
-    }
-    if (count == 0) return;
-    print_section(fmt::format("Not corrected completely: {} of {}", count, corrections.size()),
-                  table);
-    if (count > most) print(fmt::format("... and {} more\n", count - most));
-}
-
 void correct(const Arguments& arguments) {
     check_outputs({arguments.paths.campaign, arguments.estimate, arguments.poses}, {arguments.out});
     const io::CampaignFile file = io::read_campaign(arguments.paths.campaign);
     const Parameters found = io::read_estimate(arguments.estimate, file);
     const io::Configurations poses = io::read_configurations(arguments.poses, file);
-    const auto corrections = correct_all(arguments, file, found, poses);
-    if (!arguments.out.empty()) {
-        io::write_corrections_csv(arguments.out, file, poses.ids, corrections);
+    const auto base =
+        arguments.base == "campaign" ? CorrectionBase::Campaign : CorrectionBase::Estimate;
+    if (base == CorrectionBase::Campaign && !file.has_nominal_base) {
+        throw input_error_at({arguments.paths.campaign},
+                             "does not state a base; --base campaign needs it");
     }
-    print(fmt::format("{}: {} configurations corrected{}\n", file.name, corrections.size(),
+    const CorrectedPoses corrected = compute_from(arguments.poses, [&] {
+        return correct_poses(file, found, poses.joints, poses.ids, base,
+                             correction_options(arguments));
+    });
+    if (!arguments.out.empty()) {
+        io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections);
+    }
+    print(fmt::format("{}: {} configurations corrected{}\n", file.name, poses.ids.size(),
                       arguments.out.empty() ? "" : ": " + escape_controls(arguments.out)));
-    print_section("Accuracy as the estimate predicts it", error_table(corrections));
-    print_section("Corrections", change_table(file, poses, corrections));
-    print_shortfalls(file, poses, corrections);
+    print(format(corrected));
 }
 
 void add_options(CLI::App& command, Arguments& arguments) {

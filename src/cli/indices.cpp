@@ -90,7 +90,7 @@ void print_indices(const Arguments& arguments) {
     const Campaign& campaign = file;
     const Measurements measurements = read_input(arguments, file);
     const Parameters registered = compute_from(arguments.paths.measurements, [&] {
-        return register_base_and_targets(campaign, measurements);
+        return determined(register_base_and_targets(campaign, measurements));
     });
     const double repeats = mean_repeats(measurements);
     const RowMatrixXd share = share_seen(measurements);

@@ -1,26 +1,19 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
-#include <map>
 #include <memory>
 
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
-#include "joint_directions.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/format.hpp"
 #include "posewise/core/text.hpp"
-#include "posewise/core/units.hpp"
 #include "posewise/io/atomic_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/io/urdf_file.hpp"
-#include "posewise/jacobian/identifiability.hpp"
-#include "posewise/model/complete_model.hpp"
-#include "posewise/model/error_terms.hpp"
-#include "robot_tables.hpp"
+#include "posewise/report/inspection_report.hpp"
+#include "posewise/report/joint_directions.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -55,164 +48,19 @@ struct Arguments {
     std::string measurements;
 };
 
-/// "1 mm Tx2 = 1 mm Tx1 - 0.78 mrad dq2". Both units are a thousandth of SI, so coefficients stay.
-std::string format_absorbed(const DroppedParameter& dropped, const std::vector<std::string>& names,
-                            const std::vector<bool>& is_angle) {
-    const auto unit = [&](Index k) {
-        return units_of(is_angle[static_cast<std::size_t>(k)]).error;
-    };
-    const auto name = [&](Index k) { return names[static_cast<std::size_t>(k)]; };
-    if (dropped.absorbed_by.empty()) return "moves no target";
-    std::string text;
-    for (const ParameterTerm& term : dropped.absorbed_by) {
-        const bool negative = term.coefficient < 0;
-        text += text.empty() ? (negative ? "-" : "") : (negative ? " - " : " + ");
-        text += fmt::format("{} {} {}", format_short(std::abs(term.coefficient), 4),
-                            unit(term.parameter), name(term.parameter));
-    }
-    return fmt::format("1 {} {} = {}", unit(dropped.parameter), name(dropped.parameter), text);
-}
-
-Table parameter_table(const Campaign& campaign, const Identifiability& identifiability) {
-    const auto names = parameter_names(campaign);
-    const auto is_angle = parameter_is_angle(campaign);
-    const VectorXd scale = parameter_scale(campaign);
-    std::map<Index, std::string> absorbed;
-    for (const DroppedParameter& dropped : identifiability.dropped) {
-        absorbed[dropped.parameter] = format_absorbed(dropped, names, is_angle);
-    }
-    Table table{{"parameter", "unit", "expected error", "identifiable", "absorbed by"}, {}};
-    for (std::size_t k = 0; k < names.size(); ++k) {
-        const auto index = static_cast<Index>(k);
-        const bool kept = absorbed.count(index) == 0;
-        table.rows.push_back({names[k], std::string(units_of(is_angle[k]).error),
-                              format_short(mm_per_m * scale[index]), kept ? "yes" : "no",
-                              kept ? "" : absorbed[index]});
-    }
-    return table;
-}
-
-/// "3n" with as many targets, all unknown, or "6" for an unknown tool: the cases formulas count.
-/// Empty for others.
-std::pair<std::string, Index> count_unknowns(const Campaign& campaign) {
-    if (base_parameter_count(campaign) < 6) return {};
-    const Sensor& sensor = *campaign.sensor;
-    const auto unknowns = static_cast<Index>(sensor.unknown_names().size());
-    if (sensor.has_orientation() && unknowns == 6) return {"6", 6};
-    if (!sensor.observes_targets() || unknowns < 3 * sensor.target_count()) return {};
-    return {"3n", unknowns};
-}
-
-std::string describe_formula(const Campaign& campaign) {
-    const auto [letters, unknowns] = count_unknowns(campaign);
-    if (unknowns == 0) return "";
-    Index revolute = 0;
-    for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
-        revolute += campaign.robot.joint(j).motion == Motion::Rotation ? 1 : 0;
-    }
-    const Index prismatic = campaign.robot.joint_count() - revolute;
-    Index terms = 0;
-    for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
-        terms += campaign.robot.parameter_term(k) != nullptr ? 1 : 0;
-    }
-    const std::string own = letters == "3n" ? fmt::format("3*{}", unknowns / 3) : letters;
-    return fmt::format("; by the formula 4R + 2P + {}{} = 4*{} + 2*{} + {}{} = {}", letters,
-                       terms > 0 ? " + terms" : "", revolute, prismatic, own,
-                       terms > 0 ? fmt::format(" + {}", terms) : "",
-                       4 * revolute + 2 * prismatic + unknowns + terms);
-}
-
-/// What the parameters of compliances are measured at; empty if there are none.
-std::string describe_compliances(const Chain& robot) {
-    std::string text;
-    for (const Compliance& compliance : compliances(robot)) {
-        const Joint& joint = robot.joint(compliance.joint);
-        text += fmt::format("{}{} {} {}", text.empty() ? "compliances are stated at " : ", ",
-                            joint.name, format_short(compliance.largest, 4),
-                            units_of(joint.motion).load);
-    }
-    return text.empty() ? "" : text + ", about the largest that occur\n";
-}
-
-/// The campaign with every error a rigid link can have.
-Campaign with_complete_model(const io::CampaignFile& file) {
-    return with_robot(file, complete_model(file.declared_robot));
-}
-
-std::string describe_complete(const Campaign& complete, std::size_t rank) {
-    return fmt::format("complete model: {} of its {} parameters are identifiable{}\n", rank,
-                       parameter_count(complete), describe_formula(complete));
-}
-
-/// Not with a prior: that holds what the poses hardly tell.
-void warn_about_gap(const std::string& path, const Campaign& campaign,
-                    const Identifiability& found) {
-    if (campaign.spread.is_prior || has_clear_gap(found)) return;
-    const auto names = parameter_names(campaign);
-    std::vector<std::string> weakest;
-    for (const Index k : weakest_kept(campaign, found)) {
-        weakest.push_back(names[static_cast<std::size_t>(k)]);
-    }
-    print_warning(fmt::format(
-        "{}: no gap between what is identifiable and what is not: of columns of norm 1 those "
-        "before leave {} of one that is kept and {} of one that is dropped; the weakest direction "
-        "kept is of {}: state fewer terms (orders of harmonics), a larger range of their joints, "
-        "or prior: true",
-        path, format_short(found.least_kept_residual, 2),
-        format_short(found.largest_dropped_residual, 2), fmt::join(weakest, ", ")));
-}
-
-void print_stated(const io::CampaignFile& file) {
-    const Campaign& campaign = file;
-    const Identifiability stated = find_identifiable(campaign);
-    const Campaign complete = with_complete_model(file);
-    const std::size_t rank = stated.kept.size();
-    const std::size_t complete_rank = find_identifiable(complete).kept.size();
-    print_section("Parameters", parameter_table(campaign, stated));
-    print(fmt::format("\nstated set: rank {} of {} parameters{}\n", rank, parameter_count(campaign),
-                      stated.dropped.empty() ? "" : ": rank deficient, drop those marked no"));
-    print(describe_complete(complete, complete_rank));
-    warn_about_gap(file.path, campaign, stated);
-    print(rank < complete_rank
-              ? fmt::format("The stated set spans only {} of these {} directions: errors of the "
-                            "robot in the other {} stay uncorrected.\n",
-                            rank, complete_rank, complete_rank - rank)
-              : "The stated set spans them all.\n");
-}
-
-void print_reduced(const io::CampaignFile& file) {
-    const Campaign complete = with_complete_model(file);
-    const Identifiability found = find_identifiable(complete);
-    print_section("Parameters of the complete model", parameter_table(complete, found));
-    print('\n' + describe_complete(complete, found.kept.size()));
-    print(
-        fmt::format("Of a column of norm 1, those before leave at least {} of one that is kept, "
-                    "at most {} of one that is dropped.\n",
-                    format_short(found.least_kept_residual, 2),
-                    format_short(found.largest_dropped_residual, 2)));
-    warn_about_gap(file.path, complete, found);
-}
-
 void print_campaign(const io::CampaignFile& file) {
-    const Campaign& campaign = file;
-    print(fmt::format("{}\nsensor: {}; model error {}\n", campaign.name,
-                      campaign.sensor->words().sentence, describe_model_error(campaign)));
+    print(fmt::format("{}\nsensor: {}; model error {}\n", file.name, file.sensor->words().sentence,
+                      describe_model_error(file)));
     if (file.urdf) {
         print(fmt::format("robot: {}, from base link {} to tip link {}\n",
                           escape_controls(file.urdf->path), quote(file.urdf->base_link),
                           quote(file.urdf->tip_link)));
     }
-    print_section("Elements, base to flange", element_table(campaign.robot));
-    print_section("Joint limits", joint_table(campaign.robot));
-    print_section("Axes in the base frame, all joints at zero", axis_table(campaign.robot));
-    print("\nflange at zero: " + describe_flange_at_zero(campaign.robot) + '\n');
-    if (file.error_model == io::ErrorModel::Complete) {
-        print_reduced(file);
-    } else {
-        print_stated(file);
-    }
-    print(describe_compliances(campaign.robot));
-    print(fmt::format("least number of poses: {}\n", least_pose_count(campaign)));
+    const bool is_stated = file.error_model == io::ErrorModel::Stated;
+    const Inspection inspection = posewise::inspect(file, file.declared_robot, is_stated);
+    const std::string gap = describe_gap(inspection);
+    if (!gap.empty()) print_warning(file.path + ": " + gap);
+    print(format(inspection));
 }
 
 bool is_urdf(const Arguments& arguments) {
@@ -243,17 +91,26 @@ void inspect_urdf(const Arguments& arguments) {
     }
 }
 
+/// How to reverse joints where the campaign's robot comes from.
+std::string advise_reversal(const io::CampaignFile& file) {
+    if (file.urdf) return "turn their axes round in " + escape_controls(file.urdf->path);
+    return "write each with the opposite sign (-q for q) wherever it stands in the campaign file";
+}
+
 void inspect(const Arguments& arguments) {
     if (is_urdf(arguments)) return inspect_urdf(arguments);
     const io::CampaignFile file = io::read_campaign(arguments.file);
     std::vector<SignPattern> patterns;
     if (!arguments.measurements.empty()) {
         const Measurements measurements = io::read_measurements(arguments.measurements, file);
-        patterns = compute_from(arguments.measurements,
-                                [&] { return fit_joint_signs(file, measurements); });
+        patterns = compute_from(arguments.measurements, [&] {
+            JointSigns signs = fit_joint_signs(file, measurements);
+            if (!signs.undetermined.empty()) throw InputError(signs.undetermined);
+            return std::move(signs.patterns);
+        });
     }
     print_campaign(file);
-    if (!patterns.empty()) print_joint_directions(file, patterns);
+    if (!patterns.empty()) print(describe_joint_directions(file, patterns, advise_reversal(file)));
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ void settle_base(Campaign& campaign, const std::optional<Measurements>& measured
                          (campaign.has_nominal_base ? key : "base") + "; must state base and " +
                          key + " to plan, or measured poses (--augment) must tell them");
     }
-    campaign.nominal = register_base_and_targets(campaign, *measured);
+    campaign.nominal = determined(register_base_and_targets(campaign, *measured));
     campaign.nominal.robot.setZero();
     campaign.has_nominal_base = campaign.has_nominal_targets = true;
 }

@@ -155,7 +155,8 @@ Parameters find_parameters(const SelectionProblem& problem,
                            const std::optional<Measurements>& augment) {
     const Campaign& campaign = *problem.campaign;
     const auto register_from = [&](const std::string& path, const Measurements& measured) {
-        return compute_from(path, [&] { return register_base_and_targets(campaign, measured); });
+        return compute_from(
+            path, [&] { return determined(register_base_and_targets(campaign, measured)); });
     };
     if (candidates) return register_from(problem.request.source.path, *candidates);
     if (campaign.has_nominal_base && campaign.has_nominal_targets) return campaign.nominal;

@@ -119,19 +119,18 @@ std::string leave_script(const std::string& script, const std::string& image_pat
     return "; its script is left, try: gnuplot " + path;
 }
 
-/// Draws elsewhere, so that the image is replaced by a whole one or not at all. `script_for` gives
-/// the script for an image's path.
-template <class ScriptFor>
-void draw_plot(const std::string& image_path, ScriptFor&& script_for) {
+/// Draws elsewhere, so that the image is replaced by a whole one or not at all.
+void draw_plot(const std::string& image_path, const Study& study) {
     const ScratchFolder folder;
     const std::string image = folder.path_of("image" + fs::path(image_path).extension().string());
     const std::string script = folder.path_of("script.gnuplot");
-    io::write_file(script, script_for(image));
+    io::write_file(script, study_plot_script(study, image));
     try {
         run_gnuplot(script);
     } catch (const InputError& error) {
-        throw input_error_at({image_path}, std::string("the plot was not drawn, ") + error.what() +
-                                               leave_script(script_for(image_path), image_path));
+        throw input_error_at({image_path},
+                             std::string("the plot was not drawn, ") + error.what() +
+                                 leave_script(study_plot_script(study, image_path), image_path));
     }
     io::write_file(image_path, io::read_file(image));
 }
@@ -144,7 +143,6 @@ void study(const Arguments& arguments) {
     bool& is_prior = file.spread.is_prior;
     is_prior = arguments.prior.value_or(is_prior);
     const auto measurements = read_measured(arguments.paths.measurements, file);
-    check_is_of_robot(file, measurements, arguments.paths.measurements);
     StudyOptions options = arguments.options;
     options.seed = arguments.seed.value_or(file.seed);
     options.criteria = arguments.criteria;
@@ -152,18 +150,14 @@ void study(const Arguments& arguments) {
 
     ProgressLine line("calibrating", arguments.progress);
     options.progress = [&](const Progress& progress) { line(progress); };
-    const auto rows = compute_from(arguments.paths.measurements, [&] {
-        return study_pose_counts(file, measurements, options);
-    });
-    print(format_table(study_table(options.criteria, rows)));
-    if (!arguments.csv.empty()) {
-        io::write_file(arguments.csv, study_csv(options.criteria, rows, measurements.ids));
+    const Study result = compute_from(arguments.paths.measurements,
+                                      [&] { return posewise::study(file, measurements, options); });
+    if (result.ending == Ending::NotIdentifiable) {
+        throw input_error_at({arguments.paths.measurements}, result.undetermined);
     }
-    if (!arguments.plot.empty()) {
-        draw_plot(arguments.plot, [&](const std::string& image) {
-            return study_plot_script(options.criteria, rows, file.name, image);
-        });
-    }
+    print(format(result));
+    if (!arguments.csv.empty()) io::write_file(arguments.csv, study_csv(result));
+    if (!arguments.plot.empty()) draw_plot(arguments.plot, result);
 }
 
 void add_options(CLI::App& command, Arguments& arguments) {

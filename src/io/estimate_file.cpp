@@ -113,20 +113,20 @@ Json held_out_to_json(const CrossValidation& held_out) {
             {"failures", held_out.failures}};
 }
 
-Json accuracy_to_json(const CalibrationReport& report) {
-    Json accuracy = {{"nominal", metrics_to_json(report.nominal)},
-                     {"fit", metrics_to_json(report.estimate.fit)},
-                     {"fit_means", metrics_to_json(report.estimate.fit_means)}};
-    if (report.repeatability) {
-        accuracy["repeatability_mm"] = mm * report.repeatability->length;
-        if (report.nominal.has_orientation) {
-            accuracy["repeatability_mrad"] = 1e3 * report.repeatability->orientation;
+Json accuracy_to_json(const Calibration& calibration) {
+    Json accuracy = {{"nominal", metrics_to_json(calibration.nominal)},
+                     {"fit", metrics_to_json(calibration.estimate.fit)},
+                     {"fit_means", metrics_to_json(calibration.estimate.fit_means)}};
+    if (calibration.repeatability) {
+        accuracy["repeatability_mm"] = mm * calibration.repeatability->length;
+        if (calibration.nominal.has_orientation) {
+            accuracy["repeatability_mrad"] = 1e3 * calibration.repeatability->orientation;
         }
     }
-    if (report.held_out) accuracy["held_out"] = held_out_to_json(*report.held_out);
-    if (report.left_out) accuracy["left_out"] = metrics_to_json(*report.left_out);
-    if (report.validation) accuracy["validation"] = metrics_to_json(*report.validation);
-    if (const auto& others = report.without_outliers) {
+    if (calibration.held_out) accuracy["held_out"] = held_out_to_json(*calibration.held_out);
+    if (calibration.left_out) accuracy["left_out"] = metrics_to_json(*calibration.left_out);
+    if (calibration.validation) accuracy["validation"] = metrics_to_json(*calibration.validation);
+    if (const auto& others = calibration.without_outliers) {
         accuracy["without_outliers"] = {{"fit_means_rms_mm", mm * others->fit_rms}};
         if (others->held_out_rms) {
             accuracy["without_outliers"]["held_out_means_rms_mm"] = mm * *others->held_out_rms;
@@ -178,14 +178,15 @@ Json selection_to_json(const ModelSelection& selection) {
 
 }  // namespace
 
-void write_estimate(const std::string& path, const Campaign& campaign,
-                    const CalibrationReport& report) {
-    const Estimate& estimate = report.estimate;
+void write_estimate(const std::string& path, const Calibration& calibration,
+                    const std::string& measurements) {
+    const Campaign& campaign = calibration.campaign;
+    const Estimate& estimate = calibration.estimate;
     const VectorXd sigmas = standard_deviations(estimate);
     Json document = make_document("estimate");
     document["campaign"] = campaign.name;
-    document["measurements"] = report.measurements;
-    document["method"] = report.method;
+    document["measurements"] = measurements;
+    document["method"] = method_name(calibration.method);
     document["ending"] = ending_name(estimate.ending);
     document["iterations"] = estimate.iterations;
     document["degrees_of_freedom"] = estimate.degrees_of_freedom;
@@ -199,13 +200,14 @@ void write_estimate(const std::string& path, const Campaign& campaign,
     }
     document["sigma"] = other_sigmas_to_json(campaign, estimate, sigmas);
     document["strongest_correlations"] = correlations_to_json(estimate);
-    document["accuracy"] = accuracy_to_json(report);
+    document["accuracy"] = accuracy_to_json(calibration);
     if (estimate.loss.kind != LossKind::Squares) {
         document["loss"] = {{"kind", loss_name(estimate.loss.kind)},
                             {"width_standard_deviations", estimate.loss.width}};
         document["outliers"] = outliers_to_json(estimate);
     }
-    if (report.selection) document["model_selection"] = selection_to_json(*report.selection);
+    if (calibration.selection)
+        document["model_selection"] = selection_to_json(*calibration.selection);
     document["assumes"] = assumptions_to_json(campaign);
     write_json(path, document);
 }

@@ -161,17 +161,15 @@ void check_image_path(const std::string& path) {
     }
 }
 
-std::string study_plot_script(const std::vector<Criterion>& criteria,
-                              const std::vector<StudyRow>& rows, const std::string& title,
-                              const std::string& image_path) {
+std::string study_plot_script(const Study& study, const std::string& image_path) {
     check_image_path(image_path);
-    const ErrorAxis axis = find_error_axis(rows);
+    const ErrorAxis axis = find_error_axis(study.rows);
     if (axis.is_empty()) {
         throw InputError(
             "the study has no held-out error to plot: no subset that left a "
             "configuration out identified the model");
     }
-    const Drawing drawing = draw(criteria, rows, axis);
+    const Drawing drawing = draw(study.criteria, study.rows, axis);
     return fmt::format(
         "set terminal {}\nset output {}\nset title {} noenhanced\n"
         "set xlabel 'poses used for calibration'\n"
@@ -181,7 +179,7 @@ std::string study_plot_script(const std::vector<Criterion>& criteria,
         "set border 3 lc rgb '#5f6b77'\nset grid ytics lc rgb '#dfe3e8'\n"
         "set offsets graph 0.02, graph 0.02\nset key top right reverse Left\n"
         "{}{}\nset output\n",
-        terminal(image_path), quote(image_path), quote(title), count_axis(rows),
+        terminal(image_path), quote(image_path), quote(study.campaign), count_axis(study.rows),
         format_short(axis.lower), format_short(axis.upper), axis.format_ticks(), drawing.data,
         drawing.clauses);
 }

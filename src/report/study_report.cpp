@@ -45,16 +45,16 @@ std::string csv_line(const StudyRow& row, const StudyCase& study_case, std::stri
 
 }  // namespace
 
-Table study_table(const std::vector<Criterion>& criteria, const std::vector<StudyRow>& rows) {
+Table study_table(const Study& study) {
     Table table;
     table.header = {"poses"};
-    for (const Criterion criterion : criteria) {
+    for (const Criterion criterion : study.criteria) {
         table.header.push_back(std::string(criterion_name(criterion)) + "/mm");
     }
     for (const char* name : {"random 10 %/mm", "50 %/mm", "90 %/mm", "subsets", "unidentified"}) {
         table.header.emplace_back(name);
     }
-    for (const StudyRow& row : rows) {
+    for (const StudyRow& row : study.rows) {
         std::vector<std::string> cells{std::to_string(row.pose_count)};
         for (const StudyCase& optimal : row.optimal) {
             cells.push_back(cell(held_out_quantile({optimal}, 0.5)));
@@ -68,17 +68,20 @@ Table study_table(const std::vector<Criterion>& criteria, const std::vector<Stud
     return table;
 }
 
-std::string study_csv(const std::vector<Criterion>& criteria, const std::vector<StudyRow>& rows,
-                      const std::vector<std::string>& configuration_ids) {
+std::string format(const Study& study) {
+    if (study.ending == Ending::NotIdentifiable) return study.undetermined + '\n';
+    return format_table(study_table(study));
+}
+
+std::string study_csv(const Study& study) {
     std::string text =
         "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,configurations\n";
-    for (const StudyRow& row : rows) {
+    for (const StudyRow& row : study.rows) {
         for (std::size_t i = 0; i < row.optimal.size(); ++i) {
-            text +=
-                csv_line(row, row.optimal[i], criterion_name(criteria[i]), 0, configuration_ids);
+            text += csv_line(row, row.optimal[i], criterion_name(study.criteria[i]), 0, study.ids);
         }
         for (std::size_t i = 0; i < row.random.size(); ++i) {
-            text += csv_line(row, row.random[i], "random", i, configuration_ids);
+            text += csv_line(row, row.random[i], "random", i, study.ids);
         }
     }
     return text;

@@ -58,4 +58,8 @@ std::string format_table(const Table& table) {
     return text;
 }
 
+std::string format_section(const std::string& title, const Table& table) {
+    return '\n' + title + "\n\n" + format_table(table);
+}
+
 }  // namespace posewise

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
@@ -11,6 +12,7 @@
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/selection/exchange.hpp"
+#include "posewise/task/doubts.hpp"
 
 namespace posewise {
 namespace {
@@ -31,14 +33,26 @@ struct Job {
     std::size_t number = 0;  ///< which criterion, or which random subset
 };
 
-Blocks make_study_blocks(const Campaign& campaign, const Measurements& measurements) {
-    const Parameters registered = register_base_and_targets(campaign, measurements);
-    // Nothing can be studied if not even all configurations identify the model: this says why.
-    identify(campaign, measurements, registered);
+Blocks make_study_blocks(const Campaign& campaign, const Measurements& measurements,
+                         const Parameters& registered) {
     const double mean_repeats = static_cast<double>(measurements.observations.rows()) /
                                 static_cast<double>(measurements.configuration_count());
     return make_blocks(campaign, registered, measurements.configurations,
                        mean_repeats * share_seen(measurements));
+}
+
+/// Why not even all configurations identify the model; empty: they do.
+std::string describe_undetermined(const Campaign& campaign, const Measurements& measurements,
+                                  const Registration& registration) {
+    if (!registration.is_determined()) return registration.undetermined;
+    return identify(campaign, measurements, registration.parameters).undetermined;
+}
+
+void check_options(const StudyOptions& options) {
+    if (options.random_subsets >= 0 && options.starts >= 1) return;
+    throw InputError("random subsets and starts must be at least 0 and 1, are " +
+                     std::to_string(options.random_subsets) + " and " +
+                     std::to_string(options.starts));
 }
 
 std::vector<Index> choose_pose_counts(const Campaign& campaign, const Measurements& measurements,
@@ -79,25 +93,28 @@ std::vector<Index> choose_poses(const Setting& setting, const Job& job) {
     return select_poses(setting.blocks, options).poses;
 }
 
-/// Leaves the case "not identified" if its poses cannot be found or do not identify the model.
+/// Leaves the case "not identified" if its poses cannot be found or do not identify the model:
+/// that is what a study is to show.
 void run(const Setting& setting, const Job& job) {
+    StudyCase& result = *job.result;
     try {
-        StudyCase& result = *job.result;
         result.poses = choose_poses(setting, job);
-        const Measurements& measurements = setting.measurements;
-        const Measurements chosen = take(measurements, result.poses);
-        const Parameters start = register_base_and_targets(setting.campaign, chosen);
-        const Estimate estimate = identify(setting.campaign, chosen, start);
-        const auto left_out = all_but(measurements.configuration_count(), result.poses);
-        if (!left_out.empty()) {
-            result.held_out = make_metrics(
-                mean_residuals(setting.campaign, estimate.parameters, take(measurements, left_out)),
-                setting.campaign.sensor->lengths_per_target());
-        }
-        result.identified = true;
     } catch (const InputError&) {
-        // Counted, not fatal: too few or badly spread poses are what a study is to show.
+        return;
     }
+    const Measurements& measurements = setting.measurements;
+    const Measurements chosen = take(measurements, result.poses);
+    const Registration start = register_base_and_targets(setting.campaign, chosen);
+    if (!start.is_determined()) return;
+    const Estimate estimate = identify(setting.campaign, chosen, start.parameters);
+    if (estimate.ending == Ending::NotIdentifiable) return;
+    const auto left_out = all_but(measurements.configuration_count(), result.poses);
+    if (!left_out.empty()) {
+        result.held_out = make_metrics(
+            mean_residuals(setting.campaign, estimate.parameters, take(measurements, left_out)),
+            setting.campaign.sensor->lengths_per_target());
+    }
+    result.identified = true;
 }
 
 /// The cases of all rows; pointers into `rows`, which must not be resized any more.
@@ -114,18 +131,7 @@ std::vector<Job> list_jobs(std::vector<StudyRow>& rows) {
     return jobs;
 }
 
-}  // namespace
-
-std::vector<StudyRow> study_pose_counts(const Campaign& campaign, const Measurements& measurements,
-                                        const StudyOptions& options) {
-    if (options.random_subsets < 0 || options.starts < 1) {
-        throw InputError("random subsets and starts must be at least 0 and 1, are " +
-                         std::to_string(options.random_subsets) + " and " +
-                         std::to_string(options.starts));
-    }
-    const auto counts = choose_pose_counts(campaign, measurements, options.pose_counts);
-    const Setting setting{campaign, measurements, options,
-                          make_study_blocks(campaign, measurements)};
+std::vector<StudyRow> make_rows(const std::vector<Index>& counts, const StudyOptions& options) {
     std::vector<StudyRow> rows;
     for (const Index count : counts) {
         StudyRow row;
@@ -134,14 +140,46 @@ std::vector<StudyRow> study_pose_counts(const Campaign& campaign, const Measurem
         row.random.resize(static_cast<std::size_t>(options.random_subsets));
         rows.push_back(std::move(row));
     }
+    return rows;
+}
+
+/// Runs all cases; of a study that is stopped, those rows stay that are complete.
+void run_all(const Setting& setting, std::vector<StudyRow>& rows) {
     const std::vector<Job> jobs = list_jobs(rows);
+    std::vector<char> is_done(jobs.size(), 0);
     const auto count = static_cast<Index>(jobs.size());
-    ProgressCounter counter(options.progress, count);
+    ProgressCounter counter(setting.options.progress, count);
     for_each_index(count, [&](Index i) {
-        run(setting, jobs[static_cast<std::size_t>(i)]);
+        if (setting.options.stop.is_set()) return;
+        const auto k = static_cast<std::size_t>(i);
+        run(setting, jobs[k]);
+        is_done[k] = 1;
         counter.count();
     });
-    return rows;
+    std::set<Index> open;
+    for (std::size_t k = 0; k < jobs.size(); ++k) {
+        if (is_done[k] == 0) open.insert(jobs[k].pose_count);
+    }
+    std::erase_if(rows, [&](const StudyRow& row) { return open.contains(row.pose_count); });
+}
+
+}  // namespace
+
+Study study(const Campaign& campaign, const Measurements& measurements,
+            const StudyOptions& options) {
+    const Registration registration = register_base_and_targets(campaign, measurements);
+    check_is_of_robot(campaign, measurements, registration);
+    check_options(options);
+    const auto counts = choose_pose_counts(campaign, measurements, options.pose_counts);
+    Study study{campaign.name, measurements.ids, options.criteria, {}, Ending::NotIdentifiable, {}};
+    study.undetermined = describe_undetermined(campaign, measurements, registration);
+    if (!study.undetermined.empty()) return study;
+    const Setting setting{campaign, measurements, options,
+                          make_study_blocks(campaign, measurements, registration.parameters)};
+    study.rows = make_rows(counts, options);
+    run_all(setting, study.rows);
+    study.ending = options.stop.ending_or(Ending::Converged);
+    return study;
 }
 
 std::optional<double> held_out_quantile(const std::vector<StudyCase>& cases, double p) {

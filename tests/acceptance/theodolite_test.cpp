@@ -183,8 +183,8 @@ TEST(ATheodolite, CalibratesTheRobotToWhatItsNoiseAllows) {
     const Simulation simulated =
         simulate(campaign, {.pose_count = 80, .repeats = 2, .truth_seed = 6, .seed = 5});
     const Measurements& measured = simulated.measurements;
-    const Estimate estimate =
-        identify(campaign, measured, register_base_and_targets(campaign, measured));
+    const Calibration calibration = calibrate(campaign, measured, {.folds = 0});
+    const Estimate& estimate = calibration.estimate;
     EXPECT_EQ(estimate.ending, Ending::Converged);
     EXPECT_NEAR(estimate.variance_factor, 1,
                 4 * std::sqrt(2.0 / static_cast<double>(estimate.degrees_of_freedom)));
@@ -240,14 +240,12 @@ TEST(ATheodolite, HasFilesOfMeasurements) {
 TEST(ATheodolite, HasFilesOfEstimates) {
     const Campaign campaign = theodolite_campaign();
     const Measurements measured = simulate(campaign, {.pose_count = 40}).measurements;
-    io::CalibrationReport report;
-    report.method = "lm";
-    report.estimate = identify(campaign, measured, campaign.nominal);
+    const Calibration calibration = calibrate(campaign, measured, {.folds = 0});
     const TemporaryFolder folder;
-    io::write_estimate(folder.path("estimate.json"), campaign, report);
+    io::write_estimate(folder.path("estimate.json"), calibration, "measured.csv");
     const Parameters again = io::read_estimate(folder.path("estimate.json"), campaign);
-    EXPECT_EQ(again.robot, report.estimate.parameters.robot);
-    EXPECT_EQ(again.sensor, report.estimate.parameters.sensor);
+    EXPECT_EQ(again.robot, calibration.estimate.parameters.robot);
+    EXPECT_EQ(again.sensor, calibration.estimate.parameters.sensor);
 }
 
 TEST(ATheodolite, DescribesItself) {

@@ -27,7 +27,8 @@ void BM_calibration_by_levenberg_marquardt(benchmark::State& state) {
     const Scene scene;
     Estimate estimate;
     for (auto _ : state) {
-        const Parameters start = register_base_and_targets(scene.campaign, scene.measurements);
+        const Parameters start =
+            register_base_and_targets(scene.campaign, scene.measurements).parameters;
         estimate = identify(scene.campaign, scene.measurements, start);
     }
     if (estimate.ending != Ending::Converged) state.SkipWithError("did not converge");
@@ -38,7 +39,8 @@ BENCHMARK(BM_calibration_by_levenberg_marquardt)->Unit(benchmark::kMillisecond);
 void BM_calibration_by_two_steps(benchmark::State& state) {
     const Scene scene;
     for (auto _ : state) {
-        const Parameters start = register_base_and_targets(scene.campaign, scene.measurements);
+        const Parameters start =
+            register_base_and_targets(scene.campaign, scene.measurements).parameters;
         benchmark::DoNotOptimize(identify_two_step(scene.campaign, scene.measurements, start));
     }
 }
@@ -46,7 +48,8 @@ BENCHMARK(BM_calibration_by_two_steps)->Unit(benchmark::kMillisecond);
 
 void BM_leave_one_configuration_out(benchmark::State& state) {
     const Scene scene;
-    const Parameters start = register_base_and_targets(scene.campaign, scene.measurements);
+    const Parameters start =
+        register_base_and_targets(scene.campaign, scene.measurements).parameters;
     for (auto _ : state) {
         benchmark::DoNotOptimize(cross_validate(scene.campaign, scene.measurements, start, 24));
     }

@@ -35,7 +35,8 @@ Campaign precise_campaign(const Chain& robot) {
 Calibrated calibrate(const Chain& robot) {
     const Campaign campaign = precise_campaign(robot);
     const Simulation simulation = simulate(campaign, {.pose_count = 40, .truth_seed = 7});
-    const Parameters start = register_base_and_targets(campaign, simulation.measurements);
+    const Parameters start =
+        register_base_and_targets(campaign, simulation.measurements).parameters;
     return {campaign, simulation.truth,
             identify(campaign, simulation.measurements, start).parameters};
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/model/error_terms.hpp"
@@ -63,12 +64,18 @@ TEST(NestedParameterSets, HoldOneAnotherUpToTheWholeModel) {
     EXPECT_EQ(nested_parameter_sets(without_parameters(chain)).size(), 1U);
 }
 
+ModelSelection select(const Campaign& campaign, const Measurements& measurements, Index folds,
+                      const LevenbergMarquardtOptions& options = {}) {
+    const Registration registered = register_base_and_targets(campaign, measurements);
+    return select_model(campaign, measurements, registered.parameters, folds, options);
+}
+
 TEST(SelectModel, RecommendsTheSetThatMadeTheErrors) {
     const Campaign campaign = tracked_campaign(fanuc_with_terms());
     const auto sets = nested_parameter_sets(campaign.robot);
     for (const std::size_t truth : {1U, 3U, 4U}) {
         const Measurements measurements = simulate_errors_of(campaign, sets[truth], 10 + truth);
-        const ModelSelection selection = select_model(campaign, measurements, 10);
+        const ModelSelection selection = select(campaign, measurements, 10);
         ASSERT_EQ(selection.trials.size(), sets.size());
         EXPECT_EQ(recommended(selection).set.name, sets[truth].name);
         EXPECT_GE(selection.best, selection.recommended);
@@ -85,7 +92,7 @@ TEST(SelectModel, RecommendsTheSetThatMadeTheErrors) {
 TEST(SelectModel, GivesTheHeldOutErrorsOfCrossValidation) {
     const Campaign campaign = tracked_campaign(testing::fanuc());
     const Measurements measurements = simulate(campaign, {16, 2, 7, 8}).measurements;
-    const ModelSelection selection = select_model(campaign, measurements, 16);
+    const ModelSelection selection = select(campaign, measurements, 16);
     const CrossValidation held_out = cross_validate(campaign, measurements, campaign.nominal, 16);
     const ModelTrial& whole = selection.trials.back();
     EXPECT_EQ(whole.parameter_count, 33);
@@ -104,7 +111,7 @@ TEST(SelectModel, PassesOverSetsThatCannotBeIdentified) {
     std::vector<Element> elements = campaign.robot.elements();
     elements.insert(elements.begin() + 5, testing::translation(Axis::X, 0, "Tx2"));
     campaign = with_robot(campaign, Chain(campaign.robot.joints(), elements));
-    const ModelSelection selection = select_model(campaign, measurements, 24);
+    const ModelSelection selection = select(campaign, measurements, 24);
     ASSERT_EQ(selection.trials.size(), 4U);
     EXPECT_EQ(selection.recommended, 1);
     EXPECT_EQ(selection.best, 1);
@@ -117,11 +124,11 @@ TEST(SelectModel, PassesOverSetsThatCannotBeIdentified) {
 TEST(SelectModel, RecommendsNothingIfNoFoldCanBeIdentified) {
     const Campaign campaign = tracked_campaign(testing::fanuc());
     const auto measurements = simulate(campaign, {3, 1, 7, 8}).measurements;
-    const ModelSelection selection = select_model(campaign, measurements, 2);
+    const ModelSelection selection = select(campaign, measurements, 2);
     EXPECT_EQ(selection.best, -1);
     EXPECT_EQ(selection.recommended, -1);
     for (const ModelTrial& trial : selection.trials) EXPECT_FALSE(trial.failure.empty());
-    EXPECT_THROW(select_model(campaign, measurements, 4), InputError);
+    EXPECT_THROW(select(campaign, measurements, 4), InputError);
 }
 
 TEST(SelectModel, UnderARobustLossIsNotMisledByOutliers) {
@@ -131,13 +138,13 @@ TEST(SelectModel, UnderARobustLossIsNotMisledByOutliers) {
     for (const Index i : {3, 17, 30}) measurements.observations(i, 4) += 5e-3;
     LevenbergMarquardtOptions options;
     options.loss.kind = LossKind::Cauchy;
-    const ModelSelection robust = select_model(campaign, measurements, 10, options);
+    const ModelSelection robust = select(campaign, measurements, 10, options);
     ASSERT_EQ(robust.not_judged.size(), 3U);
     EXPECT_EQ(robust.not_judged[1].configuration, 17);
     EXPECT_EQ(robust.not_judged[1].target, 1);
     EXPECT_EQ(recommended(robust).set.name, "+ other geometric");
     EXPECT_LT(recommended(robust).held_out_rms, 3e-4);
-    const ModelSelection squares = select_model(campaign, measurements, 10);
+    const ModelSelection squares = select(campaign, measurements, 10);
     EXPECT_GT(squares.trials[3].held_out_rms, 5e-4);
 }
 

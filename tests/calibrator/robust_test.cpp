@@ -155,7 +155,7 @@ TEST(RobustIdentify, WithstandsGrossErrorsAndListsThem) {
             const double clean =
                 error_of(identify(campaign, measurements, truth).parameters, truth).norm();
             const Places spoiled = spoil(measurements, 0.08, run);
-            const Parameters start = register_base_and_targets(campaign, measurements);
+            const Parameters start = register_base_and_targets(campaign, measurements).parameters;
             const Estimate estimate = identify(campaign, measurements, start, with_loss(kind));
             const VectorXd error = error_of(estimate.parameters, truth);
             mahalanobis += error.dot(estimate.covariance.ldlt().solve(error)) / runs;
@@ -179,7 +179,7 @@ TEST(RobustIdentify, DoesNotDependOnHowLargeTheNoiseIsSaidToBe) {
     Campaign campaign = tracked_campaign(testing::fanuc());
     Measurements measurements = simulate_with(campaign, draw_truth(campaign, 3), 5);
     const Places spoiled = spoil(measurements, 0.08, 5);
-    const Parameters start = register_base_and_targets(campaign, measurements);
+    const Parameters start = register_base_and_targets(campaign, measurements).parameters;
     const Estimate right = identify(campaign, measurements, start, with_loss(LossKind::Cauchy));
     campaign.sensor =
         std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(3, std::nullopt), 5e-7);
@@ -195,7 +195,7 @@ TEST(RobustIdentify, DoesNotDependOnHowLargeTheNoiseIsSaidToBe) {
 TEST(RobustIdentify, WithAVeryLargeWidthIsLeastSquares) {
     const Campaign campaign = tracked_campaign(testing::fanuc());
     const Measurements measurements = simulate_with(campaign, draw_truth(campaign, 3), 5);
-    const Parameters start = register_base_and_targets(campaign, measurements);
+    const Parameters start = register_base_and_targets(campaign, measurements).parameters;
     const Estimate squares = identify(campaign, measurements, start);
     for (const LossKind kind : robust_kinds) {
         const Estimate robust = identify(campaign, measurements, start, with_loss(kind, 1e6));

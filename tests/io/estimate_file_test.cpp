@@ -19,7 +19,7 @@ class EstimateFile : public ::testing::Test {
   protected:
     EstimateFile() {
         campaign_ = read_campaign(folder_.write("c.yaml", testing::campaign_text));
-        Estimate& estimate = report_.estimate;
+        Estimate& estimate = calibration_.estimate;
         const Index count = parameter_count(campaign_);
         estimate.ending = Ending::Converged;
         estimate.names = parameter_names(campaign_);
@@ -30,25 +30,25 @@ class EstimateFile : public ::testing::Test {
         estimate.covariance(0, 1) = estimate.covariance(1, 0) = -0.9e-8;
         estimate.fit.distance_rms = 1.5e-4;
         estimate.fit.coordinate_max = {1e-3, 2e-3, 3e-3};
-        report_.method = "lm";
-        report_.measurements = "m.csv";
     }
 
     Json written() const {
-        write_estimate(path_, campaign_, report_);
+        Calibration calibration = calibration_;
+        calibration.campaign = campaign_;
+        write_estimate(path_, calibration, "m.csv");
         return Json::parse(read_file(path_));
     }
 
     testing::TemporaryFolder folder_;
     std::string path_ = folder_.path("estimate.json");
     Campaign campaign_;
-    CalibrationReport report_;
+    Calibration calibration_;
 };
 
 TEST_F(EstimateFile, GivesEachRobotParameterWithItsUnitAndSigma) {
     const Json robot = written().at("robot");
     EXPECT_EQ(robot.size(), 4U);
-    const VectorXd& values = report_.estimate.parameters.robot;
+    const VectorXd& values = calibration_.estimate.parameters.robot;
     EXPECT_EQ(robot.at("dq1").at("value_rad").get<double>(), values[0]);
     EXPECT_EQ(robot.at("Tx1").at("value_m").get<double>(), values[1]);
     EXPECT_EQ(robot.at("Ty2").at("value_m").get<double>(), values[3]);
@@ -57,7 +57,7 @@ TEST_F(EstimateFile, GivesEachRobotParameterWithItsUnitAndSigma) {
 
 TEST_F(EstimateFile, GivesTheBaseThreeWaysThatAgree) {
     const Json base = written().at("base");
-    const Isometry3d& expected = report_.estimate.parameters.world_from_base;
+    const Isometry3d& expected = calibration_.estimate.parameters.world_from_base;
     const auto p = base.at("position_m").get<std::vector<double>>();
     EXPECT_EQ(Vector3d(p[0], p[1], p[2]), expected.translation());
     const auto q = base.at("quaternion_wxyz").get<std::vector<double>>();
@@ -74,7 +74,7 @@ TEST_F(EstimateFile, GivesTheBaseThreeWaysThatAgree) {
 TEST_F(EstimateFile, GivesTheTargetsByName) {
     const Json target = written().at("targets").at("target2");
     const auto p = target.at("position_m").get<std::vector<double>>();
-    EXPECT_EQ(Vector3d(p[0], p[1], p[2]), report_.estimate.parameters.sensor.tail(3));
+    EXPECT_EQ(Vector3d(p[0], p[1], p[2]), calibration_.estimate.parameters.sensor.tail(3));
     EXPECT_FALSE(target.at("known").get<bool>());
     EXPECT_DOUBLE_EQ(written().at("sigma").at("target2.z_m").get<double>(), 1e-4);
 }
@@ -89,11 +89,11 @@ TEST_F(EstimateFile, LeavesOutWhatWasNotComputed) {
     EXPECT_FALSE(written().at("accuracy").contains("held_out"));
     EXPECT_FALSE(written().at("accuracy").contains("repeatability_mm"));
     EXPECT_FALSE(written().at("accuracy").contains("left_out"));
-    report_.repeatability = Repeatability{5e-5};
-    report_.held_out = CrossValidation{};
-    report_.held_out->failures = {"fold 3: too few", "fold 4: too few"};
-    report_.left_out = Metrics{};
-    report_.validation = Metrics{};
+    calibration_.repeatability = Repeatability{5e-5};
+    calibration_.held_out = CrossValidation{};
+    calibration_.held_out->failures = {"fold 3: too few", "fold 4: too few"};
+    calibration_.left_out = Metrics{};
+    calibration_.validation = Metrics{};
     const Json accuracy = written().at("accuracy");
     EXPECT_DOUBLE_EQ(accuracy.at("repeatability_mm").get<double>(), 0.05);
     EXPECT_EQ(accuracy.at("held_out").at("failures").size(), 2U);
@@ -104,10 +104,10 @@ TEST_F(EstimateFile, LeavesOutWhatWasNotComputed) {
 TEST_F(EstimateFile, ListsOutliersOfARobustLossOnly) {
     EXPECT_FALSE(written().contains("loss"));
     EXPECT_FALSE(written().contains("outliers"));
-    report_.estimate.loss = {LossKind::Huber, 1.5};
+    calibration_.estimate.loss = {LossKind::Huber, 1.5};
     EXPECT_EQ(written().at("outliers"), Json::array());
-    report_.estimate.outliers = {{4, "e", 1, 2e-3, 12, 0.25}};
-    report_.without_outliers = WithoutOutliers{1e-4, std::nullopt};
+    calibration_.estimate.outliers = {{4, "e", 1, 2e-3, 12, 0.25}};
+    calibration_.without_outliers = WithoutOutliers{1e-4, std::nullopt};
     const Json document = written();
     EXPECT_EQ(document.at("loss"), (Json{{"kind", "huber"}, {"width_standard_deviations", 1.5}}));
     EXPECT_EQ(document.at("outliers").at(0), (Json{{"configuration", "e"},
@@ -121,11 +121,11 @@ TEST_F(EstimateFile, ListsOutliersOfARobustLossOnly) {
 
 TEST_F(EstimateFile, GivesTheParameterSetsCompared) {
     EXPECT_FALSE(written().contains("model_selection"));
-    report_.selection = ModelSelection{5, {}, -1, -1, {}};
-    report_.selection->trials = {{{"base and targets", {}}, 15, 6e-4, 7e-4, 9e-5},
-                                 {{"+ lengths", {"Tx1"}}, 16, 0, 0, 0, "too few"}};
+    calibration_.selection = ModelSelection{5, {}, -1, -1, {}};
+    calibration_.selection->trials = {{{"base and targets", {}}, 15, 6e-4, 7e-4, 9e-5},
+                                      {{"+ lengths", {"Tx1"}}, 16, 0, 0, 0, "too few"}};
     EXPECT_FALSE(written().at("model_selection").contains("recommended"));
-    report_.selection->best = report_.selection->recommended = 0;
+    calibration_.selection->best = calibration_.selection->recommended = 0;
     const Json selection = written().at("model_selection");
     EXPECT_EQ(selection.at("recommended"), "base and targets");
     const Json& first = selection.at("sets").at(0);
@@ -154,7 +154,7 @@ TEST_F(EstimateFile, HasTheSameBytesForTheSameEstimate) {
 TEST_F(EstimateFile, IsReadBackExactly) {
     written();
     const Parameters parameters = read_estimate(path_, campaign_);
-    const Parameters& expected = report_.estimate.parameters;
+    const Parameters& expected = calibration_.estimate.parameters;
     EXPECT_EQ(parameters.robot, expected.robot);
     EXPECT_EQ(parameters.sensor, expected.sensor);
     EXPECT_EQ(parameters.world_from_base.translation(), expected.world_from_base.translation());

@@ -142,10 +142,9 @@ TEST(CalibratedUrdf, PredictsTheMeasuredPointsAsTheEstimateDoes) {
     const CampaignFile file = read_campaign(folder.write("campaign.yaml", text));
     const Simulation simulation = simulate(file, {30, 1, 4, 9});
     const Measurements& measurements = simulation.measurements;
-    CalibrationReport report;
-    report.estimate = identify(file, measurements, register_base_and_targets(file, measurements));
-    ASSERT_EQ(report.estimate.ending, Ending::Converged);
-    write_estimate(folder.path("estimate.json"), file, report);
+    const Calibration calibration = calibrate(file, measurements, {.folds = 0});
+    ASSERT_EQ(calibration.estimate.ending, Ending::Converged);
+    write_estimate(folder.path("estimate.json"), calibration, "simulated");
     const Parameters parameters = read_estimate(folder.path("estimate.json"), file);
     const CalibratedUrdf urdf = make_calibrated_urdf(*file.urdf, file.robot, parameters.robot);
     EXPECT_TRUE(urdf.not_expressed.empty());
@@ -157,7 +156,7 @@ TEST(CalibratedUrdf, PredictsTheMeasuredPointsAsTheEstimateDoes) {
     ASSERT_EQ(calibrated.robot.parameter_count(), 0);
     Parameters same = parameters;
     same.robot.resize(0);
-    const RowMatrixXd expected = residuals(file, report.estimate.parameters, measurements);
+    const RowMatrixXd expected = residuals(file, calibration.estimate.parameters, measurements);
     EXPECT_LT((residuals(calibrated, same, measurements) - expected).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_GT((residuals(file, file.nominal, measurements) - expected).norm(), 1e-3)
         << "there was something to calibrate";

@@ -22,20 +22,29 @@ StudyCase identified(std::vector<Index> poses, double rms, double max) {
     return result;
 }
 
-/// Two pose counts; at the first, one of three random subsets cannot identify the model.
-std::vector<StudyRow> example_rows() {
-    StudyCase unidentified;
-    unidentified.poses = {0, 2};
-    return {{2,
-             {identified({0, 1}, 3e-4, 9e-4)},
-             {unidentified, identified({1, 2}, 2e-3, 4e-3), identified({1, 2}, 2e-3, 4e-3)}},
-            {3, {identified({0, 1, 2}, 2e-4, 5e-4)}, {identified({0, 1, 2}, 4e-4, 8e-4)}}};
+Study study_of(std::vector<StudyRow> rows) {
+    return {"robot", {"a", "b,c", "d"}, {Criterion::D}, std::move(rows), Ending::Converged, {}};
 }
 
-const std::vector<Criterion> criteria{Criterion::D};
+/// Two pose counts; at the first, one of three random subsets cannot identify the model.
+Study example_study() {
+    StudyCase unidentified;
+    unidentified.poses = {0, 2};
+    return study_of(
+        {{2,
+          {identified({0, 1}, 3e-4, 9e-4)},
+          {unidentified, identified({1, 2}, 2e-3, 4e-3), identified({1, 2}, 2e-3, 4e-3)}},
+         {3, {identified({0, 1, 2}, 2e-4, 5e-4)}, {identified({0, 1, 2}, 4e-4, 8e-4)}}});
+}
+
+Study named(const std::string& campaign) {
+    Study study = example_study();
+    study.campaign = campaign;
+    return study;
+}
 
 TEST(StudyTable, ShowsErrorsInMillimetresAndCountsTheUnidentified) {
-    const Table table = study_table(criteria, example_rows());
+    const Table table = study_table(example_study());
     EXPECT_EQ(table.header, (std::vector<std::string>{"poses", "d/mm", "random 10 %/mm", "50 %/mm",
                                                       "90 %/mm", "subsets", "unidentified"}));
     ASSERT_EQ(table.rows.size(), 2u);
@@ -46,12 +55,12 @@ TEST(StudyTable, ShowsErrorsInMillimetresAndCountsTheUnidentified) {
 }
 
 TEST(StudyTable, ShowsADashWhereNothingWasIdentified) {
-    const Table table = study_table(criteria, {{2, {StudyCase{}}, {}}});
+    const Table table = study_table(study_of({{2, {StudyCase{}}, {}}}));
     EXPECT_EQ(table.rows[0], (std::vector<std::string>{"2", "-", "-", "-", "-", "0", "-"}));
 }
 
 TEST(StudyCsv, HoldsEveryCase) {
-    EXPECT_EQ(study_csv(criteria, example_rows(), {"a", "b,c", "d"}),
+    EXPECT_EQ(study_csv(example_study()),
               "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,configurations\n"
               "2,d,0,yes,0.3,0.9,\"a b,c\"\n"
               "2,random,0,no,,,a d\n"
@@ -62,7 +71,7 @@ TEST(StudyCsv, HoldsEveryCase) {
 }
 
 TEST(StudyPlotScript, DrawsBandMedianAndCriterion) {
-    const auto script = study_plot_script(criteria, example_rows(), "robot", "out.svg");
+    const auto script = study_plot_script(example_study(), "out.svg");
     EXPECT_NE(script.find("$random << EOD\n2 2 2 3\n3 0.4 0.4 0.4\nEOD\n"), std::string::npos);
     EXPECT_NE(script.find("$optimal0 << EOD\n2 0.3\n3 0.2\nEOD\n"), std::string::npos);
     EXPECT_NE(script.find("set logscale y"), std::string::npos);
@@ -70,16 +79,16 @@ TEST(StudyPlotScript, DrawsBandMedianAndCriterion) {
 }
 
 TEST(StudyPlotScript, QuotesTextsSoThatNothingIsExecuted) {
-    const auto script = study_plot_script(criteria, example_rows(), "it's\n`touch x`", "o'ut`.png");
+    const auto script = study_plot_script(named("it's\n`touch x`"), "o'ut`.png");
     EXPECT_NE(script.find("set title 'it''s `touch x`' noenhanced\n"), std::string::npos);
     EXPECT_NE(script.find("set output 'o''ut`.png'\n"), std::string::npos);
 }
 
 TEST(StudyPlotScript, RefusesOtherImagesAndEmptyStudies) {
-    EXPECT_THROW(study_plot_script(criteria, example_rows(), "", "out.pdf"), InputError);
-    EXPECT_THROW(study_plot_script(criteria, example_rows(), "", "a\nb.svg"), InputError);
-    EXPECT_THROW(study_plot_script(criteria, example_rows(), "", ".svg"), InputError);
-    EXPECT_THROW(study_plot_script(criteria, {{2, {StudyCase{}}, {}}}, "", "out.svg"), InputError);
+    EXPECT_THROW(study_plot_script(example_study(), "out.pdf"), InputError);
+    EXPECT_THROW(study_plot_script(example_study(), "a\nb.svg"), InputError);
+    EXPECT_THROW(study_plot_script(example_study(), ".svg"), InputError);
+    EXPECT_THROW(study_plot_script(study_of({{2, {StudyCase{}}, {}}}), "out.svg"), InputError);
 }
 
 class RunGnuplot : public ::testing::Test {
@@ -103,14 +112,14 @@ TEST_F(RunGnuplot, DrawsIntoFilesWithAwkwardNames) {
     if (std::system("gnuplot --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no gnuplot here";
     for (const std::string name : {"plain.svg", "it's `a` $(name) \"with\" \\ signs.png"}) {
         const auto image = (folder_ / name).string();
-        const auto script = study_plot_script(criteria, example_rows(), name, image);
+        const auto script = study_plot_script(named(name), image);
         run_gnuplot(write_script("script with blank.gnuplot", script));
         EXPECT_GT(std::filesystem::file_size(image), 1000u) << name;
     }
 }
 
 TEST(StudyPlotScript, GivesASinglePoseCountARange) {
-    const auto script = study_plot_script(criteria, {example_rows()[0]}, "robot", "out.svg");
+    const auto script = study_plot_script(study_of({example_study().rows[0]}), "out.svg");
     EXPECT_NE(script.find("set xrange [1:3]\n"), std::string::npos) << script;
 }
 

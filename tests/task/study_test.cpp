@@ -46,7 +46,7 @@ StudyCase case_with_error(double rms) {
 
 TEST(StudyPoseCounts, JudgesEachSubsetOnWhatItLeftOut) {
     const Example example;
-    const auto rows = study_pose_counts(example.campaign, example.measurements, small_options());
+    const auto rows = study(example.campaign, example.measurements, small_options()).rows;
     ASSERT_EQ(rows.size(), 2u);
     for (const StudyRow& row : rows) {
         ASSERT_EQ(row.optimal.size(), 2u);
@@ -60,8 +60,8 @@ TEST(StudyPoseCounts, JudgesEachSubsetOnWhatItLeftOut) {
     // By hand: calibrate with the chosen ones, predict the others.
     const StudyCase& chosen = rows[1].optimal[0];
     const auto part = take(example.measurements, chosen.poses);
-    const auto estimate =
-        identify(example.campaign, part, register_base_and_targets(example.campaign, part));
+    const auto estimate = identify(example.campaign, part,
+                                   register_base_and_targets(example.campaign, part).parameters);
     const auto held_out =
         make_metrics(mean_residuals(example.campaign, estimate.parameters,
                                     take(example.measurements, all_but(14, chosen.poses))));
@@ -72,10 +72,10 @@ TEST(StudyPoseCounts, JudgesEachSubsetOnWhatItLeftOut) {
 TEST(StudyPoseCounts, ChoosesAndJudgesByTheTargetsSeen) {
     Example example;
     testing::hide_at_random(example.measurements, 0.3, 6);
-    const auto rows = study_pose_counts(example.campaign, example.measurements, small_options());
+    const auto rows = study(example.campaign, example.measurements, small_options()).rows;
     const StudyCase& chosen = rows[1].optimal[0];
     const auto part = take(example.measurements, chosen.poses);
-    const auto start = register_base_and_targets(example.campaign, example.measurements);
+    const auto start = register_base_and_targets(example.campaign, example.measurements).parameters;
     SelectOptions options;
     options.criterion = Criterion::D;
     options.pose_count = 9;
@@ -86,8 +86,8 @@ TEST(StudyPoseCounts, ChoosesAndJudgesByTheTargetsSeen) {
                                                      example.measurements.configurations, repeats),
                                          options)
                                 .poses);
-    const auto estimate =
-        identify(example.campaign, part, register_base_and_targets(example.campaign, part));
+    const auto estimate = identify(example.campaign, part,
+                                   register_base_and_targets(example.campaign, part).parameters);
     const auto left_out = take(example.measurements, all_but(14, chosen.poses));
     const auto held_out =
         make_metrics(mean_residuals(example.campaign, estimate.parameters, left_out));
@@ -100,9 +100,9 @@ TEST(StudyPoseCounts, IsTheSameForAnyNumberOfThreads) {
     const Example example;
     const int threads = omp_get_max_threads();
     omp_set_num_threads(1);
-    const auto one = study_pose_counts(example.campaign, example.measurements, small_options());
+    const auto one = study(example.campaign, example.measurements, small_options()).rows;
     omp_set_num_threads(3);
-    const auto three = study_pose_counts(example.campaign, example.measurements, small_options());
+    const auto three = study(example.campaign, example.measurements, small_options()).rows;
     omp_set_num_threads(threads);
     for (std::size_t i = 0; i < one.size(); ++i) {
         for (std::size_t k = 0; k < one[i].random.size(); ++k) {
@@ -122,10 +122,10 @@ TEST(StudyPoseCounts, IsTheSameForAnyNumberOfThreads) {
 TEST(StudyPoseCounts, DrawsTheSameSubsetsWhenAskedForMoreOfThem) {
     const Example example;
     StudyOptions options = small_options();
-    const auto few = study_pose_counts(example.campaign, example.measurements, options);
+    const auto few = study(example.campaign, example.measurements, options).rows;
     options.random_subsets = 12;
     options.pose_counts = {9};
-    const auto more = study_pose_counts(example.campaign, example.measurements, options);
+    const auto more = study(example.campaign, example.measurements, options).rows;
     std::set<std::vector<Index>> different;
     for (std::size_t k = 0; k < 12; ++k) {
         different.insert(more[0].random[k].poses);
@@ -140,7 +140,7 @@ TEST(StudyPoseCounts, CountsSubsetsThatCannotIdentify) {
     const Example example;
     StudyOptions options = small_options();
     options.pose_counts = {4, 14};  // 36 equations but a 6R robot with three points needs five
-    const auto rows = study_pose_counts(example.campaign, example.measurements, options);
+    const auto rows = study(example.campaign, example.measurements, options).rows;
     for (const StudyCase& random : rows[0].random) {
         EXPECT_FALSE(random.identified);
         EXPECT_EQ(random.poses.size(), 4u);
@@ -155,7 +155,7 @@ TEST(StudyPoseCounts, GoesFromTheLeastCountToAllButOne) {
     StudyOptions options = small_options();
     options.pose_counts.clear();
     options.random_subsets = 0;
-    const auto rows = study_pose_counts(example.campaign, example.measurements, options);
+    const auto rows = study(example.campaign, example.measurements, options).rows;
     ASSERT_EQ(rows.size(), 3u);
     EXPECT_EQ(rows.front().pose_count, 5);
     EXPECT_EQ(rows.back().pose_count, 7);
@@ -171,7 +171,7 @@ TEST(StudyPoseCounts, ReportsProgressToTheEnd) {
         last = progress.done;
         total = progress.total;
     };
-    study_pose_counts(example.campaign, example.measurements, options);
+    study(example.campaign, example.measurements, options);
     EXPECT_EQ(last, 20);
     EXPECT_EQ(total, 20);
 }
@@ -180,26 +180,28 @@ TEST(StudyPoseCounts, PassesOnWhatTheProgressCallbackThrows) {
     const Example example;
     StudyOptions options = small_options();
     options.progress = [](const Progress&) { throw std::domain_error("enough"); };
-    EXPECT_THROW(study_pose_counts(example.campaign, example.measurements, options),
-                 std::domain_error);
+    EXPECT_THROW(study(example.campaign, example.measurements, options), std::domain_error);
 }
 
 TEST(StudyPoseCounts, RefusesWhatCannotBeStudied) {
     const Example example;
     StudyOptions options = small_options();
     options.pose_counts = {15};
-    EXPECT_THROW(study_pose_counts(example.campaign, example.measurements, options), InputError);
+    EXPECT_THROW(study(example.campaign, example.measurements, options), InputError);
     options.pose_counts = {0};
-    EXPECT_THROW(study_pose_counts(example.campaign, example.measurements, options), InputError);
+    EXPECT_THROW(study(example.campaign, example.measurements, options), InputError);
     options = small_options();
     options.starts = 0;
-    EXPECT_THROW(study_pose_counts(example.campaign, example.measurements, options), InputError);
+    EXPECT_THROW(study(example.campaign, example.measurements, options), InputError);
     const Example too_few(4);
     options = small_options();
     options.pose_counts = {4};
-    EXPECT_THROW(study_pose_counts(too_few.campaign, too_few.measurements, options), InputError);
+    const Study nothing = study(too_few.campaign, too_few.measurements, options);
+    EXPECT_EQ(nothing.ending, Ending::NotIdentifiable);
+    EXPECT_EQ(nothing.undetermined.find("these 4 configurations cannot tell apart"), 0U);
+    EXPECT_TRUE(nothing.rows.empty());
     options.pose_counts.clear();
-    EXPECT_THROW(study_pose_counts(too_few.campaign, too_few.measurements, options), InputError);
+    EXPECT_THROW(study(too_few.campaign, too_few.measurements, options), InputError);
 }
 
 TEST(HeldOutQuantile, IsLinearBetweenOrderStatistics) {

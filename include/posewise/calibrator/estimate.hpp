@@ -44,6 +44,9 @@ struct Outlier {
 /// Identified parameters and how sure they are.
 struct Estimate {
     Ending ending = Ending::NotRun;
+    /// Where the ending is NotIdentifiable, what is not determined and what would determine it, as
+    /// a sentence; then nothing else of the estimate but its start means anything.
+    std::string undetermined;
     Index iterations = 0;
     Parameters parameters;
     std::vector<std::string> names;  ///< L, order of Parameters

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "posewise/calibrator/identification.hpp"
+#include "posewise/calibrator/registration.hpp"
 
 namespace posewise {
 
@@ -29,8 +30,9 @@ struct GlobalOptions {
 VectorXd error_bounds(const Chain& robot, const GlobalOptions& options);
 
 /// As register_roughly(), the robot with these errors, which the result has.
-Parameters register_roughly_with_errors(const Campaign& campaign, const Measurements& measurements,
-                                        const VectorXd& robot_errors);
+Registration register_roughly_with_errors(const Campaign& campaign,
+                                          const Measurements& measurements,
+                                          const VectorXd& robot_errors);
 
 struct GlobalEstimate {
     Estimate estimate;  ///< the best
@@ -40,8 +42,9 @@ struct GlobalEstimate {
 
 /// Identification of a robot whose nominal parameters are far off: identify() from the nominal
 /// robot and from others within the bounds, base and targets registered anew for each. The
-/// same for any number of threads. Throws InputError as identify() does where every start fails,
-/// for options out of range, and where the spread is a prior, since that says errors are small.
+/// same for any number of threads. Ends NotIdentifiable where every start does, as the first.
+/// Throws InputError as identify() does, for options out of range, and where the spread is a prior,
+/// since that says errors are small.
 GlobalEstimate identify_globally(const Campaign& campaign, const Measurements& measurements,
                                  const GlobalOptions& options = {});
 

@@ -2,6 +2,7 @@
 
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/core/progress.hpp"
+#include "posewise/core/stop.hpp"
 
 namespace posewise {
 
@@ -15,8 +16,9 @@ namespace posewise {
 struct LevenbergMarquardtOptions {
     Index iteration_limit = 100;
     double relative_tolerance =
-        1e-12;       ///< predicted relative fall of the sum of squares to stop at
-    Loss loss = {};  ///< width 0: default_width()
+        1e-12;             ///< predicted relative fall of the sum of squares to stop at
+    Loss loss = {};        ///< width 0: default_width()
+    StopSignal stop = {};  ///< ends it with the best so far
 };
 
 /// Joint identification of base, robot and targets by Levenberg-Marquardt on whitened means, with
@@ -24,8 +26,10 @@ struct LevenbergMarquardtOptions {
 /// campaign's spread is a prior, the maximum a posteriori: each error of the robot counts as
 /// observed to be 0 with its scale as standard deviation, and the covariance is that of the stated
 /// noise and prior (else it is multiplied by the variance factor).
-/// Throws InputError if there are fewer equations than parameters, or if a direction of parameter
-/// space is not identifiable from these poses: the message names the parameters in it.
+/// Ends NotIdentifiable where a target at an unknown place is seen in no sample, where there are
+/// fewer equations than parameters, or where these poses do not show a direction of parameter
+/// space, and names the parameters in it. Throws InputError for measurements that do not fit the
+/// campaign.
 Estimate identify(const Campaign& campaign, const Measurements& measurements,
                   const Parameters& start, const LevenbergMarquardtOptions& options = {});
 
@@ -33,12 +37,13 @@ struct TwoStepOptions {
     Index iteration_limit = 200;
     double alpha = 1;                  ///< part of each robot step taken, in (0, 1]
     double relative_tolerance = 1e-9;  ///< predicted relative fall of the sum of squares to stop at
+    StopSignal stop = {};              ///< ends it with the best so far
 };
 
 /// The two-step identification of [Wu et al. 2015]: base and targets by linear least squares with
 /// the robot fixed, then the robot's parameters with base and targets fixed, in turn. Heads to the
 /// same optimum as identify(), slowly; the covariance is the joint one all the same.
-/// Throws InputError as identify() does.
+/// Ends and throws as identify() does.
 Estimate identify_two_step(const Campaign& campaign, const Measurements& measurements,
                            const Parameters& start, const TwoStepOptions& options = {});
 

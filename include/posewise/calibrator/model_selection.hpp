@@ -44,9 +44,12 @@ struct ModelSelection {
 /// cross_validate() finds them. The standard error of a mean takes each configuration as one draw:
 /// with S_i the sum over its n_i points, N points in m configurations,
 /// sqrt(m / (m - 1) sum (S_i - mean n_i)^2) / N [Cochran 1977, ch. 6].
-/// Throws InputError for folds as cross_validate() does, or if base and targets alone cannot be
-/// found.
-ModelSelection select_model(const Campaign& campaign, const Measurements& measurements, Index folds,
-                            const LevenbergMarquardtOptions& options = {});
+/// `registered` is what register_base_and_targets() found; every identification begins there.
+/// `progress` is that of the sets.
+/// Throws InputError for folds as cross_validate() does.
+ModelSelection select_model(const Campaign& campaign, const Measurements& measurements,
+                            const Parameters& registered, Index folds,
+                            const LevenbergMarquardtOptions& options = {},
+                            const ProgressCallback& progress = {});
 
 }  // namespace posewise

@@ -1,20 +1,35 @@
 #pragma once
 
+#include <string>
+
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 
 namespace posewise {
 
+/// Base and targets, the robot at nominal (its errors zero).
+struct Registration {
+    Parameters parameters;
+    /// Why the measurements do not determine them, as a sentence; empty: they do.
+    std::string undetermined;
+
+    bool is_determined() const { return undetermined.empty(); }
+};
+
 /// Base pose and the sensor's unknowns with no initial guess, the robot at nominal. For points,
 /// with X = R_base^T and c = -R_base^T p_base, the equations X p_ij + c - R_i t_j = p_i are linear
 /// in (X, c, t): least squares, X projected on SO(3), then polished on the true residuals. A pose
 /// is four points. Lengths, and a base that is partly known, are polished from the campaign's
-/// nominal values instead. Throws InputError if a target with unknown position is seen in no
-/// sample, if the configurations do not determine base and targets, or if nominal values are needed
-/// and not stated.
-Parameters register_base_and_targets(const Campaign& campaign, const Measurements& measurements);
+/// nominal values instead. Not determined where a target with unknown position is seen in no
+/// sample, or by configurations that are too few or too much alike. Throws InputError if nominal
+/// values are needed and not stated, or for measurements that do not fit the campaign.
+Registration register_base_and_targets(const Campaign& campaign, const Measurements& measurements);
 
 /// The same without the polish.
-Parameters register_roughly(const Campaign& campaign, const Measurements& measurements);
+Registration register_roughly(const Campaign& campaign, const Measurements& measurements);
+
+/// The parameters, for those to whom measurements that do not determine them are no input: throws
+/// InputError with the reason.
+Parameters determined(Registration registration);
 
 }  // namespace posewise

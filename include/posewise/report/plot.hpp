@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "posewise/task/study.hpp"
 
@@ -16,9 +15,7 @@ void check_image_path(const std::string& path);
 /// falls among subsets that could not identify the model; the median has a gap there. Texts and
 /// paths are quoted, so nothing in them is executed.
 /// Throws InputError as check_image_path() does, or for a study without any held-out error.
-std::string study_plot_script(const std::vector<Criterion>& criteria,
-                              const std::vector<StudyRow>& rows, const std::string& title,
-                              const std::string& image_path);
+std::string study_plot_script(const Study& study, const std::string& image_path);
 
 /// Runs gnuplot on a script file, not through a shell. Throws InputError if gnuplot is absent or
 /// fails.

@@ -15,4 +15,7 @@ struct Table {
 /// A column that holds only numbers, "-" and empty cells is right-aligned, any other left-aligned.
 std::string format_table(const Table& table);
 
+/// The table under its title, after an empty line.
+std::string format_section(const std::string& title, const Table& table);
+
 }  // namespace posewise

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/progress.hpp"
+#include "posewise/core/stop.hpp"
 #include "posewise/criteria/criterion.hpp"
 
 namespace posewise {
@@ -32,16 +34,28 @@ struct StudyOptions {
     Index random_subsets = 100;
     Index starts = 20;  ///< of the exchange
     std::uint64_t seed = 1;
+    StopSignal stop{};            ///< ends it with the pose counts that are complete
     ProgressCallback progress{};  ///< of the cases
 };
 
-/// Accuracy against number of poses: choose k of the measured configurations by each criterion and
-/// at random, calibrate with them from registration on, and judge on the configurations left out.
-/// The same result for any number of threads.
-/// Throws InputError if not even all configurations identify the model, or for a pose count that is
-/// not in [1, configurations].
-std::vector<StudyRow> study_pose_counts(const Campaign& campaign, const Measurements& measurements,
-                                        const StudyOptions& options);
+/// Accuracy against number of poses.
+struct Study {
+    std::string campaign;             ///< its name
+    std::vector<std::string> ids;     ///< of the configurations
+    std::vector<Criterion> criteria;  ///< by which were chosen, as StudyRow::optimal has them
+    std::vector<StudyRow> rows;       ///< none if there is nothing to study
+    Ending ending = Ending::NotRun;
+    /// Where it is NotIdentifiable, why not even all configurations identify the model.
+    std::string undetermined;
+};
+
+/// Chooses k of the measured configurations by each criterion and at random, calibrates with them
+/// from registration on, and judges on the configurations left out. The same result for any number
+/// of threads.
+/// Throws InputError for measurements of another robot (check_is_of_robot()), for a pose count that
+/// is not in [1, configurations], and for other options out of range.
+Study study(const Campaign& campaign, const Measurements& measurements,
+            const StudyOptions& options = {});
 
 /// The p-quantile (0..1, linear between order statistics) of the held-out distance RMS. Cases that
 /// are not identified count as worse than any other, so that dropping them cannot flatter the rest;

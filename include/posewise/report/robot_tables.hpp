@@ -4,7 +4,7 @@
 #include "posewise/report/table.hpp"
 
 /// What a chain looks like.
-namespace posewise::cli {
+namespace posewise {
 
 /// Transforms from base to flange.
 Table element_table(const Chain& robot);
@@ -18,4 +18,4 @@ Table axis_table(const Chain& robot);
 /// "position 0 0 980 mm, roll pitch yaw 0 90 0 deg", base to flange with all joints at zero.
 std::string describe_flange_at_zero(const Chain& robot);
 
-}  // namespace posewise::cli
+}  // namespace posewise

@@ -1,14 +1,15 @@
-#include "joint_directions.hpp"
+#include "posewise/report/joint_directions.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "common.hpp"
 #include "posewise/core/format.hpp"
-#include "posewise/core/text.hpp"
+#include "posewise/report/sentences.hpp"
+#include "posewise/report/table.hpp"
 
-namespace posewise::cli {
+namespace posewise {
 namespace {
 
 std::string name_reversed(const Chain& robot, const SignPattern& pattern) {
@@ -19,12 +20,6 @@ std::string name_reversed(const Chain& robot, const SignPattern& pattern) {
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// How to reverse joints where the campaign's robot comes from.
-std::string advise_reversal(const io::CampaignFile& file) {
-    if (file.urdf) return "turn their axes round in " + escape_controls(file.urdf->path);
-    return "write each with the opposite sign (-q for q) wherever it stands in the campaign file";
-}
-
 /// Fits alike: a symmetric robot's patterns differ by rounding only.
 bool fits_as(const SignPattern& a, const SignPattern& b) {
     return a.distance_rms <= 1.001 * b.distance_rms;
@@ -32,10 +27,11 @@ bool fits_as(const SignPattern& a, const SignPattern& b) {
 
 }  // namespace
 
-void print_joint_directions(const io::CampaignFile& file,
-                            const std::vector<SignPattern>& patterns) {
+std::string describe_joint_directions(const Campaign& campaign,
+                                      const std::vector<SignPattern>& patterns,
+                                      const std::string& advice) {
     constexpr std::size_t shown = 5;
-    const Chain& robot = file.robot;
+    const Chain& robot = campaign.robot;
     const auto reversed_count = [](const SignPattern& pattern) {
         return std::count(pattern.is_reversed.begin(), pattern.is_reversed.end(), true);
     };
@@ -53,25 +49,24 @@ void print_joint_directions(const io::CampaignFile& file,
                                    : fmt::format(" ({} choices fit alike, by the robot's symmetry)",
                                                  alike_end - patterns.begin());
     if (&best == &stated) {
-        print(
-            fmt::format("joint directions: as stated{}; the registered robot misses the {} by "
-                        "{} mm (RMS), otherwise by {} mm at least\n",
-                        others, file.sensor->words().readings, format_mm(stated.distance_rms),
-                        alike_end == patterns.end() ? "-" : format_mm(alike_end->distance_rms)));
-        return;
+        return fmt::format(
+            "joint directions: as stated{}; the registered robot misses the {} by {} mm (RMS), "
+            "otherwise by {} mm at least\n",
+            others, campaign.sensor->words().readings, format_mm(stated.distance_rms),
+            alike_end == patterns.end() ? "-" : format_mm(alike_end->distance_rms));
     }
     Table table{{"reversed joints", "RMS/mm"}, {}};
     for (std::size_t k = 0; k < std::min(shown, patterns.size()); ++k) {
         table.rows.push_back(
             {name_reversed(robot, patterns[k]), format_mm(patterns[k].distance_rms)});
     }
-    print_section("Joint directions that fit best", table);
-    print(fmt::format("as stated: {} mm\n", format_mm(stated.distance_rms)));
     const bool is_clear = best.distance_rms < 0.5 * stated.distance_rms;
-    print(is_clear ? fmt::format("joint directions: reversed are {}{}; {}\n",
-                                 name_reversed(robot, best), others, advise_reversal(file))
-                   : "joint directions: none fits clearly better than those stated; is the nominal "
-                     "robot right (zero positions, lengths, units)?\n");
+    return format_section("Joint directions that fit best", table) +
+           fmt::format("as stated: {} mm\n", format_mm(stated.distance_rms)) +
+           (is_clear ? fmt::format("joint directions: reversed are {}{}; {}\n",
+                                   name_reversed(robot, best), others, advice)
+                     : "joint directions: none fits clearly better than those stated; is the "
+                       "nominal robot right (zero positions, lengths, units)?\n");
 }
 
-}  // namespace posewise::cli
+}  // namespace posewise

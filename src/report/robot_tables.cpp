@@ -1,4 +1,4 @@
-#include "robot_tables.hpp"
+#include "posewise/report/robot_tables.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "posewise/core/units.hpp"
 #include "posewise/model/transforms.hpp"
 
-namespace posewise::cli {
+namespace posewise {
 namespace {
 
 std::string format_terms(const std::vector<JointTerm>& terms, const Chain& robot) {
@@ -97,4 +97,4 @@ std::string describe_flange_at_zero(const Chain& robot) {
                        format_fixed(to_degrees(rpy.y()), 4), format_fixed(to_degrees(rpy.z()), 4));
 }
 
-}  // namespace posewise::cli
+}  // namespace posewise

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "posewise/calibrator/global_identification.hpp"
+#include "posewise/calibrator/model_selection.hpp"
+#include "posewise/core/stop.hpp"
+#include "posewise/task/doubts.hpp"
+
+namespace posewise {
+
+/// How parameters are identified.
+enum class CalibrationMethod {
+    Joint,    ///< all together, identify()
+    TwoStep,  ///< identify_two_step(): to compare with the literature
+    Global,   ///< identify_globally(): a robot that is far from nominal
+};
+/// "lm", "two-step", "global".
+std::string_view method_name(CalibrationMethod method);
+
+struct CalibrationOptions {
+    CalibrationMethod method = CalibrationMethod::Joint;
+    /// Of the joint identification; its loss also of the nominal fit and of what is held out. Other
+    /// methods know squares only.
+    LevenbergMarquardtOptions joint{};
+    TwoStepOptions two_step{};
+    GlobalOptions global{};
+    /// Configurations to calibrate with, such as those of a plan; it is judged on the others, too.
+    /// Empty: all.
+    std::vector<Index> used{};
+    /// More measurements, to judge on only; the caller keeps them alive. Null: none.
+    const Measurements* validation = nullptr;
+    /// Groups of configurations to hold out in turn; 0: none. Nothing: default_folds().
+    std::optional<Index> folds{};
+    bool model_selection = false;  ///< compare nested parameter sets, too; needs folds and Joint
+    /// Ends the identification with the best so far; figures that are not complete are left out.
+    StopSignal stop{};
+    ProgressCallback progress{};  ///< of the identification, the groups held out and the sets
+};
+
+/// Each configuration by itself up to 100 of them, else ten groups.
+Index default_folds(Index configuration_count);
+
+/// What was measured.
+struct MeasuredCount {
+    Index configurations = 0;
+    Index samples = 0;
+    Index readings = 0;       ///< samples x targets
+    Index readings_seen = 0;  ///< less those of targets that were not seen
+};
+
+/// Distance RMS of the means that are no outliers, m.
+struct WithoutOutliers {
+    double fit_rms = 0;
+    std::optional<double> held_out_rms;
+};
+
+/// A calibration: parameters, how sure they are, how accurate the robot is with them.
+struct Calibration {
+    Campaign campaign;  ///< as calibrated: names, units and scales of what follows
+    CalibrationMethod method = CalibrationMethod::Joint;
+    MeasuredCount measured;  ///< that was calibrated with
+    /// Its ending says whether there is a calibration: where it is NotIdentifiable, nothing below
+    /// but `selection` is filled in, and `undetermined` says why.
+    Estimate estimate;
+    Index starts = 0;                            ///< of Global
+    Index starts_at_best = 0;                    ///< of Global; one alone: there may be better ones
+    Metrics nominal;                             ///< base and targets fitted only, all samples
+    std::optional<Repeatability> repeatability;  ///< nothing: no configuration was repeated
+    std::optional<CrossValidation> held_out;
+    std::optional<Metrics> left_out;                  ///< on the configurations not used
+    std::optional<Metrics> validation;                ///< on CalibrationOptions::validation
+    std::optional<WithoutOutliers> without_outliers;  ///< if there are some
+    std::optional<ModelSelection> selection;          ///< if asked for
+    Doubts doubts;
+
+    bool is_identified() const { return estimate.ending != Ending::NotIdentifiable; }
+};
+
+/// Finds base and targets from nothing, once, then identifies all parameters together and judges
+/// them: on the samples, on configurations held out, on those not used, on the validation.
+/// Throws InputError for measurements that do not fit the campaign and for options that contradict
+/// each other; measurements that do not identify the model are a result.
+Calibration calibrate(const Campaign& campaign, const Measurements& measurements,
+                      const CalibrationOptions& options = {});
+
+}  // namespace posewise

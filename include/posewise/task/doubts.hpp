@@ -1,0 +1,110 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewise/calibrator/estimate.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/measurement/scalar_sensor.hpp"
+
+/// What looks wrong with measurements and what was identified from them. A doubt stops nothing; it
+/// is what to look at first.
+namespace posewise {
+
+/// Configurations beyond the campaign's joint limits; they are taken, since they were measured.
+struct BeyondLimits {
+    Index count = 0;
+    Index first = 0;        ///< the first of them
+    std::string violation;  ///< its first joint: describe_limit_violation()
+};
+std::optional<BeyondLimits> find_beyond_limits(const Campaign& campaign,
+                                               const Measurements& measurements);
+
+/// A plane whose normal is measured reversed or, where planes are known, whose offset is measured
+/// with the other sign: of planes fitted to base and robot as stated.
+struct PlaneDoubt {
+    Index plane = 0;
+    Plane stated;
+    Plane measured;
+};
+std::vector<PlaneDoubt> find_plane_doubts(const Campaign& campaign,
+                                          const Measurements& measurements);
+
+/// In which unit values look as if they were.
+enum class UnitDoubt {
+    None,
+    JointsInDegrees,  ///< though read as rad
+    JointsInRadians,  ///< though read as degrees
+    PointsInMillimetres,
+    PointsInMetres,
+};
+
+/// The nominal robot explains its own measurements to about the error expected of it, another
+/// robot's not.
+struct Misfit {
+    double distance = 0;  ///< by which it misses half of them at least, base and targets fitted, m
+    double expected = 0;  ///< as the spread says, m
+    UnitDoubt unit = UnitDoubt::None;
+    std::vector<PlaneDoubt> planes;
+};
+
+/// Nothing if the nominal robot explains the measurements. `registered`: base and targets, by
+/// register_base_and_targets() of these measurements.
+std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& measurements,
+                                  const Parameters& registered);
+
+/// Throws InputError, with describe_misfit(), if there is a misfit; measurements that do not
+/// determine base and targets are too few to tell.
+void check_is_of_robot(const Campaign& campaign, const Measurements& measurements,
+                       const Registration& registration);
+
+/// One sentence, for messages: by how much the nominal robot misses the measurements, and which
+/// unit or plane may be wrong.
+std::string describe_misfit(const Campaign& campaign, const Misfit& misfit);
+/// "plane 2 looks reversed: stated with ..."; empty for none.
+std::string describe_planes(const std::vector<PlaneDoubt>& planes);
+
+/// How orientations may have been meant, from how they were read.
+enum class OrientationSense {
+    AsRead,
+    Inverted,      ///< conjugate quaternions
+    RealPartLast,  ///< quaternions qx, qy, qz, qw
+};
+
+/// The nominal robot misses the orientations by more than a robot does.
+struct OrientationDoubt {
+    double rms = 0;  ///< rad
+    /// In which sense they fit far better; AsRead: in none.
+    OrientationSense sense = OrientationSense::AsRead;
+    double rms_in_sense = 0;  ///< rad
+};
+
+/// An error of the robot far above its expected size.
+struct SizeDoubt {
+    std::string parameter;
+    double times = 0;  ///< the expected size
+};
+
+/// All doubts about a calibration.
+struct Doubts {
+    std::optional<Misfit> misfit;
+    std::vector<PlaneDoubt> planes;  ///< where there is no misfit, which has its own
+    /// Distance by which the nominal robot misses the points (RMS, m), if grossly: outliers?
+    std::optional<double> gross_error;
+    std::optional<OrientationDoubt> orientations;
+    std::vector<SizeDoubt> sizes;
+    /// Residuals in units of those stated, if clearly not as stated: more than 1.5 times larger or
+    /// smaller, and by more than four standard deviations of the variance factor.
+    std::optional<double> residual_ratio;
+    /// Joints whose compliance is clearly negative: by three standard deviations.
+    std::vector<Index> negative_compliances;
+};
+
+/// Doubts about measurements: `registered` as for find_misfit(), `nominal` its metrics.
+Doubts find_doubts(const Campaign& campaign, const Measurements& measurements,
+                   const Parameters& registered, const Metrics& nominal);
+/// Adds those about what was identified from them.
+void add_doubts(const Campaign& campaign, const Estimate& estimate, Doubts& doubts);
+
+}  // namespace posewise

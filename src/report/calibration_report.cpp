@@ -1,0 +1,235 @@
+#include "posewise/report/calibration_report.hpp"
+
+#include <fmt/format.h>
+
+#include "posewise/core/format.hpp"
+#include "posewise/core/text.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/report/calibration_tables.hpp"
+#include "posewise/report/sentences.hpp"
+
+namespace posewise {
+namespace {
+
+constexpr Index correlations_shown = 5;
+constexpr Index outliers_shown = 20;
+
+std::string describe_starts(const Calibration& calibration) {
+    if (calibration.method != CalibrationMethod::Global) return "";
+    return fmt::format("{} starts, {} of them ended at the best{}\n", calibration.starts,
+                       calibration.starts_at_best,
+                       calibration.starts_at_best > 1 ? "" : "; there may be a better one");
+}
+
+std::string describe_measured(const Calibration& calibration) {
+    const MeasuredCount& measured = calibration.measured;
+    std::string text = fmt::format("{}: {} configurations, {} samples, {} parameters\n",
+                                   calibration.campaign.name, measured.configurations,
+                                   measured.samples, parameter_count(calibration.campaign));
+    if (measured.readings_seen < measured.readings) {
+        text += fmt::format("{} of {} {} are missing: targets that were not seen\n",
+                            measured.readings - measured.readings_seen, measured.readings,
+                            calibration.campaign.sensor->words().readings);
+    }
+    return text;
+}
+
+std::string describe_ending(const Calibration& calibration) {
+    const Estimate& estimate = calibration.estimate;
+    std::string text = fmt::format("{}: {} after {} iterations", method_name(calibration.method),
+                                   ending_name(estimate.ending), estimate.iterations);
+    if (estimate.ending != Ending::Converged) text += "; this is not the optimum";
+    return text + fmt::format(
+                      "\nvariance factor {} with {} degrees of freedom (1: noise and model "
+                      "error stated right)\n",
+                      format_short(estimate.variance_factor, 4), estimate.degrees_of_freedom);
+}
+
+/// What to do if the residuals are not as large as stated.
+std::string judge_residuals(const Calibration& calibration) {
+    const auto& ratio = calibration.doubts.residual_ratio;
+    if (!ratio) return "";
+    const std::string text = fmt::format(
+        "the residuals are {} times what sigma and model error say: ", format_short(*ratio, 2));
+    if (*ratio < 1) return text + "a smaller model_error_mm or sigma would do\n";
+    return text +
+           (calibration.estimate.loss.kind == LossKind::Squares
+                ? "state a larger model_error_mm, add error terms (gravity, harmonics) or look "
+                  "for outliers with --loss\n"
+                : "state a larger model_error_mm or add error terms (gravity, harmonics)\n");
+}
+
+std::string describe_noise_floor(const Calibration& calibration) {
+    const auto& repeatability = calibration.repeatability;
+    if (!repeatability) return "noise floor: unknown, no configuration was repeated\n";
+    std::string text = fmt::format("noise floor from repeats: {} mm per coordinate",
+                                   format_mm(repeatability->length, 5));
+    if (calibration.nominal.has_orientation) {
+        text += fmt::format(", {} mrad per angle",
+                            format_fixed(mrad_per_rad * repeatability->orientation, 5));
+    }
+    return text + '\n';
+}
+
+std::string format_accuracy(const Calibration& calibration) {
+    std::vector<std::pair<std::string, Metrics>> columns{{"nominal", calibration.nominal},
+                                                         {"calibrated", calibration.estimate.fit},
+                                                         {"means", calibration.estimate.fit_means}};
+    if (calibration.held_out) {
+        columns.emplace_back("held out", calibration.held_out->samples);
+        columns.emplace_back("held-out means", calibration.held_out->means);
+    }
+    if (calibration.left_out) columns.emplace_back("not in plan", *calibration.left_out);
+    if (calibration.validation) columns.emplace_back("validation", *calibration.validation);
+    std::string text = format_section("Accuracy", metrics_table(columns)) + '\n';
+    if (calibration.held_out) {
+        text += fmt::format("held out: {} folds, {} of them not identifiable\n",
+                            calibration.held_out->folds, calibration.held_out->failures.size());
+    }
+    return text + describe_noise_floor(calibration);
+}
+
+std::string format_without_outliers(const WithoutOutliers& others) {
+    std::string text = fmt::format("without them: means {} mm", format_mm(others.fit_rms));
+    if (others.held_out_rms) {
+        text += fmt::format(", held-out means {} mm", format_mm(*others.held_out_rms));
+    }
+    return text + " (distance RMS)\n";
+}
+
+std::string format_outliers(const Calibration& calibration) {
+    const Estimate& estimate = calibration.estimate;
+    if (estimate.loss.kind == LossKind::Squares) return "";
+    const auto count = static_cast<Index>(estimate.outliers.size());
+    std::string text =
+        fmt::format("\nloss {} with width {} standard deviations: {} outliers\n",
+                    loss_name(estimate.loss.kind), format_short(estimate.loss.width, 4), count);
+    if (count == 0) return text;
+    if (calibration.without_outliers) {
+        text += format_without_outliers(*calibration.without_outliers);
+    }
+    text += format_section("Outliers, farthest first", outlier_table(estimate, outliers_shown));
+    if (count > outliers_shown) text += fmt::format("... and {} more\n", count - outliers_shown);
+    return text;
+}
+
+std::string judge_compliances(const Calibration& calibration) {
+    std::string names;
+    for (const Index joint : calibration.doubts.negative_compliances) {
+        names += (names.empty() ? "" : ", ") + calibration.campaign.robot.joint(joint).name;
+    }
+    if (names.empty()) return "";
+    return '\n' + names +
+           ": negative, but a joint gives way with its load; is tau the torque of the load (a "
+           "motor's has the other sign), are weights, places and direction of gravity right?\n";
+}
+
+std::string format_parameters(const Calibration& calibration) {
+    const Campaign& campaign = calibration.campaign;
+    std::string text = format_section(fmt::format("Parameters (errors of the robot, base, {})",
+                                                  campaign.sensor->words().unknowns),
+                                      parameter_table(campaign, calibration.estimate));
+    const Table compliance = compliance_table(campaign, calibration.estimate);
+    if (!compliance.rows.empty()) {
+        text += format_section("Compliances", compliance) + judge_compliances(calibration);
+    }
+    return text + format_section("Strongest correlations",
+                                 correlation_table(calibration.estimate, correlations_shown));
+}
+
+const char* advise(OrientationSense sense) {
+    switch (sense) {
+        case OrientationSense::AsRead:
+            break;
+        case OrientationSense::Inverted:
+            return "inverted: the quaternions look conjugate, turn round the signs of qx, qy and "
+                   "qz";
+        case OrientationSense::RealPartLast:
+            return "with the last number of each quaternion as its real part: name the columns qx, "
+                   "qy, qz, qw";
+    }
+    return "";
+}
+
+std::string describe_orientations(const OrientationDoubt& doubt) {
+    const std::string text =
+        fmt::format("the nominal robot misses the orientations by {} deg (RMS)",
+                    format_short(to_degrees(doubt.rms), 3));
+    if (doubt.sense == OrientationSense::AsRead) {
+        return text +
+               "; is qw the real part of the quaternion, are roll, pitch and yaw about the fixed "
+               "axes x, y and z?";
+    }
+    return text + fmt::format(", but by {} deg {}", format_short(to_degrees(doubt.rms_in_sense), 2),
+                              advise(doubt.sense));
+}
+
+std::string describe_sizes(const std::vector<SizeDoubt>& sizes) {
+    std::string words;
+    for (const SizeDoubt& size : sizes) {
+        words += fmt::format("{}{} ({} times)", words.empty() ? "" : ", ", size.parameter,
+                             format_short(size.times, 3));
+    }
+    return fmt::format(
+        "far above the expected size: {}; are sign, unit and nominal value in the campaign right, "
+        "and do the poses tell them apart? If so, state their size in spread",
+        words);
+}
+
+}  // namespace
+
+std::string format(const Calibration& calibration) {
+    const std::string models = calibration.selection ? format(*calibration.selection) : "";
+    if (!calibration.is_identified()) return models + calibration.estimate.undetermined + '\n';
+    return models + describe_starts(calibration) + describe_measured(calibration) +
+           describe_ending(calibration) + judge_residuals(calibration) +
+           format_accuracy(calibration) + format_outliers(calibration) +
+           format_parameters(calibration);
+}
+
+std::string format(const ModelSelection& selection) {
+    std::string text = "Parameter sets, each holding those above it\n\n" +
+                       format_table(model_table(selection)) + '\n';
+    for (const ModelTrial& trial : selection.trials) {
+        if (!trial.failure.empty()) text += trial.set.name + ": " + trial.failure + '\n';
+    }
+    text += fmt::format("{} folds over configurations; distances of means", selection.folds);
+    if (!selection.not_judged.empty()) {
+        text += fmt::format(", without {} outliers", selection.not_judged.size());
+    }
+    text += selection.recommended < 0
+                ? "; no set could be judged\n"
+                : "; recommended: the smallest set within one standard error of the best\n";
+    return text + '\n';
+}
+
+std::vector<std::string> describe_doubts(const Calibration& calibration,
+                                         const std::string& measurements) {
+    const Doubts& doubts = calibration.doubts;
+    const std::string at = measurements.empty() ? "" : measurements + ": ";
+    std::vector<std::string> sentences;
+    if (doubts.misfit) {
+        sentences.push_back(at + describe_misfit(calibration.campaign, *doubts.misfit));
+    }
+    if (!doubts.planes.empty()) sentences.push_back(at + describe_planes(doubts.planes));
+    if (doubts.gross_error) {
+        sentences.push_back(fmt::format(
+            "{}the nominal robot misses the {} by {} m (RMS); if some are grossly wrong, try "
+            "--loss cauchy",
+            at, calibration.campaign.sensor->words().readings,
+            format_short(*doubts.gross_error, 3)));
+    }
+    if (doubts.orientations) sentences.push_back(at + describe_orientations(*doubts.orientations));
+    if (!doubts.sizes.empty()) sentences.push_back(describe_sizes(doubts.sizes));
+    return sentences;
+}
+
+std::string describe(const BeyondLimits& beyond, const Measurements& measurements) {
+    return fmt::format(
+        "{} of {} measured configurations are beyond the campaign's joint limits, the first is {}: "
+        "{}",
+        beyond.count, measurements.configuration_count(),
+        quote(measurements.ids[static_cast<std::size_t>(beyond.first)]), beyond.violation);
+}
+
+}  // namespace posewise

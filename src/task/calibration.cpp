@@ -1,0 +1,194 @@
+#include "posewise/task/calibration.hpp"
+
+#include <cmath>
+
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+/// What is calibrated, with what, and how far it is.
+struct Work {
+    const Campaign& campaign;
+    const Measurements& used;
+    const CalibrationOptions& options;
+    Index folds;
+    ProgressCounter counter;
+
+    /// One part is done.
+    ProgressCallback step() {
+        return [this](const Progress&) { counter.count(); };
+    }
+    /// Of what is fitted beside the identification itself: the same loss.
+    LevenbergMarquardtOptions beside() const {
+        LevenbergMarquardtOptions beside;
+        beside.loss = options.joint.loss;
+        beside.stop = options.stop;
+        return beside;
+    }
+};
+
+void check_options(const CalibrationOptions& options) {
+    const bool is_joint = options.method == CalibrationMethod::Joint;
+    if (!is_joint && options.joint.loss.kind != LossKind::Squares) {
+        throw InputError("the loss is " + std::string(loss_name(options.joint.loss.kind)) +
+                         ", must be squares with the method " +
+                         std::string(method_name(options.method)));
+    }
+    if (options.model_selection && (!is_joint || options.folds == 0)) {
+        throw InputError("model selection needs the method lm, and groups to hold out");
+    }
+}
+
+Index part_count(const Campaign& campaign, const CalibrationOptions& options, Index folds) {
+    const auto sets = options.model_selection
+                          ? static_cast<Index>(nested_parameter_sets(campaign.robot).size())
+                          : 0;
+    return sets + 1 + folds;
+}
+
+MeasuredCount count_measured(const Measurements& measurements) {
+    return {measurements.configuration_count(), measurements.observations.rows(),
+            measurements.is_seen.size(), measurements.is_seen.count()};
+}
+
+void identify_by_method(const Work& work, const Parameters& registered, Calibration& result) {
+    const CalibrationOptions& options = work.options;
+    const auto stopped = [&](auto method_options) {
+        method_options.stop = options.stop;
+        return method_options;
+    };
+    switch (options.method) {
+        case CalibrationMethod::Joint:
+            result.estimate =
+                identify(work.campaign, work.used, registered, stopped(options.joint));
+            return;
+        case CalibrationMethod::TwoStep:
+            result.estimate =
+                identify_two_step(work.campaign, work.used, registered, stopped(options.two_step));
+            return;
+        case CalibrationMethod::Global:
+            break;
+    }
+    GlobalOptions global = options.global;
+    global.start_options.stop = options.stop;
+    GlobalEstimate found = identify_globally(work.campaign, work.used, global);
+    result.estimate = std::move(found.estimate);
+    result.starts = found.starts;
+    result.starts_at_best = found.starts_at_best;
+}
+
+/// Base and targets fitted, the robot as its maker says.
+Metrics fit_nominal(const Work& work, Parameters registered) {
+    registered.robot.resize(0);
+    const Campaign nominal = with_robot(work.campaign, without_parameters(work.campaign.robot));
+    return identify(nominal, work.used, registered, work.beside()).fit;
+}
+
+/// Nothing if it was stopped on the way.
+std::optional<CrossValidation> hold_out(Work& work, const Parameters& start) {
+    if (work.folds == 0 || work.options.stop.is_set()) return std::nullopt;
+    auto held_out =
+        cross_validate(work.campaign, work.used, start, work.folds, work.beside(), work.step());
+    if (work.options.stop.is_set()) return std::nullopt;
+    return held_out;
+}
+
+/// How far the other points are off; nothing without outliers.
+std::optional<WithoutOutliers> judge_without_outliers(const Work& work, const Calibration& result) {
+    const Estimate& estimate = result.estimate;
+    if (estimate.outliers.empty()) return std::nullopt;
+    Seen is_judged = times_seen(work.used).array() > 0;
+    for (const Outlier& outlier : estimate.outliers) {
+        is_judged(outlier.configuration, outlier.target) = false;
+    }
+    const auto rms = [&](const RowMatrixXd& squares) {
+        return std::sqrt(is_judged.select(squares, 0).sum() /
+                         static_cast<double>(is_judged.count()));
+    };
+    WithoutOutliers others{rms(squared_distances(work.campaign, estimate.parameters, work.used)),
+                           std::nullopt};
+    if (result.held_out && result.held_out->failures.empty()) {
+        others.held_out_rms = rms(result.held_out->squared_distances);
+    }
+    return others;
+}
+
+void compare_models(Work& work, const Parameters& registered, Calibration& result) {
+    if (!work.options.model_selection) return;
+    ModelSelection selection =
+        select_model(work.campaign, work.used, registered, work.folds, work.beside(), work.step());
+    if (!work.options.stop.is_set()) result.selection = std::move(selection);
+}
+
+/// All that `used` alone tell.
+void calibrate_with(Work& work, Calibration& result) {
+    const Registration registration = register_base_and_targets(work.campaign, work.used);
+    if (!registration.is_determined()) {
+        result.estimate.ending = Ending::NotIdentifiable;
+        result.estimate.undetermined = registration.undetermined;
+        return;
+    }
+    const Parameters& registered = registration.parameters;
+    compare_models(work, registered, result);
+    identify_by_method(work, registered, result);
+    work.counter.count();
+    if (!result.is_identified()) return;
+    result.nominal = fit_nominal(work, registered);
+    result.repeatability = repeatability(*work.campaign.sensor, work.used);
+    const bool is_far = work.options.method == CalibrationMethod::Global;
+    result.held_out = hold_out(work, is_far ? result.estimate.parameters : registered);
+    result.without_outliers = judge_without_outliers(work, result);
+    result.doubts = find_doubts(work.campaign, work.used, registered, result.nominal);
+    add_doubts(work.campaign, result.estimate, result.doubts);
+}
+
+}  // namespace
+
+std::string_view method_name(CalibrationMethod method) {
+    switch (method) {
+        case CalibrationMethod::Joint:
+            return "lm";
+        case CalibrationMethod::TwoStep:
+            return "two-step";
+        case CalibrationMethod::Global:
+            return "global";
+    }
+    return "";
+}
+
+Index default_folds(Index configuration_count) {
+    constexpr Index leave_one_out_limit = 100;
+    constexpr Index folds = 10;
+    return configuration_count <= leave_one_out_limit ? configuration_count : folds;
+}
+
+Calibration calibrate(const Campaign& campaign, const Measurements& measurements,
+                      const CalibrationOptions& options) {
+    check_options(options);
+    const Measurements part =
+        options.used.empty() ? Measurements{} : take(measurements, options.used);
+    const Measurements& used = options.used.empty() ? measurements : part;
+    const Index folds = options.folds.value_or(default_folds(used.configuration_count()));
+    Work work{campaign, used, options, folds,
+              ProgressCounter(options.progress, part_count(campaign, options, folds))};
+    Calibration result;
+    result.campaign = campaign;
+    result.method = options.method;
+    result.measured = count_measured(used);
+    calibrate_with(work, result);
+    if (!result.is_identified()) return result;
+    const auto judge_on = [&](const Measurements& others) {
+        return make_metrics(residuals(campaign, result.estimate.parameters, others),
+                            campaign.sensor->lengths_per_target());
+    };
+    const auto left_out = all_but(measurements.configuration_count(), options.used);
+    if (!options.used.empty() && !left_out.empty()) {
+        result.left_out = judge_on(take(measurements, left_out));
+    }
+    if (options.validation != nullptr) result.validation = judge_on(*options.validation);
+    return result;
+}
+
+}  // namespace posewise

@@ -1,0 +1,42 @@
+#include "posewise/task/correction.hpp"
+
+#include "posewise/core/errors.hpp"
+#include "posewise/core/text.hpp"
+
+namespace posewise {
+namespace {
+
+/// From the base frame of the estimate to that which the nominal poses are in.
+Isometry3d estimated_base_from_base(const Campaign& campaign, const Parameters& found,
+                                    CorrectionBase base) {
+    if (base == CorrectionBase::Estimate) return Isometry3d::Identity();
+    if (!campaign.has_nominal_base) {
+        throw InputError("the campaign " + quote(campaign.name) +
+                         " states no base; must state the one that the poses are meant in");
+    }
+    return found.world_from_base.inverse() * campaign.nominal.world_from_base;
+}
+
+}  // namespace
+
+CorrectedPoses correct_poses(const Campaign& campaign, const Parameters& found,
+                             const RowMatrixXd& configurations, const std::vector<std::string>& ids,
+                             CorrectionBase base, const CorrectionOptions& options) {
+    const Isometry3d from_base = estimated_base_from_base(campaign, found, base);
+    const VectorXd no_errors = VectorXd::Zero(campaign.robot.parameter_count());
+    CorrectedPoses corrected{campaign.robot, ids, configurations, {}};
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        const VectorXd nominal = configurations.row(i).transpose();
+        try {
+            corrected.corrections.push_back(correct_configuration(
+                campaign.robot, found.robot, nominal,
+                from_base * campaign.robot.base_from_flange(nominal, no_errors), options));
+        } catch (const InputError& error) {
+            throw InputError("configuration " + quote(ids[static_cast<std::size_t>(i)]) + ": " +
+                             error.what());
+        }
+    }
+    return corrected;
+}
+
+}  // namespace posewise

@@ -1,0 +1,219 @@
+#include "posewise/task/doubts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "other_senses.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/format.hpp"
+#include "posewise/core/statistics.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/model/error_terms.hpp"
+#include "posewise/model/joint_limits.hpp"
+#include "posewise/planner/prediction.hpp"
+
+namespace posewise {
+namespace {
+
+/// Another robot's measurements are off by more than so many expected errors.
+constexpr double credible_errors = 10;
+
+/// A robot's maker is rarely wrong by 10 cm, nor by 5 deg.
+constexpr double gross_distance = 0.1;  // m
+constexpr double gross_angle = 0.1;     // rad
+
+/// Times the expected size: a joint with a wrong sign may converge as well, with an offset of half
+/// a turn.
+constexpr double doubtful_size = 20;
+
+/// RMS distance of points (n x 3) from their mean.
+double extent(const RowMatrixXd& points) {
+    return std::sqrt((points.rowwise() - points.colwise().mean()).rowwise().squaredNorm().mean());
+}
+
+/// How much farther the measured points of a target spread than the flange, by the joints, does.
+double measured_extent(const Campaign& campaign, const Measurements& measured) {
+    const VectorXd no_errors = VectorXd::Zero(campaign.robot.parameter_count());
+    RowMatrixXd flange(measured.configuration_count(), 3);
+    for (Index i = 0; i < flange.rows(); ++i) {
+        const VectorXd q = measured.configurations.row(i).transpose();
+        flange.row(i) =
+            campaign.robot.base_from_links(q, no_errors).back().translation().transpose();
+    }
+    RowMatrixXd seen(measured.is_seen.rows(), 3);
+    Index count = 0;
+    for (Index sample = 0; sample < seen.rows(); ++sample) {
+        if (!measured.is_seen(sample, 0)) continue;
+        seen.row(count++) = measured.observation(sample, 0);
+    }
+    return count > 0 ? extent(seen.topRows(count)) / extent(flange) : 1;
+}
+
+/// Of residuals as mean_residuals() gives them, the median: some may be grossly wrong.
+double median_distance(const RowMatrixXd& residuals) {
+    const auto coordinates = residuals.leftCols(std::min<Index>(3, residuals.cols()));
+    return quantile(coordinates.rowwise().norm(), 0.5, QuantileRule::Upper);
+}
+
+UnitDoubt find_unit_doubt(const Campaign& campaign, const Measurements& measured) {
+    double largest = 0;
+    for (Index j = 0; j < measured.configurations.cols(); ++j) {
+        if (campaign.robot.joint(j).motion != Motion::Rotation) continue;
+        largest = std::max(largest, measured.configurations.col(j).cwiseAbs().maxCoeff());
+    }
+    constexpr double turn = 2 * std::numbers::pi;
+    if (largest > 2 * turn) return UnitDoubt::JointsInDegrees;
+    if (largest > 0 && largest < turn / 50) return UnitDoubt::JointsInRadians;
+    if (measured.observations.cols() != 3 * measured.is_seen.cols()) return UnitDoubt::None;
+    const double ratio = measured_extent(campaign, measured);
+    if (ratio > 200 && ratio < 5000) return UnitDoubt::PointsInMillimetres;
+    if (ratio > 1.0 / 5000 && ratio < 1.0 / 200) return UnitDoubt::PointsInMetres;
+    return UnitDoubt::None;
+}
+
+const char* ask_about(UnitDoubt unit) {
+    switch (unit) {
+        case UnitDoubt::None:
+            break;
+        case UnitDoubt::JointsInDegrees:
+            return "; are joint values in degrees where the file says rad?";
+        case UnitDoubt::JointsInRadians:
+            return "; are joint values in rad where the file says degrees?";
+        case UnitDoubt::PointsInMillimetres:
+            return "; are points in mm where the file says m?";
+        case UnitDoubt::PointsInMetres:
+            return "; are points in m where the file says mm?";
+    }
+    return "";
+}
+
+std::string describe(const Plane& plane) {
+    return fmt::format("normal [{}, {}, {}] and offset {} mm", format_fixed(plane.normal.x(), 3),
+                       format_fixed(plane.normal.y(), 3), format_fixed(plane.normal.z(), 3),
+                       format_mm(plane.offset, 1));
+}
+
+std::optional<double> find_residual_ratio(const Estimate& estimate) {
+    constexpr double tolerated = 1.5;
+    if (estimate.degrees_of_freedom <= 0) return std::nullopt;
+    const double ratio = std::sqrt(estimate.variance_factor);
+    const double chance = 4 * std::sqrt(2 / static_cast<double>(estimate.degrees_of_freedom));
+    const bool is_chance = std::abs(estimate.variance_factor - 1) <= chance;
+    if (is_chance || (ratio <= tolerated && ratio >= 1 / tolerated)) return std::nullopt;
+    return ratio;
+}
+
+std::vector<SizeDoubt> find_size_doubts(const Campaign& campaign, const Estimate& estimate) {
+    const VectorXd& errors = estimate.parameters.robot;
+    const Index robot_begin = base_parameter_count(campaign);
+    const VectorXd times =
+        errors.cwiseQuotient(parameter_scale(campaign).segment(robot_begin, errors.size()))
+            .cwiseAbs();
+    std::vector<SizeDoubt> doubts;
+    for (Index k = 0; k < times.size(); ++k) {
+        if (times[k] <= doubtful_size) continue;
+        doubts.push_back({estimate.names[static_cast<std::size_t>(robot_begin + k)], times[k]});
+    }
+    return doubts;
+}
+
+std::vector<Index> find_negative_compliances(const Campaign& campaign, const Estimate& estimate) {
+    constexpr double significant = 3;  // standard deviations
+    const VectorXd sigmas = standard_deviations(estimate);
+    const Index robot_begin = base_parameter_count(campaign);
+    std::vector<Index> joints;
+    for (const Compliance& compliance : compliances(campaign.robot)) {
+        const Index k = compliance.parameter;
+        if (estimate.parameters.robot[k] > -significant * sigmas[robot_begin + k]) continue;
+        joints.push_back(compliance.joint);
+    }
+    return joints;
+}
+
+}  // namespace
+
+std::optional<BeyondLimits> find_beyond_limits(const Campaign& campaign,
+                                               const Measurements& measured) {
+    BeyondLimits beyond;
+    for (Index i = 0; i < measured.configuration_count(); ++i) {
+        std::string violation =
+            describe_limit_violation(campaign.robot, measured.configurations.row(i).transpose());
+        if (violation.empty()) continue;
+        if (++beyond.count > 1) continue;
+        beyond.first = i;
+        beyond.violation = std::move(violation);
+    }
+    if (beyond.count == 0) return std::nullopt;
+    return beyond;
+}
+
+std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& measured,
+                                  const Parameters& registered) {
+    if (!campaign.sensor->has_lengths()) return std::nullopt;  // of angles it is not known
+    Misfit misfit;
+    misfit.distance = median_distance(mean_residuals(campaign, registered, measured));
+    // At nominal targets: fitted to another robot's points they may be anywhere.
+    const Blocks blocks =
+        make_prediction_blocks(campaign, campaign.nominal, measured.configurations);
+    const auto points = static_cast<double>(blocks.matrix.rows()) / 3;
+    misfit.expected =
+        std::sqrt(blocks.matrix
+                      .middleCols(base_parameter_count(campaign), campaign.robot.parameter_count())
+                      .squaredNorm() /
+                  points) +
+        campaign.model_error;
+    if (misfit.distance <= credible_errors * misfit.expected) return std::nullopt;
+    misfit.unit = find_unit_doubt(campaign, measured);
+    misfit.planes = find_plane_doubts(campaign, measured);
+    return misfit;
+}
+
+void check_is_of_robot(const Campaign& campaign, const Measurements& measured,
+                       const Registration& registration) {
+    if (!registration.is_determined()) return;
+    const auto misfit = find_misfit(campaign, measured, registration.parameters);
+    if (misfit) throw InputError(describe_misfit(campaign, *misfit));
+}
+
+std::string describe_planes(const std::vector<PlaneDoubt>& planes) {
+    std::string text;
+    for (const PlaneDoubt& doubt : planes) {
+        text += fmt::format("{}plane {} looks reversed: stated with {}, measured at about {}",
+                            text.empty() ? "" : "; ", doubt.plane + 1, describe(doubt.stated),
+                            describe(doubt.measured));
+    }
+    return text;
+}
+
+std::string describe_misfit(const Campaign& campaign, const Misfit& misfit) {
+    return fmt::format(
+        "are these of another robot? The nominal robot misses half of them by over {} mm; must be "
+        "about {} mm, as the spread of {} says{}{}{}",
+        format_short(mm_per_m * misfit.distance, 3), format_short(mm_per_m * misfit.expected, 3),
+        campaign.name, ask_about(misfit.unit), misfit.planes.empty() ? "" : "; ",
+        describe_planes(misfit.planes));
+}
+
+Doubts find_doubts(const Campaign& campaign, const Measurements& measured,
+                   const Parameters& registered, const Metrics& nominal) {
+    Doubts doubts;
+    doubts.misfit = find_misfit(campaign, measured, registered);
+    if (!doubts.misfit) doubts.planes = find_plane_doubts(campaign, measured);
+    if (nominal.distance_rms > gross_distance) doubts.gross_error = nominal.distance_rms;
+    if (campaign.sensor->has_orientation() && nominal.orientation_rms > gross_angle) {
+        doubts.orientations = OrientationDoubt{nominal.orientation_rms};
+        detail::find_other_sense(campaign, measured, gross_angle, *doubts.orientations);
+    }
+    return doubts;
+}
+
+void add_doubts(const Campaign& campaign, const Estimate& estimate, Doubts& doubts) {
+    doubts.sizes = find_size_doubts(campaign, estimate);
+    doubts.residual_ratio = find_residual_ratio(estimate);
+    doubts.negative_compliances = find_negative_compliances(campaign, estimate);
+}
+
+}  // namespace posewise

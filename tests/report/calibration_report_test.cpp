@@ -1,0 +1,76 @@
+#include "posewise/report/calibration_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include "posewise/measurement/simulation.hpp"
+#include "support/campaigns.hpp"
+
+namespace posewise {
+namespace {
+
+bool holds(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+struct Example {
+    Campaign campaign = testing::tracked_campaign(testing::fanuc());
+    Measurements measurements;
+
+    explicit Example(Index poses) {
+        campaign.name = "robot";
+        measurements = simulate(campaign, {.pose_count = poses, .repeats = 2}).measurements;
+    }
+};
+
+TEST(FormatCalibration, SaysWhatWasFoundAndHowAccurateItIs) {
+    const Example example(16);
+    const Calibration calibration = calibrate(example.campaign, example.measurements);
+    const std::string text = format(calibration);
+    EXPECT_EQ(text.find("robot: 16 configurations, 32 samples, 33 parameters\nlm: converged"), 0U)
+        << text;
+    for (const char* const part :
+         {"\nAccuracy\n\n", "held out: 16 folds, 0 of them not identifiable\n",
+          "noise floor from repeats: 0.0", "\nParameters (errors of the robot, base, targets in",
+          "\nStrongest correlations\n\n"}) {
+        EXPECT_TRUE(holds(text, part)) << part;
+    }
+    EXPECT_FALSE(holds(text, "Compliances"));
+    EXPECT_TRUE(describe_doubts(calibration).empty());
+}
+
+TEST(FormatCalibration, OfOneThatIsNotIdentifiedSaysWhy) {
+    const Example example(3);
+    EXPECT_EQ(format(calibrate(example.campaign, example.measurements)),
+              "3 configurations give 27 equations, 33 parameters need at least as many\n");
+}
+
+TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
+    const Example example(16);
+    Calibration calibration = calibrate(example.campaign, example.measurements, {.folds = 0});
+    calibration.doubts.gross_error = 0.25;
+    calibration.doubts.sizes = {{"dq2", 40}, {"Tx1", 25.5}};
+    calibration.doubts.orientations = OrientationDoubt{0.5, OrientationSense::RealPartLast, 0.001};
+    EXPECT_EQ(
+        describe_doubts(calibration, "m.csv"),
+        (std::vector<std::string>{
+            "m.csv: the nominal robot misses the points by 0.25 m (RMS); if some are grossly "
+            "wrong, try --loss cauchy",
+            "m.csv: the nominal robot misses the orientations by 28.6 deg (RMS), but by 0.057 deg "
+            "with the last number of each quaternion as its real part: name the columns qx, qy, "
+            "qz, qw",
+            "far above the expected size: dq2 (40 times), Tx1 (25.5 times); are sign, unit and "
+            "nominal value in the campaign right, and do the poses tell them apart? If so, state "
+            "their size in spread"}));
+}
+
+TEST(DescribeBeyondLimits, CountsThemAndNamesTheFirst) {
+    const Example example(3);
+    EXPECT_EQ(describe(BeyondLimits{2, 1, "q2 is 61 deg, must be from -50 to 60 deg"},
+                       example.measurements),
+              "2 of 3 measured configurations are beyond the campaign's joint limits, the first is "
+              "'" +
+                  example.measurements.ids[1] + "': q2 is 61 deg, must be from -50 to 60 deg");
+}
+
+}  // namespace
+}  // namespace posewise

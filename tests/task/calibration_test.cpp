@@ -1,0 +1,147 @@
+#include "posewise/task/calibration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "support/campaigns.hpp"
+
+namespace posewise {
+
+std::atomic<int> registrations{0};
+
+// The linker sends calls of register_base_and_targets() here (--wrap, see CMakeLists.txt).
+Registration real_registration(const Campaign& campaign, const Measurements& measurements) asm(
+    "__real__ZN8posewise25register_base_and_targetsERKNS_8CampaignERKNS_12MeasurementsE");
+Registration counted_registration(const Campaign& campaign, const Measurements& measurements) asm(
+    "__wrap__ZN8posewise25register_base_and_targetsERKNS_8CampaignERKNS_12MeasurementsE");
+
+Registration counted_registration(const Campaign& campaign, const Measurements& measurements) {
+    ++registrations;
+    return real_registration(campaign, measurements);
+}
+
+namespace {
+
+struct Example {
+    Campaign campaign = testing::tracked_campaign(testing::fanuc());
+    Measurements measurements;
+
+    explicit Example(Index poses = 16) {
+        measurements = simulate(campaign, {.pose_count = poses, .repeats = 2}).measurements;
+    }
+};
+
+TEST(Calibrate, RegistersOnce) {
+    const Example example;
+    for (const bool with_models : {false, true}) {
+        registrations = 0;
+        CalibrationOptions options;
+        options.model_selection = with_models;
+        const Calibration result = calibrate(example.campaign, example.measurements, options);
+        EXPECT_TRUE(result.is_identified());
+        EXPECT_TRUE(result.held_out.has_value());
+        EXPECT_EQ(registrations, 1);
+    }
+}
+
+TEST(Calibrate, HoldsWhatItsPartsFind) {
+    const Example example;
+    const Calibration result = calibrate(example.campaign, example.measurements);
+    const Registration registered =
+        register_base_and_targets(example.campaign, example.measurements);
+    const Estimate estimate =
+        identify(example.campaign, example.measurements, registered.parameters);
+    EXPECT_EQ(result.estimate.parameters.robot, estimate.parameters.robot);
+    EXPECT_EQ(result.estimate.covariance, estimate.covariance);
+    const CrossValidation held_out =
+        cross_validate(example.campaign, example.measurements, registered.parameters, 16);
+    ASSERT_TRUE(result.held_out.has_value());
+    EXPECT_EQ(result.held_out->samples.distance_rms, held_out.samples.distance_rms);
+    EXPECT_GT(result.nominal.distance_rms, 2 * result.estimate.fit.distance_rms);
+    EXPECT_NEAR(result.repeatability->length, 5e-5, 1e-5);
+    EXPECT_EQ(result.measured.configurations, 16);
+    EXPECT_EQ(result.measured.samples, 32);
+    EXPECT_FALSE(result.doubts.misfit.has_value());
+    EXPECT_TRUE(result.doubts.sizes.empty());
+    EXPECT_FALSE(result.left_out || result.validation || result.selection);
+}
+
+TEST(Calibrate, IsJudgedOnWhatItDidNotUse) {
+    const Example example(24);
+    const Example fresh(10);
+    CalibrationOptions options;
+    options.folds = 0;
+    for (Index i = 0; i < 18; ++i) options.used.push_back(i);
+    options.validation = &fresh.measurements;
+    const Calibration result = calibrate(example.campaign, example.measurements, options);
+    EXPECT_FALSE(result.held_out.has_value());
+    EXPECT_EQ(result.measured.configurations, 18);
+    EXPECT_EQ(result.left_out->point_count, 6 * 2 * 3);
+    EXPECT_EQ(result.validation->point_count, 10 * 2 * 3);
+    EXPECT_GT(result.left_out->distance_rms, result.estimate.fit.distance_rms);
+}
+
+TEST(Calibrate, SaysWhatIsNotIdentifiable) {
+    const Example few(3);
+    const Calibration result = calibrate(few.campaign, few.measurements);
+    EXPECT_FALSE(result.is_identified());
+    EXPECT_EQ(result.estimate.undetermined,
+              "3 configurations give 27 equations, 33 parameters need at least as many");
+    Example hidden;
+    hidden.measurements.is_seen.col(1).setConstant(false);
+    EXPECT_EQ(calibrate(hidden.campaign, hidden.measurements)
+                  .estimate.undetermined.find("target 2 is seen in no sample"),
+              0U);
+}
+
+TEST(Calibrate, TellsHowFarItIsAndPassesOnWhatTheCallbackThrows) {
+    const Example example;
+    CalibrationOptions options;
+    options.folds = 4;
+    Index last = 0;
+    options.progress = [&](const Progress& progress) {
+        EXPECT_EQ(progress.done, last + 1);
+        EXPECT_EQ(progress.total, 5);
+        last = progress.done;
+    };
+    calibrate(example.campaign, example.measurements, options);
+    EXPECT_EQ(last, 5);
+    options.progress = [](const Progress&) { throw std::domain_error("enough"); };
+    EXPECT_THROW(calibrate(example.campaign, example.measurements, options), std::domain_error);
+}
+
+TEST(Calibrate, StoppedEndsWithTheBestSoFar) {
+    const Example example;
+    const std::atomic<bool> now{true};
+    for (const auto method : {CalibrationMethod::Joint, CalibrationMethod::TwoStep}) {
+        CalibrationOptions options;
+        options.method = method;
+        options.stop.interrupted = &now;
+        const Calibration result = calibrate(example.campaign, example.measurements, options);
+        EXPECT_EQ(result.estimate.ending, Ending::Interrupted);
+        EXPECT_GT(result.estimate.fit.point_count, 0);
+        EXPECT_FALSE(result.held_out.has_value());
+    }
+}
+
+TEST(Calibrate, RefusesOptionsThatContradictEachOther) {
+    const Example example;
+    CalibrationOptions options;
+    options.method = CalibrationMethod::TwoStep;
+    options.joint.loss.kind = LossKind::Cauchy;
+    EXPECT_THROW(calibrate(example.campaign, example.measurements, options), InputError);
+    options = {};
+    options.model_selection = true;
+    options.folds = 0;
+    EXPECT_THROW(calibrate(example.campaign, example.measurements, options), InputError);
+    options = {};
+    options.folds = 17;
+    EXPECT_THROW(calibrate(example.campaign, example.measurements, options), InputError);
+}
+
+}  // namespace
+}  // namespace posewise
