@@ -69,7 +69,7 @@ TEST(ReadCampaign, TakesErrorsThatDependOnTheConfiguration) {
         read(replaced(campaign_text, "90 deg [dq2]",
                       "90 deg [dq2] [k1 * sin(q2)] [k2*cos(2*q1 - q2 + 30 deg)] [ratio*0.5*q2] "
                       "[coupling*(q1-q2)]"))
-            .campaign.robot;
+            .robot;
     EXPECT_EQ(robot.parameter_names(), (std::vector<std::string>{"dq1", "Tx1", "dq2", "k1", "k2",
                                                                  "ratio", "coupling", "Ty2"}));
     VectorXd errors = VectorXd::Zero(8), same = errors;
