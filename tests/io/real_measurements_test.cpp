@@ -22,7 +22,7 @@ class FanucMeasurements : public ::testing::Test {
                               "/designs/fanuc_r2000ic_165f/campaign.yaml");
     }
 
-    const std::string folder_ = std::string(POSEWISE_REAL_DATA) + "/fanuc_r2000ic_165f";
+    const std::string folder_ = POSEWISE_REAL_DATA "/fanuc_r2000ic_165f";
     const std::string csv_ = folder_ + "/measurements.csv";
     const std::string mat_ = folder_ + "/calibration_dataset.mat";
     CampaignFile file_;
