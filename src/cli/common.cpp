@@ -1,7 +1,6 @@
 #include "common.hpp"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -44,21 +43,16 @@ CLI::Validator criterion_check() {
         "CRITERION");
 }
 
-double mean_repeats(const Measurements& measurements) {
-    return static_cast<double>(measurements.observations.rows()) /
-           static_cast<double>(measurements.configuration_count());
-}
-
 namespace {
 
 /// A plan of another robot or campaign may well have the same ids.
-void check_same_pose(const Measurements& measurements, Index i, const io::PlannedPose& pose,
+void check_same_pose(const Measurements& measurements, Index i, const PlannedPose& pose,
                      const std::string& plan_path) {
     constexpr double tolerance = 2e-3;  // rad or m: what was read back may differ from the plan
-    if (pose.joints.size() == 0) return;
+    if (pose.configuration.size() == 0) return;
     const VectorXd measured = measurements.configurations.row(i).transpose();
-    if (pose.joints.size() == measured.size() &&
-        (pose.joints - measured).cwiseAbs().maxCoeff() <= tolerance) {
+    if (pose.configuration.size() == measured.size() &&
+        (pose.configuration - measured).cwiseAbs().maxCoeff() <= tolerance) {
         return;
     }
     throw InputError(plan_path + ": configuration '" + pose.id +
@@ -70,7 +64,7 @@ void check_same_pose(const Measurements& measurements, Index i, const io::Planne
 
 std::vector<Index> find_planned(const Measurements& measurements, const std::string& plan_path) {
     std::vector<Index> planned;
-    for (const io::PlannedPose& pose : io::read_plan_poses(plan_path)) {
+    for (const PlannedPose& pose : io::read_plan(plan_path).poses) {
         const auto found = std::find(measurements.ids.begin(), measurements.ids.end(), pose.id);
         if (found == measurements.ids.end()) {
             throw InputError(plan_path + ": configuration '" + pose.id +
@@ -91,24 +85,6 @@ void print_section(const std::string& title, const Table& table) {
 void print_warning(const std::string& text) {
     const std::string line = "posewise: warning: " + escape_controls(text) + '\n';
     std::fwrite(line.data(), 1, line.size(), stderr);
-}
-
-void check_memory(const Campaign& campaign, Index count, const std::string& option) {
-    constexpr double bytes_per_gb = 1e9;
-    constexpr double beside = 1.25;  // what a search needs beside the blocks
-    const double needed = beside * static_cast<double>(sizeof(double)) *
-                          static_cast<double>(count) *
-                          static_cast<double>(campaign.sensor->row_count()) *
-                          static_cast<double>(parameter_count(campaign));
-    rlimit limit{};
-    getrlimit(RLIMIT_AS, &limit);
-    const double there = std::min(
-        static_cast<double>(limit.rlim_cur),
-        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE)));
-    if (needed < there) return;
-    throw InputError(
-        fmt::format("{} candidates need {:.0f} GB of memory, there are {:.0f} GB; lower {}", count,
-                    needed / bytes_per_gb, there / bytes_per_gb, option));
 }
 
 void check_torques_known(const std::string& campaign_path, const Chain& robot) {

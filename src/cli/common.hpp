@@ -23,9 +23,6 @@ void add_measurements_option(CLI::App& command, InputPaths& paths);
 /// Accepts the name of a criterion; anything else is a usage error that lists them.
 CLI::Validator criterion_check();
 
-/// Samples per configuration, on average: the repeats that selection reckons with.
-double mean_repeats(const Measurements& measurements);
-
 /// Indices of the configurations a plan file asks for. Throws InputError if one is not there.
 std::vector<Index> find_planned(const Measurements& measurements, const std::string& plan_path);
 
@@ -35,10 +32,6 @@ void print_section(const std::string& title, const Table& table);
 
 /// "posewise: warning: ..." on standard error, one line whatever it quotes.
 void print_warning(const std::string& text);
-
-/// Throws InputError if so many candidates of a campaign need more memory than this machine has;
-/// `option` is what says how many.
-void check_memory(const Campaign& campaign, Index count, const std::string& option);
 
 /// Throws InputError for a robot whose torques are measured with each configuration: of poses that
 /// are drawn nobody knows them.

@@ -15,6 +15,7 @@
 #include "posewise/core/format.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/task/choice.hpp"
 
 namespace posewise::cli {
 namespace {

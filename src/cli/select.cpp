@@ -10,14 +10,15 @@
 #include "files.hpp"
 #include "interrupt.hpp"
 #include "options.hpp"
-#include "posewise/core/format.hpp"
+#include "plan_inputs.hpp"
+#include "plan_options.hpp"
 #include "posewise/core/units.hpp"
-#include "selection_problem.hpp"
+#include "posewise/io/plan_file.hpp"
+#include "posewise/report/plan_tables.hpp"
+#include "posewise/report/sentences.hpp"
 
 namespace posewise::cli {
 namespace {
-
-using Kind = io::CandidateSource::Kind;
 
 constexpr const char* footer = R"(
 Example:
@@ -44,172 +45,98 @@ A file of --groups has the columns config,group.
 Ctrl-C or --time end the search with the best plan so far, written with its bound; exit code 0.
 The same seed gives the same plan, on any number of threads, unless time ended it.)";
 
-struct Arguments {
-    io::SelectionRequest request;
+struct Arguments : PlanArguments {
     std::string measurements;
     std::string candidates;
     std::string blocks;
     std::optional<Index> random;
-    std::string criterion;
-    std::optional<bool> prior;
-    std::string focus = "all";
     double least_distance_deg = 0;
-    std::optional<std::uint64_t> seed;
-    std::string out;
-    bool progress = false;
-    SelectOptions search;   ///< how hard to try
-    double time_limit = 0;  ///< s; 0: none
 };
-
-// ---- From arguments to a request ----
 
 void require_usage(bool is_right, const char* option, const std::string& rule) {
     if (!is_right) throw CLI::ValidationError(option, rule);
 }
 
 void check_usage(const Arguments& arguments) {
-    const bool is_plain = !arguments.blocks.empty();
-    const io::SelectionRequest& request = arguments.request;
-    require_usage(is_plain == request.source.campaign.empty(), "CAMPAIGN",
-                  is_plain ? "must be left out with --blocks" : "is required (but for --blocks)");
-    require_usage(is_plain == (request.source.rows_per_block > 0), "--rows",
-                  is_plain ? "is required with --blocks" : "goes with --blocks only");
     const std::string& blocks = arguments.blocks;
-    require_usage(
-        request.source.variable.empty() || blocks.ends_with(".mat") || blocks.ends_with(".MAT"),
-        "--variable", "goes with --blocks and a MATLAB file only");
-    require_usage(!is_plain || request.source.repeats == 0, "--repeats", "needs a robot");
+    const bool is_plain = !blocks.empty();
+    const PlanRequest& request = arguments.request;
+    const PlanSources& sources = request.sources;
+    require_usage(is_plain == sources.campaign.empty(), "CAMPAIGN",
+                  is_plain ? "must be left out with --blocks" : "is required (but for --blocks)");
+    require_usage(is_plain == (sources.rows_per_block > 0), "--rows",
+                  is_plain ? "is required with --blocks" : "goes with --blocks only");
+    require_usage(sources.variable.empty() || blocks.ends_with(".mat") || blocks.ends_with(".MAT"),
+                  "--variable", "goes with --blocks and a MATLAB file only");
+    require_usage(!is_plain || request.repeats == 0, "--repeats", "needs a robot");
     require_usage(!is_plain || arguments.focus == "all", "--focus", "needs a robot");
     require_usage(!is_plain || arguments.least_distance_deg == 0, "--least-distance-deg",
                   "needs a robot");
-    require_usage(request.groups.empty() == (request.group_limit == 0), "--groups",
+    require_usage(sources.groups.empty() == (request.group_limit == 0), "--groups",
                   "and --per-group need each other");
 }
 
-/// What the campaign file says where the command line does not.
-void apply_campaign_defaults(Arguments& arguments) {
-    io::SelectionRequest& request = arguments.request;
-    std::optional<io::CampaignFile> file;
-    if (!request.source.campaign.empty()) file = io::read_campaign(request.source.campaign);
-    request.criterion = !arguments.criterion.empty() ? parse_criterion(arguments.criterion)
-                        : file                       ? file->criterion
-                                                     : Criterion::D;
-    request.has_prior = arguments.prior.value_or(file && file->spread.is_prior);
-    arguments.search.seed = arguments.seed.value_or(file ? file->seed : 1);
+CandidateKind kind_of(const Arguments& arguments) {
+    if (arguments.random) return CandidateKind::Random;
+    if (!arguments.candidates.empty()) return CandidateKind::Configurations;
+    return arguments.blocks.empty() ? CandidateKind::Measurements : CandidateKind::Blocks;
 }
 
-io::SelectionRequest make_request(Arguments& arguments) {
-    check_usage(arguments);
-    apply_campaign_defaults(arguments);
-    io::SelectionRequest request = arguments.request;
-    io::CandidateSource& source = request.source;
-    if (arguments.random) {
-        source.kind = Kind::Random;
-        source.count = *arguments.random;
-        source.seed = arguments.search.seed;
-    } else if (!arguments.candidates.empty()) {
-        source.kind = Kind::Configurations;
-    } else if (!arguments.blocks.empty()) {
-        source.kind = Kind::Blocks;
-    }
-    source.path = arguments.measurements + arguments.candidates + arguments.blocks;  // one is given
-    request.is_focused_on_robot = arguments.focus == "robot";
+PlanRequest complete_request(const Arguments& arguments, const io::CampaignFile* campaign) {
+    PlanRequest request =
+        make_request(arguments, campaign, campaign != nullptr ? campaign->criterion : Criterion::D);
+    request.sources.candidates =
+        arguments.measurements + arguments.candidates + arguments.blocks;  // one is given
     request.least_distance = to_radians(arguments.least_distance_deg);
     return request;
 }
 
-// ---- From a plan to file and text ----
-
-io::PlanFile make_plan_file(const SelectionProblem& problem, const Choice& plan) {
-    io::PlanFile file;
-    file.request = problem.request;
-    file.candidate_count = problem.blocks.count();
-    file.checksum = problem.checksum;
-    file.plan = plan;
-    for (std::size_t i = 0; i < plan.poses.size(); ++i) {
-        const Index pose = plan.poses[i];
-        if (i > 0 && pose == plan.poses[i - 1]) {
-            ++file.poses.back().times;
-            continue;
-        }
-        file.poses.push_back({problem.ids[static_cast<std::size_t>(pose)], 1, {}});
-        if (problem.campaign) file.poses.back().joints = problem.configurations.row(pose);
-    }
-    return file;
-}
-
-/// What the bound says, in words, where the numbers alone may mislead.
-std::string describe_proof(const Choice& plan) {
-    if (plan.ending == Ending::Optimal) {
-        return "proof:      optimal: every other choice is ruled out by the bound or was tried\n";
-    }
-    const std::string looseness =
-        describe_looseness(plan.efficiency, plan.starts_at_best, plan.starts);
-    return looseness.empty() ? "" : "note:       " + looseness + '\n';
-}
-
-void print_plan(const io::PlanFile& file) {
-    const Choice& plan = file.plan;
-    std::string ids;
-    for (const io::PlannedPose& pose : file.poses) {
-        ids += (ids.empty() ? "" : " ") + pose.id;
-        if (pose.times > 1) ids += fmt::format(" (x{})", pose.times);
-    }
-    print(fmt::format(
-        "chosen:     {}\ncriterion:  {}\nvalue:      {}\nbound:      {}\n"
-        "efficiency: {} proven\nstarts:     {} of {} ended here, {}\n{}",
-        ids, criterion_name(plan.criterion), format_short(plan.value, 8),
-        format_short(plan.bound, 8), format_fixed(plan.efficiency, 4), plan.starts_at_best,
-        plan.starts, ending_name(plan.ending), describe_proof(plan)));
-}
-
-std::string default_out(const io::CandidateSource& source) {
-    const std::string& path = source.path.empty() ? source.campaign : source.path;
+std::string default_out(const PlanSources& sources) {
+    const std::string& path = sources.candidates.empty() ? sources.campaign : sources.candidates;
     return std::filesystem::path(path).stem().string() + ".plan.json";
 }
 
-Choice search(SelectionProblem& problem, const Arguments& arguments, const StopSignal& stop) {
-    SelectOptions& options = problem.options;
-    options.starts = arguments.search.starts;
-    options.seed = arguments.search.seed;
-    options.stop = stop;
-    ProgressLine line("selecting", arguments.progress);
-    options.progress = [&](const Progress& progress) { line(progress); };
-    return select_poses(problem.blocks, options);
-}
-
-void select(Arguments arguments) {
-    const io::SelectionRequest request = make_request(arguments);
-    const std::string out = arguments.out.empty() ? default_out(request.source) : arguments.out;
-    check_outputs({request.source.campaign, request.source.path, request.augment,
-                   request.test_poses, request.groups},
-                  {out});
-    const InterruptFlag interrupted;
-    const StopSignal stop{interrupted.get(), deadline_after(arguments.time_limit)};
-    SelectionProblem problem = read_problem(request, stop.with_half_the_time());
-    if (problem.request.source.count < request.source.count) {
-        print_warning(
-            fmt::format("only {} of the {} random candidates were drawn in the time there was",
-                        problem.request.source.count, request.source.count));
-    }
-    const io::PlanFile file = make_plan_file(problem, search(problem, arguments, stop));
-    const io::CampaignFile* campaign = problem.campaign ? &*problem.campaign : nullptr;
-    io::write_plan(out, file, campaign);
-    print_plan(file);
-    if (campaign != nullptr) {
-        print(describe_scaling(*campaign, problem.request.source.repeats));
-    }
-    if (problem.request.has_prior) print("prior:      the scale, as standard deviation\n");
+void print_plan(const Plan& plan, const io::CampaignFile* campaign, const std::string& out) {
+    print(format_choice(plan));
+    if (campaign != nullptr) print(describe_scaling(*campaign, plan.request.repeats));
+    if (plan.request.has_prior) print("prior:      the scale, as standard deviation\n");
     print("plan:       " + out + '\n');
-    if (file.plan.ending == Ending::Interrupted) {
+    if (plan.ending == Ending::Interrupted) {
         std::fputs("posewise: interrupted; the plan is the best so far\n", stderr);
     }
 }
 
-// ---- The command line ----
+void select(const Arguments& arguments) {
+    check_usage(arguments);
+    const InterruptFlag interrupted;
+    const StopSignal stop{interrupted.get(), deadline_after(arguments.request.time_limit)};
+    std::optional<io::CampaignFile> file;
+    const std::string& path = arguments.request.sources.campaign;
+    if (!path.empty()) file = io::read_campaign(path);
+    const PlanRequest request = complete_request(arguments, file ? &*file : nullptr);
+    const PlanSources& sources = request.sources;
+    const std::string out = arguments.out.empty() ? default_out(sources) : arguments.out;
+    check_outputs(
+        {sources.campaign, sources.candidates, sources.augment, sources.test_poses, sources.groups},
+        {out});
+    const Index count = arguments.random.value_or(0);
+    ChoiceInputs inputs = read_choice_inputs(request, kind_of(arguments), count, std::move(file));
+    inputs.options.stop = stop;
+    ProgressLine line("selecting", arguments.progress);
+    inputs.options.progress = [&](const Progress& state) { line(state); };
+    const Plan plan = inputs.campaign ? choose(*inputs.campaign, inputs.candidates, inputs.options)
+                                      : choose(inputs.blocks, inputs.options);
+    if (plan.candidate_count < count) {
+        print_warning(
+            fmt::format("only {} of the {} random candidates were drawn in the time there was",
+                        plan.candidate_count, count));
+    }
+    io::write_plan(out, plan);
+    print_plan(plan, inputs.campaign ? &*inputs.campaign : nullptr, out);
+}
 
 void add_sources(CLI::App& command, Arguments& arguments) {
-    io::CandidateSource& source = arguments.request.source;
+    PlanSources& source = arguments.request.sources;
     command.add_option("CAMPAIGN", source.campaign,
                        "Campaign file (YAML): robot, sensor, spread; not with --blocks");
     CLI::Option_group& group =
@@ -228,37 +155,31 @@ void add_sources(CLI::App& command, Arguments& arguments) {
     command.add_option("--variable", source.variable,
                        "--blocks: variable of the MATLAB file (default: the first)");
     command
-        .add_option("--repeats", source.repeats,
+        .add_option("--repeats", arguments.request.repeats,
                     "Samples of each chosen configuration (default: as in the file, else 1)")
         ->check(real_number(1, 1e9));
 }
 
 void add_problem(CLI::App& command, Arguments& arguments) {
-    io::SelectionRequest& request = arguments.request;
+    PlanRequest& request = arguments.request;
     const auto count = whole_number(1, 1000000);
     command.add_option("-k,--poses", request.pose_count, "How many to choose")
         ->required()
         ->check(count);
+    add_criterion_option(command, arguments,
+                         "o1, o2, o3, o4, o5, a, d, e, g or v (default: the campaign's, else d)");
     command
-        .add_option("-c,--criterion", arguments.criterion,
-                    "o1, o2, o3, o4, o5, a, d, e, g or v (default: the campaign's, else d)")
-        ->check(criterion_check());
-    command
-        .add_option("--test-poses", request.test_poses,
+        .add_option("--test-poses", request.sources.test_poses,
                     "g and v: predict these (as --candidates; default: the candidates)")
         ->check(file_name());
     add_prior_option(command, arguments.prior, "; --poses may then be below what identifies");
+    add_focus_option(command, arguments);
     command
-        .add_option("--focus", arguments.focus,
-                    "all, or robot: base and targets are estimated along, but do not count")
-        ->check(CLI::IsMember({"all", "robot"}))
-        ->capture_default_str();
-    command
-        .add_option("--augment", request.augment,
+        .add_option("--augment", request.sources.augment,
                     "Poses measured already: their information is there, they are not chosen")
         ->check(file_name());
     add_ids_option(command, "--exclude", request.excluded, "Ids not to choose, by commas");
-    command.add_option("--groups", request.groups, "CSV that gives each candidate a group")
+    command.add_option("--groups", request.sources.groups, "CSV that gives each candidate a group")
         ->check(file_name());
     command.add_option("--per-group", request.group_limit, "At most so many of one group")
         ->check(count);
@@ -273,21 +194,13 @@ void add_problem(CLI::App& command, Arguments& arguments) {
 }
 
 void add_search(CLI::App& command, Arguments& arguments) {
-    command.add_option("--starts", arguments.search.starts, "Independent searches")
+    command.add_option("--starts", arguments.request.starts, "Independent searches")
         ->check(whole_number(1, 1000000))
         ->capture_default_str();
-    command
-        .add_option("--seed", arguments.seed,
-                    "Of the random starts and of --random (default: the campaign's, else 1)")
-        ->check(whole_number(0, largest_seed));
-    command.add_option("--time", arguments.time_limit, "Seconds after which to stop")
-        ->check(real_number(1e-3, 1e9));
-    command
-        .add_option("-o,--out", arguments.out,
-                    "Plan file (default: <candidates>.plan.json in this folder)")
-        ->check(file_name());
-    command.add_flag("--progress", arguments.progress,
-                     "Show progress on standard error even if it is no terminal");
+    add_search_options(command, arguments,
+                       "Of the random starts and of --random (default: the campaign's, else 1)",
+                       "<candidates>.plan.json");
+    add_progress_flag(command, arguments);
 }
 
 }  // namespace

@@ -208,7 +208,7 @@ void write_estimate(const std::string& path, const Calibration& calibration,
     }
     if (calibration.selection)
         document["model_selection"] = selection_to_json(*calibration.selection);
-    document["assumes"] = assumptions_to_json(campaign);
+    document["assumes"] = numbers_to_json(assumptions_of(campaign));
     write_json(path, document);
 }
 

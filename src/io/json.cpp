@@ -63,13 +63,6 @@ class RepeatedKey {
     std::optional<std::string> key_;
 };
 
-/// Of a sensor, the standard deviations of what its noise is made of.
-void add_noise(Json& assumptions, const Sensor& sensor) {
-    for (const auto& [name, values] : sensor.noise_numbers()) {
-        assumptions[name] = values.size() == 1 ? Json(values.front()) : Json(values);
-    }
-}
-
 }  // namespace
 
 Json make_document(const std::string& kind) {
@@ -91,7 +84,8 @@ void write_json(const std::string& path, const Json& document) {
     }
 }
 
-Json read_document(const std::string& path, const std::string& kind) {
+Json read_document(const std::string& path, const std::string& kind,
+                   const std::string& old_kind) {
     const std::string content = read_file(path);
     Json document;
     RepeatedKey repeated;
@@ -114,17 +108,13 @@ Json read_document(const std::string& path, const std::string& kind) {
                                          " stands twice in one object; must stand once");
     }
     const auto found = document.is_object() ? document.find("kind") : document.end();
-    if (found == document.end() || *found != "posewise " + kind) {
+    const bool is_old =
+        found != document.end() && !old_kind.empty() && *found == "posewise " + old_kind;
+    if (!is_old && (found == document.end() || *found != "posewise " + kind)) {
         throw input_error_at({path}, "kind: must be \"posewise " + kind + "\", as in a " + kind +
                                          " written by posewise");
     }
     return document;
-}
-
-bool is_document_of(const std::string& path, const std::string& kind) {
-    const Json document = Json::parse(read_file(path), nullptr, false);
-    const auto found = document.is_object() ? document.find("kind") : document.end();
-    return found != document.end() && *found == "posewise " + kind;
 }
 
 std::string si_suffix(bool is_angle) { return '_' + std::string(units_of(is_angle).si); }
@@ -133,28 +123,10 @@ const char* load_key(bool turns) { return turns ? "at_Nm" : "at_N"; }
 
 Json vector_to_json(const Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
-Json assumptions_to_json(const Campaign& campaign) {
-    Json assumptions;
-    add_noise(assumptions, *campaign.sensor);
-    if (campaign.sensor->has_angles()) {
-        assumptions["model_error_orientation_rad"] = campaign.model_error_orientation;
-    }
-    assumptions["model_error_m"] = campaign.model_error;
-    for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {
-        const bool turns = campaign.robot.joint(j).motion == Motion::Rotation;
-        assumptions["joint_repeatability"]
-                   [campaign.robot.joints()[static_cast<std::size_t>(j)].name + si_suffix(turns)] =
-                       campaign.joint_repeatability[j];
-    }
-    const VectorXd scale = parameter_scale(campaign);
-    const std::vector<bool> is_angle = parameter_is_angle(campaign);
-    Json& expected = assumptions["expected_error"];
-    std::size_t k = 0;
-    for (const std::string& name : parameter_names(campaign)) {
-        expected[name + si_suffix(is_angle[k])] = scale[static_cast<Index>(k)];
-        ++k;
-    }
-    return assumptions;
+Json numbers_to_json(const std::vector<NamedNumber>& numbers) {
+    Json flat = Json::object();
+    for (const NamedNumber& one : numbers) flat['/' + one.name] = one.value;
+    return flat.unflatten();
 }
 
 }  // namespace posewise::io

@@ -2,8 +2,9 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
-#include "posewise/measurement/campaign.hpp"
+#include "posewise/task/plan.hpp"
 
 namespace posewise::io {
 
@@ -17,12 +18,10 @@ Json make_document(const std::string& kind);
 /// is infinite or unknown becomes null. Throws InputError if a text is not UTF-8.
 void write_json(const std::string& path, const Json& document);
 
-/// Reads a document of that kind. Throws InputError for anything else, and for a key that stands
-/// twice.
-Json read_document(const std::string& path, const std::string& kind);
-
-/// Whether a file says of itself that it is of that kind. Throws InputError if it cannot be read.
-bool is_document_of(const std::string& path, const std::string& kind);
+/// Reads a document of that kind, or of an old one. Throws InputError for anything else, and for a
+/// key that stands twice.
+Json read_document(const std::string& path, const std::string& kind,
+                   const std::string& old_kind = "");
 
 /// `_rad` or `_m`.
 std::string si_suffix(bool is_angle);
@@ -32,7 +31,8 @@ const char* load_key(bool turns);
 
 Json vector_to_json(const Vector3d& vector);
 
-/// What a campaign assumes: noise, model error and the expected error of each parameter.
-Json assumptions_to_json(const Campaign& campaign);
+/// An object of them; "expected_error/dq2_rad" is dq2_rad of the object expected_error (a JSON
+/// pointer without the first slash).
+Json numbers_to_json(const std::vector<NamedNumber>& numbers);
 
 }  // namespace posewise::io

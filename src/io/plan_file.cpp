@@ -1,46 +1,65 @@
 #include "posewise/io/plan_file.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
 
-#include "json.hpp"
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "csv_reader.hpp"
 #include "measurement_columns.hpp"
-#include "plan_names.hpp"
+#include "plan_format.hpp"
 #include "plan_paths.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/io/atomic_file.hpp"
+#include "posewise/measurement/seen.hpp"
 
 namespace posewise::io {
 namespace {
 
-Json source_to_json(const PlanFile& file, const std::string& plan_path) {
-    using Kind = CandidateSource::Kind;
-    const CandidateSource& source = file.request.source;
+Json candidates_to_json(const Plan& plan, const std::string& plan_path) {
+    const PlanSources& sources = plan.request.sources;
     Json json;
-    json["kind"] = std::find_if(source_kinds.begin(), source_kinds.end(), [&](const auto& entry) {
-                       return entry.first == source.kind;
-                   })->second;
-    json["campaign_file"] = path_to_json(source.campaign, plan_path);
-    json["source"] = path_to_json(source.path, plan_path);
-    if (source.kind == Kind::Random) json["seed"] = source.seed;
-    if (source.kind == Kind::Blocks) {
-        json["rows_per_block"] = source.rows_per_block;
-        json["variable"] = source.variable;
+    json["kind"] =
+        std::find_if(candidate_kinds.begin(), candidate_kinds.end(), [&](const auto& entry) {
+            return entry.first == plan.kind;
+        })->second;
+    json["campaign_file"] = path_to_json(sources.campaign, plan_path);
+    json["source"] = path_to_json(sources.candidates, plan_path);
+    if (plan.kind == CandidateKind::Blocks) {
+        json["rows_per_block"] = sources.rows_per_block;
+        json["variable"] = sources.variable;
     }
-    json["count"] = file.candidate_count;
-    json["checksum"] = file.checksum;
-    json["repeats"] = source.repeats;
+    if (plan.is_continuous()) json["drawn"] = plan.request.pool_count;
+    json["count"] = plan.candidate_count;
+    if (!plan.is_continuous()) json["checksum"] = plan.checksum;
+    json["repeats"] = plan.request.repeats;
     return json;
 }
 
-Json problem_to_json(const SelectionRequest& request, const std::string& plan_path) {
-    return {{"pose_count", request.pose_count},
-            {"prior", request.has_prior},
-            {"focus", request.is_focused_on_robot ? "robot" : "all"},
-            {"augment", path_to_json(request.augment, plan_path)},
-            {"test_poses", path_to_json(request.test_poses, plan_path)},
-            {"groups", path_to_json(request.groups, plan_path)},
-            {"group_limit", request.group_limit},
-            {"excluded", request.excluded},
-            {"repeat_limit", request.repeat_limit},
-            {"least_distance_rad", request.least_distance}};
+Json problem_to_json(const Plan& plan, const std::string& plan_path) {
+    const PlanRequest& request = plan.request;
+    Json json = {{"pose_count", request.pose_count},
+                 {"prior", request.has_prior},
+                 {"focus", request.is_focused_on_robot ? "robot" : "all"},
+                 {"augment", path_to_json(request.sources.augment, plan_path)}};
+    if (plan.is_continuous()) {
+        json["repaired_plan"] = path_to_json(request.sources.repaired, plan_path);
+        json["dropped"] = request.dropped;
+        json["workspace"] = path_to_json(request.sources.workspace, plan_path);
+        json["workspace_poses"] = request.workspace_count;
+        json["workspace_box_mm"] = request.workspace_box_mm;
+        json["workspace_target"] = request.workspace_target;
+        json["time_limit_s"] = request.time_limit;
+    } else {
+        json["test_poses"] = path_to_json(request.sources.test_poses, plan_path);
+        json["groups"] = path_to_json(request.sources.groups, plan_path);
+        json["group_limit"] = request.group_limit;
+        json["excluded"] = request.excluded;
+        json["repeat_limit"] = request.repeat_limit;
+        json["least_distance_rad"] = request.least_distance;
+    }
+    return json;
 }
 
 /// The lower triangle: M is symmetric.
@@ -54,39 +73,102 @@ Json certificate_to_json(const Certificate& certificate) {
     return {{"sharpness", certificate.sharpness}, {"M_lower", std::move(rows)}};
 }
 
-Json pose_to_json(const PlannedPose& pose, const Campaign* campaign) {
-    Json json = {{"id", pose.id}, {"times", pose.times}};
-    if (campaign == nullptr) return json;
-    Json& joints = json["joints"];
-    for (const WantedColumn& column : wanted_columns(*campaign)) {
-        if (column.role != Role::Joint) continue;
-        const bool is_length = column.quantity == Quantity::Length;
-        joints[is_length ? column.stem + "_m" : column.example()] = pose.joints[column.index];
+void add_bounds(Json& document, const Plan& plan) {
+    if (!plan.is_continuous()) {
+        document["bound"] = plan.bound;
+        document["efficiency"] = plan.efficiency;
+        return;
     }
+    document["bounds"] = {{"pool",
+                           {{"value", plan.choice_value},
+                            {"bound", plan.bound},
+                            {"efficiency", plan.efficiency},
+                            {"is_proven", true}}},
+                          {"continuous",
+                           {{"bound", plan.searched_bound},
+                            {"efficiency", plan.searched_efficiency},
+                            {"is_proven", false}}}};
+}
+
+void add_prediction(Json& document, const Plan& plan) {
+    if (!plan.predicted) return;
+    Json& predicted = document["predicted"];
+    predicted["position_error_rms_m"] = plan.predicted->rms;
+    predicted["position_error_p95_m"] = plan.predicted->percentile95;
+    Json& deviations = predicted["standard_deviation"];
+    for (const NamedNumber& one : plan.standard_deviations) deviations[one.name] = one.value;
+    document["visiting_time_s"] = plan.visiting_time;
+}
+
+Json configuration_to_json(const std::vector<std::string>& columns, const VectorXd& q) {
+    Json json;
+    for (Index j = 0; j < q.size(); ++j) json[columns[static_cast<std::size_t>(j)]] = q[j];
+    return json;
+}
+
+/// In degrees and mm, rounded.
+Json readable_to_json(const std::vector<std::string>& columns, const VectorXd& q) {
+    Json json;
+    for (Index j = 0; j < q.size(); ++j) {
+        const std::string& column = columns[static_cast<std::size_t>(j)];
+        for (const AmountUnits& units : {angle_units, length_units}) {
+            const std::string suffix = '_' + std::string(units.si);
+            if (!column.ends_with(suffix)) continue;
+            const std::string name = column.substr(0, column.size() - suffix.size());
+            json[name + '_' + std::string(units.reading)] =
+                std::round(1e4 * units.to_reading(q[j])) / 1e4;
+        }
+    }
+    return json;
+}
+
+Json pose_to_json(const Plan& plan, const PlannedPose& pose) {
+    Json json = {{"id", pose.id}, {"times", pose.times}};
+    if (pose.configuration.size() == 0) return json;
+    json["joints"] = configuration_to_json(plan.columns, pose.configuration);
+    if (plan.is_continuous()) json["readable"] = readable_to_json(plan.columns, pose.configuration);
+    json["visible_targets"] = Json::array();
+    for (const Index target : pose.targets) json["visible_targets"].push_back(target + 1);
+    if (!plan.is_continuous()) return json;
+    json["via"] = pose.via ? configuration_to_json(plan.columns, *pose.via) : Json(nullptr);
+    json["way_is_blocked"] = pose.is_blocked;
+    json["kept"] = pose.is_kept;
     return json;
 }
 
 }  // namespace
 
-void write_plan(const std::string& path, const PlanFile& file, const Campaign* campaign) {
-    const Choice& plan = file.plan;
-    Json document = make_document("plan");
-    document["campaign"] = campaign != nullptr ? Json(campaign->name) : Json(nullptr);
-    document["candidates"] = source_to_json(file, path);
-    document["problem"] = problem_to_json(file.request, path);
-    document["criterion"] = criterion_name(file.request.criterion);
+void write_plan(const std::string& path, const Plan& plan) {
+    Json document = make_document(plan_kind);
+    document["format"] = plan_format;
+    document["campaign"] = plan.campaign.empty() ? Json(nullptr) : Json(plan.campaign);
+    document["candidates"] = candidates_to_json(plan, path);
+    document["problem"] = problem_to_json(plan, path);
+    document["criterion"] = criterion_name(plan.request.criterion);
     document["value"] = plan.value;
-    document["bound"] = plan.bound;
-    document["efficiency"] = plan.efficiency;
-    document["search"] = {{"seed", plan.seed},
-                          {"starts", plan.starts},
+    add_bounds(document, plan);
+    document["search"] = {{"seed", plan.request.seed},
+                          {"starts", plan.request.starts},
                           {"starts_at_best", plan.starts_at_best},
                           {"stop_reason", ending_name(plan.ending)}};
-    if (campaign != nullptr) document["assumes"] = assumptions_to_json(*campaign);
+    add_prediction(document, plan);
+    if (!plan.assumptions.empty()) document["assumes"] = numbers_to_json(plan.assumptions);
     Json& poses = document["poses"] = Json::array();
-    for (const PlannedPose& pose : file.poses) poses.push_back(pose_to_json(pose, campaign));
-    document["certificate"] = certificate_to_json(plan.certificate);
+    for (const PlannedPose& pose : plan.poses) poses.push_back(pose_to_json(plan, pose));
+    if (!plan.is_continuous()) document["certificate"] = certificate_to_json(plan.certificate);
     write_json(path, document);
+}
+
+void write_configurations_csv(const std::string& path, const Campaign& campaign,
+                              const std::vector<PlannedPose>& poses) {
+    std::string text = fmt::format("config{},{}\n", joint_header(campaign), visible_targets);
+    const Index targets = campaign.sensor->target_count();
+    for (const PlannedPose& pose : poses) {
+        fmt::format_to(std::back_inserter(text), "{}{},{}\n", csv_field(pose.id),
+                       joint_cells(campaign, pose.configuration),
+                       target_numbers(seen_targets(pose.targets, targets)));
+    }
+    write_file(path, text);
 }
 
 }  // namespace posewise::io

@@ -1,63 +1,59 @@
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <limits>
 #include <map>
 
 #include "json_reader.hpp"
-#include "plan_names.hpp"
+#include "plan_format.hpp"
 #include "plan_paths.hpp"
+#include "posewise/core/text.hpp"
 #include "posewise/io/plan_file.hpp"
-#include "posewise/io/pose_plan_file.hpp"
 
 namespace posewise::io {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-CandidateSource read_source(const JsonValue& json, const std::string& plan_path) {
-    using Kind = CandidateSource::Kind;
-    CandidateSource source;
-    const std::string kind = json["kind"].text();
-    const auto found = std::find_if(source_kinds.begin(), source_kinds.end(),
+// ---- What was asked for ----
+
+CandidateKind read_kind(const JsonValue& json) {
+    const std::string kind = json.text();
+    const auto found = std::find_if(candidate_kinds.begin(), candidate_kinds.end(),
                                     [&](const auto& entry) { return entry.second == kind; });
-    if (found == source_kinds.end()) {
-        throw json["kind"].error("is '" + kind +
-                                 "'; must be measurements, configurations, random or blocks");
-    }
-    source.kind = found->first;
-    source.campaign = read_path(json["campaign_file"], plan_path);
-    source.path = read_path(json["source"], plan_path);
-    source.count = json["count"].count(1);
-    if (source.kind == Kind::Random) source.seed = json["seed"].natural_number();
-    if (source.kind == Kind::Blocks) {
-        source.rows_per_block = json["rows_per_block"].count(1);
-        source.variable = json["variable"].text();
-    }
-    source.repeats = json["repeats"].number();
-    if (!(source.repeats >= 1)) throw json["repeats"].error("must be at least 1");
-    return source;
+    if (found != candidate_kinds.end()) return found->first;
+    throw json.error("is '" + kind + "'; must be measurements, configurations, random or blocks");
 }
 
-SelectionRequest read_request(const JsonValue& document, const std::string& plan_path) {
-    SelectionRequest request;
-    request.source = read_source(document["candidates"], plan_path);
-    try {
-        request.criterion = parse_criterion(document["criterion"].text());
-    } catch (const InputError& problem) {
-        throw document["criterion"].error(problem.what());
+void read_candidates(const JsonValue& json, const std::string& path, Plan& plan) {
+    PlanRequest& request = plan.request;
+    plan.kind = read_kind(json["kind"]);
+    request.sources.campaign = read_path(json["campaign_file"], path);
+    request.sources.candidates = read_path(json["source"], path);
+    plan.candidate_count = json["count"].count(1);
+    if (plan.kind == CandidateKind::Blocks) {
+        request.sources.rows_per_block = json["rows_per_block"].count(1);
+        request.sources.variable = json["variable"].text();
     }
-    const JsonValue problem = document["problem"];
-    request.pose_count = problem["pose_count"].count(1);
-    request.has_prior = problem["prior"].boolean();
-    const std::string focus = problem["focus"].text();
-    if (focus != "all" && focus != "robot") throw problem["focus"].error("must be all or robot");
-    request.is_focused_on_robot = focus == "robot";
-    request.augment = read_path(problem["augment"], plan_path);
-    request.test_poses = read_path(problem["test_poses"], plan_path);
-    request.groups = read_path(problem["groups"], plan_path);
+    if (plan.is_continuous()) {
+        request.pool_count = json["drawn"].count(1);
+    } else {
+        plan.checksum = json["checksum"].text();
+    }
+    request.repeats = json["repeats"].number();
+    if (!(request.repeats >= 1)) throw json["repeats"].error("must be at least 1");
+}
+
+Criterion read_criterion(const JsonValue& json) {
+    const std::string name = json.text();
+    try {
+        return parse_criterion(name);
+    } catch (const InputError& problem) {
+        throw json.error(problem.what());
+    }
+}
+
+void read_choice_limits(const JsonValue& problem, const std::string& path, PlanRequest& request) {
+    request.sources.test_poses = read_path(problem["test_poses"], path);
+    request.sources.groups = read_path(problem["groups"], path);
     request.group_limit = problem["group_limit"].count(0);
     for (const JsonValue& id : problem["excluded"].list()) request.excluded.push_back(id.text());
     request.repeat_limit = problem["repeat_limit"].count(1);
@@ -65,8 +61,39 @@ SelectionRequest read_request(const JsonValue& document, const std::string& plan
     if (!(request.least_distance >= 0)) {
         throw problem["least_distance_rad"].error("must not be negative");
     }
-    return request;
 }
+
+void read_workspace(const JsonValue& problem, const std::string& path, PlanRequest& request) {
+    request.sources.repaired = read_path(problem["repaired_plan"], path);
+    for (const JsonValue& id : problem["dropped"].list()) request.dropped.push_back(id.text());
+    request.sources.workspace = read_path(problem["workspace"], path);
+    request.workspace_count = problem["workspace_poses"].count(1);
+    for (const JsonValue& number : problem["workspace_box_mm"].list()) {
+        request.workspace_box_mm.push_back(number.number());
+    }
+    if (request.workspace_box_mm.size() != 0 && request.workspace_box_mm.size() != 6) {
+        throw problem["workspace_box_mm"].error("must have 6 numbers or none");
+    }
+    request.workspace_target = problem["workspace_target"].count(0);
+    request.time_limit = problem["time_limit_s"].number();
+}
+
+void read_problem(const JsonValue& problem, const std::string& path, Plan& plan) {
+    PlanRequest& request = plan.request;
+    request.pose_count = problem["pose_count"].count(1);
+    request.has_prior = problem["prior"].boolean();
+    const std::string focus = problem["focus"].text();
+    if (focus != "all" && focus != "robot") throw problem["focus"].error("must be all or robot");
+    request.is_focused_on_robot = focus == "robot";
+    request.sources.augment = read_path(problem["augment"], path);
+    if (plan.is_continuous()) {
+        read_workspace(problem, path, request);
+    } else {
+        read_choice_limits(problem, path, request);
+    }
+}
+
+// ---- What was found ----
 
 Certificate read_certificate(const JsonValue& json) {
     Certificate certificate;
@@ -89,99 +116,161 @@ Certificate read_certificate(const JsonValue& json) {
     return certificate;
 }
 
-Choice read_result(const JsonValue& document) {
-    Choice plan;
-    plan.criterion = parse_criterion(document["criterion"].text());
+void read_bounds(const JsonValue& document, Plan& plan) {
     plan.value = document["value"].number_or(-infinity);
-    plan.bound = document["bound"].number_or(infinity);
-    plan.efficiency = document["efficiency"].number();
-    const JsonValue search = document["search"];
-    plan.seed = search["seed"].natural_number();
-    plan.starts = search["starts"].count(1);
+    if (!plan.is_continuous()) {
+        plan.choice_value = plan.value;
+        plan.bound = document["bound"].number_or(infinity);
+        plan.efficiency = document["efficiency"].number();
+        plan.certificate = read_certificate(document["certificate"]);
+        return;
+    }
+    const JsonValue pool = document["bounds"]["pool"];
+    plan.choice_value = pool["value"].number_or(-infinity);
+    plan.bound = pool["bound"].number_or(infinity);
+    plan.efficiency = pool["efficiency"].number();
+    const JsonValue searched = document["bounds"]["continuous"];
+    plan.searched_bound = searched["bound"].number_or(infinity);
+    plan.searched_efficiency = searched["efficiency"].number();
+}
+
+void read_search(const JsonValue& search, Plan& plan) {
+    plan.request.seed = search["seed"].natural_number();
+    plan.request.starts = search["starts"].count(1);
     plan.starts_at_best = search["starts_at_best"].count(0);
     const std::string reason = search["stop_reason"].text();
-    const auto found =
-        std::find_if(stop_reasons.begin(), stop_reasons.end(),
-                     [&](Ending known) { return ending_name(known) == reason; });
-    if (found == stop_reasons.end()) {
+    const auto found = std::find_if(plan_endings.begin(), plan_endings.end(),
+                                    [&](Ending known) { return ending_name(known) == reason; });
+    if (found == plan_endings.end()) {
         throw search["stop_reason"].error("is '" + reason + "', which is none of posewise");
     }
     plan.ending = *found;
-    plan.certificate = read_certificate(document["certificate"]);
-    return plan;
 }
 
-bool agree(double a, double b) {
-    return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
+std::vector<std::string> keys_of(const Json& object) {
+    std::vector<std::string> keys;
+    for (const auto& [key, unused] : object.items()) keys.push_back(key);
+    return keys;
 }
 
-/// The poses, each with its proper id, none twice.
-std::vector<PlannedPose> read_poses(const Json& document, const std::string& path) {
+/// Names and numbers of an object and of the objects in it: "expected_error/dq2_rad".
+std::vector<NamedNumber> read_numbers(const Json& json) {
+    std::vector<NamedNumber> numbers;
+    const Json flat = json.flatten();
+    for (const auto& [place, value] : flat.items()) {
+        if (place.empty()) continue;
+        numbers.push_back({place.substr(1), value.is_number()
+                                                ? value.get<double>()
+                                                : std::numeric_limits<double>::quiet_NaN()});
+    }
+    return numbers;
+}
+
+void read_prediction(const JsonValue& document, const Json& json, Plan& plan) {
+    const JsonValue predicted = document["predicted"];
+    plan.predicted.emplace();
+    plan.predicted->rms = predicted["position_error_rms_m"].number();
+    plan.predicted->percentile95 = predicted["position_error_p95_m"].number();
+    const auto values = predicted["standard_deviation"].values();
+    const auto names = keys_of(json["predicted"]["standard_deviation"]);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        plan.standard_deviations.push_back({names[k], values[k].number_or(infinity)});
+    }
+    plan.visiting_time = document["visiting_time_s"].number_or(infinity);
+}
+
+// ---- The poses ----
+
+VectorXd read_configuration(const JsonValue& json) {
+    const auto numbers = json.values();
+    VectorXd q(static_cast<Index>(numbers.size()));
+    Index j = 0;
+    for (const JsonValue& number : numbers) q[j++] = number.number();
+    return q;
+}
+
+PlannedPose read_pose(const JsonValue& json) {
+    PlannedPose pose;
+    pose.id = json["id"].text();
+    if (json.has("times")) pose.times = json["times"].count(1);
+    if (json.has("joints")) pose.configuration = read_configuration(json["joints"]);
+    if (json.has("visible_targets")) {
+        for (const JsonValue& target : json["visible_targets"].list()) {
+            pose.targets.push_back(target.count(1) - 1);
+        }
+    }
+    if (json.has("via") && !json["via"].is_null()) pose.via = read_configuration(json["via"]);
+    if (json.has("way_is_blocked")) pose.is_blocked = json["way_is_blocked"].boolean();
+    if (json.has("kept")) pose.is_kept = json["kept"].boolean();
+    return pose;
+}
+
+/// The poses, each with its proper id, none twice, all with the same joints.
+void read_poses(const Json& document, const std::string& path, Plan& plan) {
     const auto found = document.find("poses");
     if (found == document.end() || !found->is_array() || found->empty()) {
         throw input_error_at({path}, "poses: must be a list of at least one pose");
     }
-    std::vector<PlannedPose> poses;
     std::map<std::string, std::size_t> places;
     for (const JsonValue& json : JsonValue(*found, path, "poses").list()) {
-        PlannedPose pose;
-        pose.id = json["id"].text();
-        if (json.has("times")) pose.times = json["times"].count(1);
-        const auto [first, is_new] = places.emplace(pose.id, poses.size());
+        PlannedPose pose = read_pose(json);
+        const auto [first, is_new] = places.emplace(pose.id, plan.poses.size());
         if (!is_new) {
-            throw json["id"].error("'" + pose.id + "' occurs before in poses[" +
+            throw json["id"].error(quote(pose.id) + " occurs before in poses[" +
                                    std::to_string(first->second) + "]; keep one");
         }
         if (json.has("joints")) {
-            const auto joints = json["joints"].values();
-            pose.joints.resize(static_cast<Index>(joints.size()));
-            Index j = 0;
-            for (const JsonValue& joint : joints) pose.joints[j++] = joint.number();
+            const auto columns = keys_of((*found)[plan.poses.size()]["joints"]);
+            if (plan.poses.empty()) plan.columns = columns;
+            if (columns != plan.columns) throw json["joints"].error("differ from poses[0].joints");
         }
-        poses.push_back(std::move(pose));
+        plan.poses.push_back(std::move(pose));
     }
-    return poses;
+}
+
+/// What stands with every pose of a plan of this kind.
+void check_poses(const JsonValue& document, const Plan& plan) {
+    for (const JsonValue& pose : document["poses"].list()) {
+        pose["times"].count(1);
+        if (!plan.is_continuous()) continue;
+        pose["joints"].values();
+        pose["visible_targets"].list();
+    }
+}
+
+Json read_plan_document(const std::string& path) {
+    Json json = read_document(path, plan_kind, old_pose_plan_kind);
+    if (json["kind"] != std::string("posewise ") + plan_kind) return upgrade_pose_plan(json);
+    if (!json.contains("format")) return json;  // a choice of format 1, which has the same keys
+    const Index format = JsonValue(json, path)["format"].count(1);
+    if (format > plan_format) {
+        throw input_error_at({path}, "format: is " + std::to_string(format) +
+                                         ", written by a newer posewise; must be at most " +
+                                         std::to_string(plan_format));
+    }
+    return json;
 }
 
 }  // namespace
 
-PlanFile read_plan(const std::string& path) {
-    const Json json = read_document(path, "plan");
+Plan read_plan(const std::string& path) {
+    const Json json = read_plan_document(path);
     const JsonValue document(json, path);
-    PlanFile file;
-    file.poses = read_poses(json, path);
-    for (const JsonValue& pose : document["poses"].list()) pose["times"].count(1);
-    file.request = read_request(document, path);
-    file.candidate_count = file.request.source.count;
-    file.checksum = document["candidates"]["checksum"].text();
-    file.plan = read_result(document);
-    return file;
-}
-
-std::vector<PlannedPose> read_plan_poses(const std::string& path) {
-    return read_poses(read_document(path, is_pose_plan(path) ? "pose plan" : "plan"), path);
-}
-
-std::vector<std::string> find_changed_assumptions(const std::string& path,
-                                                  const Campaign& campaign) {
-    const Json json = read_document(path, is_pose_plan(path) ? "pose plan" : "plan");
-    JsonValue(json, path)["assumes"].values();  // an object
-    const Json stated = json["assumes"].flatten();
-    const Json actual = assumptions_to_json(campaign).flatten();
-    std::vector<std::string> changed;
-    for (const auto& [place, value] : actual.items()) {
-        const Json other = stated.contains(place) ? stated[place] : Json();
-        const bool is_same = other.is_number() && agree(value.get<double>(), other.get<double>());
-        if (is_same) continue;
-        changed.push_back(
-            fmt::format("{}: stated {}, is {}", place.substr(1), other.dump(), value.dump()));
+    Plan plan;
+    read_poses(json, path, plan);
+    read_candidates(document["candidates"], path, plan);
+    check_poses(document, plan);
+    plan.request.criterion = read_criterion(document["criterion"]);
+    read_problem(document["problem"], path, plan);
+    read_bounds(document, plan);
+    read_search(document["search"], plan);
+    if (plan.is_continuous()) read_prediction(document, json, plan);
+    if (plan.kind != CandidateKind::Blocks) {
+        plan.campaign = document["campaign"].text();
+        document["assumes"].values();  // an object
+        plan.assumptions = read_numbers(json["assumes"]);
     }
-    for (const auto& [place, value] : stated.items()) {
-        if (place.empty() || actual.contains(place)) continue;
-        changed.push_back(
-            fmt::format("{}: stated {}, is not assumed", place.substr(1), value.dump()));
-    }
-    return changed;
+    return plan;
 }
 
 }  // namespace posewise::io

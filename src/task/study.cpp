@@ -12,6 +12,7 @@
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/selection/exchange.hpp"
+#include "posewise/task/choice.hpp"
 #include "posewise/task/doubts.hpp"
 
 namespace posewise {
@@ -35,10 +36,8 @@ struct Job {
 
 Blocks make_study_blocks(const Campaign& campaign, const Measurements& measurements,
                          const Parameters& registered) {
-    const double mean_repeats = static_cast<double>(measurements.observations.rows()) /
-                                static_cast<double>(measurements.configuration_count());
     return make_blocks(campaign, registered, measurements.configurations,
-                       mean_repeats * share_seen(measurements));
+                       mean_repeats(measurements) * share_seen(measurements));
 }
 
 /// Why not even all configurations identify the model; empty: they do.

@@ -1,6 +1,7 @@
 // A kind of instrument that the library has never heard of: all of it is in this file.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,14 +11,11 @@
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/io/plan_file.hpp"
-#include "posewise/io/pose_plan_file.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/jacobian/pose_information.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/model/sampling.hpp"
-#include "posewise/planner/planning.hpp"
-#include "posewise/planner/prediction.hpp"
-#include "posewise/selection/exchange.hpp"
+#include "posewise/task/verification.hpp"
 #include "support/derivative_check.hpp"
 #include "support/robots.hpp"
 #include "support/temporary_folder.hpp"
@@ -259,67 +257,43 @@ TEST(ATheodolite, DescribesItself) {
 }
 
 TEST(ATheodolite, HasConfigurationsChosenForIt) {
-    const Campaign campaign = theodolite_campaign();
-    const RowMatrixXd candidates = some_configurations(campaign, 300);
-    const Blocks blocks = make_blocks(campaign, campaign.nominal, candidates);
-    io::PlanFile file;
-    file.request.source.kind = io::CandidateSource::Kind::Random;
-    file.request.source.campaign = "campaign.yaml";
-    file.request.source.count = 300;
-    file.request.pose_count = 20;
-    SelectOptions options;
+    Campaign campaign = theodolite_campaign();
+    const Candidates candidates = random_candidates(campaign, 300, 1);
+    ChoiceOptions options;
     options.pose_count = 20;
     options.starts = 2;
-    file.plan = select_poses(blocks, options);
-    EXPECT_GT(file.plan.efficiency, 0.9);
-    EXPECT_LE(file.plan.value, file.plan.bound);
-    for (const Index index : file.plan.poses) {
-        file.poses.push_back({std::to_string(index), 1, candidates.row(index).transpose()});
-    }
+    const Plan plan = choose(campaign, candidates, options);
+    EXPECT_GT(plan.efficiency, 0.9);
+    EXPECT_LE(plan.value, plan.bound);
     const TemporaryFolder folder;
-    const std::string path = folder.path("choice.json");
-    io::write_plan(path, file, &campaign);
-    EXPECT_EQ(io::read_plan(path).poses.front().joints, file.poses.front().joints);
-    EXPECT_TRUE(io::find_changed_assumptions(path, campaign).empty());
-    Campaign other = campaign;
-    other.sensor = std::make_shared<Theodolite>(campaign.sensor->targets(), 2 * arc_second);
-    const auto changed = io::find_changed_assumptions(path, other);
-    EXPECT_EQ(changed.size(), 6U);
-    EXPECT_EQ(changed.front().find("sigma_p1_azimuth_rad"), 0U) << changed.front();
+    io::write_plan(folder.path("choice.json"), plan);
+    const Plan again = io::read_plan(folder.path("choice.json"));
+    EXPECT_EQ(again.poses.front().configuration, plan.poses.front().configuration);
+    EXPECT_TRUE(verify(again, campaign, candidates, options).is_right());
+    campaign.sensor = std::make_shared<Theodolite>(campaign.sensor->targets(), 2 * arc_second);
+    const auto findings = verify(again, campaign, candidates, options).findings;
+    const auto changed = std::count_if(findings.begin(), findings.end(), [](const Finding& one) {
+        return one.name == "assumes" && one.text.starts_with("sigma_p");
+    });
+    EXPECT_EQ(changed, 6);
 }
 
 TEST(ATheodolite, HasPosesPlannedForIt) {
     const Campaign campaign = theodolite_campaign();
-    const Constraints constraints(campaign, {});
-    const Pool pool = make_pool(constraints, 400, 1);
-    const Blocks prediction =
-        make_prediction_blocks(campaign, campaign.nominal, pool.configurations.topRows(100));
-    PlanOptions options;
+    PlanningOptions options;
     options.pose_count = 16;
-    options.test_poses = &prediction;
+    options.pool_count = 400;
+    options.workspace_count = 100;
     options.starts = 1;
-    options.bound_iterations = 0;
-    const PlannedPoses planned = plan_poses(campaign, constraints, pool, 1, options);
-    EXPECT_GT(planned.value, planned.pool_choice.value);
-    const double rms = predict_accuracy(prediction, planned.information).rms;
-    EXPECT_LT(rms, 2e-4);  // m
-
-    io::PosePlanFile file;
-    file.request.campaign = "campaign.yaml";
-    file.value = planned.value;
-    file.predicted_rms = rms;
-    file.standard_deviations = VectorXd::Ones(parameter_count(campaign));
-    for (Index i = 0; i < planned.configurations.rows(); ++i) {
-        const VectorXd q = planned.configurations.row(i).transpose();
-        file.poses.push_back({std::to_string(i), q, targets_seen(constraints.seen(q))});
-    }
+    const Plan plan = make_plan(campaign, options).plan;
+    EXPECT_GT(plan.value, plan.choice_value);
+    EXPECT_LT(plan.predicted->rms, 2e-4);  // m
     const TemporaryFolder folder;
-    io::write_pose_plan(folder.path("plan.json"), file, campaign);
-    const io::PosePlanFile again = io::read_pose_plan(folder.path("plan.json"), campaign);
-    EXPECT_EQ(again.value, file.value);
-    ASSERT_EQ(again.poses.size(), file.poses.size());
-    EXPECT_EQ(again.poses.back().joints, file.poses.back().joints);
-    EXPECT_EQ(again.poses.back().visible, (std::vector<Index>{0, 1, 2}));
+    io::write_plan(folder.path("plan.json"), plan);
+    const Plan again = io::read_plan(folder.path("plan.json"));
+    ASSERT_EQ(again.poses.size(), 16U);
+    EXPECT_EQ(again.poses.back().targets, (std::vector<Index>{0, 1, 2}));
+    EXPECT_TRUE(verify(again, campaign, options).is_right());
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ TEST_F(PlanCommand, WritesPosesAndTellsWhatTheyAchieve) {
     const auto plan = json_of("p.json");
     ASSERT_EQ(plan.at("poses").size(), 12u);
     EXPECT_EQ(plan.at("criterion"), "v");
-    EXPECT_EQ(plan.at("is_interrupted"), false);
+    EXPECT_EQ(plan.at("search").at("stop_reason"), "converged");
     EXPECT_EQ(plan.at("poses")[0].at("visible_targets").size(), 3u);
     EXPECT_EQ(plan.at("assumes").at("sigma_m"), 5.2e-5);
     EXPECT_GT(plan.at("value"), plan.at("bounds").at("pool").at("value"));
@@ -125,8 +125,8 @@ TEST_F(PlanCommand, TimeCoversThePool) {
                                  " -k 12 --prior --pool 10000000 --workspace-poses 50 --time 1 "
                                  "-o p.json")
                                  .out;
-    EXPECT_LT(json_of("p.json").at("asked_for").at("pool"), 10000000);
-    EXPECT_EQ(json_of("p.json").at("is_interrupted"), true);
+    EXPECT_LT(json_of("p.json").at("candidates").at("drawn"), 10000000);
+    EXPECT_EQ(json_of("p.json").at("search").at("stop_reason"), "time limit");
     EXPECT_NE(text.find("left out, planning was stopped"), std::string::npos) << text;
 }
 
@@ -136,7 +136,7 @@ TEST_F(PlanCommand, CountsWhatWasMeasuredAlready) {
         run_well("plan " + fanuc_design + " -k 2 --augment m.csv --criterion d" + quick +
                  "--focus robot -o p.json");
     EXPECT_NE(text.find("2 new, 8 measured already"), std::string::npos) << text;
-    EXPECT_EQ(json_of("p.json").at("asked_for").at("focus"), "robot");
+    EXPECT_EQ(json_of("p.json").at("problem").at("focus"), "robot");
 }
 
 TEST_F(PlanCommand, AnInterruptedPlanIsWrittenAndMarked) {
@@ -144,11 +144,11 @@ TEST_F(PlanCommand, AnInterruptedPlanIsWrittenAndMarked) {
         "plan " + fanuc_design + " -k 16 --pool 2000 --starts 2000 --workspace-poses 50 -o p.json";
     const Outcome outcome = run(arguments, "timeout --signal=INT 4");
     EXPECT_NE(outcome.err.find("the plan is the best so far"), std::string::npos) << outcome.err;
-    EXPECT_EQ(json_of("p.json").at("is_interrupted"), true);
+    EXPECT_EQ(json_of("p.json").at("search").at("stop_reason"), "interrupted");
     EXPECT_EQ(json_of("p.json").at("poses").size(), 16u);
     const Outcome timed = run(arguments + " --time 2");
     EXPECT_EQ(timed.code, 0);
-    EXPECT_EQ(json_of("p.json").at("is_interrupted"), true);
+    EXPECT_EQ(json_of("p.json").at("search").at("stop_reason"), "time limit");
 }
 
 TEST_F(PlanCommand, RefusesContradictoryLimits) {

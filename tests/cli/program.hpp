@@ -72,6 +72,13 @@ class Program : public ::testing::Test {
         EXPECT_EQ(file_count(), files_before) << arguments;
     }
 
+    /// A pipe with a name that gives the content of a file once: a second reader waits forever.
+    void write_fifo(const std::string& name, const std::string& source) const {
+        const std::string line = "cd '" + folder_.string() + "' && rm -f " + name + " && mkfifo " +
+                                 name + " && (cat '" + source + "' > " + name + " &)";
+        EXPECT_EQ(std::system(line.c_str()), 0) << line;
+    }
+
     std::size_t file_count() const {
         const std::filesystem::directory_iterator files(folder_);
         return static_cast<std::size_t>(std::distance(begin(files), end(files)));

@@ -49,6 +49,16 @@ TEST_F(Select, ChoosesFromConfigurationsThatWereNotMeasured) {
     run_well("verify q.plan.json");
 }
 
+TEST_F(Select, ReadsTheCampaignOnce) {
+    const std::string plain = run_well("select " + input_ + "-k 8 --starts 1 -o one.json");
+    const std::filesystem::path design =
+        std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml";
+    write_fifo("campaign.fifo", design.string());
+    const std::string piped =
+        run_well("select campaign.fifo -m s.csv -k 8 --starts 1 -o one.json", "timeout 60");
+    EXPECT_EQ(piped, plain);
+}
+
 TEST_F(Select, ChoosesFromRandomConfigurationsTheSameEveryTime) {
     const std::string arguments = "select " + fanuc_design + " --random 200 -k 6 --starts 4 ";
     run_well(arguments + "-o one.json", "OMP_NUM_THREADS=1");

@@ -174,6 +174,41 @@ TEST_F(Verify, RefusesWhatIsNoPlan) {
     expect_input_error("verify absent.json", "absent.json");
 }
 
+TEST_F(Verify, ReadsFormatOneWithTheSameFigures) {
+    const std::string golden = std::string(POSEWISE_SOURCE_DIR) + "/tests/golden/plan_format_1/";
+    for (const std::string name :
+         {"blocks.plan.json", "choice.plan.json", "continuous.poses.json"}) {
+        const std::string text = run_well("verify '" + golden + name + "'");
+        const auto first_line = text.find('\n') + 1;
+        EXPECT_EQ(text.substr(first_line), read_text(golden + name + ".verified")) << name;
+    }
+}
+
+TEST_F(Verify, RefusesAFormatThatIsNewer) {
+    Json plan = Json::parse(text_of("p.json"));
+    EXPECT_EQ(plan["format"], 2);
+    plan["format"] = 3;
+    write_text("e.json", plan.dump());
+    expect_input_error("verify e.json", "e.json: format: is 3, written by a newer posewise");
+}
+
+/// What is read through a pipe cannot be read twice: the second time it is empty or waits.
+TEST_F(Verify, ParsesThePlanOnce) {
+    run_well("select " + fanuc_design + " --random 40 -k 8 --prior --starts 1 -o c.json");
+    const std::string quick = " --pool 500 --starts 1 --workspace-poses 50 ";
+    run_well("plan " + fanuc_design + " -k 8" + quick + "-o q.json");
+    for (const std::string name : {"c.json", "q.json"}) {
+        const std::string piped = run_well("verify /dev/stdin --campaign " + fanuc_design,
+                                           "cat " + name + " | timeout 60");
+        const std::string plain = run_well("verify " + name + " --campaign " + fanuc_design);
+        EXPECT_EQ(piped.substr(piped.find('\n')), plain.substr(plain.find('\n'))) << name;
+        write_fifo("plan.fifo", name);
+        const std::string from_fifo =
+            run_well("verify plan.fifo --campaign " + fanuc_design, "timeout 60");
+        EXPECT_EQ(from_fifo.substr(from_fifo.find('\n')), plain.substr(plain.find('\n')));
+    }
+}
+
 TEST_F(Verify, EveryPlanOfTheRepositoryIsAsStated) {
     int count = 0;
     const std::filesystem::path designs = std::string(POSEWISE_SOURCE_DIR) + "/designs";

@@ -9,7 +9,7 @@ namespace {
 TEST(ReadJson, RefusesANumberThatOverflows) {
     const testing::TemporaryFolder folder;
     const std::string path = folder.write("p.json", R"({"kind": "posewise plan", "seed": 1e999})");
-    EXPECT_EQ(testing::input_error_of([&] { read_plan_poses(path); }),
+    EXPECT_EQ(testing::input_error_of([&] { read_plan(path); }),
               "p.json: has a number beyond the range of numbers; must be a plan as posewise writes "
               "it");
 }
@@ -18,7 +18,7 @@ TEST(ReadJson, RefusesAKeyThatStandsTwice) {
     const testing::TemporaryFolder folder;
     const std::string path = folder.write(
         "p.json", R"({"kind": "posewise plan", "poses": [{"id": "a"}, {"id": "b", "id": "c"}]})");
-    EXPECT_EQ(testing::input_error_of([&] { read_plan_poses(path); }),
+    EXPECT_EQ(testing::input_error_of([&] { read_plan(path); }),
               "p.json: key 'id' stands twice in one object; must stand once");
 }
 

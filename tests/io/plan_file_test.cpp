@@ -20,28 +20,31 @@ using testing::TemporaryFolder;
 class PlanFileTest : public ::testing::Test {
   protected:
     PlanFileTest() {
-        const auto campaign = folder_.write("c.yaml", testing::campaign_text);
-        campaign_ = read_campaign(campaign);
-        file_.request.source.campaign = campaign;
-        file_.request.source.path = "absent.csv";
-        file_.request.source.repeats = 2.5;
-        file_.request.pose_count = 3;
-        file_.request.excluded = {"first"};
-        file_.request.repeat_limit = 2;
-        file_.candidate_count = 3;
-        file_.checksum = "fnv1a64:0123456789abcdef";
-        file_.poses = {{"2, \"the\" second", 1, Eigen::Vector3d(1.0 / 3, 0.5, 0.25)},
-                       {"dritte Stück", 2, Eigen::Vector3d(0.7, 0.8, 0.125)}};
-        file_.plan.value = -12.5;
-        file_.plan.seed = 18446744073709551615U;
-        file_.plan.starts = 20;
-        file_.plan.starts_at_best = 4;
-        file_.plan.ending = Ending::TimeLimit;
-        file_.plan.certificate.M = Eigen::Matrix2d{{1.0 / 3, -0.1}, {-0.1, 7}};
+        const auto path = folder_.write("c.yaml", testing::campaign_text);
+        const Campaign campaign = read_campaign(path);
+        plan_.campaign = campaign.name;
+        plan_.columns = configuration_columns(campaign);
+        plan_.assumptions = assumptions_of(campaign);
+        plan_.kind = CandidateKind::Measurements;
+        plan_.request.sources.campaign = path;
+        plan_.request.sources.candidates = "absent.csv";
+        plan_.request.repeats = 2.5;
+        plan_.request.pose_count = 3;
+        plan_.request.excluded = {"first"};
+        plan_.request.repeat_limit = 2;
+        plan_.request.seed = 18446744073709551615U;
+        plan_.candidate_count = 3;
+        plan_.checksum = "fnv1a64:0123456789abcdef";
+        plan_.poses = {{"2, \"the\" second", Eigen::Vector3d(1.0 / 3, 0.5, 0.25), 1, {0, 1}},
+                       {"dritte Stück", Eigen::Vector3d(0.7, 0.8, 0.125), 2, {1}}};
+        plan_.value = -12.5;
+        plan_.starts_at_best = 4;
+        plan_.ending = Ending::TimeLimit;
+        plan_.certificate.M = Eigen::Matrix2d{{1.0 / 3, -0.1}, {-0.1, 7}};
     }
 
     std::string written() const {
-        write_plan(path_, file_, &campaign_);
+        write_plan(path_, plan_);
         return read_file(path_);
     }
 
@@ -53,7 +56,7 @@ class PlanFileTest : public ::testing::Test {
     }
 
     std::string error_of(const std::string& text) const {
-        return input_error_of([&] { read_plan_poses(folder_.write("p.json", text)); });
+        return input_error_of([&] { read_plan(folder_.write("p.json", text)); });
     }
 
     std::string error_with_poses(const std::string& poses) const {
@@ -62,44 +65,82 @@ class PlanFileTest : public ::testing::Test {
 
     TemporaryFolder folder_;
     std::string path_ = folder_.path("plan.json");
-    Campaign campaign_;
-    PlanFile file_;
+    Plan plan_;
 };
 
 TEST_F(PlanFileTest, IsReadBackToTheLastDigit) {
     written();
-    const PlanFile read = read_plan(path_);
-    EXPECT_EQ(read.request.source.campaign, folder_.path("c.yaml"));
-    EXPECT_EQ(read.request.source.path, "absent.csv");
-    EXPECT_EQ(read.request.source.repeats, 2.5);
+    const Plan read = read_plan(path_);
+    EXPECT_EQ(read.request.sources.campaign, folder_.path("c.yaml"));
+    EXPECT_EQ(read.request.sources.candidates, "absent.csv");
+    EXPECT_EQ(read.request.repeats, 2.5);
     EXPECT_EQ(read.request.pose_count, 3);
-    EXPECT_EQ(read.request.excluded, file_.request.excluded);
+    EXPECT_EQ(read.request.excluded, plan_.request.excluded);
     EXPECT_EQ(read.request.repeat_limit, 2);
+    EXPECT_EQ(read.request.seed, plan_.request.seed);
+    EXPECT_EQ(read.campaign, plan_.campaign);
+    EXPECT_EQ(read.columns, plan_.columns);
     EXPECT_EQ(read.candidate_count, 3);
-    EXPECT_EQ(read.checksum, file_.checksum);
+    EXPECT_EQ(read.checksum, plan_.checksum);
     ASSERT_EQ(read.poses.size(), 2U);
     EXPECT_EQ(read.poses[1].times, 2);
-    EXPECT_EQ(read.poses[0].joints, file_.poses[0].joints);
-    EXPECT_EQ(read.plan.value, -12.5);
-    EXPECT_EQ(read.plan.bound, std::numeric_limits<double>::infinity());
-    EXPECT_EQ(read.plan.seed, file_.plan.seed);
-    EXPECT_EQ(read.plan.ending, Ending::TimeLimit);
-    EXPECT_EQ(read.plan.certificate.M, file_.plan.certificate.M);
-    EXPECT_EQ(read.plan.certificate.sharpness, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(read.poses[1].targets, plan_.poses[1].targets);
+    EXPECT_EQ(read.poses[0].configuration, plan_.poses[0].configuration);
+    EXPECT_EQ(read.value, -12.5);
+    EXPECT_EQ(read.bound, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(read.ending, Ending::TimeLimit);
+    EXPECT_EQ(read.certificate.M, plan_.certificate.M);
+    EXPECT_EQ(read.certificate.sharpness, std::numeric_limits<double>::infinity());
+    ASSERT_EQ(read.assumptions.size(), plan_.assumptions.size());
+    for (std::size_t i = 0; i < read.assumptions.size(); ++i) {
+        EXPECT_EQ(read.assumptions[i].name, plan_.assumptions[i].name);
+        EXPECT_EQ(read.assumptions[i].value, plan_.assumptions[i].value);
+    }
 }
 
 TEST_F(PlanFileTest, KeepsEveryKindOfCandidates) {
-    using Kind = CandidateSource::Kind;
-    for (const Kind kind : {Kind::Measurements, Kind::Configurations, Kind::Random, Kind::Blocks}) {
-        file_.request.source.kind = kind;
-        file_.request.source.seed = 9;
-        file_.request.source.rows_per_block = 4;
+    plan_.request.sources.rows_per_block = 4;
+    for (const CandidateKind kind : {CandidateKind::Measurements, CandidateKind::Configurations,
+                                     CandidateKind::Random, CandidateKind::Blocks}) {
+        plan_.kind = kind;
         written();
-        const CandidateSource read = read_plan(path_).request.source;
+        const Plan read = read_plan(path_);
         EXPECT_EQ(read.kind, kind);
-        EXPECT_EQ(read.seed, kind == Kind::Random ? 9U : 1U);
-        EXPECT_EQ(read.rows_per_block, kind == Kind::Blocks ? 4 : 0);
+        EXPECT_EQ(read.request.sources.rows_per_block, kind == CandidateKind::Blocks ? 4 : 0);
     }
+}
+
+TEST_F(PlanFileTest, KeepsWhatAContinuousPlanIs) {
+    plan_.kind = CandidateKind::Pool;
+    plan_.poses[0].via = Eigen::Vector3d(0.1, 0.2, 0.3);
+    plan_.poses[1].is_blocked = plan_.poses[1].is_kept = true;
+    plan_.choice_value = -13;
+    plan_.bound = -11;
+    plan_.searched_bound = -12;
+    plan_.searched_efficiency = 0.75;
+    plan_.predicted = {1e-4, 2e-4, 0};
+    plan_.standard_deviations = {{"dq2_rad", 1e-5}};
+    plan_.visiting_time = 17.5;
+    plan_.request.dropped = {"p3"};
+    plan_.request.workspace_box_mm = {0, 0, 0, 1, 2, 3};
+    plan_.request.pool_count = 1234;
+    written();
+    const Plan read = read_plan(path_);
+    EXPECT_TRUE(read.is_continuous());
+    EXPECT_EQ(read.poses[0].via, plan_.poses[0].via);
+    EXPECT_FALSE(read.poses[1].via);
+    EXPECT_TRUE(read.poses[1].is_blocked && read.poses[1].is_kept);
+    EXPECT_EQ(read.choice_value, -13);
+    EXPECT_EQ(read.bound, -11);
+    EXPECT_EQ(read.searched_bound, -12);
+    EXPECT_EQ(read.searched_efficiency, 0.75);
+    EXPECT_EQ(read.predicted->rms, 1e-4);
+    EXPECT_EQ(read.predicted->percentile95, 2e-4);
+    EXPECT_EQ(read.standard_deviations[0].name, "dq2_rad");
+    EXPECT_EQ(read.visiting_time, 17.5);
+    EXPECT_EQ(read.request.dropped, plan_.request.dropped);
+    EXPECT_EQ(read.request.workspace_box_mm, plan_.request.workspace_box_mm);
+    EXPECT_EQ(read.request.pool_count, 1234);
 }
 
 TEST_F(PlanFileTest, HasAMatrixRowOnOneLine) {
@@ -132,18 +173,18 @@ TEST_F(PlanFileTest, LeadsToItsFilesFromItsOwnFolder) {
     std::filesystem::create_directory(folder_.path("plans"));
     folder_.write("here.csv", "");
     const std::string path = folder_.path("plans/p.json");
-    file_.request.source.path =
+    plan_.request.sources.candidates =
         std::filesystem::proximate(folder_.path("here.csv")).string();  // as typed
-    write_plan(path, file_, &campaign_);
+    write_plan(path, plan_);
     EXPECT_NE(read_file(path).find("\"source\": \"../here.csv\""), std::string::npos);
-    EXPECT_TRUE(
-        std::filesystem::equivalent(read_plan(path).request.source.path, folder_.path("here.csv")));
+    EXPECT_TRUE(std::filesystem::equivalent(read_plan(path).request.sources.candidates,
+                                            folder_.path("here.csv")));
 }
 
 TEST_F(PlanFileTest, KeepsTheIdsInTheirOrder) {
     written();
     std::vector<std::string> ids;
-    for (const PlannedPose& pose : read_plan_poses(path_)) ids.push_back(pose.id);
+    for (const PlannedPose& pose : read_plan(path_).poses) ids.push_back(pose.id);
     EXPECT_EQ(ids, (std::vector<std::string>{"2, \"the\" second", "dritte Stück"}));
 }
 
@@ -164,7 +205,7 @@ TEST_F(PlanFileTest, SaysWhatThePlanIsAndAssumes) {
 TEST_F(PlanFileTest, HasTheSameBytesForTheSamePlan) { EXPECT_EQ(written(), written()); }
 
 TEST_F(PlanFileTest, IsNotWrittenWithAnIdThatIsNotText) {
-    file_.poses[1].id = "\xFF\xFE";
+    plan_.poses[1].id = "\xFF\xFE";
     EXPECT_EQ(input_error_of([&] { written(); }),
               "plan.json: cannot be written, since a name or id is not UTF-8 text; must be UTF-8 "
               "(or plain ASCII)");
@@ -172,7 +213,7 @@ TEST_F(PlanFileTest, IsNotWrittenWithAnIdThatIsNotText) {
 }
 
 TEST_F(PlanFileTest, IsRefusedIfMissing) {
-    EXPECT_EQ(input_error_of([&] { read_plan_poses(path_); }),
+    EXPECT_EQ(input_error_of([&] { read_plan(path_); }),
               "plan.json: cannot be read: No such file or directory");
 }
 

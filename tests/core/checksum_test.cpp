@@ -1,10 +1,10 @@
-#include "posewise/io/checksum.hpp"
+#include "posewise/core/checksum.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace posewise::io {
+namespace posewise {
 namespace {
 
 std::string checksum_of(const RowMatrixXd& matrix) {
@@ -38,4 +38,4 @@ TEST(ChecksumTest, KeepsNamesApart) {
 }
 
 }  // namespace
-}  // namespace posewise::io
+}  // namespace posewise

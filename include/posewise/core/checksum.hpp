@@ -5,7 +5,7 @@
 
 #include "posewise/core/types.hpp"
 
-namespace posewise::io {
+namespace posewise {
 
 /// Tells whether numbers and names are still those they were (FNV-1a, 64 bits); the same on every
 /// machine. No protection against forgery.
@@ -23,4 +23,4 @@ class Checksum {
     std::uint64_t state_ = 0xcbf29ce484222325U;
 };
 
-}  // namespace posewise::io
+}  // namespace posewise

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "posewise/core/blocks.hpp"
+#include "posewise/core/progress.hpp"
+#include "posewise/core/stop.hpp"
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/task/plan.hpp"
+
+namespace posewise {
+
+/// Samples per configuration, on average: the repeats that selection reckons with.
+double mean_repeats(const Measurements& measurements);
+
+/// Configurations of a robot to choose from.
+struct Candidates {
+    CandidateKind kind = CandidateKind::Configurations;
+    std::vector<std::string> ids;
+    RowMatrixXd configurations;  ///< candidates x joints (and measured torques), rad or m
+    RowMatrixXd share;           ///< of each one's samples in which each target is seen; 0 to 1
+    /// What was observed there, of kind Measurements.
+    std::optional<Measurements> measured;
+};
+Candidates measured_candidates(Measurements measured);
+/// Scrambled Halton sequence within the joint limits, named 0, 1, ...; all targets are seen.
+Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_t seed);
+
+/// What is asked for, what there is besides the candidates, and when to stop.
+struct ChoiceOptions : PlanRequest {
+    std::optional<Measurements> held;  ///< measured already: their information counts
+    RowMatrixXd test_poses;            ///< of G and V: configurations; empty: the candidates
+    std::vector<Index> groups;         ///< label of each candidate; empty: none
+    Blocks held_blocks;                ///< the same of plain blocks
+    Blocks test_blocks;
+    StopSignal stop{};  ///< ends the search with the best so far
+    ProgressCallback progress{};
+};
+
+/// The candidates that tell most about the parameters, and a proven bound. Base and targets are
+/// registered from measured candidates, else as the campaign states them, else registered from
+/// held measurements. Of random candidates only those are used whose blocks can be made in half of
+/// the time there is; Plan::candidate_count says how many. Throws InputError as select_poses(), for
+/// ids that are not among the candidates, and if base or targets are known from nowhere.
+Plan choose(const Campaign& campaign, const Candidates& candidates, const ChoiceOptions& options);
+
+/// The same of plain blocks, named 0, 1, ..., without a robot.
+Plan choose(const Blocks& candidates, const ChoiceOptions& options);
+
+}  // namespace posewise

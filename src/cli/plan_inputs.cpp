@@ -1,0 +1,98 @@
+#include "plan_inputs.hpp"
+
+#include "common.hpp"
+#include "files.hpp"
+#include "measured.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/io/groups_file.hpp"
+#include "posewise/io/matrix_file.hpp"
+
+namespace posewise::cli {
+namespace {
+
+Blocks read_blocks(const PlanSources& sources, const std::string& path) {
+    const RowMatrixXd matrix = io::read_matrix(path, sources.variable);
+    return compute_from(path, [&] { return make_equal_blocks(matrix, sources.rows_per_block); });
+}
+
+Measurements read_of_robot(const std::string& path, const io::CampaignFile& campaign) {
+    Measurements measured = read_measured(path, campaign);
+    check_is_of_robot(campaign, measured, path);
+    return measured;
+}
+
+Candidates read_candidates(const std::string& path, CandidateKind kind,
+                           const io::CampaignFile& campaign) {
+    if (kind == CandidateKind::Measurements) {
+        return measured_candidates(read_of_robot(path, campaign));
+    }
+    auto [ids, joints, is_seen] = io::read_configurations(path, campaign);
+    return {kind, std::move(ids), std::move(joints), is_seen.cast<double>(), std::nullopt};
+}
+
+void read_plain(ChoiceInputs& inputs) {
+    ChoiceOptions& options = inputs.options;
+    const PlanSources& sources = options.sources;
+    inputs.blocks = read_blocks(sources, sources.candidates);
+    if (!sources.augment.empty()) options.held_blocks = read_blocks(sources, sources.augment);
+    if (!sources.test_poses.empty()) {
+        options.test_blocks = read_blocks(sources, sources.test_poses);
+    }
+}
+
+void read_with_robot(ChoiceInputs& inputs, CandidateKind kind, Index count) {
+    ChoiceOptions& options = inputs.options;
+    const PlanSources& sources = options.sources;
+    io::CampaignFile& campaign = *inputs.campaign;
+    campaign.spread.is_prior = options.has_prior;
+    if (kind != CandidateKind::Random) {
+        inputs.candidates = read_candidates(sources.candidates, kind, campaign);
+    }
+    if (!sources.augment.empty()) options.held = read_of_robot(sources.augment, campaign);
+    if (kind == CandidateKind::Random) {
+        check_torques_known(sources.campaign, campaign.robot);
+        inputs.candidates = random_candidates(campaign, count, options.seed);
+    }
+    if (!sources.test_poses.empty()) {
+        options.test_poses = io::read_configurations(sources.test_poses, campaign).joints;
+    }
+}
+
+/// Names of the candidates; those of plain blocks are numbers.
+std::vector<std::string> ids_of(const ChoiceInputs& inputs) {
+    if (inputs.campaign) return inputs.candidates.ids;
+    std::vector<std::string> ids;
+    for (Index i = 0; i < inputs.blocks.count(); ++i) ids.push_back(std::to_string(i));
+    return ids;
+}
+
+}  // namespace
+
+ChoiceInputs read_choice_inputs(const PlanRequest& request, CandidateKind kind, Index count,
+                                std::optional<io::CampaignFile> campaign) {
+    ChoiceInputs inputs;
+    inputs.campaign = std::move(campaign);
+    static_cast<PlanRequest&>(inputs.options) = request;
+    if (inputs.campaign) {
+        read_with_robot(inputs, kind, count);
+    } else {
+        read_plain(inputs);
+    }
+    const std::string& groups = request.sources.groups;
+    if (!groups.empty()) inputs.options.groups = io::read_groups(groups, ids_of(inputs));
+    return inputs;
+}
+
+PlanningOptions read_planning_inputs(const PlanRequest& request, const io::CampaignFile& campaign) {
+    check_torques_known(request.sources.campaign, campaign.robot);
+    PlanningOptions options;
+    static_cast<PlanRequest&>(options) = request;
+    const PlanSources& sources = request.sources;
+    if (!sources.augment.empty()) options.held = read_of_robot(sources.augment, campaign);
+    if (!sources.workspace.empty()) {
+        options.workspace = io::read_configurations(sources.workspace, campaign).joints;
+    }
+    return options;
+}
+
+}  // namespace posewise::cli

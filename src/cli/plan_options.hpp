@@ -1,0 +1,36 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "posewise/io/campaign_file.hpp"
+#include "posewise/task/plan.hpp"
+
+/// What the command lines of select and plan have in common.
+namespace posewise::cli {
+
+struct PlanArguments {
+    PlanRequest request;
+    std::string criterion;
+    std::optional<bool> prior;
+    std::optional<std::uint64_t> seed;
+    std::string focus = "all";
+    std::string out;
+    bool progress = false;
+};
+
+/// -c, --criterion with that help.
+void add_criterion_option(CLI::App& command, PlanArguments& arguments, const std::string& help);
+void add_focus_option(CLI::App& command, PlanArguments& arguments);
+/// --seed with that help, --time, and -o, --out, by default named as `default_out` says.
+void add_search_options(CLI::App& command, PlanArguments& arguments, const std::string& seed_help,
+                        const std::string& default_out);
+void add_progress_flag(CLI::App& command, PlanArguments& arguments);
+
+/// What is asked for; prior and seed are as the campaign says where the command line does not.
+PlanRequest make_request(const PlanArguments& arguments, const io::CampaignFile* campaign,
+                         Criterion default_criterion);
+
+}  // namespace posewise::cli

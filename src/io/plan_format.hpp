@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "json.hpp"
+#include "posewise/task/plan.hpp"
+
+/// What writer and readers of plan files share.
+namespace posewise::io {
+
+inline constexpr const char* plan_kind = "plan";
+inline constexpr const char* old_pose_plan_kind = "pose plan";  // of format 1
+inline constexpr int plan_format = 2;
+
+inline constexpr std::array<std::pair<CandidateKind, std::string_view>, 5> candidate_kinds{
+    {{CandidateKind::Measurements, "measurements"},
+     {CandidateKind::Configurations, "configurations"},
+     {CandidateKind::Random, "random"},
+     {CandidateKind::Blocks, "blocks"},
+     {CandidateKind::Pool, "pool"}}};
+
+inline constexpr std::array plan_endings{Ending::Converged, Ending::Optimal, Ending::TimeLimit,
+                                         Ending::Interrupted, Ending::NotRun};
+
+/// A document of a pose plan of format 1 as one of format 2. What it lacks stays missing.
+Json upgrade_pose_plan(const Json& old);
+
+}  // namespace posewise::io

@@ -1,0 +1,213 @@
+#include "posewise/report/plan_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "posewise/core/format.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/report/sentences.hpp"
+#include "posewise/report/table.hpp"
+
+namespace posewise {
+namespace {
+
+/// Says, where little is proven about a plan, what tells more.
+std::string describe_bound(const Plan& plan) {
+    return describe_looseness(plan.efficiency, plan.starts_at_best, plan.request.starts);
+}
+
+/// What the bound says, in words, where the numbers alone may mislead.
+std::string describe_proof(const Plan& plan) {
+    if (plan.ending == Ending::Optimal) {
+        return "proof:      optimal: every other choice is ruled out by the bound or was tried\n";
+    }
+    const std::string looseness = describe_bound(plan);
+    return looseness.empty() ? "" : "note:       " + looseness + '\n';
+}
+
+/// Further lines begin below the text of the first.
+std::string indent_lines(const std::string& text) {
+    std::string indented;
+    for (const char c : text) {
+        indented += c;
+        if (c == '\n') indented += std::string(13, ' ');
+    }
+    return indented.substr(0, indented.find_last_not_of(" \n") + 1);
+}
+
+/// A criterion's value; V and G are inverse mean and worst squares of position errors.
+std::string format_value(Criterion criterion, double value) {
+    return format_short(value, 8) + (needs_test_poses(criterion) ? " /m^2" : "");
+}
+
+std::string describe_pool(const Pool& pool) {
+    std::string text = fmt::format("{} of {} candidates are feasible", pool.configurations.rows(),
+                                   pool.candidate_count);
+    const std::string rejections = describe_rejections(pool);
+    if (!rejections.empty()) text += "; the others violate\n" + rejections;
+    return indent_lines(text);
+}
+
+std::string describe_counts(const Planning& planning) {
+    const Index new_count = planning.search.pose_count;
+    const Index kept = static_cast<Index>(planning.plan.poses.size()) - new_count;
+    std::string text = fmt::format("{} new", new_count);
+    if (kept > 0) text += fmt::format(", {} kept", kept);
+    if (planning.measured_count > 0) {
+        text += fmt::format(", {} measured already", planning.measured_count);
+    }
+    if (planning.plan.request.has_prior) text += ", prior: the scale as standard deviation";
+    return text;
+}
+
+std::string describe_searched_bound(const Plan& plan) {
+    if (!std::isfinite(plan.searched_bound)) {
+        return plan.is_stopped_early() ? "not searched, stopped before"
+                                       : "not searched, there is no such bound for this criterion";
+    }
+    return fmt::format("{}, efficiency {}: by a search, not a proof",
+                       format_value(plan.request.criterion, plan.searched_bound),
+                       format_fixed(plan.searched_efficiency, 4));
+}
+
+std::string describe_order(const Tour& tour) {
+    std::string text = fmt::format(
+        "{} s, {} % shorter than as planned ({} s); to the nearest pose each: {} s",
+        format_fixed(tour.time, 1),
+        format_fixed(100 * (1 - tour.time / tour.planning_order_time), 0),
+        format_fixed(tour.planning_order_time, 1), format_fixed(tour.nearest_neighbour_time, 1));
+    if (tour.blocked_count > 0) {
+        text += fmt::format("\n{} moves are blocked: find a way by hand", tour.blocked_count);
+    }
+    return indent_lines(text);
+}
+
+/// "q1_rad" taken apart.
+struct Column {
+    std::string name;
+    const AmountUnits& units;
+
+    explicit Column(const std::string& text)
+        : name(text.substr(0, text.rfind('_'))), units(units_of(text.ends_with("_rad"))) {}
+};
+
+std::string format_joint(const std::string& column, double value) {
+    return format_fixed(Column(column).units.to_reading(value), 2);
+}
+
+std::string describe_way(const Plan& plan, const PlannedPose& pose) {
+    if (pose.is_blocked) return "BLOCKED";
+    if (!pose.via) return "straight";
+    std::string text = "via";
+    for (Index j = 0; j < pose.via->size(); ++j) {
+        text += ' ' + format_joint(plan.columns[static_cast<std::size_t>(j)], (*pose.via)[j]);
+    }
+    return text;
+}
+
+Table pose_table(const Plan& plan) {
+    Table table{{"pose"}, {}};
+    for (const std::string& text : plan.columns) {
+        const Column column(text);
+        table.header.push_back(fmt::format("{}/{}", column.name, column.units.reading));
+    }
+    table.header.insert(table.header.end(), {"targets seen", "way there"});
+    for (const PlannedPose& pose : plan.poses) {
+        std::vector<std::string> row{pose.id};
+        for (Index j = 0; j < pose.configuration.size(); ++j) {
+            row.push_back(
+                format_joint(plan.columns[static_cast<std::size_t>(j)], pose.configuration[j]));
+        }
+        std::string seen;
+        for (const Index target : pose.targets) {
+            seen += (seen.empty() ? "" : " ") + std::to_string(target + 1);
+        }
+        row.insert(row.end(), {seen, describe_way(plan, pose)});
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+std::string describe_ids(const Plan& plan) {
+    std::string ids;
+    for (const PlannedPose& pose : plan.poses) {
+        ids += (ids.empty() ? "" : " ") + pose.id;
+        if (pose.times > 1) ids += fmt::format(" (x{})", pose.times);
+    }
+    return ids;
+}
+
+std::string describe(const Finding& finding) {
+    if (!finding.text.empty()) return finding.text;
+    if (finding.is_right) return "as stated, " + format_short(finding.stated, 8);
+    return fmt::format("stated {}, is {}", format_short(finding.stated, 12),
+                       format_short(finding.actual, 12));
+}
+
+}  // namespace
+
+std::string format_choice(const Plan& plan) {
+    return fmt::format(
+        "chosen:     {}\ncriterion:  {}\nvalue:      {}\nbound:      {}\n"
+        "efficiency: {} proven\nstarts:     {} of {} ended here, {}\n{}",
+        describe_ids(plan), criterion_name(plan.request.criterion), format_short(plan.value, 8),
+        format_short(plan.bound, 8), format_fixed(plan.efficiency, 4), plan.starts_at_best,
+        plan.request.starts, ending_name(plan.ending), describe_proof(plan));
+}
+
+std::string format_planning(const Planning& planning) {
+    const Plan& plan = planning.plan;
+    const Criterion criterion = plan.request.criterion;
+    std::string text =
+        fmt::format("pool:        {}\nposes:       {}\ncriterion:   {}\nvalue:       {}\n",
+                    describe_pool(planning.pool), describe_counts(planning),
+                    criterion_name(criterion), format_value(criterion, plan.value));
+    text += fmt::format(
+        "predicted:   position error {} mm RMS, 95 % are below {} mm, over {} workspace poses\n",
+        format_mm(plan.predicted->rms), format_mm(plan.predicted->percentile95),
+        planning.workspace_count);
+    text += fmt::format(
+        "pool bound:  {}, proven: no choice from the pool has a larger value\n"
+        "best choice: {} from the pool, efficiency {} proven\n",
+        format_value(criterion, plan.bound), format_value(criterion, plan.choice_value),
+        format_fixed(plan.efficiency, 4));
+    const std::string looseness = describe_bound(plan);
+    if (!looseness.empty()) text += "note:        " + looseness + '\n';
+    text +=
+        fmt::format("searched:    {}\nstarts:      {} of {} ended at the best\norder:       {}\n",
+                    describe_searched_bound(plan), plan.starts_at_best, plan.request.starts,
+                    describe_order(planning.tour));
+    return text + format_section("Poses, in the order to visit them", pose_table(plan));
+}
+
+std::string format_other_counts(const std::vector<CountAccuracy>& counts) {
+    Table table{{"new poses", "how", "RMS/mm", "95 %/mm"}, {}};
+    for (const CountAccuracy& count : counts) {
+        table.rows.push_back({std::to_string(count.pose_count),
+                              count.is_planned ? "planned" : "chosen from the pool",
+                              count.accuracy ? format_mm(count.accuracy->rms) : "-",
+                              count.accuracy ? format_mm(count.accuracy->percentile95) : "-"});
+    }
+    return format_section("Predicted position error by number of poses", table);
+}
+
+std::string format_deviations(const Plan& plan) {
+    Table table{{"parameter", "std dev", ""}, {}};
+    for (const NamedNumber& one : plan.standard_deviations) {
+        const Column column(one.name);
+        table.rows.push_back(
+            {column.name, format_fixed(mm_per_m * one.value, 4), std::string(column.units.error)});
+    }
+    return format_section("Expected standard deviation of each parameter", table);
+}
+
+std::string format_findings(const std::vector<Finding>& findings) {
+    std::string text;
+    for (const Finding& finding : findings) {
+        text += fmt::format("{:<11} {}\n", finding.name + ':', describe(finding));
+    }
+    return text;
+}
+
+}  // namespace posewise

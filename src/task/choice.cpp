@@ -1,0 +1,92 @@
+#include "posewise/task/choice.hpp"
+
+#include "choice_problem.hpp"
+#include "inputs.hpp"
+#include "posewise/model/halton.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::ChoiceProblem;
+
+std::vector<PlannedPose> poses_of(const ChoiceProblem& problem, const std::vector<Index>& chosen) {
+    std::vector<PlannedPose> poses;
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const Index candidate = chosen[i];
+        if (i > 0 && candidate == chosen[i - 1]) {
+            ++poses.back().times;
+            continue;
+        }
+        PlannedPose& pose = poses.emplace_back();
+        pose.id = problem.ids[static_cast<std::size_t>(candidate)];
+        if (problem.configurations.rows() > 0) {
+            pose.configuration = problem.configurations.row(candidate);
+        }
+        for (Index target = 0; target < problem.share.cols(); ++target) {
+            if (problem.share(candidate, target) > 0) pose.targets.push_back(target);
+        }
+    }
+    return poses;
+}
+
+Plan solve(ChoiceProblem& problem, const ChoiceOptions& options) {
+    problem.options.stop = options.stop;
+    problem.options.progress = options.progress;
+    const Choice choice = select_poses(problem.blocks, problem.options);
+    Plan plan;
+    plan.poses = poses_of(problem, choice.poses);
+    plan.request = problem.request;
+    plan.request.starts = choice.starts;
+    plan.value = choice.value;
+    plan.kind = problem.kind;
+    plan.candidate_count = problem.blocks.count();
+    plan.checksum = problem.checksum;
+    plan.choice_value = choice.value;
+    plan.bound = choice.bound;
+    plan.efficiency = choice.efficiency;
+    plan.certificate = choice.certificate;
+    plan.starts_at_best = choice.starts_at_best;
+    plan.ending = choice.ending;
+    return plan;
+}
+
+}  // namespace
+
+double mean_repeats(const Measurements& measurements) {
+    return static_cast<double>(measurements.observations.rows()) /
+           static_cast<double>(measurements.configuration_count());
+}
+
+Candidates measured_candidates(Measurements measured) {
+    Candidates candidates{CandidateKind::Measurements, measured.ids, measured.configurations,
+                          share_seen(measured), std::nullopt};
+    candidates.measured = std::move(measured);
+    return candidates;
+}
+
+Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_t seed) {
+    detail::check_memory(campaign, count, "--random");
+    Candidates candidates;
+    candidates.kind = CandidateKind::Random;
+    for (Index i = 0; i < count; ++i) candidates.ids.push_back(std::to_string(i));
+    candidates.configurations = halton_configurations(campaign.robot, count, {{}, 1, seed});
+    candidates.share = RowMatrixXd::Ones(count, campaign.sensor->target_count());
+    return candidates;
+}
+
+Plan choose(const Campaign& campaign, const Candidates& candidates, const ChoiceOptions& options) {
+    ChoiceProblem problem =
+        detail::state_choice(campaign, candidates, options, options.stop.with_half_the_time());
+    Plan plan = solve(problem, options);
+    plan.campaign = campaign.name;
+    plan.columns = configuration_columns(campaign);
+    plan.assumptions = assumptions_of(campaign);
+    return plan;
+}
+
+Plan choose(const Blocks& candidates, const ChoiceOptions& options) {
+    ChoiceProblem problem = detail::state_choice(candidates, options);
+    return solve(problem, options);
+}
+
+}  // namespace posewise

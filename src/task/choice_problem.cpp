@@ -1,0 +1,225 @@
+#include "choice_problem.hpp"
+
+#include "inputs.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/checksum.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/planner/planning.hpp"
+
+namespace posewise::detail {
+namespace {
+
+constexpr double same_joints = 1e-6;  // rad or m
+constexpr Index at_once = 4096;       // candidates whose blocks are made
+
+std::vector<std::string> number_ids(Index count) {
+    std::vector<std::string> ids;
+    for (Index i = 0; i < count; ++i) ids.push_back(std::to_string(i));
+    return ids;
+}
+
+/// Held information there is none of yet.
+MatrixXd& held(ChoiceProblem& problem) {
+    const Index L = problem.blocks.parameter_count();
+    if (problem.options.held.size() == 0) problem.options.held = MatrixXd::Zero(L, L);
+    return problem.options.held;
+}
+
+/// Blocks beside the candidates must have as many columns.
+void check_columns(const ChoiceProblem& problem, const Blocks& blocks, const std::string& name) {
+    if (blocks.parameter_count() == problem.blocks.parameter_count()) return;
+    compute_from(name, [&]() -> int {
+        throw InputError("has " + std::to_string(blocks.parameter_count()) +
+                         " columns, must have " + std::to_string(problem.blocks.parameter_count()) +
+                         " as the candidates");
+    });
+}
+
+void hold_blocks(ChoiceProblem& problem, const Blocks& measured) {
+    check_columns(problem, measured, problem.request.sources.augment);
+    held(problem) += information(measured);
+    problem.options.held_pose_count = measured.count();
+    for (Index i = 0; i < problem.blocks.count(); ++i) {
+        for (Index k = 0; k < measured.count(); ++k) {
+            if (problem.blocks[i] == measured[k]) problem.options.excluded.push_back(i);
+        }
+    }
+}
+
+/// Blocks of random candidates, part by part until `stop` comes; all targets are seen.
+void make_random_blocks(ChoiceProblem& problem, const Campaign& campaign,
+                        const Parameters& parameters, const StopSignal& stop) {
+    const Index rows = campaign.sensor->row_count();
+    const Index count = problem.configurations.rows();
+    Blocks& blocks = problem.blocks;
+    blocks.matrix.resize(rows * count, parameter_count(campaign));
+    Index made = 0;
+    while (made < count && !(made > 0 && stop.is_set())) {
+        const Index size = std::min(count - made, at_once);
+        blocks.matrix.middleRows(rows * made, rows * size) =
+            make_blocks(campaign, parameters, problem.configurations.middleRows(made, size),
+                        problem.request.repeats)
+                .matrix;
+        made += size;
+    }
+    blocks.matrix.conservativeResize(rows * made, Eigen::NoChange);
+    for (Index i = 1; i <= made; ++i) blocks.first_row.push_back(rows * i);
+    problem.configurations.conservativeResize(made, Eigen::NoChange);
+    problem.share.conservativeResize(made, Eigen::NoChange);
+    problem.ids.resize(static_cast<std::size_t>(made));
+}
+
+/// Of all that candidates are: ids, joints, what was measured, what is seen.
+std::string checksum_of(const ChoiceProblem& problem, const Candidates& candidates) {
+    Checksum checksum;
+    if (candidates.measured) checksum.add(candidates.measured->observations);
+    for (const std::string& id : problem.ids) checksum.add(id);
+    checksum.add(problem.configurations);
+    if ((problem.share.array() < 1).any()) checksum.add(problem.share);
+    return checksum.text();
+}
+
+/// Base and targets: registered from the candidates' measurements, else as the campaign states
+/// them, else registered from the poses measured already.
+Parameters find_parameters(const Campaign& campaign, const Candidates& candidates,
+                           const ChoiceOptions& options) {
+    const auto register_from = [&](const std::string& name, const Measurements& measured) {
+        return compute_from(
+            name, [&] { return determined(register_base_and_targets(campaign, measured)); });
+    };
+    if (candidates.measured) return register_from(options.sources.candidates, *candidates.measured);
+    if (campaign.has_nominal_base && campaign.has_nominal_targets) return campaign.nominal;
+    if (options.held) return register_from(options.sources.augment, *options.held);
+    const std::string key = campaign.sensor->words().key;
+    throw InputError(campaign.name + ": the campaign file states no " +
+                     (campaign.has_nominal_base ? key : "base") +
+                     ", and nothing was measured to find them from; state base and " + key +
+                     " there, or use --measurements");
+}
+
+void hold_measured(ChoiceProblem& problem, const Campaign& campaign, const Parameters& parameters,
+                   const Measurements& measured) {
+    held(problem) += measured_information(campaign, parameters, measured);
+    problem.options.held_pose_count = measured.configuration_count();
+    const Index joints = campaign.robot.joint_count();
+    for (Index i = 0; i < problem.configurations.rows(); ++i) {
+        const auto distance = (measured.configurations.leftCols(joints).rowwise() -
+                               problem.configurations.row(i).head(joints))
+                                  .cwiseAbs();
+        if (distance.rowwise().maxCoeff().minCoeff() <= same_joints) {
+            problem.options.excluded.push_back(i);
+        }
+    }
+}
+
+/// Angles of the joints that turn: what distances between poses are taken of.
+RowMatrixXd turning_joints(const Chain& robot, const RowMatrixXd& configurations) {
+    std::vector<Index> turning;
+    for (Index j = 0; j < robot.joint_count(); ++j) {
+        if (robot.joint(j).motion == Motion::Rotation) turning.push_back(j);
+    }
+    return configurations(Eigen::all, turning);
+}
+
+void state_limits(ChoiceProblem& problem, const std::vector<Index>& groups) {
+    const PlanRequest& request = problem.request;
+    SelectOptions& options = problem.options;
+    options.criterion = request.criterion;
+    options.pose_count = request.pose_count;
+    options.starts = request.starts;
+    options.seed = request.seed;
+    options.test_poses = problem.test_poses.get();
+    options.repeat_limit = request.repeat_limit;
+    options.least_distance = request.least_distance;
+    options.group_limit = request.group_limit;
+    options.groups = groups;
+    if (problem.kind == CandidateKind::Random && groups.size() > problem.ids.size()) {
+        options.groups.resize(problem.ids.size());  // of those there was time for
+    }
+    const CandidateIndex index(problem.ids);
+    for (const std::string& id : request.excluded) {
+        options.excluded.push_back(index.find(id, "excluded candidate"));
+    }
+}
+
+void check_test_poses(const ChoiceOptions& options) {
+    const bool has_any = options.test_poses.rows() > 0 || options.test_blocks.count() > 0;
+    if (!has_any || needs_test_poses(options.criterion)) return;
+    const std::string& name = options.sources.test_poses;
+    throw InputError("test poses are " + (name.empty() ? "given" : name) + ", but criterion " +
+                     std::string(criterion_name(options.criterion)) +
+                     " does not look at them; must be g or v");
+}
+
+}  // namespace
+
+CandidateIndex::CandidateIndex(const std::vector<std::string>& ids) {
+    for (std::size_t i = 0; i < ids.size(); ++i) index_.emplace(ids[i], static_cast<Index>(i));
+}
+
+Index CandidateIndex::find(const std::string& id, const std::string& what) const {
+    const auto found = index_.find(id);
+    if (found == index_.end()) {
+        throw InputError(what + " '" + id + "' is not among the candidates");
+    }
+    return found->second;
+}
+
+ChoiceProblem state_choice(const Blocks& candidates, const ChoiceOptions& options) {
+    check_test_poses(options);
+    ChoiceProblem problem;
+    problem.request = options;
+    if (problem.request.repeats == 0) problem.request.repeats = 1;
+    problem.blocks = candidates;
+    problem.ids = number_ids(candidates.count());
+    Checksum checksum;
+    checksum.add(candidates.matrix);
+    problem.checksum = checksum.text();
+    if (options.has_prior) held(problem).diagonal().array() += 1;
+    if (options.held_blocks.count() > 0) hold_blocks(problem, options.held_blocks);
+    if (options.test_blocks.count() > 0) {
+        check_columns(problem, options.test_blocks, options.sources.test_poses);
+        problem.test_poses = std::make_unique<Blocks>(options.test_blocks);
+    }
+    state_limits(problem, options.groups);
+    return problem;
+}
+
+ChoiceProblem state_choice(const Campaign& campaign, const Candidates& candidates,
+                           const ChoiceOptions& options, const StopSignal& stop) {
+    check_test_poses(options);
+    ChoiceProblem problem;
+    PlanRequest& request = problem.request = options;
+    problem.kind = candidates.kind;
+    problem.ids = candidates.ids;
+    problem.configurations = candidates.configurations;
+    problem.share = candidates.share;
+    request.has_prior = campaign.spread.is_prior;
+    if (request.repeats == 0) {
+        request.repeats = candidates.measured ? mean_repeats(*candidates.measured) : 1;
+    }
+    const Parameters parameters = find_parameters(campaign, candidates, options);
+    if (candidates.kind == CandidateKind::Random) {
+        make_random_blocks(problem, campaign, parameters, stop);
+    } else {
+        problem.blocks = make_blocks(campaign, parameters, problem.configurations,
+                                     RowMatrixXd(request.repeats * problem.share));
+    }
+    problem.checksum = checksum_of(problem, candidates);
+    problem.options.column_names = parameter_names(campaign);
+    if (request.has_prior) held(problem) += prior_information(campaign);
+    if (options.held) hold_measured(problem, campaign, parameters, *options.held);
+    if (request.is_focused_on_robot) problem.options.nuisance = nuisance_of_robot(campaign);
+    if (request.least_distance > 0) {
+        problem.options.positions = turning_joints(campaign.robot, problem.configurations);
+    }
+    if (options.test_poses.rows() > 0) {
+        problem.test_poses = std::make_unique<Blocks>(
+            make_blocks(campaign, parameters, options.test_poses, request.repeats));
+    }
+    state_limits(problem, options.groups);
+    return problem;
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "posewise/selection/exchange.hpp"
+#include "posewise/task/choice.hpp"
+
+namespace posewise::detail {
+
+/// A selection stated from its inputs: what choose() solves and verify() states again.
+struct ChoiceProblem {
+    PlanRequest request;  ///< complete
+    CandidateKind kind = CandidateKind::Blocks;
+    std::vector<std::string> ids;
+    RowMatrixXd configurations;  ///< of the candidates; empty for plain blocks
+    RowMatrixXd share;           ///< of samples that show each target; empty for plain blocks
+    std::string checksum;        ///< of all of the candidates' numbers
+    Blocks blocks;
+    std::unique_ptr<Blocks> test_poses;  ///< null: the candidates
+    SelectOptions options;               ///< the problem's part; refers to test_poses
+};
+
+/// Of random candidates fewer are used if `stop` comes. Throws InputError as choose().
+ChoiceProblem state_choice(const Campaign& campaign, const Candidates& candidates,
+                           const ChoiceOptions& options, const StopSignal& stop = {});
+ChoiceProblem state_choice(const Blocks& candidates, const ChoiceOptions& options);
+
+/// Index of a candidate. Throws InputError, beginning with `what`, if there is none of that id.
+class CandidateIndex {
+  public:
+    explicit CandidateIndex(const std::vector<std::string>& ids);
+    Index find(const std::string& id, const std::string& what) const;
+
+  private:
+    std::unordered_map<std::string, Index> index_;
+};
+
+}  // namespace posewise::detail

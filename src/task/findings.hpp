@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+
+#include "posewise/task/verification.hpp"
+
+/// What verification of both kinds of plans shares.
+namespace posewise::detail {
+
+/// Relative to the larger; D is a logarithm, so its zero means nothing. Infinite ones are equal.
+bool is_same_value(Criterion criterion, double a, double b, double tolerance);
+
+/// Collects findings.
+class Findings {
+  public:
+    void note(const std::string& name, bool is_right, const std::string& text);
+    void compare(const std::string& name, double stated, double actual, bool is_right);
+    /// Noise and scales that a plan states against those of the campaign.
+    void compare_assumptions(const Plan& plan, const Campaign& campaign);
+
+    std::vector<Finding> take() { return std::move(findings_); }
+
+  private:
+    std::vector<Finding> findings_;
+};
+
+/// What `check` finds, up to where an InputError ends it.
+Verification collect(Index candidate_count, const std::function<void(Findings&)>& check);
+
+}  // namespace posewise::detail

@@ -1,0 +1,38 @@
+#include "inputs.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/task/choice.hpp"
+
+namespace posewise::detail {
+
+MatrixXd measured_information(const Campaign& campaign, const Parameters& parameters,
+                              const Measurements& measured) {
+    return information(make_blocks(campaign, parameters, measured.configurations,
+                                   RowMatrixXd(mean_repeats(measured) * share_seen(measured))));
+}
+
+void check_memory(const Campaign& campaign, Index count, const std::string& option) {
+    constexpr double bytes_per_gb = 1e9;
+    constexpr double beside = 1.25;  // what a search needs beside the blocks
+    const double needed = beside * static_cast<double>(sizeof(double)) *
+                          static_cast<double>(count) *
+                          static_cast<double>(campaign.sensor->row_count()) *
+                          static_cast<double>(parameter_count(campaign));
+    rlimit limit{};
+    getrlimit(RLIMIT_AS, &limit);
+    const double there = std::min(
+        static_cast<double>(limit.rlim_cur),
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE)));
+    if (needed < there) return;
+    throw InputError(
+        fmt::format("{} candidates need {:.0f} GB of memory, there are {:.0f} GB; lower {}", count,
+                    needed / bytes_per_gb, there / bytes_per_gb, option));
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/measurements.hpp"
+
+/// What choosing and planning share about what they are given.
+namespace posewise::detail {
+
+/// What `compute` returns; its InputErrors begin with the name of what they are about, if it has
+/// one.
+template <class Compute>
+auto compute_from(const std::string& name, Compute&& compute) {
+    if (name.empty()) return std::forward<Compute>(compute)();
+    try {
+        return std::forward<Compute>(compute)();
+    } catch (const InputError& error) {
+        throw input_error_at({name}, error.what());
+    }
+}
+
+/// What measured poses tell, in scaled parameters.
+MatrixXd measured_information(const Campaign& campaign, const Parameters& parameters,
+                              const Measurements& measured);
+
+/// Throws InputError if so many candidates need more memory than this machine has; `option` is
+/// what says how many.
+void check_memory(const Campaign& campaign, Index count, const std::string& option);
+
+}  // namespace posewise::detail

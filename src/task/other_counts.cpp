@@ -1,0 +1,61 @@
+#include <algorithm>
+#include <set>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/task/planning.hpp"
+
+namespace posewise {
+namespace {
+
+constexpr Index pool_part = 1500;  // candidates searched
+
+/// Quick selections from a part of the pool.
+SelectOptions quick_options(const Planning& planning) {
+    SelectOptions options;
+    options.criterion = planning.search.criterion;
+    if (options.criterion == Criterion::G) options.criterion = Criterion::V;  // much quicker
+    if (options.criterion == Criterion::V) options.test_poses = &planning.prediction;
+    options.nuisance = planning.search.nuisance;
+    options.held = planning.search.held.information;
+    options.held_pose_count = planning.search.held_pose_count;
+    options.starts = 1;
+    options.kicks = 0;
+    options.enumeration = 0;
+    options.gap = 1e-2;
+    options.seed = planning.search.seed;
+    return options;
+}
+
+std::optional<PredictedAccuracy> predict_choice(const Blocks& prediction, const Blocks& blocks,
+                                                const SelectOptions& options) {
+    const Index L = blocks.parameter_count();
+    const MatrixXd held = options.held.size() > 0 ? options.held : MatrixXd::Zero(L, L);
+    try {
+        const Choice choice = select_poses(blocks, options);
+        return predict_accuracy(prediction, held + information(blocks, choice.poses));
+    } catch (const InputError&) {
+        return std::nullopt;  // too few to identify, or more than the pool has
+    }
+}
+
+}  // namespace
+
+std::vector<CountAccuracy> predict_other_counts(const Planning& planning) {
+    const Pool& pool = planning.pool;
+    const Index part = std::min(pool.configurations.rows(), pool_part);
+    const Blocks blocks =
+        make_blocks(planning.campaign, planning.campaign.nominal, pool.configurations.topRows(part),
+                    times_seen(pool.is_seen.topRows(part), planning.plan.request.repeats));
+    SelectOptions options = quick_options(planning);
+    const Index count = planning.search.pose_count;
+    std::vector<CountAccuracy> rows;
+    for (const Index k : std::set<Index>{std::max<Index>(1, count / 2), count, 2 * count}) {
+        options.pose_count = k;
+        rows.push_back({k, false, predict_choice(planning.prediction, blocks, options)});
+        if (k == count) rows.push_back({k, true, planning.plan.predicted});
+    }
+    return rows;
+}
+
+}  // namespace posewise

@@ -1,0 +1,109 @@
+#include "posewise/task/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "posewise/core/text.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/measurement/campaign.hpp"
+
+namespace posewise {
+namespace {
+
+std::string with_unit(const std::string& name, bool is_angle) {
+    return fmt::format("{}_{}", name, units_of(is_angle).si);
+}
+
+bool turns(const Chain& robot, Index joint) {
+    return robot.joint(joint).motion == Motion::Rotation;
+}
+
+const std::string& joint_name(const Chain& robot, Index joint) { return robot.joint(joint).name; }
+
+/// A name as part of a place that has slashes (a JSON pointer).
+std::string escape_slashes(const std::string& name) {
+    std::string escaped;
+    for (const char c : name) {
+        escaped += c == '~' ? std::string("~0") : c == '/' ? std::string("~1") : std::string(1, c);
+    }
+    return escaped;
+}
+
+/// "poses[2].joints.q1_rad: is missing; ..." for the first pose that differs; empty if none does.
+std::string describe_columns(const Plan& plan, const std::vector<std::string>& wanted) {
+    const std::set<std::string> there(plan.columns.begin(), plan.columns.end());
+    for (const std::string& column : wanted) {
+        if (there.count(column) > 0) continue;
+        return "poses[0].joints." + column + ": is missing; must be there as posewise writes it";
+    }
+    if (plan.columns == wanted) return "";
+    if (plan.columns.size() == wanted.size()) {
+        return "poses[0].joints: are in another order than those of the campaign's robot";
+    }
+    return fmt::format("poses[0].joints: has {} joints, the campaign's robot has {}",
+                       plan.columns.size(), wanted.size());
+}
+
+}  // namespace
+
+std::vector<std::string> configuration_columns(const Campaign& campaign) {
+    const Chain& robot = campaign.robot;
+    std::vector<std::string> columns;
+    for (Index j = 0; j < robot.joint_count(); ++j) {
+        columns.push_back(with_unit(joint_name(robot, j), turns(robot, j)));
+    }
+    for (const MeasuredTorque& torque : robot.torques()) {
+        columns.push_back("tau_" + joint_name(robot, torque.joint) + "_Nm");
+    }
+    return columns;
+}
+
+std::vector<NamedNumber> assumptions_of(const Campaign& campaign) {
+    std::vector<NamedNumber> numbers;
+    for (const NoiseNumber& noise : campaign.sensor->noise_numbers()) {
+        for (std::size_t i = 0; i < noise.values.size(); ++i) {
+            const std::string place = noise.values.size() > 1 ? fmt::format("/{}", i) : "";
+            numbers.push_back({noise.name + place, noise.values[i]});
+        }
+    }
+    if (campaign.sensor->has_angles()) {
+        numbers.push_back({"model_error_orientation_rad", campaign.model_error_orientation});
+    }
+    numbers.push_back({"model_error_m", campaign.model_error});
+    for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {
+        numbers.push_back(
+            {"joint_repeatability/" +
+                 escape_slashes(with_unit(joint_name(campaign.robot, j), turns(campaign.robot, j))),
+             campaign.joint_repeatability[j]});
+    }
+    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const VectorXd scale = parameter_scale(campaign);
+    Index k = 0;
+    for (const std::string& name : parameter_names(campaign)) {
+        const bool angle = is_angle[static_cast<std::size_t>(k)];
+        numbers.push_back({"expected_error/" + escape_slashes(with_unit(name, angle)), scale[k++]});
+    }
+    return numbers;
+}
+
+std::string describe_mismatch(const Plan& plan, const Campaign& campaign) {
+    if (plan.campaign != campaign.name) {
+        return fmt::format("campaign: is {}; must be a plan of {}", quote(plan.campaign),
+                           quote(campaign.name));
+    }
+    const std::string columns = describe_columns(plan, configuration_columns(campaign));
+    if (!columns.empty()) return columns;
+    const Index targets = campaign.sensor->target_count();
+    for (std::size_t i = 0; i < plan.poses.size(); ++i) {
+        const std::vector<Index>& seen = plan.poses[i].targets;
+        for (std::size_t k = 0; k < seen.size(); ++k) {
+            if (seen[k] < targets) continue;
+            return fmt::format("poses[{}].visible_targets[{}]: is {}, the campaign has {} targets",
+                               i, k, seen[k] + 1, targets);
+        }
+    }
+    return "";
+}
+
+}  // namespace posewise

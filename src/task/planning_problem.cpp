@@ -1,0 +1,212 @@
+#include "planning_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "inputs.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/text.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/model/joint_limits.hpp"
+
+namespace posewise::detail {
+namespace {
+
+constexpr Index draws_per_workspace_pose = 20;
+/// New poses keep so far from those that could not be reached (some joint, rad).
+constexpr double distance_from_dropped = to_radians(5);
+
+// ---- What is known before ----
+
+/// Base and targets: as stated, else registered from what was measured.
+Campaign with_base(Campaign campaign, const std::optional<Measurements>& measured) {
+    if (campaign.has_nominal_base && campaign.has_nominal_targets) return campaign;
+    if (!measured) {
+        const std::string key = campaign.sensor->words().key;
+        throw InputError(campaign.name + ": the campaign file states no " +
+                         (campaign.has_nominal_base ? key : "base") + "; must state base and " +
+                         key + " to plan, or measured poses (--augment) must tell them");
+    }
+    campaign.nominal = determined(register_base_and_targets(campaign, *measured));
+    campaign.nominal.robot.setZero();
+    campaign.has_nominal_base = campaign.has_nominal_targets = true;
+    return campaign;
+}
+
+void hold(PlanningProblem& problem, const MatrixXd& information, const RowMatrixXd& poses) {
+    HeldPoses& held = problem.search.held;
+    const Index L = parameter_count(problem.campaign);
+    if (held.information.size() == 0) held.information.setZero(L, L);
+    held.information += information;
+    RowMatrixXd all(held.configurations.rows() + poses.rows(),
+                    problem.campaign.robot.joint_count());
+    if (held.configurations.rows() > 0)
+        all.topRows(held.configurations.rows()) = held.configurations;
+    if (poses.rows() > 0) all.bottomRows(poses.rows()) = poses;
+    held.configurations = std::move(all);
+}
+
+// ---- The plan to repair ----
+
+/// Throws InputError for a pose that cannot be measured.
+void check_kept(const PlanningProblem& problem, const PlannedPose& pose) {
+    const std::string fault = describe_violation(problem.constraints, pose);
+    if (fault.empty()) return;
+    throw input_error_at({problem.request.sources.repaired},
+                         fmt::format("pose {} {}; find another for it with --drop {}",
+                                     quote(pose.id), fault, pose.id));
+}
+
+/// Throws InputError for a plan that is not of this campaign, or without a pose to drop.
+void check_repaired(const PlanningProblem& problem, const Plan& repaired) {
+    const std::string& name = problem.request.sources.repaired;
+    std::string fault = describe_mismatch(repaired, problem.campaign);
+    if (fault.empty() && !repaired.is_continuous()) {
+        fault = "is a choice from candidates; must be a plan of continuous poses to be repaired";
+    }
+    if (!fault.empty()) throw input_error_at({name}, fault);
+    for (const std::string& id : problem.request.dropped) {
+        const auto has_id = [&](const PlannedPose& pose) { return pose.id == id; };
+        if (std::any_of(repaired.poses.begin(), repaired.poses.end(), has_id)) continue;
+        throw InputError(fmt::format("--drop {}: {} has no such pose", id, name));
+    }
+}
+
+/// Keeps the poses of a plan but those dropped, which new poses only must stay away from.
+void hold_kept(PlanningProblem& problem, const Plan& repaired) {
+    check_repaired(problem, repaired);
+    const auto& ids = problem.request.dropped;
+    std::vector<PlannedPose> away;
+    for (const PlannedPose& pose : repaired.poses) {
+        const bool is_dropped = std::find(ids.begin(), ids.end(), pose.id) != ids.end();
+        (is_dropped ? away : problem.kept).push_back(pose);
+    }
+    for (const PlannedPose& pose : problem.kept) check_kept(problem, pose);
+    const Index L = parameter_count(problem.campaign);
+    const Index joints = problem.campaign.robot.joint_count();
+    hold(problem, MatrixXd::Zero(L, L), configurations_of(away, joints));
+    if (problem.kept.empty()) return;
+    for (PlannedPose& pose : problem.kept) pose.is_kept = true;
+    hold(problem, information(blocks_of(problem, problem.kept)),
+         configurations_of(problem.kept, joints));
+    problem.search.held_pose_count += static_cast<Index>(problem.kept.size());
+}
+
+// ---- Where it matters ----
+
+RowMatrixXd draw_configurations(const Campaign& campaign, const PlanRequest& request) {
+    Cell cell = campaign.cell;
+    cell.sight.reset();  // the robot works where the tracker sees nothing, too
+    if (const auto& box = request.workspace_box_mm; !box.empty()) {
+        cell.target_boxes = {{Vector3d(box[0], box[1], box[2]) / mm_per_m,
+                              Vector3d(box[3], box[4], box[5]) / mm_per_m}};
+    }
+    const Index count = request.workspace_count;
+    try {
+        const Pool pool = make_pool(Constraints(campaign, std::move(cell)),
+                                    draws_per_workspace_pose * count, request.seed + 1);
+        return pool.configurations.topRows(std::min(count, pool.configurations.rows()));
+    } catch (const InputError& error) {
+        throw InputError(std::string("workspace: ") + error.what());
+    }
+}
+
+}  // namespace
+
+PlanningProblem state_planning(const Campaign& given, const PlanningOptions& options) {
+    const Campaign campaign = with_base(given, options.held);
+    Cell cell = campaign.cell;
+    if (options.repaired) {
+        cell.least_joint_distance = std::max(cell.least_joint_distance, distance_from_dropped);
+    }
+    PlanningProblem problem{options, campaign, Constraints(campaign, std::move(cell)), {}, 0, 0,
+                            {},      {}};
+    problem.request.has_prior = campaign.spread.is_prior;
+    if (problem.request.repeats == 0) problem.request.repeats = 1;
+    problem.search.criterion = options.criterion;
+    problem.search.starts = options.starts;
+    problem.search.seed = options.seed;
+    if (options.is_focused_on_robot) problem.search.nuisance = nuisance_of_robot(campaign);
+    if (campaign.spread.is_prior) hold(problem, prior_information(campaign), {});
+    if (options.held) {
+        hold(problem, measured_information(campaign, campaign.nominal, *options.held),
+             options.held->configurations);
+        problem.measured_count = options.held->configuration_count();
+        problem.search.held_pose_count += problem.measured_count;
+    }
+    if (options.repaired) hold_kept(problem, *options.repaired);
+    return problem;
+}
+
+void count_new_poses(PlanningProblem& problem) {
+    const auto kept = static_cast<Index>(problem.kept.size());
+    Index& count = problem.request.pose_count;
+    if (count == 0) count = kept + static_cast<Index>(problem.request.dropped.size());
+    if (count <= kept) {
+        throw InputError(fmt::format("--poses is {}, must be above {}, as many as are kept of {}",
+                                     count, kept, problem.request.sources.repaired));
+    }
+    problem.search.pose_count = count - kept;
+    if (problem.search.held.information.size() > 0) return;  // selection says if it is too few
+    const Index least = least_pose_count(problem.campaign);
+    if (count < least) {
+        throw InputError(
+            fmt::format("--poses is {}, must be at least {}: fewer do not identify {} "
+                        "parameters; or let --prior tell the rest",
+                        count, least, parameter_count(problem.campaign)));
+    }
+}
+
+void draw_workspace(PlanningProblem& problem, const PlanningOptions& options) {
+    const RowMatrixXd workspace = options.workspace.rows() > 0
+                                      ? options.workspace
+                                      : draw_configurations(problem.campaign, problem.request);
+    problem.workspace_count = workspace.rows();
+    problem.prediction = make_prediction_blocks(problem.campaign, problem.campaign.nominal,
+                                                workspace, problem.request.workspace_target - 1);
+}
+
+RowMatrixXd configurations_of(const std::vector<PlannedPose>& poses, Index joint_count) {
+    RowMatrixXd configurations(static_cast<Index>(poses.size()), joint_count);
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        configurations.row(i) = poses[static_cast<std::size_t>(i)].configuration.transpose();
+    }
+    return configurations;
+}
+
+Blocks blocks_of(const PlanningProblem& problem, const std::vector<PlannedPose>& poses) {
+    const Campaign& campaign = problem.campaign;
+    Seen is_seen(static_cast<Index>(poses.size()), campaign.sensor->target_count());
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        is_seen.row(static_cast<Index>(i)) = seen_targets(poses[i].targets, is_seen.cols());
+    }
+    return make_blocks(campaign, campaign.nominal,
+                       configurations_of(poses, campaign.robot.joint_count()),
+                       times_seen(is_seen, problem.request.repeats));
+}
+
+MatrixXd held_information(const PlanningProblem& problem) {
+    const Index L = parameter_count(problem.campaign);
+    const MatrixXd& held = problem.search.held.information;
+    return held.size() > 0 ? held : MatrixXd::Zero(L, L);
+}
+
+std::string describe_violation(const Constraints& constraints, const PlannedPose& pose) {
+    constexpr double rounding = 1e-9;  // m or rad
+    const VectorXd& q = pose.configuration;
+    const std::string beyond = describe_limit_violation(constraints.robot(), q);
+    if (!beyond.empty()) return "is beyond the joint limits (less their margin): " + beyond;
+    const ConstraintReport report = constraints.check(q);
+    for (std::size_t k = 0; k < constraint_count; ++k) {
+        const auto constraint = static_cast<Constraint>(k);
+        if (report[constraint] >= -rounding || constraint == Constraint::JointLimits) continue;
+        return std::string("does not meet ") + constraint_name(constraint);
+    }
+    return pose.targets.empty() ? "shows no target" : "";
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "posewise/task/planning.hpp"
+
+namespace posewise::detail {
+
+/// A planning problem stated from its inputs: what make_plan() solves and verify() judges by.
+struct PlanningProblem {
+    PlanRequest request;  ///< complete
+    Campaign campaign;    ///< base and targets registered if only held measurements tell them
+    Constraints constraints;
+    Blocks prediction;  ///< target positions over the workspace
+    Index workspace_count = 0;
+    Index measured_count = 0;
+    std::vector<PlannedPose> kept;  ///< of the plan to repair
+    PlanOptions search;             ///< without test poses, which are `prediction` for G and V
+};
+
+/// All but pool and workspace; poses of a repaired plan are kept. Throws InputError as make_plan().
+PlanningProblem state_planning(const Campaign& campaign, const PlanningOptions& options);
+
+/// How many poses are new; completes the request. Throws InputError if that is none, or too few.
+void count_new_poses(PlanningProblem& problem);
+
+/// Draws the workspace, unless `options` state it.
+void draw_workspace(PlanningProblem& problem, const PlanningOptions& options);
+
+/// Blocks of the targets that these poses show.
+Blocks blocks_of(const PlanningProblem& problem, const std::vector<PlannedPose>& poses);
+
+/// poses x joints.
+RowMatrixXd configurations_of(const std::vector<PlannedPose>& poses, Index joint_count);
+
+/// Held information, zero if there is none.
+MatrixXd held_information(const PlanningProblem& problem);
+
+/// The constraint that a pose does not meet, in words ("does not meet keep_out"), or "shows no
+/// target"; empty if it meets all, to rounding.
+std::string describe_violation(const Constraints& constraints, const PlannedPose& pose);
+
+}  // namespace posewise::detail

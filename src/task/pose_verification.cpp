@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "findings.hpp"
+#include "planning_problem.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/format.hpp"
+#include "posewise/core/text.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/selection/bound.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::Findings;
+using detail::PlanningProblem;
+
+/// Information of many poses is summed in another order than when it was planned.
+constexpr double rounding = 1e-6;
+
+/// What is wrong with a pose; empty if nothing is.
+std::string find_fault(const PlanningProblem& problem, const PlannedPose& pose) {
+    const std::string violation = detail::describe_violation(problem.constraints, pose);
+    if (!violation.empty()) return violation;
+    const SeenTargets is_seen = problem.constraints.seen(pose.configuration);
+    for (const Index target : pose.targets) {
+        if (!is_seen[target]) return fmt::format("does not show target {}", target + 1);
+    }
+    return "";
+}
+
+void check_poses(const PlanningProblem& problem, const std::vector<PlannedPose>& poses,
+                 Findings& findings) {
+    const double least = problem.constraints.cell().least_joint_distance;
+    bool is_right = true;
+    const auto blame = [&](const PlannedPose& pose, const std::string& fault) {
+        findings.note("poses", false, quote(pose.id) + ' ' + fault);
+        is_right = false;
+    };
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const std::string fault = find_fault(problem, poses[i]);
+        if (!fault.empty()) blame(poses[i], fault);
+        for (std::size_t k = 0; k < i; ++k) {
+            const double distance = joint_distance(poses[i].configuration, poses[k].configuration);
+            if (distance >= least - rounding) continue;
+            blame(poses[i], fmt::format("is nearer to {} than least_joint_distance allows, {} deg",
+                                        quote(poses[k].id), format_short(to_degrees(distance))));
+        }
+    }
+    if (is_right) findings.note("poses", true, fmt::format("{}, all feasible", poses.size()));
+}
+
+void check_value(const Plan& plan, const PlanningProblem& problem, const Blocks& blocks,
+                 Findings& findings) {
+    SelectOptions options;
+    options.criterion = problem.search.criterion;
+    options.pose_count = blocks.count();
+    if (needs_test_poses(options.criterion)) options.test_poses = &problem.prediction;
+    options.nuisance = problem.search.nuisance;
+    options.held = problem.search.held.information;
+    options.held_pose_count = problem.search.held_pose_count;
+    std::vector<Index> all(plan.poses.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    const double value = choice_value(blocks, options, all);
+    findings.compare("value", plan.value, value,
+                     detail::is_same_value(options.criterion, plan.value, value, rounding));
+}
+
+void check_prediction(const Plan& plan, const PlanningProblem& problem, const Blocks& blocks,
+                      Findings& findings) {
+    const PredictedAccuracy stated = plan.predicted.value_or(PredictedAccuracy{});
+    const PredictedAccuracy accuracy =
+        predict_accuracy(problem.prediction, held_information(problem) + information(blocks));
+    const auto compare = [&](const char* name, double before, double now) {
+        findings.compare(name, mm_per_m * before, mm_per_m * now,
+                         detail::is_same_value(Criterion::A, before, now, rounding));
+    };
+    compare("RMS/mm", stated.rms, accuracy.rms);
+    compare("95 %/mm", stated.percentile95, accuracy.percentile95);
+}
+
+}  // namespace
+
+Verification verify(const Plan& plan, const Campaign& campaign, const PlanningOptions& options) {
+    PlanningProblem problem = detail::state_planning(campaign, options);
+    detail::draw_workspace(problem, options);
+    const std::string mismatch = describe_mismatch(plan, campaign);
+    if (!mismatch.empty()) throw InputError(mismatch);
+    return detail::collect(static_cast<Index>(plan.poses.size()), [&](Findings& findings) {
+        check_poses(problem, plan.poses, findings);
+        const Blocks blocks = detail::blocks_of(problem, plan.poses);
+        check_value(plan, problem, blocks, findings);
+        check_prediction(plan, problem, blocks, findings);
+        findings.compare_assumptions(plan, problem.campaign);
+        findings.note("bounds", true, "not checked, the file does not hold what proves them");
+    });
+}
+
+}  // namespace posewise

@@ -1,0 +1,195 @@
+#include "posewise/task/verification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "choice_problem.hpp"
+#include "findings.hpp"
+#include "posewise/core/format.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/selection/bound.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::ChoiceProblem;
+using detail::Findings;
+
+/// To rounding, which differs between processors.
+bool agree(Criterion criterion, double a, double b) {
+    return detail::is_same_value(criterion, a, b, 1e-8);
+}
+
+void check_candidates(const Plan& plan, const ChoiceProblem& problem, Findings& findings) {
+    const Index count = problem.blocks.count();
+    if (plan.candidate_count != count) {
+        findings.note("candidates", false,
+                      fmt::format("stated {}, are {}", plan.candidate_count, count));
+    } else if (plan.checksum != problem.checksum) {
+        findings.note("candidates", false,
+                      "changed since the plan was made, by their checksum (or the checksum was)");
+    } else {
+        findings.note("candidates", true, fmt::format("as stated, {}", count));
+    }
+}
+
+/// Candidate indices of the plan's poses, repeats listed.
+std::vector<Index> find_poses(const Plan& plan, const ChoiceProblem& problem, Findings& findings) {
+    const detail::CandidateIndex index(problem.ids);
+    std::vector<Index> poses;
+    for (std::size_t k = 0; k < plan.poses.size(); ++k) {
+        const PlannedPose& pose = plan.poses[k];
+        const Index candidate = index.find(pose.id, fmt::format("poses[{}].id:", k));
+        const bool has_same_joints =
+            problem.kind == CandidateKind::Blocks ||
+            (pose.configuration.size() == problem.configurations.cols() &&
+             pose.configuration.isApprox(problem.configurations.row(candidate).transpose(), 1e-9));
+        if (!has_same_joints) {
+            findings.note("poses", false, "joints of '" + pose.id + "' are not the candidate's");
+        }
+        const Index copies = std::min(pose.times, plan.request.pose_count + 1);
+        poses.insert(poses.end(), static_cast<std::size_t>(copies), candidate);
+    }
+    std::sort(poses.begin(), poses.end());
+    return poses;
+}
+
+std::string id_of(const ChoiceProblem& problem, Index pose) {
+    return problem.ids[static_cast<std::size_t>(pose)];
+}
+
+/// How often each candidate is taken.
+std::map<Index, Index> count_each(const std::vector<Index>& poses) {
+    std::map<Index, Index> times;
+    for (const Index pose : poses) ++times[pose];
+    return times;
+}
+
+/// Where one candidate breaks limits by itself.
+void find_faults(const ChoiceProblem& problem, Index pose, Index times,
+                 std::vector<std::string>& violations) {
+    const SelectOptions& options = problem.options;
+    if (times > options.repeat_limit) {
+        violations.push_back(fmt::format("'{}' is taken {} times, at most {} are allowed",
+                                         id_of(problem, pose), times, options.repeat_limit));
+    }
+    const auto& excluded = options.excluded;
+    if (std::find(excluded.begin(), excluded.end(), pose) != excluded.end()) {
+        violations.push_back(
+            fmt::format("'{}' is excluded or measured already", id_of(problem, pose)));
+    }
+}
+
+/// Whether two candidates are too near to each other.
+void check_distance(const ChoiceProblem& problem, Index a, Index b,
+                    std::vector<std::string>& violations) {
+    const SelectOptions& options = problem.options;
+    const double distance = (options.positions.row(b) - options.positions.row(a)).norm();
+    if (distance >= options.least_distance) return;
+    violations.push_back(fmt::format("'{}' and '{}' are {} deg apart, too near", id_of(problem, a),
+                                     id_of(problem, b), format_short(to_degrees(distance))));
+}
+
+/// Where a choice breaks the limits it was made under; one line each.
+std::vector<std::string> find_violations(const ChoiceProblem& problem,
+                                         const std::vector<Index>& poses) {
+    const SelectOptions& options = problem.options;
+    std::vector<std::string> violations;
+    const std::map<Index, Index> times = count_each(poses);
+    for (const auto& [pose, count] : times) {
+        find_faults(problem, pose, count, violations);
+        for (const auto& [other, unused] : times) {
+            if (other >= pose || options.least_distance == 0) continue;
+            check_distance(problem, other, pose, violations);
+        }
+    }
+    if (options.groups.empty()) return violations;
+    std::map<Index, Index> group_sizes;
+    for (const Index pose : poses) ++group_sizes[options.groups[static_cast<std::size_t>(pose)]];
+    for (const auto& [group, count] : group_sizes) {
+        if (count <= options.group_limit) continue;
+        violations.push_back(
+            fmt::format("{} are of one group, at most {} are allowed", count, options.group_limit));
+    }
+    return violations;
+}
+
+void check_poses(const ChoiceProblem& problem, const std::vector<Index>& poses,
+                 Findings& findings) {
+    const auto count = static_cast<Index>(poses.size());
+    const auto violations = find_violations(problem, poses);
+    for (const std::string& violation : violations) findings.note("poses", false, violation);
+    if (count != problem.options.pose_count) {
+        findings.note("poses", false,
+                      fmt::format("stated {}, are {}", problem.options.pose_count, count));
+    } else if (violations.empty()) {
+        findings.note("poses", true, fmt::format("{}, within the limits", count));
+    }
+}
+
+/// Whether a search like the plan's own finds again that no choice is better.
+bool is_optimal_again(const ChoiceProblem& problem, double value) {
+    const Choice again = select_poses(problem.blocks, problem.options);
+    return again.ending == Ending::Optimal && agree(again.criterion, again.value, value);
+}
+
+/// The bound that the certificate proves.
+double prove_bound(const Plan& plan, const ChoiceProblem& problem, Findings& findings) {
+    const Index L = problem.blocks.parameter_count();
+    const Index size = plan.certificate.M.rows();
+    if (size == L && plan.certificate.sharpness > 0) {
+        return upper_bound(problem.blocks, problem.options, plan.certificate);
+    }
+    findings.note("certificate", size == 0,
+                  size == 0 ? "none, so nothing is proven"
+                            : fmt::format("is {} x {}, must be {} x {}", size, size, L, L));
+    return std::numeric_limits<double>::infinity();
+}
+
+void check_numbers(const Plan& plan, const ChoiceProblem& problem, const std::vector<Index>& poses,
+                   Findings& findings) {
+    const Criterion criterion = problem.options.criterion;
+    const double value = choice_value(problem.blocks, problem.options, poses);
+    findings.compare("value", plan.value, value, agree(criterion, plan.value, value));
+
+    double bound = std::max(value, prove_bound(plan, problem, findings));
+    const bool claims_optimum = plan.ending == Ending::Optimal &&
+                                !agree(criterion, plan.bound, bound) && plan.bound < bound;
+    if (claims_optimum && agree(criterion, plan.bound, value) && is_optimal_again(problem, value)) {
+        bound = value;
+        findings.note("optimum", true, "found again; all other choices are ruled out or tried");
+    }
+    findings.compare("bound", plan.bound, bound, agree(criterion, plan.bound, bound));
+    const auto nuisance = static_cast<Index>(problem.options.nuisance.size());
+    const double actual =
+        efficiency(criterion, value, bound, problem.blocks.parameter_count() - nuisance);
+    findings.compare("efficiency", plan.efficiency, actual,
+                     std::abs(plan.efficiency - actual) <= 1e-8);
+}
+
+/// `campaign` is null for plain blocks.
+Verification check(const Plan& plan, const ChoiceProblem& problem, const Campaign* campaign) {
+    return detail::collect(problem.blocks.count(), [&](Findings& findings) {
+        check_candidates(plan, problem, findings);
+        const std::vector<Index> poses = find_poses(plan, problem, findings);
+        check_poses(problem, poses, findings);
+        check_numbers(plan, problem, poses, findings);
+        if (campaign != nullptr) findings.compare_assumptions(plan, *campaign);
+    });
+}
+
+}  // namespace
+
+Verification verify(const Plan& plan, const Campaign& campaign, const Candidates& candidates,
+                    const ChoiceOptions& options) {
+    return check(plan, detail::state_choice(campaign, candidates, options), &campaign);
+}
+
+Verification verify(const Plan& plan, const Blocks& candidates, const ChoiceOptions& options) {
+    return check(plan, detail::state_choice(candidates, options), nullptr);
+}
+
+}  // namespace posewise

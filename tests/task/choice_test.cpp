@@ -1,0 +1,138 @@
+#include "posewise/task/choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "posewise/selection/exchange.hpp"
+#include "posewise/task/verification.hpp"
+#include "support/campaigns.hpp"
+#include "support/designs.hpp"
+
+namespace posewise {
+namespace {
+
+ChoiceOptions choice_of(Index pose_count) {
+    ChoiceOptions options;
+    options.pose_count = pose_count;
+    options.starts = 2;
+    return options;
+}
+
+std::vector<std::string> ids_of(const Plan& plan) {
+    std::vector<std::string> ids;
+    for (const PlannedPose& pose : plan.poses) ids.push_back(pose.id);
+    return ids;
+}
+
+TEST(ChooseFromBlocks, IsTheSelectionWithNames) {
+    const Blocks candidates = test::random_blocks(30, 3, 4, 5);
+    ChoiceOptions options = choice_of(6);
+    options.repeat_limit = 2;
+    const Plan plan = choose(candidates, options);
+    SelectOptions select;
+    select.pose_count = 6;
+    select.starts = 2;
+    select.repeat_limit = 2;
+    const Choice choice = select_poses(candidates, select);
+    EXPECT_EQ(plan.value, choice.value);
+    EXPECT_EQ(plan.bound, choice.bound);
+    std::vector<std::string> chosen;
+    for (const PlannedPose& pose : plan.poses) {
+        chosen.insert(chosen.end(), static_cast<std::size_t>(pose.times), pose.id);
+    }
+    std::vector<std::string> expected;
+    for (const Index pose : choice.poses) expected.push_back(std::to_string(pose));
+    EXPECT_EQ(chosen, expected);
+    EXPECT_TRUE(verify(plan, candidates, options).is_right());
+}
+
+TEST(ChooseFromBlocks, HoldsWhatWasMeasuredAndDoesNotChooseItAgain) {
+    const Blocks candidates = test::random_blocks(30, 3, 4, 5);
+    ChoiceOptions options = choice_of(3);
+    const Plan before = choose(candidates, options);
+    std::vector<Index> measured;
+    for (const std::string& id : ids_of(before)) measured.push_back(std::stol(id));
+    options.held_blocks = take(candidates, measured);
+    const Plan after = choose(candidates, options);
+    EXPECT_GT(after.value, before.value);
+    for (const std::string& id : ids_of(after)) {
+        for (const std::string& other : ids_of(before)) EXPECT_NE(id, other);
+    }
+}
+
+class ChooseWithRobot : public ::testing::Test {
+  protected:
+    ChooseWithRobot() {
+        SimulateOptions simulation;
+        simulation.pose_count = 20;
+        measured_ = simulate(campaign_, simulation).measurements;
+    }
+    Campaign campaign_ = testing::tracked_campaign(testing::ur_type());
+    Measurements measured_;
+};
+
+TEST_F(ChooseWithRobot, SaysWhatItChoseAndWhatItRestsOn) {
+    const Plan plan = choose(campaign_, measured_candidates(measured_), choice_of(10));
+    EXPECT_EQ(plan.campaign, campaign_.name);
+    EXPECT_EQ(plan.kind, CandidateKind::Measurements);
+    EXPECT_EQ(plan.candidate_count, 20);
+    EXPECT_EQ(plan.columns.front(), "q1_rad");
+    ASSERT_EQ(plan.poses.size(), 10U);
+    for (const PlannedPose& pose : plan.poses) {
+        const auto found = std::find(measured_.ids.begin(), measured_.ids.end(), pose.id);
+        ASSERT_NE(found, measured_.ids.end());
+        EXPECT_EQ(pose.configuration,
+                  measured_.configurations.row(found - measured_.ids.begin()).transpose());
+        EXPECT_EQ(pose.targets, (std::vector<Index>{0, 1, 2}));
+    }
+    EXPECT_EQ(plan.assumptions.front().name, "sigma_m");
+    EXPECT_EQ(plan.assumptions.front().value, 5e-5);
+}
+
+TEST_F(ChooseWithRobot, IsVerifiedWithoutAnyFile) {
+    const Candidates candidates = random_candidates(campaign_, 100, 3);
+    const ChoiceOptions options = choice_of(10);
+    const Plan plan = choose(campaign_, candidates, options);
+    EXPECT_TRUE(verify(plan, campaign_, candidates, options).is_right());
+    Plan edited = plan;
+    edited.value += 1;
+    edited.poses.back() = edited.poses.front();
+    EXPECT_EQ(verify(edited, campaign_, candidates, options).wrong(),
+              (std::vector<std::string>{"poses", "value", "efficiency"}));
+    campaign_.model_error = 3e-4;
+    const auto wrong = verify(plan, campaign_, candidates, options).wrong();
+    EXPECT_EQ(wrong.back(), "assumes");
+}
+
+TEST_F(ChooseWithRobot, LetsAnExceptionOfTheCallbackThrough) {
+    ChoiceOptions options = choice_of(10);
+    options.progress = [](const Progress&) { throw std::domain_error("enough"); };
+    EXPECT_THROW(choose(campaign_, random_candidates(campaign_, 100, 3), options),
+                 std::domain_error);
+}
+
+TEST_F(ChooseWithRobot, NeedsToKnowWhereTheBaseIs) {
+    const Candidates candidates = random_candidates(campaign_, 50, 3);
+    campaign_.has_nominal_base = false;
+    EXPECT_THROW(choose(campaign_, candidates, choice_of(10)), InputError);
+    ChoiceOptions options = choice_of(10);
+    options.held = measured_;
+    EXPECT_EQ(choose(campaign_, candidates, options).poses.size(), 10U);
+}
+
+TEST_F(ChooseWithRobot, StopsMakingRandomCandidatesWhenTimeIsUp) {
+    ChoiceOptions options = choice_of(10);
+    const std::atomic<bool> interrupted = true;
+    options.stop.interrupted = &interrupted;
+    const Candidates candidates = random_candidates(campaign_, 10000, 3);
+    const Plan plan = choose(campaign_, candidates, options);
+    EXPECT_LT(plan.candidate_count, 10000);
+    EXPECT_EQ(plan.ending, Ending::Interrupted);
+}
+
+}  // namespace
+}  // namespace posewise

@@ -1,0 +1,87 @@
+#include "posewise/task/planning.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/task/verification.hpp"
+#include "support/cells.hpp"
+
+namespace posewise {
+namespace {
+
+class MakePlan : public ::testing::Test {
+  protected:
+    MakePlan() {
+        campaign_.cell = testing::demo_cell();
+        campaign_.spread.is_prior = true;
+        options_.pose_count = 4;
+        options_.pool_count = 300;
+        options_.starts = 1;
+        options_.workspace_count = 20;
+    }
+    Campaign campaign_ = testing::cell_campaign();
+    PlanningOptions options_;
+};
+
+TEST_F(MakePlan, IsVerifiedWithoutAnyFile) {
+    const Planning planning = make_plan(campaign_, options_);
+    const Plan& plan = planning.plan;
+    ASSERT_EQ(plan.poses.size(), 4U);
+    EXPECT_TRUE(plan.is_continuous());
+    EXPECT_GE(plan.value, plan.choice_value);
+    EXPECT_EQ(plan.standard_deviations.size(),
+              static_cast<std::size_t>(parameter_count(campaign_)));
+    EXPECT_TRUE(verify(plan, campaign_, options_).is_right());
+    Plan edited = plan;
+    edited.poses[2].configuration[1] = 50;
+    edited.predicted->rms *= 1.01;
+    const auto wrong = verify(edited, campaign_, options_).wrong();
+    EXPECT_NE(std::find(wrong.begin(), wrong.end(), "poses"), wrong.end());
+    EXPECT_NE(std::find(wrong.begin(), wrong.end(), "RMS/mm"), wrong.end());
+    edited.campaign = "another";
+    EXPECT_THROW(verify(edited, campaign_, options_), InputError);
+}
+
+TEST_F(MakePlan, PredictsHalfAndTwiceAsManyPoses) {
+    const auto counts = predict_other_counts(make_plan(campaign_, options_));
+    ASSERT_EQ(counts.size(), 4U);
+    EXPECT_EQ(counts[0].pose_count, 2);
+    EXPECT_EQ(counts[1].pose_count, 4);
+    EXPECT_TRUE(counts[2].is_planned);
+    EXPECT_EQ(counts[3].pose_count, 8);
+    EXPECT_LT(counts[3].accuracy->rms, counts[0].accuracy->rms);
+}
+
+TEST_F(MakePlan, RepairsWithoutMovingTheOthers) {
+    const Plan first = make_plan(campaign_, options_).plan;
+    options_.repaired = first;
+    options_.pose_count = 0;
+    options_.dropped = {"p2"};
+    const Plan repaired = make_plan(campaign_, options_).plan;
+    ASSERT_EQ(repaired.poses.size(), 4U);
+    int kept = 0;
+    for (const PlannedPose& pose : repaired.poses) {
+        EXPECT_NE(pose.id, "p2");
+        if (!pose.is_kept) continue;
+        ++kept;
+        const auto old =
+            std::find_if(first.poses.begin(), first.poses.end(),
+                         [&](const PlannedPose& other) { return other.id == pose.id; });
+        ASSERT_NE(old, first.poses.end());
+        EXPECT_EQ(old->configuration, pose.configuration);
+    }
+    EXPECT_EQ(kept, 3);
+    options_.dropped = {"p77"};
+    EXPECT_THROW(make_plan(campaign_, options_), InputError);
+}
+
+TEST_F(MakePlan, LetsAnExceptionOfTheCallbackThrough) {
+    options_.progress = [](const Progress&) { throw std::domain_error("enough"); };
+    EXPECT_THROW(make_plan(campaign_, options_), std::domain_error);
+}
+
+}  // namespace
+}  // namespace posewise
