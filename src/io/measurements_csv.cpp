@@ -192,7 +192,7 @@ class RowReader {
         }
         if (!orientation_fields_.empty()) field_of_observation_.resize(3);
         row_.joints.resize(campaign.robot.configuration_size());
-        row_.is_seen.assign(static_cast<std::size_t>(campaign.sensor->target_count()), true);
+        row_.is_seen.setConstant(campaign.sensor->target_count(), true);
         if (content == Content::JointsAndObservations) {
             row_.observation.setZero(campaign.sensor->row_count());
         }
@@ -274,7 +274,7 @@ class RowReader {
     /// "1 3": the targets with these numbers.
     void read_visible(std::size_t field) {
         const std::string_view text = csv_.fields()[field];
-        std::fill(row_.is_seen.begin(), row_.is_seen.end(), false);
+        row_.is_seen.setConstant(false);
         bool is_good = !text.empty();
         for (std::string_view rest = text; !rest.empty();) {
             const std::string_view word = rest.substr(0, rest.find(' '));
@@ -283,7 +283,7 @@ class RowReader {
             is_good = is_good && number.ok() && number.value >= 1 &&
                       number.value <= static_cast<double>(row_.is_seen.size()) &&
                       number.value == std::floor(number.value);
-            if (is_good) row_.is_seen[static_cast<std::size_t>(number.value) - 1] = true;
+            if (is_good) row_.is_seen[static_cast<Index>(number.value) - 1] = true;
         }
         if (is_good) return;
         throw input_error_at(
@@ -293,18 +293,18 @@ class RowReader {
     }
 
     void read_targets() {
-        for (std::size_t target = 0; target < row_.is_seen.size(); ++target) read_target(target);
-        if (std::count(row_.is_seen.begin(), row_.is_seen.end(), true) > 0) return;
+        for (Index target = 0; target < row_.is_seen.size(); ++target) read_target(target);
+        if (row_.is_seen.any()) return;
         throw input_error_at(csv_.locate(field_of_observation_.front()),
                              "the sample shows no target; must show one at least, or be left out");
     }
 
     /// The cells of a target that was not seen are empty, all of them.
-    void read_target(std::size_t target) {
+    void read_target(Index target) {
         const auto width = orientation_fields_.empty()
                                ? static_cast<std::size_t>(campaign_.sensor->rows_per_target())
                                : field_of_observation_.size();
-        const std::size_t first = width * target;
+        const std::size_t first = width * static_cast<std::size_t>(target);
         std::vector<std::size_t> fields(orientation_fields_);
         for (std::size_t k = first; k < first + width; ++k) {
             fields.push_back(field_of_observation_[k]);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -42,9 +41,10 @@ MatrixXd read_joints(const MatReader& file, const std::string& path, const Chain
 /// Three numbers a target; NaN: it was not seen.
 void take_seen(const VectorXd& points, Sample& sample) {
     sample.observation = points;
+    sample.is_seen.resize(points.size() / 3);
     for (Index k = 0; k < points.size(); k += 3) {
-        sample.is_seen.push_back(!std::isnan(points[k]));
-        if (!sample.is_seen.back()) sample.observation.segment<3>(k).setZero();
+        sample.is_seen[k / 3] = !std::isnan(points[k]);
+        if (!sample.is_seen[k / 3]) sample.observation.segment<3>(k).setZero();
     }
 }
 
@@ -87,7 +87,7 @@ Measurements read_measurements_mat(const std::string& path, const Campaign& camp
         sample.id =
             ids.emplace(std::vector<double>(sample.joints.begin(), end), next).first->second;
         take_seen(observations.row(row).transpose(), sample);
-        if (std::count(sample.is_seen.begin(), sample.is_seen.end(), true) == 0) {
+        if (!sample.is_seen.any()) {
             throw input_error_at({path}, "row " + std::to_string(row + 1) +
                                              " shows no target, all points are NaN; must show one "
                                              "at least, or be left out");

@@ -37,7 +37,7 @@ void SampleCollector::add(const Sample& sample, const LocateJoint& locate) {
     }
     configuration_.push_back(entry->second);
     observations_.insert(observations_.end(), sample.observation.begin(), sample.observation.end());
-    is_seen_.insert(is_seen_.end(), sample.is_seen.begin(), sample.is_seen.end());
+    is_seen_.push_back(sample.is_seen);
 }
 
 void SampleCollector::check_same_joints(Index configuration, const VectorXd& joints,
@@ -111,18 +111,15 @@ Measurements SampleCollector::finish(const std::string& path) const {
 
     const auto samples = static_cast<Index>(configuration_.size());
     const auto width = static_cast<Index>(observations_.size()) / samples;
-    const auto targets = static_cast<Index>(is_seen_.size()) / samples;
     const Eigen::Map<const RowMatrixXd> observations(observations_.data(), samples, width);
     measurements.observations.resize(samples, width);
-    measurements.is_seen.resize(samples, targets);
+    measurements.is_seen.resize(samples, is_seen_.front().size());
     std::vector<Index> next = first;
     for (Index sample = 0; sample < samples; ++sample) {
         const Index i = configuration_[static_cast<std::size_t>(sample)];
         const Index row = next[static_cast<std::size_t>(i)]++;
         measurements.observations.row(row) = observations.row(sample);
-        for (Index j = 0; j < targets; ++j) {
-            measurements.is_seen(row, j) = is_seen_[static_cast<std::size_t>(targets * sample + j)];
-        }
+        measurements.is_seen.row(row) = is_seen_[static_cast<std::size_t>(sample)];
     }
     return measurements;
 }

@@ -13,10 +13,10 @@ namespace posewise::io {
 
 /// One sample, as a row of a file has it.
 struct Sample {
-    std::string id;             ///< of the configuration
-    VectorXd joints;            ///< the configuration: rad or m, then measured torques
-    VectorXd observation;       ///< m; without what was observed if only configurations are read
-    std::vector<bool> is_seen;  ///< each target; at least one of them
+    std::string id;        ///< of the configuration
+    VectorXd joints;       ///< the configuration: rad or m, then measured torques
+    VectorXd observation;  ///< m; without what was observed if only configurations are read
+    SeenTargets is_seen;   ///< at least one of them
 };
 
 /// Samples as a file has them, row by row in any order, on the way to Measurements.
@@ -49,7 +49,7 @@ class SampleCollector {
     std::vector<FileLocation> first_places_;  // of each configuration
     std::vector<Index> configuration_;        // of each sample
     std::vector<double> observations_;        // of all samples, one after another
-    std::vector<bool> is_seen_;               // of all samples, one after another
+    std::vector<SeenTargets> is_seen_;        // of each sample
 };
 
 /// Throws InputError (at `locate()`) if a revolute joint's value, read in rad, lies over a full

@@ -32,6 +32,15 @@ TEST(MakeMetrics, TellOrientationsFromPositions) {
     EXPECT_DOUBLE_EQ(metrics.orientation_rms, 5e-3 / std::sqrt(2));
 }
 
+TEST(MakeMetrics, OfAnglesAloneHaveNoDistances) {
+    const Metrics metrics = make_metrics(RowMatrixXd{{3e-3, 4e-3}, {0, 0}}, 0);
+    EXPECT_EQ(metrics.coordinate_count, 0);
+    EXPECT_TRUE(metrics.has_orientation);
+    EXPECT_EQ(metrics.distance_max, 0);
+    EXPECT_DOUBLE_EQ(metrics.orientation_max, 5e-3);
+    EXPECT_DOUBLE_EQ(metrics.rms(), 5e-3 / std::sqrt(2));
+}
+
 TEST(MakeMetrics, OfLengthsHaveNoAxes) {
     const Metrics metrics = make_metrics(RowMatrixXd{{3}, {-4}});
     EXPECT_EQ(metrics.coordinate_count, 1);
