@@ -139,7 +139,10 @@ RowMatrixXd whiten_seen(const Campaign& campaign, const FlangeMotion& motion,
 
 MatrixXd cholesky_factor(const MatrixXd& covariance) {
     const Eigen::LLT<MatrixXd> cholesky(covariance);
-    if (cholesky.info() != Eigen::Success) throw not_positive_definite(covariance);
+    // Of what is not a number LLT says success.
+    if (cholesky.info() != Eigen::Success || !cholesky.matrixLLT().diagonal().allFinite()) {
+        throw not_positive_definite(covariance);
+    }
     return cholesky.matrixL();
 }
 
