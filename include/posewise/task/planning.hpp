@@ -11,7 +11,8 @@ namespace posewise {
 
 /// What is asked for, what there is besides the campaign, and when to stop.
 struct PlanningOptions : PlanRequest {
-    PlanningOptions() {
+    explicit PlanningOptions(Index poses = 0) {
+        pose_count = poses;
         criterion = Criterion::V;
         starts = 16;
         repeats = 1;

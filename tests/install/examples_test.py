@@ -1,0 +1,47 @@
+"""README's programs, built by a stranger's project, print what the command line prints.
+
+    examples_test.py REPOSITORY FOLDER_OF_THE_PROGRAMS POSEWISE
+"""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+MOST_LINES = 10
+COMMANDS = {
+    "calibrate": ["calibrate campaign.yaml -m measurements.csv"],
+    "plan": ["select campaign.yaml -m measurements.csv -k 12", "plan campaign.yaml -k 12"],
+}
+
+
+def check(repository, programs, posewise, name, commands):
+    source = (repository / "tests/install/stranger" / f"{name}.cpp").read_text()
+    if source not in (repository / "README.md").read_text():
+        return f"{name}.cpp: stands in README.md with other words"
+    if len(source.splitlines()) > MOST_LINES:
+        return f"{name}.cpp: has more than {MOST_LINES} lines"
+
+    def run(command):
+        return subprocess.run(command, check=True, capture_output=True, text=True, cwd=folder).stdout
+
+    with tempfile.TemporaryDirectory() as folder:
+        shutil.copy(repository / "designs/fanuc_r2000ic_165f/campaign.yaml", folder)
+        shutil.copy(repository / "data/fanuc_r2000ic_165f_simulated/measurements.csv", folder)
+        printed = run([programs / name])
+        expected = [run([posewise, *command.split()]) for command in commands]
+    wanted = [line for line in printed.splitlines() if line]
+    there = {line for text in expected for line in text.splitlines()}
+    missing = [line for line in wanted if line not in there]
+    if missing or len(wanted) < MOST_LINES:
+        return f"{name}.cpp: prints what {' and '.join(commands)} do not: {missing[:3]}"
+    return ""
+
+
+if __name__ == "__main__":
+    root, folder_of_programs, program = (pathlib.Path(argument) for argument in sys.argv[1:4])
+    results = [check(root, folder_of_programs, program, name, commands)
+               for name, commands in COMMANDS.items()]
+    print("\n".join(result for result in results if result) or "the examples print the same")
+    sys.exit(1 if any(results) else 0)
