@@ -97,7 +97,8 @@ RowMatrixXd choose_from_part(const Problem& problem, Index start) {
     select.criterion = smooth_relative(options.criterion);
     select.starts = 1;
     select.kicks = 0;
-    return candidates(select_poses(take(problem.blocks, part), select).poses, Eigen::all);
+    return candidates(determined(select_poses(take(problem.blocks, part), select)).poses,
+                      Eigen::all);
 }
 
 /// The choice from the whole pool, which becomes `pool_choice`, and the refinements of all starts,
@@ -118,7 +119,7 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
     for_each_index(options.starts, [&](Index start) {
         if (start > 0 && options.stop.is_set()) return;
         if (start == 0) {
-            pool_choice = select_poses(problem.blocks, select);
+            pool_choice = determined(select_poses(problem.blocks, select));
             pool_bound = pool_choice.bound;
         }
         Refinement& result = results[static_cast<std::size_t>(start)];

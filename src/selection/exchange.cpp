@@ -1,5 +1,7 @@
 #include "posewise/selection/exchange.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -191,10 +193,24 @@ Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
     return outcome;
 }
 
+Choice unidentified(const std::string& reason) {
+    Choice nothing;
+    nothing.ending = Ending::NotIdentifiable;
+    nothing.undetermined = reason;
+    return nothing;
+}
+
 }  // namespace
+
+Choice determined(Choice choice) {
+    if (choice.ending == Ending::NotIdentifiable) throw InputError(choice.undetermined);
+    return choice;
+}
 
 Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     validate(candidates, options);
+    const std::string unseen = describe_unseen(candidates, options);
+    if (!unseen.empty()) return unidentified(unseen);
     const Objective objective = make_objective(candidates, options);
     const SearchProblem problem{candidates, options, objective,
                                 held_information(candidates, options), ridge_of(candidates)};
@@ -202,10 +218,10 @@ Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     const Outcome outcome = search(problem, relaxation);
     const ScoredPoses& best = outcome.best;
     if (!best.score.identifies) {
-        throw InputError("pose count is " + std::to_string(options.pose_count) +
-                         ": no choice was found that identifies all " +
-                         std::to_string(candidates.parameter_count()) +
-                         " parameters; ask for more poses or state a prior");
+        return unidentified(
+            fmt::format("pose count is {}: no choice was found that identifies all {} parameters; "
+                        "ask for more poses or state a prior",
+                        options.pose_count, candidates.parameter_count()));
     }
     Choice plan;
     plan.starts = static_cast<Index>(outcome.starts.size());

@@ -78,26 +78,6 @@ MatrixXd separate(MatrixXd V) {
     return V;
 }
 
-void validate_rank(const Blocks& candidates, const SelectOptions& options) {
-    const MatrixXd M = held_information(candidates, options) + information(candidates);
-    const VectorXd scale = M.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const MatrixXd normalised = scale.asDiagonal() * M * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(normalised);
-    const Index L = M.rows();
-    const Index missing = (eigen.eigenvalues().array() <= 1e-12).count();
-    if (missing == 0) return;
-    const MatrixXd unseen = scale.asDiagonal() * separate(eigen.eigenvectors().leftCols(missing));
-    std::string directions;
-    for (Index k = 0; k < std::min<Index>(missing, 3); ++k) {
-        directions += (k > 0 ? "; " : "") +
-                      describe_combination(unseen.col(k).stableNormalized(), options.column_names);
-    }
-    throw InputError("all " + std::to_string(candidates.count()) + " candidates together leave " +
-                     std::to_string(missing) + " of " + std::to_string(L) +
-                     " parameter directions unseen (" + directions + (missing > 3 ? "; ..." : "") +
-                     "); drop redundant parameters, add poses or state a prior");
-}
-
 }  // namespace
 
 void validate(const Blocks& candidates, const SelectOptions& options) {
@@ -134,7 +114,26 @@ void validate(const Blocks& candidates, const SelectOptions& options) {
                          ", must be from 1 to " + std::to_string(open) +
                          ", the number of candidates allowed (repeats counted)");
     }
-    validate_rank(candidates, options);
+}
+
+std::string describe_unseen(const Blocks& candidates, const SelectOptions& options) {
+    const MatrixXd M = held_information(candidates, options) + information(candidates);
+    const VectorXd scale = M.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const MatrixXd normalised = scale.asDiagonal() * M * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(normalised);
+    const Index L = M.rows();
+    const Index missing = (eigen.eigenvalues().array() <= 1e-12).count();
+    if (missing == 0) return "";
+    const MatrixXd unseen = scale.asDiagonal() * separate(eigen.eigenvectors().leftCols(missing));
+    std::string directions;
+    for (Index k = 0; k < std::min<Index>(missing, 3); ++k) {
+        directions += (k > 0 ? "; " : "") +
+                      describe_combination(unseen.col(k).stableNormalized(), options.column_names);
+    }
+    return "all " + std::to_string(candidates.count()) + " candidates together leave " +
+           std::to_string(missing) + " of " + std::to_string(L) + " parameter directions unseen (" +
+           directions + (missing > 3 ? "; ..." : "") +
+           "); drop redundant parameters, add poses or state a prior";
 }
 
 }  // namespace posewise

@@ -4,8 +4,11 @@
 
 namespace posewise {
 
-/// Throws InputError for options that contradict the candidates or each other, and for candidates
-/// that (with the held information) do not identify the parameters.
+/// Throws InputError for options that contradict the candidates or each other.
 void validate(const Blocks& candidates, const SelectOptions& options);
+
+/// Which directions of parameter space all candidates together (with the held information) leave
+/// unseen, as a sentence; empty: none.
+std::string describe_unseen(const Blocks& candidates, const SelectOptions& options);
 
 }  // namespace posewise

@@ -32,7 +32,7 @@ std::vector<PlannedPose> poses_of(const ChoiceProblem& problem, const std::vecto
 Plan solve(ChoiceProblem& problem, const ChoiceOptions& options) {
     problem.options.stop = options.stop;
     problem.options.progress = options.progress;
-    const Choice choice = select_poses(problem.blocks, problem.options);
+    const Choice choice = determined(select_poses(problem.blocks, problem.options));
     Plan plan;
     plan.poses = poses_of(problem, choice.poses);
     plan.request = problem.request;

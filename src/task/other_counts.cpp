@@ -33,9 +33,10 @@ std::optional<PredictedAccuracy> predict_choice(const Blocks& prediction, const 
     const MatrixXd held = options.held.size() > 0 ? options.held : MatrixXd::Zero(L, L);
     try {
         const Choice choice = select_poses(blocks, options);
+        if (choice.ending == Ending::NotIdentifiable) return std::nullopt;
         return predict_accuracy(prediction, held + information(blocks, choice.poses));
     } catch (const InputError&) {
-        return std::nullopt;  // too few to identify, or more than the pool has
+        return std::nullopt;  // more than the pool has
     }
 }
 

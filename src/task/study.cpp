@@ -76,6 +76,7 @@ std::vector<Index> choose_pose_counts(const Campaign& campaign, const Measuremen
     return counts;
 }
 
+/// None if no choice identifies the model.
 std::vector<Index> choose_poses(const Setting& setting, const Job& job) {
     const Index all = setting.blocks.count();
     if (job.is_random) {
@@ -96,11 +97,8 @@ std::vector<Index> choose_poses(const Setting& setting, const Job& job) {
 /// that is what a study is to show.
 void run(const Setting& setting, const Job& job) {
     StudyCase& result = *job.result;
-    try {
-        result.poses = choose_poses(setting, job);
-    } catch (const InputError&) {
-        return;
-    }
+    result.poses = choose_poses(setting, job);
+    if (result.poses.empty()) return;
     const Measurements& measurements = setting.measurements;
     const Measurements chosen = take(measurements, result.poses);
     const Registration start = register_base_and_targets(setting.campaign, chosen);

@@ -132,7 +132,7 @@ void check_poses(const ChoiceProblem& problem, const std::vector<Index>& poses,
 
 /// Whether a search like the plan's own finds again that no choice is better.
 bool is_optimal_again(const ChoiceProblem& problem, double value) {
-    const Choice again = select_poses(problem.blocks, problem.options);
+    const Choice again = determined(select_poses(problem.blocks, problem.options));
     return again.ending == Ending::Optimal && agree(again.criterion, again.value, value);
 }
 

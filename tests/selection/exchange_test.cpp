@@ -24,11 +24,10 @@ SelectOptions make_options(Criterion criterion, Index pose_count) {
 
 std::string message_of(const Blocks& candidates, const SelectOptions& options) {
     try {
-        select_poses(candidates, options);
+        return select_poses(candidates, options).undetermined;
     } catch (const InputError& error) {
         return error.what();
     }
-    return "";
 }
 
 void expect_refusal(const Blocks& candidates, const SelectOptions& options,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "posewise/core/ending.hpp"
@@ -32,6 +33,13 @@ struct Choice {
     Index starts = 0;
     Index starts_at_best = 0;  ///< how many independent starts ended at this value
     Ending ending = Ending::NotRun;
+    /// Where the ending is NotIdentifiable, which directions stay open and what would close them, as
+    /// a sentence; then there are no poses.
+    std::string undetermined;
 };
+
+/// The choice, for those to whom candidates that do not identify the parameters are no input:
+/// throws InputError with the reason.
+Choice determined(Choice choice);
 
 }  // namespace posewise

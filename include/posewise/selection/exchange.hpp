@@ -48,10 +48,10 @@ struct SelectOptions {
 /// over OpenMP threads whose number does not matter; last sweeps over all candidates end where no
 /// exchange improves (for O5 and parameters of interest: none of those estimated to be good, but
 /// all in the last sweeps). If the bound leaves few enough other choices they are tried, and the
-/// plan is optimal. Throws InputError if K is not in [1, candidates x repeats], if the limits leave
-/// fewer than K, if all candidates together do not identify the parameters (naming the columns of
-/// the unseen directions), if no start found K poses that do, or for options that contradict the
-/// candidates.
+/// plan is optimal. Ends NotIdentifiable if all candidates together do not identify the parameters
+/// (naming the columns of the unseen directions), or if no start found K poses that do. Throws
+/// InputError if K is not in [1, candidates x repeats], if the limits leave fewer than K, or for
+/// options that contradict the candidates.
 Choice select_poses(const Blocks& candidates, const SelectOptions& options);
 
 }  // namespace posewise
