@@ -8,6 +8,7 @@
 #include "campaign_text.hpp"
 #include "posewise/io/atomic_file.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "support/slips.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -38,10 +39,6 @@ Measurements read(const std::string& text) {
 
 std::string error_of(const std::string& text) {
     return input_error_of([&] { read(text); });
-}
-
-std::string error_with(const std::string& part, const std::string& by) {
-    return error_of(replaced(good, part, by));
 }
 
 void expect_equal(const Measurements& a, const Measurements& b) {
@@ -179,129 +176,75 @@ TEST(WriteMeasurementsCsv, RefusesNumbersThatAreNotFinite) {
     EXPECT_EQ(folder.file_count(), 0U);
 }
 
-TEST(BadMeasurementsCsv, EmptyFile) {
-    EXPECT_EQ(error_of(""),
-              "m.csv: is empty; must begin with a header like "
-              "config,sample,q1_rad,...,p1_x_mm,...");
-    EXPECT_EQ(error_of("# only a comment\n").substr(0, 16), "m.csv: is empty;");
-}
-
-TEST(BadMeasurementsCsv, HeaderOnly) {
-    EXPECT_EQ(error_of(good.substr(0, good.find('\n') + 1)),
-              "m.csv: has a header but no rows; must have at least one sample");
-}
-
 TEST(BadMeasurementsCsv, MissingFile) {
     const TemporaryFolder folder;
     EXPECT_EQ(input_error_of([&] { read_measurements_csv(folder.path("m.csv"), crane()); }),
               "m.csv: cannot be read: No such file or directory");
 }
 
-TEST(BadMeasurementsCsv, MissingColumn) {
-    EXPECT_EQ(error_with(",p2_z_m\n", "\n"),
-              "m.csv:1:70: missing column p2_z_mm; the header must have "
-              "config,sample,q1_rad,q2_rad,lift_mm,p1_x_mm,p1_y_mm,p1_z_mm,p2_x_mm,p2_y_mm,"
-              "p2_z_mm");
-    EXPECT_EQ(error_with("config,", "").substr(0, 34), "m.csv:1:70: missing column config;");
+void expect_messages_of(const std::vector<testing::Slip>& slips) {
+    testing::expect_messages(good, slips, error_of, "m.csv:");
 }
 
-TEST(BadMeasurementsCsv, UnknownColumn) {
-    EXPECT_EQ(error_with("q2_rad", "q4_rad"),
-              "m.csv:1:22: column 'q4_rad' is unknown; did you mean 'q1_rad'?");
+TEST(BadMeasurementsCsv, Headers) {
+    expect_messages_of({
+        {good, "", " is empty; must begin with a header like config,sample,q1_rad,...,p1_x_mm,..."},
+        {good, "# only a comment\n", " is empty;[...]"},
+        {good, good.substr(0, good.find('\n') + 1),
+         " has a header but no rows; must have at least one sample"},
+        {",p2_z_m\n", "\n",
+         "1:70: missing column p2_z_mm; the header must have "
+         "config,sample,q1_rad,q2_rad,lift_mm,p1_x_mm,p1_y_mm,p1_z_mm,p2_x_mm,p2_y_mm,p2_z_mm"},
+        {"config,", "", "1:70: missing column config;[...]"},
+        {"q2_rad", "q4_rad", "1:22: column 'q4_rad' is unknown; did you mean 'q1_rad'?"},
+        {"q2_rad", "q1_deg", "1:22: column 'q1_deg' occurs twice; keep one"},
+        {"q2_rad", "q2", "1:22: column 'q2' has no unit; must be like q2_rad"},
+        {"p2_x_m", "p2_x", "1:57: column 'p2_x' has no unit; must be like p2_x_mm"},
+        {"lift_m", "lift_deg",
+         "1:29: column 'lift_deg' has the wrong kind of unit; must be like lift_mm"},
+    });
 }
 
-TEST(BadMeasurementsCsv, ColumnTwice) {
-    EXPECT_EQ(error_with("q2_rad", "q1_deg"), "m.csv:1:22: column 'q1_deg' occurs twice; keep one");
-}
-
-TEST(BadMeasurementsCsv, ColumnWithoutUnit) {
-    EXPECT_EQ(error_with("q2_rad", "q2"),
-              "m.csv:1:22: column 'q2' has no unit; must be like q2_rad");
-    EXPECT_EQ(error_with("p2_x_m", "p2_x"),
-              "m.csv:1:57: column 'p2_x' has no unit; must be like p2_x_mm");
-}
-
-TEST(BadMeasurementsCsv, ColumnWithTheWrongUnit) {
-    EXPECT_EQ(error_with("lift_m", "lift_deg"),
-              "m.csv:1:29: column 'lift_deg' has the wrong kind of unit; must be like lift_mm");
-}
-
-TEST(BadMeasurementsCsv, RaggedRow) {
-    EXPECT_EQ(error_with("4,5,6\na,1", "4,5\na,1"),
-              "m.csv:2:26: row has 10 fields; must have 11 as the header");
-    EXPECT_EQ(error_with("4,5,6\na,1", "4,5,6,7\na,1"),
-              "m.csv:2:29: row has 12 fields; must have 11 as the header");
-}
-
-TEST(BadMeasurementsCsv, TextWhereANumberBelongs) {
-    EXPECT_EQ(error_with("1.5", "1.5mm"),
-              "m.csv:3:17: '1.5mm' is not a number; must be a finite number with a decimal point");
-    EXPECT_EQ(error_with("0.25", ""),
-              "m.csv:4:9: '' is not a number; must be a finite number with a decimal point");
-}
-
-TEST(BadMeasurementsCsv, TargetWithSomeCellsEmpty) {
-    const std::string rule =
+TEST(BadMeasurementsCsv, Numbers) {
+    const std::string rule = "; must be a finite number with a decimal point";
+    const std::string some =
         " is empty, but not all cells of target 1 are; must be a number, or all empty if it was "
         "not seen";
-    EXPECT_EQ(error_with("1.5", ""), "m.csv:3:17: p1_x" + rule);
-    EXPECT_EQ(error_with("1.5,2,3", "1.5,,3"), "m.csv:3:21: p1_y" + rule);
-    EXPECT_EQ(error_with("1.5,2,3", ",,3"), "m.csv:3:17: p1_x" + rule);
-    EXPECT_EQ(error_with("10,11,12", "nan,nan,nan").substr(0, 28), "m.csv:4:24: 'nan' is not fin");
+    expect_messages_of({
+        {"1.5", "1.5mm", "3:17: '1.5mm' is not a number" + rule},
+        {"0.25", "", "4:9: '' is not a number" + rule},
+        {"1.5", "", "3:17: p1_x" + some},
+        {"1.5,2,3", "1.5,,3", "3:21: p1_y" + some},
+        {"1.5,2,3", ",,3", "3:17: p1_x" + some},
+        {"10,11,12", "nan,nan,nan", "4:24: 'nan' is not fin[...]"},
+        {"1.5", "nan", "3:17: 'nan' is not finite" + rule},
+        {"1.5", "inf", "3:17: 'inf' is not finite" + rule},
+        {"1.5", "-inf", "3:17: '-inf' is not finite" + rule},
+        {"1.5", "1e999", "3:17: '1e999' is beyond the range of numbers; mu[...]"},
+        {"b,0,0.1", "b,0,45",
+         "4:5: q1 = 45 rad is more than a full turn beyond its limits (-1.5708 to 1.5708 rad) and "
+         "looks like degrees; state degrees as such"},
+        {"0.25", "1e300", "[...]'1e300' is out of any cell; must be at most 10000 rad[...]"},
+    });
 }
 
-TEST(BadMeasurementsCsv, SampleThatShowsNoTarget) {
-    EXPECT_EQ(error_with("7,8,9,10,11,12", ",,,,,"),
-              "m.csv:4:18: the sample shows no target; must show one at least, or be left out");
-}
-
-TEST(BadMeasurementsCsv, NumbersThatAreNotFinite) {
-    for (const std::string text : {"nan", "inf", "-inf"}) {
-        EXPECT_EQ(error_with("1.5", text),
-                  "m.csv:3:17: '" + text +
-                      "' is not finite; must be a finite number with a decimal point");
-    }
-    EXPECT_EQ(error_with("1.5", "1e999").substr(0, 54),
-              "m.csv:3:17: '1e999' is beyond the range of numbers; mu");
-}
-
-TEST(BadMeasurementsCsv, AnglesThatLookLikeDegrees) {
-    EXPECT_EQ(error_with("b,0,0.1", "b,0,45"),
-              "m.csv:4:5: q1 = 45 rad is more than a full turn beyond its limits (-1.5708 to "
-              "1.5708 rad) and looks like degrees; state degrees as such");
-}
-
-TEST(BadMeasurementsCsv, MagnitudesThatNoCellHas) {
-    const std::string message = error_with("0.25", "1e300");
-    EXPECT_NE(message.find("'1e300' is out of any cell; must be at most 10000 rad"),
-              std::string::npos)
-        << message;
-}
-
-TEST(BadMeasurementsCsv, DuplicateConfigurations) {
-    EXPECT_EQ(error_with("0.25", "0.2"),
-              "m.csv:4:5: configuration 'b' has the same joint values as 'a' (line 2); samples of "
-              "one configuration must have the same id");
-}
-
-TEST(BadMeasurementsCsv, SamplesOfOneConfigurationWithDifferentJoints) {
-    EXPECT_EQ(error_with("a,1,0.1,0.2,", "a,1,0.1,0.201,"),
-              "m.csv:3:9: configuration 'a' has q2 = 0.201 here and 0.2 before (line 2); samples "
-              "of one configuration must agree within 1e-6 (rad or m)");
-    EXPECT_EQ(error_with("a,1,0.1,0.2,", "a,1,0.1,0.2000005,"), "no error");
-}
-
-TEST(BadMeasurementsCsv, SampleTwice) {
-    EXPECT_EQ(error_with("a,1", "a,0"),
-              "m.csv:3:1: sample '0' of configuration 'a' occurs twice; keep one");
-}
-
-TEST(BadMeasurementsCsv, ConfigurationWithoutId) {
-    EXPECT_EQ(error_with("b,0", ",0"), "m.csv:4:1: config is empty; must be an id");
-}
-
-TEST(BadMeasurementsCsv, QuotationMarkThatIsNotClosed) {
-    EXPECT_EQ(error_with("b,0", "\"b,0"), "m.csv:4:1: a quotation mark is not closed in its line");
+TEST(BadMeasurementsCsv, Rows) {
+    expect_messages_of({
+        {"4,5,6\na,1", "4,5\na,1", "2:26: row has 10 fields; must have 11 as the header"},
+        {"4,5,6\na,1", "4,5,6,7\na,1", "2:29: row has 12 fields; must have 11 as the header"},
+        {"7,8,9,10,11,12", ",,,,,",
+         "4:18: the sample shows no target; must show one at least, or be left out"},
+        {"0.25", "0.2",
+         "4:5: configuration 'b' has the same joint values as 'a' (line 2); samples of one "
+         "configuration must have the same id"},
+        {"a,1,0.1,0.2,", "a,1,0.1,0.201,",
+         "3:9: configuration 'a' has q2 = 0.201 here and 0.2 before (line 2); samples of one "
+         "configuration must agree within 1e-6 (rad or m)"},
+        {"a,1", "a,0", "3:1: sample '0' of configuration 'a' occurs twice; keep one"},
+        {"b,0", ",0", "4:1: config is empty; must be an id"},
+        {"b,0", "\"b,0", "4:1: a quotation mark is not closed in its line"},
+    });
+    EXPECT_EQ(error_of(replaced(good, "a,1,0.1,0.2,", "a,1,0.1,0.2000005,")), "no error");
 }
 
 }  // namespace
