@@ -61,28 +61,32 @@ std::vector<std::string> configuration_columns(const Campaign& campaign) {
 
 std::vector<NamedNumber> assumptions_of(const Campaign& campaign) {
     std::vector<NamedNumber> numbers;
+    const auto add = [&numbers](const std::string& name, double value) {
+        NamedNumber& number = numbers.emplace_back();
+        number.name = name;
+        number.value = value;
+    };
     for (const NoiseNumber& noise : campaign.sensor->noise_numbers()) {
         for (std::size_t i = 0; i < noise.values.size(); ++i) {
             const std::string place = noise.values.size() > 1 ? fmt::format("/{}", i) : "";
-            numbers.push_back({noise.name + place, noise.values[i]});
+            add(noise.name + place, noise.values[i]);
         }
     }
     if (campaign.sensor->has_angles()) {
-        numbers.push_back({"model_error_orientation_rad", campaign.model_error_orientation});
+        add("model_error_orientation_rad", campaign.model_error_orientation);
     }
-    numbers.push_back({"model_error_m", campaign.model_error});
+    add("model_error_m", campaign.model_error);
     for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {
-        numbers.push_back(
-            {"joint_repeatability/" +
-                 escape_slashes(with_unit(joint_name(campaign.robot, j), turns(campaign.robot, j))),
-             campaign.joint_repeatability[j]});
+        add("joint_repeatability/" +
+                escape_slashes(with_unit(joint_name(campaign.robot, j), turns(campaign.robot, j))),
+            campaign.joint_repeatability[j]);
     }
     const std::vector<bool> is_angle = parameter_is_angle(campaign);
     const VectorXd scale = parameter_scale(campaign);
     Index k = 0;
     for (const std::string& name : parameter_names(campaign)) {
         const bool angle = is_angle[static_cast<std::size_t>(k)];
-        numbers.push_back({"expected_error/" + escape_slashes(with_unit(name, angle)), scale[k++]});
+        add("expected_error/" + escape_slashes(with_unit(name, angle)), scale[k++]);
     }
     return numbers;
 }
