@@ -18,7 +18,7 @@ struct IdentificationProblem {
     const Campaign& campaign;
     const Measurements& measurements;
     Measurements means;   ///< one sample a configuration
-    RowMatrixXd repeats;  ///< configurations x targets: samples behind each mean
+    RowMatrixXd repeats;  ///< configurations x targets: samples of each mean
     VectorXd scale;
     Loss loss = {};
     double deviation = 1;  ///< unit of the loss, in standard deviations as stated

@@ -11,7 +11,7 @@ namespace posewise {
 namespace {
 
 /// What does not let base and targets be registered fits worse than anything, m.
-constexpr double hopeless = 1e6;
+constexpr double worse_than_any = 1e6;
 
 /// The misfit over the errors that are searched, each from -1 to 1 of its bound.
 class Misfit {
@@ -34,7 +34,7 @@ class Misfit {
     /// Distance RMS, m.
     double operator()(const VectorXd& x) const {
         const Registration found = register_roughly_with_errors(campaign_, means_, errors(x));
-        if (!found.is_determined()) return hopeless;
+        if (!found.is_determined()) return worse_than_any;
         return make_metrics(residuals(campaign_, found.parameters, means_),
                             campaign_.sensor->lengths_per_target())
             .rms();
@@ -168,7 +168,7 @@ class CovarianceAdaptation {
     VectorXd weights_;
     double mass_ = 1;  ///< variance effective number of parents
     VectorXd best_;
-    double best_value_ = hopeless;
+    double best_value_ = worse_than_any;
     VectorXd mean_;
     VectorXd path_;
     VectorXd step_path_;

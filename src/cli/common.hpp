@@ -41,7 +41,7 @@ void check_torques_known(const std::string& campaign_path, const Chain& robot);
 class ProgressLine {
   public:
     ProgressLine(std::string label, bool asked_for);
-    /// `note` is shown behind the percentage.
+    /// `note` is shown after the percentage.
     void operator()(const Progress& progress, const std::string& note = "");
 
   private:

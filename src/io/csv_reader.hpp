@@ -9,7 +9,7 @@
 namespace posewise::io {
 
 /// Rows of separated fields, one line each. The separator (comma, semicolon or tab) is taken from
-/// the first row; blank lines and lines behind `#` are skipped; a byte order mark and carriage
+/// the first row; blank lines and lines after `#` are skipped; a byte order mark and carriage
 /// returns at the end of lines do not matter; fields may stand in double quotes.
 class CsvReader {
   public:

@@ -12,7 +12,7 @@ namespace posewise::io {
 
 namespace {
 
-/// Joint values of a configuration, each behind a comma.
+/// Joint values of a configuration, each after a comma.
 std::string joint_cells(const Measurements& measurements, Index configuration,
                         const std::vector<double>& factors) {
     std::string cells;

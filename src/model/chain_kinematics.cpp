@@ -74,7 +74,7 @@ FunctionValue evaluate(const JointFunction& function, const VectorXd& q) {
     return {sine, std::cos(u), -sine};
 }
 
-/// E's amount; `next` is the number of the element's first error parameter, then behind its last.
+/// E's amount; `next` is the number of the element's first error parameter, then after its last.
 double amount_of(const Element& element, const VectorXd& q, const VectorXd& parameters,
                  Index& next) {
     double amount = sum_of(element.value, element.joints, q);

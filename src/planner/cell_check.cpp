@@ -93,7 +93,7 @@ void check_motion(const Cell& cell, const Chain& robot) {
             "speed must have one positive value a joint");
 }
 
-/// Length of the arm up to the frame right behind each element (index + 1; 0 is the base):
+/// Length of the arm up to the frame right after each element (index + 1; 0 is the base):
 /// translations, prismatic ones at their longest.
 std::vector<double> lengths_along(const Chain& robot) {
     std::vector<double> lengths{0};

@@ -67,7 +67,7 @@ class Improver {
         return false;
     }
 
-    /// Or-opt: the first move of up to three neighbours, as they are or reversed, behind another
+    /// Or-opt: the first move of up to three neighbours, as they are or reversed, after another
     /// position that shortens the path.
     bool move_something() {
         for (Index size = 1; size <= 3; ++size) {
@@ -84,7 +84,7 @@ class Improver {
         return false;
     }
 
-    /// Moves positions i to j behind position k if that costs less than taking them out gains.
+    /// Moves positions i to j after position k if that costs less than taking them out gains.
     bool insert(Index i, Index j, Index k, double gain) {
         const auto cost = [&](Index first, Index second) {
             const double end = k < last_ ? times_(node(second), node(k + 1)) : 0;
@@ -113,7 +113,7 @@ double path_time(const MatrixXd& times, const Path& path) {
     return time;
 }
 
-/// Double bridge: exchanges two neighbouring pieces behind the start.
+/// Double bridge: exchanges two neighbouring pieces after the start.
 Path kick(const Path& path, RandomStream& stream) {
     const auto size = static_cast<Index>(path.size());
     const std::vector<Index> cuts = stream.subset(size - 1, 3);

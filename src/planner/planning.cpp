@@ -60,10 +60,10 @@ SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
     select.seed = options.seed;
     select.stop.interrupted = options.stop.interrupted;
     // Refinement mends what a short selection leaves; exchange by the worst of many test poses is
-    // dear.
-    const bool is_dear = options.criterion == Criterion::G;
-    select.starts = is_dear ? 1 : 4;
-    select.kicks = is_dear ? 0 : 4;
+    // slow.
+    const bool is_slow = options.criterion == Criterion::G;
+    select.starts = is_slow ? 1 : 4;
+    select.kicks = is_slow ? 0 : 4;
     select.gap = 1e-3;
     if (space.least_joint_distance > 0) {
         // Selection measures by Euclid: at distance d sqrt(n) one joint differs by d at least.

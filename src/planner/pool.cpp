@@ -50,7 +50,7 @@ InputError nothing_feasible(const Pool& pool) {
                       ", so relax " + name + " first");
 }
 
-/// Parts of a pool, one behind the other.
+/// Parts of a pool, one after the other.
 Pool join(const std::vector<Pool>& parts) {
     Pool pool;
     Index rows = 0;

@@ -12,7 +12,7 @@ namespace posewise {
 /// Text with every control character as \xNN, so that it stays one line and harms no terminal.
 std::string escape_controls(std::string_view text);
 
-/// What a user wrote, for a message: in quotes, controls escaped, cut behind about 60 bytes (at
+/// What a user wrote, for a message: in quotes, controls escaped, cut after about 60 bytes (at
 /// the end of a UTF-8 character).
 std::string quote(std::string_view text);
 

@@ -53,7 +53,7 @@ struct CampaignFile : Campaign {
 /// joints: [q2]}` says which way gravity acts in the base frame and on which joints. `harmonics:
 /// {orders: [1, 2], joints: [q4]}` adds those of with_harmonics(). `compliance: {links: {q2:
 /// {mass_kg: 20, center_mm: [0, 0, 150]}}, payload: {mass_kg: 5, center_mm: [0, 0, 80]}}` adds
-/// those of with_compliance(), with centres of mass in the frame behind the joint and of the
+/// those of with_compliance(), with centres of mass in the frame after the joint and of the
 /// flange; `direction` and `joints` as for gravity; `links: urdf` takes masses and centres from the
 /// URDF. `compliance: {torques_Nm: {q2: 300, q3: 120}}` adds those of with_measured_compliance(),
 /// with the largest torques that occur. Their sizes in `spread` are `gravity_mrad` (compliance too)

@@ -35,7 +35,7 @@ Configurations read_configurations_csv(const std::string& path, const Campaign& 
 /// the sensor's columns with _m or _mm (orientations: rx, ry, rz or roll, pitch, yaw with _rad or
 /// _deg, or qw, qx, qy, qz of length 1 within 0.001), and optionally sample and visible_targets
 /// (which measured ones need not agree with); in any order. Separated by commas, semicolons or
-/// tabs; lines behind # are comments. Rows of one config may stand anywhere.
+/// tabs; lines after # are comments. Rows of one config may stand anywhere.
 Measurements read_measurements_csv(const std::string& path, const Campaign& campaign);
 
 /// MATLAB file (5 to 7.3) of real double matrices; rows with equal joint values are samples of one
@@ -45,7 +45,7 @@ Measurements read_measurements_mat(const std::string& path, const Campaign& camp
                                    const MatMapping& mapping);
 
 /// Writes CSV (rad and mm, digits enough to read the numbers back exactly; cells of targets not
-/// seen are empty). `comment_lines` go first, each behind "# ".
+/// seen are empty). `comment_lines` go first, each after "# ".
 void write_measurements_csv(const std::string& path, const Campaign& campaign,
                             const Measurements& measurements,
                             const std::vector<std::string>& comment_lines = {});

@@ -34,7 +34,7 @@ class Targets {
     Vector3d position(Index target, const VectorXd& unknowns) const;
 
     /// Derivative of the positions in the world by flange motions and by unknowns: 3 count() x
-    /// (twists.cols() + any columns of unknowns, those behind unknown_count() zero), or without the
+    /// (twists.cols() + any columns of unknowns, those after unknown_count() zero), or without the
     /// unknowns' columns.
     void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                        const VectorXd& unknowns,

@@ -23,7 +23,7 @@ struct Interval {
 /// A part of the robot as a solid, for collisions and sight lines.
 struct Link {
     std::string name;
-    /// Which frame of Chain::base_from_links() it is fixed to: 0 the base, j right behind joint j
+    /// Which frame of Chain::base_from_links() it is fixed to: 0 the base, j right after joint j
     /// (counting from 1), joint_count() + 1 the flange.
     Index frame = 0;
     Capsule solid;  ///< in that frame

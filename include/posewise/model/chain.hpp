@@ -146,7 +146,7 @@ class Chain {
     Isometry3d base_from_flange(const VectorXd& q, const VectorXd& parameters) const;
 
     /// Frames of all links at the same arguments, joint_count() + 2 of them: [0] the base itself,
-    /// [j] right behind the first element that joint j (counting from 1) drives, the last one the
+    /// [j] right after the first element that joint j (counting from 1) drives, the last one the
     /// flange.
     std::vector<Isometry3d> base_from_links(const VectorXd& q, const VectorXd& parameters) const;
 

@@ -18,7 +18,7 @@ struct DhRow {
 };
 
 /// The row as elements, those that do nothing left out. Standard convention: a and alpha are those
-/// of the link behind the joint; RotZ(theta) TransZ(d) TransX(a) RotX(alpha)
+/// of the link after the joint; RotZ(theta) TransZ(d) TransX(a) RotX(alpha)
 /// [Denavit & Hartenberg 1955].
 std::vector<Element> dh_elements(const DhRow& row);
 

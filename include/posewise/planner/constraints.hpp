@@ -70,7 +70,7 @@ class Constraints {
     /// The smaller of the clearances KeepOuts and SelfCollision.
     double collision_clearance(const VectorXd& q) const;
     /// A bound on the rate of collision_clearance() along a joint: m per rad (m per m), by the
-    /// length of the arm behind it.
+    /// length of the arm after it.
     const VectorXd& clearance_rates() const { return clearance_rates_; }
 
   private:

@@ -33,7 +33,7 @@ struct PlannedPoses {
     double value = -std::numeric_limits<double>::infinity();
     MatrixXd information;  ///< of held and planned poses together
     Choice pool_choice;    ///< the best choice from the pool, its bound over the pool
-    /// No plan is better, if the search behind search_bound() met the global maxima. Infinity:
+    /// No plan is better, if the search of search_bound() met the global maxima. Infinity:
     /// not searched (O2, O4), or stopped before.
     double searched_bound = std::numeric_limits<double>::infinity();
     /// efficiency() of the value against the searched bound; 0 without.

@@ -11,7 +11,7 @@ struct Table {
     std::vector<std::vector<std::string>> rows;
 };
 
-/// Aligned text: two spaces between columns, a rule below the header, a newline behind every row.
+/// Aligned text: two spaces between columns, a rule below the header, a newline after every row.
 /// A column that holds only numbers, "-" and empty cells is right-aligned, any other left-aligned.
 std::string format_table(const Table& table);
 
