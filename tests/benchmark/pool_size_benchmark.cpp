@@ -27,7 +27,7 @@ void BM_PoolSize(benchmark::State& state) {
     options.pose_count = 40;
     const Objective objective = make_objective(pool, options);
     const auto begin = std::chrono::steady_clock::now();
-    const Index iterations = relax(objective, pool, options, [] { return false; }).iterations;
+    const Index iterations = relax(objective, pool, options).iterations;
     const std::chrono::duration<double> relaxation = std::chrono::steady_clock::now() - begin;
     Choice plan;
     for (auto _ : state) plan = select_poses(pool, options);
