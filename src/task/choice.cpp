@@ -68,7 +68,7 @@ Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_
     detail::check_memory(campaign, count, "--random");
     Candidates candidates;
     candidates.kind = CandidateKind::Random;
-    for (Index i = 0; i < count; ++i) candidates.ids.push_back(std::to_string(i));
+    candidates.ids = detail::number_ids(count);
     candidates.configurations = halton_configurations(campaign.robot, count, {{}, 1, seed});
     candidates.share = RowMatrixXd::Ones(count, campaign.sensor->target_count());
     return candidates;

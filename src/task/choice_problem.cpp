@@ -13,12 +13,6 @@ namespace {
 constexpr double same_joints = 1e-6;  // rad or m
 constexpr Index at_once = 4096;       // candidates whose blocks are made
 
-std::vector<std::string> number_ids(Index count) {
-    std::vector<std::string> ids;
-    for (Index i = 0; i < count; ++i) ids.push_back(std::to_string(i));
-    return ids;
-}
-
 /// Held information there is none of yet.
 MatrixXd& held(ChoiceProblem& problem) {
     const Index L = problem.blocks.parameter_count();
@@ -100,7 +94,7 @@ Parameters find_parameters(const Campaign& campaign, const Candidates& candidate
 
 void hold_measured(ChoiceProblem& problem, const Campaign& campaign, const Parameters& parameters,
                    const Measurements& measured) {
-    held(problem) += measured_information(campaign, parameters, measured);
+    held(problem) += information(measured_blocks(campaign, parameters, measured));
     problem.options.held_pose_count = measured.configuration_count();
     const Index joints = campaign.robot.joint_count();
     for (Index i = 0; i < problem.configurations.rows(); ++i) {

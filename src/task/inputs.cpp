@@ -11,10 +11,16 @@
 
 namespace posewise::detail {
 
-MatrixXd measured_information(const Campaign& campaign, const Parameters& parameters,
-                              const Measurements& measured) {
-    return information(make_blocks(campaign, parameters, measured.configurations,
-                                   RowMatrixXd(mean_repeats(measured) * share_seen(measured))));
+std::vector<std::string> number_ids(Index count) {
+    std::vector<std::string> ids;
+    for (Index i = 0; i < count; ++i) ids.push_back(std::to_string(i));
+    return ids;
+}
+
+Blocks measured_blocks(const Campaign& campaign, const Parameters& parameters,
+                       const Measurements& measured) {
+    return make_blocks(campaign, parameters, measured.configurations,
+                       RowMatrixXd(mean_repeats(measured) * share_seen(measured)));
 }
 
 void check_memory(const Campaign& campaign, Index count, const std::string& option) {

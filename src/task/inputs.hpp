@@ -2,12 +2,14 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "posewise/core/blocks.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 
-/// What choosing and planning share about what they are given.
+/// What choosing, planning and studies share about what they are given.
 namespace posewise::detail {
 
 /// What `compute` returns; its InputErrors begin with the name of what they are about, if it has
@@ -22,9 +24,12 @@ auto compute_from(const std::string& name, Compute&& compute) {
     }
 }
 
-/// What measured poses tell, in scaled parameters.
-MatrixXd measured_information(const Campaign& campaign, const Parameters& parameters,
-                              const Measurements& measured);
+/// "0", "1", ...: names of candidates that have none of their own.
+std::vector<std::string> number_ids(Index count);
+
+/// What each measured pose tells: means over its samples, of the targets that they show.
+Blocks measured_blocks(const Campaign& campaign, const Parameters& parameters,
+                       const Measurements& measured);
 
 /// Throws InputError if so many candidates need more memory than this machine has; `option` is
 /// what says how many.

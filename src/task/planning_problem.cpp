@@ -133,7 +133,7 @@ PlanningProblem state_planning(const Campaign& given, const PlanningOptions& opt
     if (options.is_focused_on_robot) problem.search.nuisance = nuisance_of_robot(campaign);
     if (campaign.spread.is_prior) hold(problem, prior_information(campaign), {});
     if (options.held) {
-        hold(problem, measured_information(campaign, campaign.nominal, *options.held),
+        hold(problem, information(measured_blocks(campaign, campaign.nominal, *options.held)),
              options.held->configurations);
         problem.measured_count = options.held->configuration_count();
         problem.search.held_pose_count += problem.measured_count;

@@ -4,15 +4,14 @@
 #include <limits>
 #include <set>
 
+#include "inputs.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/parallel.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/core/statistics.hpp"
 #include "posewise/jacobian/identifiability.hpp"
-#include "posewise/jacobian/identification.hpp"
 #include "posewise/selection/exchange.hpp"
-#include "posewise/task/choice.hpp"
 #include "posewise/task/doubts.hpp"
 
 namespace posewise {
@@ -33,12 +32,6 @@ struct Job {
     bool is_random = false;
     std::size_t number = 0;  ///< which criterion, or which random subset
 };
-
-Blocks make_study_blocks(const Campaign& campaign, const Measurements& measurements,
-                         const Parameters& registered) {
-    return make_blocks(campaign, registered, measurements.configurations,
-                       mean_repeats(measurements) * share_seen(measurements));
-}
 
 /// Why not even all configurations identify the model; empty: they do.
 std::string describe_undetermined(const Campaign& campaign, const Measurements& measurements,
@@ -172,7 +165,7 @@ Study study(const Campaign& campaign, const Measurements& measurements,
     study.undetermined = describe_undetermined(campaign, measurements, registration);
     if (!study.undetermined.empty()) return study;
     const Setting setting{campaign, measurements, options,
-                          make_study_blocks(campaign, measurements, registration.parameters)};
+                          detail::measured_blocks(campaign, registration.parameters, measurements)};
     study.rows = make_rows(counts, options);
     run_all(setting, study.rows);
     study.ending = options.stop.ending_or(Ending::Converged);
