@@ -1,6 +1,10 @@
 set(posewise_slow_headers <Eigen/Dense> <algorithm> <cmath> <fmt/format.h> <functional> <map>
   <memory> <optional> <string> <vector>)
 
+# Threads are ours (over candidates, starts, cases); Eigen's own would make sums depend on them. For
+# all that is compiled here; what users of the library compile is theirs to decide.
+set(posewise_definitions EIGEN_DONT_PARALLELIZE)
+
 # posewise_module(<name> <modules it may use>...)
 # An object library of src/<name>/*.cpp. Modules compile against the whole include tree; that they
 # include only what they may is tested (tests/layering_test.py), and each module's tests link only
@@ -11,10 +15,10 @@ function(posewise_module name)
   target_include_directories(posewise_${name} PUBLIC
     "${PROJECT_SOURCE_DIR}/include" "${PROJECT_BINARY_DIR}/include")
   target_link_libraries(posewise_${name}
-    PUBLIC Eigen3::Eigen OpenMP::OpenMP_CXX
-    PRIVATE posewise_warnings yaml-cpp nlohmann_json::nlohmann_json fmt::fmt MatIO::MatIO)
-  # Threads are ours (over candidates, starts, cases); Eigen's own would make sums depend on them.
-  target_compile_definitions(posewise_${name} PUBLIC EIGEN_DONT_PARALLELIZE)
+    PUBLIC Eigen3::Eigen
+    PRIVATE posewise_warnings OpenMP::OpenMP_CXX yaml-cpp nlohmann_json::nlohmann_json fmt::fmt
+      MatIO::MatIO)
+  target_compile_definitions(posewise_${name} PRIVATE ${posewise_definitions})
   if(BUILD_SHARED_LIBS)
     set_target_properties(posewise_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   endif()
@@ -45,9 +49,8 @@ function(posewise_library)
     "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>"
     "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
   target_link_libraries(posewise
-    PUBLIC Eigen3::Eigen OpenMP::OpenMP_CXX
-    PRIVATE yaml-cpp fmt::fmt MatIO::MatIO NLopt::nlopt pugixml::pugixml)
-  target_compile_definitions(posewise PUBLIC EIGEN_DONT_PARALLELIZE)
+    PUBLIC Eigen3::Eigen
+    PRIVATE OpenMP::OpenMP_CXX yaml-cpp fmt::fmt MatIO::MatIO NLopt::nlopt pugixml::pugixml)
   target_compile_features(posewise PUBLIC cxx_std_20)
   set_target_properties(posewise PROPERTIES LINKER_LANGUAGE CXX
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
