@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posewise/core/statistics.hpp"
+#include "../core/statistics.hpp"
 
 namespace posewise {
 
@@ -84,7 +84,7 @@ Metrics make_metrics(const RowMatrixXd& residuals, Index length_count) {
     metrics.distance_rms = distances.norm() / std::sqrt(count);
     metrics.distance_max = distances[metrics.point_count - 1];
     metrics.distance_mean = distances.mean();
-    metrics.distance_p95 = quantile(distances, 0.95, QuantileRule::Lower);
+    metrics.distance_p95 = quantile(distances, 0.95, detail::QuantileRule::Lower);
     for (Index axis = 0; axis < metrics.coordinate_count; ++axis) {
         const auto i = static_cast<std::size_t>(axis);
         metrics.coordinate_rms[i] = points.col(axis).norm() / std::sqrt(count);

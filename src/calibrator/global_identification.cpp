@@ -1,4 +1,4 @@
-#include "posewise/calibrator/global_identification.hpp"
+#include "global_identification.hpp"
 
 #include <fmt/format.h>
 
@@ -6,75 +6,16 @@
 #include <cmath>
 #include <limits>
 
+#include "../core/parallel.hpp"
+#include "../core/progress_counter.hpp"
 #include "least_squares.hpp"
 #include "population_search.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/parallel.hpp"
 #include "posewise/core/random.hpp"
 
-namespace posewise {
-namespace {
-
-/// Starts run together; fixed, so that what comes out does not depend on the number of threads.
-constexpr Index batch_size = 8;
-
-void check_options(const Campaign& campaign, const GlobalOptions& options) {
-    const auto check = [](const char* name, double value, double most) {
-        if (value >= 0 && value <= most) return;
-        throw InputError(fmt::format("{} is {}, must be from 0 to {}", name, value, most));
-    };
-    check("length_share", options.length_share, 1);
-    check("least_length", options.least_length, 10);
-    check("angle", options.angle, std::numbers::pi);
-    if (options.start_limit < 1 || options.agreeing_starts < 1 || options.evaluation_limit < 1) {
-        throw InputError("start_limit, agreeing_starts and evaluation_limit must be at least 1");
-    }
-    if (campaign.spread.is_prior) {
-        throw InputError(
-            "the campaign's prior says that errors are small; a global search, for a robot that "
-            "is far from nominal, must be without it");
-    }
-}
-
-/// The nominal robot, then random ones or those that a search with another seed finds.
-VectorXd draw_errors(const IdentificationProblem& problem, const VectorXd& bounds,
-                     const GlobalOptions& options, Index start) {
-    VectorXd errors = VectorXd::Zero(bounds.size());
-    if (start == 0) return errors;
-    RandomStream stream(options.seed, static_cast<std::uint64_t>(start));
-    if (options.search != StartSearch::Random) {
-        return search_population(problem.campaign, problem.means, bounds, options.search,
-                                 options.evaluation_limit, stream);
-    }
-    for (Index k = 0; k < bounds.size(); ++k) errors[k] = stream.uniform(-bounds[k], bounds[k]);
-    return errors;
-}
-
-/// One run from a start.
-struct Run {
-    Estimate estimate;
-    double cost = std::numeric_limits<double>::infinity();  ///< where it could not be identified
-};
-
-Run run_from(const IdentificationProblem& problem, const VectorXd& errors,
-             const LevenbergMarquardtOptions& options) {
-    Run run;
-    Registration start =
-        register_roughly_with_errors(problem.campaign, problem.measurements, errors);
-    if (!start.is_determined()) {
-        run.estimate.ending = Ending::NotIdentifiable;
-        run.estimate.undetermined = std::move(start.undetermined);
-        return run;
-    }
-    run.estimate = identify(problem.campaign, problem.measurements, start.parameters, options);
-    if (run.estimate.ending != Ending::NotIdentifiable) {
-        run.cost = total_loss(problem, run.estimate.parameters);
-    }
-    return run;
-}
-
-}  // namespace
+namespace posewise::detail {
 
 VectorXd error_bounds(const Chain& robot, const GlobalOptions& options) {
     VectorXd bounds = VectorXd::Zero(robot.parameter_count());
@@ -104,12 +45,77 @@ Registration register_roughly_with_errors(const Campaign& campaign,
     return registered;
 }
 
+}  // namespace posewise::detail
+
+namespace posewise {
+namespace {
+
+/// Starts run together; fixed, so that what comes out does not depend on the number of threads.
+constexpr Index batch_size = 8;
+
+void check_options(const Campaign& campaign, const GlobalOptions& options) {
+    const auto check = [](const char* name, double value, double most) {
+        if (value >= 0 && value <= most) return;
+        throw InputError(fmt::format("{} is {}, must be from 0 to {}", name, value, most));
+    };
+    check("length_share", options.length_share, 1);
+    check("least_length", options.least_length, 10);
+    check("angle", options.angle, std::numbers::pi);
+    if (options.start_limit < 1 || options.agreeing_starts < 1 || options.evaluation_limit < 1) {
+        throw InputError("start_limit, agreeing_starts and evaluation_limit must be at least 1");
+    }
+    if (campaign.spread.is_prior) {
+        throw InputError(
+            "the campaign's prior says that errors are small; a global search, for a robot that "
+            "is far from nominal, must be without it");
+    }
+}
+
+/// The nominal robot, then random ones or those that a search with another seed finds.
+VectorXd draw_errors(const detail::IdentificationProblem& problem, const VectorXd& bounds,
+                     const GlobalOptions& options, Index start) {
+    VectorXd errors = VectorXd::Zero(bounds.size());
+    if (start == 0) return errors;
+    RandomStream stream(options.seed, static_cast<std::uint64_t>(start));
+    if (options.search != StartSearch::Random) {
+        return detail::search_population(problem.campaign, problem.means, bounds, options.search,
+                                         options.evaluation_limit, stream);
+    }
+    for (Index k = 0; k < bounds.size(); ++k) errors[k] = stream.uniform(-bounds[k], bounds[k]);
+    return errors;
+}
+
+/// One run from a start.
+struct Run {
+    Estimate estimate;
+    double cost = std::numeric_limits<double>::infinity();  ///< where it could not be identified
+};
+
+Run run_from(const detail::IdentificationProblem& problem, const VectorXd& errors,
+             const LevenbergMarquardtOptions& options) {
+    Run run;
+    Registration start =
+        detail::register_roughly_with_errors(problem.campaign, problem.measurements, errors);
+    if (!start.is_determined()) {
+        run.estimate.ending = Ending::NotIdentifiable;
+        run.estimate.undetermined = std::move(start.undetermined);
+        return run;
+    }
+    run.estimate = identify(problem.campaign, problem.measurements, start.parameters, options);
+    if (run.estimate.ending != Ending::NotIdentifiable) {
+        run.cost = total_loss(problem, run.estimate.parameters);
+    }
+    return run;
+}
+
+}  // namespace
+
 GlobalEstimate identify_globally(const Campaign& campaign, const Measurements& measurements,
                                  const GlobalOptions& options) {
     check_options(campaign, options);
-    const IdentificationProblem problem = make_problem(campaign, measurements);
-    const VectorXd bounds = error_bounds(campaign.robot, options);
-    ProgressCounter counter(options.progress, options.start_limit);
+    const detail::IdentificationProblem problem = detail::make_problem(campaign, measurements);
+    const VectorXd bounds = detail::error_bounds(campaign.robot, options);
+    detail::ProgressCounter counter(options.progress, options.start_limit);
     std::vector<Run> runs;
     GlobalEstimate result;
     result.estimate.undetermined = describe_missing_equations(problem);
@@ -125,7 +131,7 @@ GlobalEstimate identify_globally(const Campaign& campaign, const Measurements& m
     while (is_open()) {
         const Index count = std::min(batch_size, options.start_limit - result.starts);
         runs.resize(static_cast<std::size_t>(result.starts + count));
-        for_each_index(count, [&](Index k) {
+        detail::for_each_index(count, [&](Index k) {
             const Index i = result.starts + k;
             runs[static_cast<std::size_t>(i)] =
                 run_from(problem, draw_errors(problem, bounds, options, i), options.start_options);

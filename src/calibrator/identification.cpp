@@ -3,9 +3,10 @@
 #include <Eigen/QR>
 #include <algorithm>
 
+#include "../core/parallel.hpp"
+#include "../core/progress_counter.hpp"
 #include "least_squares.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/parallel.hpp"
 #include "robust.hpp"
 
 namespace posewise {
@@ -16,7 +17,7 @@ namespace {
 constexpr double negligible_per_equation = 1e-20;
 
 /// The step of minimal |R d - c|^2 + damping |D d|^2, D the column norms [Marquardt 1963].
-VectorXd damped_step(const Triangle& triangle, double damping) {
+VectorXd damped_step(const detail::Triangle& triangle, double damping) {
     const Index size = triangle.R.cols();
     MatrixXd stacked(2 * size, size);
     stacked.topRows(size) = triangle.R;
@@ -28,7 +29,7 @@ VectorXd damped_step(const Triangle& triangle, double damping) {
 }
 
 struct LevenbergMarquardt {
-    IdentificationProblem& problem;
+    detail::IdentificationProblem& problem;
     const LevenbergMarquardtOptions& options;
     Estimate& estimate;
     double cost = total_loss(problem, estimate.parameters);
@@ -48,7 +49,7 @@ struct LevenbergMarquardt {
     /// One accepted step, or an ending.
     void iterate() {
         if (deviations_open > 0) follow_deviation();
-        const Triangle triangle = triangularise(linearise(problem, estimate.parameters));
+        const detail::Triangle triangle = triangularise(linearise(problem, estimate.parameters));
         const double negligible =
             negligible_per_equation * static_cast<double>(problem.equation_count()) +
             options.relative_tolerance * cost;
@@ -82,9 +83,9 @@ std::vector<Index> fold_members(Index count, Index folds, Index fold) {
 
 Estimate identify(const Campaign& campaign, const Measurements& measurements,
                   const Parameters& start, const LevenbergMarquardtOptions& options) {
-    IdentificationProblem problem = make_problem(campaign, measurements);
+    detail::IdentificationProblem problem = detail::make_problem(campaign, measurements);
     Estimate estimate = begin_estimate(problem, start);
-    problem.loss = complete_loss(options.loss, campaign);
+    problem.loss = detail::complete_loss(options.loss, campaign);
     if (estimate.ending == Ending::NotIdentifiable) return estimate;
     LevenbergMarquardt search{problem, options, estimate};
     while (estimate.ending == Ending::NotRun) {
@@ -114,8 +115,8 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
     std::vector<RowMatrixXd> means(fold_count);
     RowMatrixXd distances = RowMatrixXd::Zero(count, measurements.is_seen.cols());
     std::vector<std::string> failures(fold_count);
-    ProgressCounter counter(progress, folds);
-    for_each_index(folds, [&](Index fold) {
+    detail::ProgressCounter counter(progress, folds);
+    detail::for_each_index(folds, [&](Index fold) {
         const auto f = static_cast<std::size_t>(fold);
         const auto held_out = fold_members(count, folds, fold);
         const Estimate estimate =

@@ -1,14 +1,14 @@
-#include "posewise/calibrator/joint_signs.hpp"
+#include "joint_signs.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <string>
 
+#include "../core/parallel.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/parallel.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 constexpr Index most_joints = 12;
@@ -90,4 +90,4 @@ JointSigns fit_joint_signs(const Campaign& campaign, const Measurements& measure
     return signs;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

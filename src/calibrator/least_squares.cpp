@@ -5,13 +5,13 @@
 #include <Eigen/QR>
 #include <cmath>
 
+#include "../measurement/noise.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/measurement/noise.hpp"
 #include "robust.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 namespace {
 
@@ -232,4 +232,4 @@ void finish(const IdentificationProblem& problem, Estimate& estimate) {
         mean_residuals(problem.campaign, estimate.parameters, problem.measurements), lengths);
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

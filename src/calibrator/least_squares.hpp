@@ -1,9 +1,9 @@
 #pragma once
 
+#include "loss.hpp"
 #include "posewise/calibrator/estimate.hpp"
-#include "posewise/calibrator/loss.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// The identification as a linearised least-squares problem, whitened and scaled: minimise
 /// |J d - r|^2 over the scaled step d, rows = equations: observations, then the prior's. The rows
@@ -75,4 +75,4 @@ Estimate begin_estimate(const IdentificationProblem& problem, const Parameters& 
 /// Fills covariance, variance factor and metrics of an estimate from its parameters.
 void finish(const IdentificationProblem& problem, Estimate& estimate);
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -1,19 +1,10 @@
-#include "posewise/calibrator/loss.hpp"
+#include "loss.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace posewise {
-namespace {
-
-using ByRows = std::array<double, 6>;
-
-double look_up(const ByRows& values, Index rows) {
-    return values[static_cast<std::size_t>(std::clamp<Index>(rows, 1, 6) - 1)];
-}
-
-}  // namespace
 
 std::string_view loss_name(LossKind kind) {
     switch (kind) {
@@ -68,6 +59,19 @@ double Loss::influence_rate(double u) const {
     return 1;
 }
 
+}  // namespace posewise
+
+namespace posewise::detail {
+namespace {
+
+using ByRows = std::array<double, 6>;
+
+double look_up(const ByRows& values, Index rows) {
+    return values[static_cast<std::size_t>(std::clamp<Index>(rows, 1, 6) - 1)];
+}
+
+}  // namespace
+
 double default_width(LossKind kind, Index rows) {
     constexpr ByRows huber{1.345, 1.5011, 1.628, 1.7311, 1.812, 1.8693};
     constexpr ByRows cauchy{2.3849, 2.5486, 2.6656, 2.7516, 2.8154, 2.8624};
@@ -86,4 +90,4 @@ double outlier_length(Index rows) {
     return std::sqrt(p * root * root * root);
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

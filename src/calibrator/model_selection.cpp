@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../core/progress_counter.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 
 namespace posewise {
@@ -139,7 +140,7 @@ ModelSelection select_model(const Campaign& campaign, const Measurements& measur
     for (const Outlier& outlier : selection.not_judged) {
         is_judged(outlier.configuration, outlier.target) = false;
     }
-    ProgressCounter counter(progress, static_cast<Index>(candidates.size()));
+    detail::ProgressCounter counter(progress, static_cast<Index>(candidates.size()));
     std::vector<MeanError> errors;
     for (Candidate& candidate : candidates) {
         errors.emplace_back();

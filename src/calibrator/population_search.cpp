@@ -5,9 +5,10 @@
 #include <cmath>
 
 #include "../core/nlopt_adapter.hpp"
+#include "global_identification.hpp"
 #include "posewise/core/errors.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 /// What does not let base and targets be registered fits worse than anything, m.
@@ -33,7 +34,8 @@ class Misfit {
 
     /// Distance RMS, m.
     double operator()(const VectorXd& x) const {
-        const Registration found = register_roughly_with_errors(campaign_, means_, errors(x));
+        const Registration found =
+            detail::register_roughly_with_errors(campaign_, means_, errors(x));
         if (!found.is_determined()) return worse_than_any;
         return make_metrics(residuals(campaign_, found.parameters, means_),
                             campaign_.sensor->lengths_per_target())
@@ -202,4 +204,4 @@ VectorXd search_population(const Campaign& campaign, const Measurements& means,
     return VectorXd::Zero(bounds.size());
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -97,7 +97,7 @@ Registration solve_linear(const Campaign& campaign, const ObservedPoints& observ
 /// Where the polish begins; the robot has no parameters.
 Registration find_start(const Campaign& campaign, const Measurements& measurements) {
     const Sensor& sensor = *campaign.sensor;
-    std::string unseen = describe_unseen_target(campaign, measurements);
+    std::string unseen = detail::describe_unseen_target(campaign, measurements);
     if (!unseen.empty()) return {campaign.nominal, std::move(unseen)};
     const std::optional<ObservedPoints> observed = sensor.observed_points();
     if (observed && base_parameter_count(campaign) == 6) {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/statistics.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/statistics.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 Loss complete_loss(const Loss& loss, const Campaign& campaign) {
     if (!std::isfinite(loss.width) || loss.width < 0) {
@@ -74,4 +74,4 @@ std::vector<Outlier> find_outliers(const IdentificationProblem& problem,
     return outliers;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

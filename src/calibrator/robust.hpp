@@ -3,7 +3,7 @@
 #include "least_squares.hpp"
 
 /// What a robust loss adds to least squares; the formulas stand at LevenbergMarquardtOptions.
-namespace posewise {
+namespace posewise::detail {
 
 /// With the default width for this sensor where it is 0. Throws InputError for a width that is
 /// negative or not finite.
@@ -19,4 +19,4 @@ double robust_covariance_factor(const IdentificationProblem& problem, const Esti
 std::vector<Outlier> find_outliers(const IdentificationProblem& problem,
                                    const Parameters& parameters);
 
-}  // namespace posewise
+}  // namespace posewise::detail

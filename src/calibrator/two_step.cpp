@@ -36,16 +36,16 @@ struct Split {
 /// Both steps once [Wu et al. 2015, sec. 3.3]. The registration that `parameters` come from was a
 /// step 1 (base and targets), so a cycle is step 2 (robot), then step 1. Step 1 is linear in the
 /// targets and in the base's motion about its present pose, and is linearised anew in every cycle.
-Parameters cycle(const IdentificationProblem& problem, const Split& split, Parameters parameters,
-                 double alpha) {
+Parameters cycle(const detail::IdentificationProblem& problem, const Split& split,
+                 Parameters parameters, double alpha) {
     if (split.robot > 0) {
-        const LinearisedSystem system = linearise(problem, parameters);
+        const detail::LinearisedSystem system = linearise(problem, parameters);
         const VectorXd step =
             system.J.middleCols(split.base, split.robot).householderQr().solve(system.r);
         parameters = advance(problem.campaign, parameters,
                              problem.scale.cwiseProduct(split.robot_step(alpha * step)));
     }
-    const LinearisedSystem system = linearise(problem, parameters);
+    const detail::LinearisedSystem system = linearise(problem, parameters);
     const VectorXd step = split.base_and_targets(system.J).householderQr().solve(system.r);
     return advance(problem.campaign, parameters,
                    problem.scale.cwiseProduct(split.base_and_target_step(step)));
@@ -58,7 +58,7 @@ Estimate identify_two_step(const Campaign& campaign, const Measurements& measure
     if (!(options.alpha > 0 && options.alpha <= 1)) {
         throw InputError(fmt::format("alpha is {:g}, must be in (0, 1]", options.alpha));
     }
-    const IdentificationProblem problem = make_problem(campaign, measurements);
+    const detail::IdentificationProblem problem = detail::make_problem(campaign, measurements);
     const Split split{base_parameter_count(campaign), start.robot.size(), start.sensor.size()};
     Estimate estimate = begin_estimate(problem, start);
     if (estimate.ending == Ending::NotIdentifiable) return estimate;

@@ -13,7 +13,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/io/estimate_file.hpp"
-#include "posewise/report/calibration_report.hpp"
+#include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
 namespace {

@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <limits>
 
+#include "../core/format.hpp"
+#include "../core/text.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/format.hpp"
-#include "posewise/core/text.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/io/plan_file.hpp"
 
@@ -78,12 +78,12 @@ std::vector<Index> find_planned(const Measurements& measurements, const std::str
 
 void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 
-void print_section(const std::string& title, const Table& table) {
+void print_section(const std::string& title, const detail::Table& table) {
     print(format_section(title, table));
 }
 
 void print_warning(const std::string& text) {
-    const std::string line = "posewise: warning: " + escape_controls(text) + '\n';
+    const std::string line = "posewise: warning: " + detail::escape_controls(text) + '\n';
     std::fwrite(line.data(), 1, line.size(), stderr);
 }
 

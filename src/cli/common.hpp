@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "../report/sentences.hpp"
+#include "../report/table.hpp"
 #include "posewise/core/progress.hpp"
 #include "posewise/io/measurements_file.hpp"
-#include "posewise/report/sentences.hpp"
-#include "posewise/report/table.hpp"
 
 /// What several subcommands share: their arguments, how they print.
 namespace posewise::cli {
@@ -28,7 +28,7 @@ std::vector<Index> find_planned(const Measurements& measurements, const std::str
 
 /// Everything is printed to standard output through these two.
 void print(const std::string& text);
-void print_section(const std::string& title, const Table& table);
+void print_section(const std::string& title, const detail::Table& table);
 
 /// "posewise: warning: ..." on standard error, one line whatever it quotes.
 void print_warning(const std::string& text);

@@ -4,14 +4,14 @@
 #include <memory>
 #include <numbers>
 
+#include "../core/text.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "options.hpp"
-#include "posewise/core/text.hpp"
 #include "posewise/io/correction_file.hpp"
 #include "posewise/io/estimate_file.hpp"
-#include "posewise/report/correction_report.hpp"
+#include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -75,7 +75,7 @@ void correct(const Arguments& arguments) {
         io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections);
     }
     print(fmt::format("{}: {} configurations corrected{}\n", file.name, poses.ids.size(),
-                      arguments.out.empty() ? "" : ": " + escape_controls(arguments.out)));
+                      arguments.out.empty() ? "" : ": " + detail::escape_controls(arguments.out)));
     print(format(corrected));
 }
 

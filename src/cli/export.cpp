@@ -3,15 +3,15 @@
 #include <cmath>
 #include <memory>
 
+#include "../core/format.hpp"
+#include "../core/text.hpp"
+#include "../io/atomic_file.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/format.hpp"
-#include "posewise/core/text.hpp"
 #include "posewise/core/units.hpp"
-#include "posewise/io/atomic_file.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/dh_file.hpp"
 #include "posewise/io/estimate_file.hpp"
@@ -44,11 +44,12 @@ struct Arguments {
     std::string dh;
 };
 
-Table change_table(const io::CalibratedUrdf& urdf) {
-    Table table{{"joint", "moved by/mm", "turned by/mrad"}, {}};
+detail::Table change_table(const io::CalibratedUrdf& urdf) {
+    detail::Table table{{"joint", "moved by/mm", "turned by/mrad"}, {}};
     for (const io::OriginChange& change : urdf.changes) {
-        table.rows.push_back({escape_controls(change.joint), format_mm(change.translation),
-                              format_fixed(mrad_per_rad * change.rotation, 4)});
+        table.rows.push_back({detail::escape_controls(change.joint),
+                              detail::format_mm(change.translation),
+                              detail::format_fixed(mrad_per_rad * change.rotation, 4)});
     }
     return table;
 }
@@ -56,9 +57,11 @@ Table change_table(const io::CalibratedUrdf& urdf) {
 std::string describe_base(const Isometry3d& world_from_base) {
     const Vector3d p = world_from_base.translation();
     const Vector3d rpy = rpy_from_rotation(world_from_base.linear());
-    return fmt::format("position {} {} {} mm, roll pitch yaw {} {} {} deg", format_mm(p.x()),
-                       format_mm(p.y()), format_mm(p.z()), format_fixed(to_degrees(rpy.x()), 5),
-                       format_fixed(to_degrees(rpy.y()), 5), format_fixed(to_degrees(rpy.z()), 5));
+    return fmt::format("position {} {} {} mm, roll pitch yaw {} {} {} deg",
+                       detail::format_mm(p.x()), detail::format_mm(p.y()), detail::format_mm(p.z()),
+                       detail::format_fixed(to_degrees(rpy.x()), 5),
+                       detail::format_fixed(to_degrees(rpy.y()), 5),
+                       detail::format_fixed(to_degrees(rpy.z()), 5));
 }
 
 void print_missing(const std::vector<std::string>& names, const char* reason, const char* where) {
@@ -71,13 +74,13 @@ void print_missing(const std::vector<std::string>& names, const char* reason, co
 void print_export(const Arguments& arguments, const io::CampaignFile& file,
                   const Parameters& parameters, const io::CalibratedUrdf& urdf) {
     print(fmt::format("{}: {} with the origins of {} joints changed is in {}\n", file.name,
-                      escape_controls(file.urdf->path), urdf.changes.size(),
-                      escape_controls(arguments.urdf)));
+                      detail::escape_controls(file.urdf->path), urdf.changes.size(),
+                      detail::escape_controls(arguments.urdf)));
     print_section("Origins", change_table(urdf));
-    print(
-        fmt::format("\nnot in the URDF: where the instrument sees base link {} ({}), and the "
-                    "targets\n",
-                    quote(file.urdf->base_link), describe_base(parameters.world_from_base)));
+    print(fmt::format(
+        "\nnot in the URDF: where the instrument sees base link {} ({}), and the "
+        "targets\n",
+        detail::quote(file.urdf->base_link), describe_base(parameters.world_from_base)));
     print_missing(urdf.not_expressed,
                   "act behind the last joint, where no fixed joint is that could take them\n",
                   "URDF");
@@ -103,10 +106,11 @@ void export_dh(const Arguments& arguments, const io::CampaignFile& file,
     constexpr double far = 10;  // m
     const Chain& robot = file.robot;
     const std::vector<DhRow> rows = dh_rows(robot, parameters.robot);
-    io::write_file(arguments.dh, fmt::format("# {}, calibrated\n", escape_controls(file.name)) +
-                                     io::make_dh_text(robot, rows));
+    detail::write_file(arguments.dh,
+                       fmt::format("# {}, calibrated\n", detail::escape_controls(file.name)) +
+                           io::make_dh_text(robot, rows));
     print(fmt::format("{}: the calibrated robot in {} rows is in {}\n", file.name, rows.size(),
-                      escape_controls(arguments.dh)));
+                      detail::escape_controls(arguments.dh)));
     print("not in the table: where the instrument sees the base (" +
           describe_base(parameters.world_from_base) + "), and the targets\n");
     for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -114,7 +118,7 @@ void export_dh(const Arguments& arguments, const io::CampaignFile& file,
         print(
             fmt::format("row {}: d is {} m, since its axis and the next are nearly parallel; do "
                         "not round it\n",
-                        k + 1, format_short(rows[k].d, 4)));
+                        k + 1, detail::format_short(rows[k].d, 4)));
     }
     print_missing(terms_of(robot, parameters.robot),
                   "depend on the configuration, and no table can express that: without them it is "
@@ -135,7 +139,7 @@ void export_urdf(const Arguments& arguments, const io::CampaignFile& file,
                  const Parameters& parameters) {
     const io::CalibratedUrdf urdf =
         io::make_calibrated_urdf(*file.urdf, file.robot, parameters.robot);
-    io::write_file(arguments.urdf, urdf.text);
+    detail::write_file(arguments.urdf, urdf.text);
     print_export(arguments, file, parameters, urdf);
 }
 

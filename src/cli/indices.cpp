@@ -6,13 +6,13 @@
 #include <memory>
 #include <numeric>
 
+#include "../core/format.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "measured.hpp"
 #include "options.hpp"
 #include "posewise/calibrator/registration.hpp"
-#include "posewise/core/format.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/task/choice.hpp"
@@ -50,17 +50,17 @@ double condition_number(const VectorXd& s) {
     return least > 0 ? s[0] / least : std::numeric_limits<double>::infinity();
 }
 
-Table index_table(const Blocks& scaled, const Blocks& plain) {
+detail::Table index_table(const Blocks& scaled, const Blocks& plain) {
     const VectorXd s_scaled = singular_values(scaled.matrix);
     const VectorXd s_plain = singular_values(plain.matrix);
-    Table table{{"index", "whitened, scaled", "plain, mm and mrad"}, {}};
+    detail::Table table{{"index", "whitened, scaled", "plain, mm and mrad"}, {}};
     for (const Criterion criterion : all_criteria) {
         table.rows.push_back({std::string(criterion_name(criterion)),
-                              format_short(evaluate_blocks(criterion, scaled, s_scaled), 6),
-                              format_short(evaluate_blocks(criterion, plain, s_plain), 6)});
+                              detail::format_short(evaluate_blocks(criterion, scaled, s_scaled), 6),
+                              detail::format_short(evaluate_blocks(criterion, plain, s_plain), 6)});
     }
-    table.rows.push_back({"condition", format_short(condition_number(s_scaled), 6),
-                          format_short(condition_number(s_plain), 6)});
+    table.rows.push_back({"condition", detail::format_short(condition_number(s_scaled), 6),
+                          detail::format_short(condition_number(s_plain), 6)});
     return table;
 }
 
@@ -73,12 +73,12 @@ std::string describe_direction(const Campaign& campaign, const WeakDirection& di
     for (const ParameterTerm& term : direction.terms) {
         const auto k = static_cast<std::size_t>(term.parameter);
         terms += terms.empty() ? "" : ", ";
-        terms +=
-            format_error(term.coefficient * scale[term.parameter], is_angle[k]) + ' ' + names[k];
+        terms += detail::format_error(term.coefficient * scale[term.parameter], is_angle[k]) + ' ' +
+                 names[k];
     }
     if (!(direction.singular_value > 0)) return "not seen at all: " + terms;
     return fmt::format("{} % of the expected size: {}",
-                       format_short(100 / direction.singular_value, 3), terms);
+                       detail::format_short(100 / direction.singular_value, 3), terms);
 }
 
 Measurements read_input(const Arguments& arguments, const io::CampaignFile& file) {
@@ -101,7 +101,7 @@ void print_indices(const Arguments& arguments) {
     const Blocks plain =
         make_plain_blocks(campaign, registered, measurements.configurations, share);
     print(fmt::format("{} configurations, {} parameters\n{}", scaled.count(),
-                      scaled.parameter_count(), describe_scaling(campaign, repeats)));
+                      scaled.parameter_count(), detail::describe_scaling(campaign, repeats)));
     print_section("Indices (-inf, condition inf: the parameters are not identifiable)",
                   index_table(scaled, plain));
     print("\nWeakest directions, known to\n\n");

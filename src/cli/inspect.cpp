@@ -3,17 +3,17 @@
 #include <filesystem>
 #include <memory>
 
+#include "../core/text.hpp"
+#include "../io/atomic_file.hpp"
+#include "../report/joint_directions.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/text.hpp"
-#include "posewise/io/atomic_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/io/urdf_file.hpp"
-#include "posewise/report/inspection_report.hpp"
-#include "posewise/report/joint_directions.hpp"
+#include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -50,11 +50,11 @@ struct Arguments {
 
 void print_campaign(const io::CampaignFile& file) {
     print(fmt::format("{}\nsensor: {}; model error {}\n", file.name, file.sensor->words().sentence,
-                      describe_model_error(file)));
+                      detail::describe_model_error(file)));
     if (file.urdf) {
         print(fmt::format("robot: {}, from base link {} to tip link {}\n",
-                          escape_controls(file.urdf->path), quote(file.urdf->base_link),
-                          quote(file.urdf->tip_link)));
+                          detail::escape_controls(file.urdf->path),
+                          detail::quote(file.urdf->base_link), detail::quote(file.urdf->tip_link)));
     }
     const bool is_stated = file.error_model == io::ErrorModel::Stated;
     const Inspection inspection = posewise::inspect(file, file.declared_robot, is_stated);
@@ -83,28 +83,28 @@ void inspect_urdf(const Arguments& arguments) {
     const std::string path = written.empty() ? urdf : written;
     const std::string text = io::make_campaign_text(robot, path);
     const io::CampaignFile file = io::parse_campaign(text, path);
-    if (!written.empty()) io::write_file(written, text);
+    if (!written.empty()) detail::write_file(written, text);
     print_campaign(file);
     if (!written.empty()) {
         print(fmt::format("\nThe campaign is in {}; fill in what is marked there.\n",
-                          escape_controls(written)));
+                          detail::escape_controls(written)));
     }
 }
 
 /// How to reverse joints where the campaign's robot comes from.
 std::string advise_reversal(const io::CampaignFile& file) {
-    if (file.urdf) return "turn their axes round in " + escape_controls(file.urdf->path);
+    if (file.urdf) return "turn their axes round in " + detail::escape_controls(file.urdf->path);
     return "write each with the opposite sign (-q for q) wherever it stands in the campaign file";
 }
 
 void inspect(const Arguments& arguments) {
     if (is_urdf(arguments)) return inspect_urdf(arguments);
     const io::CampaignFile file = io::read_campaign(arguments.file);
-    std::vector<SignPattern> patterns;
+    std::vector<detail::SignPattern> patterns;
     if (!arguments.measurements.empty()) {
         const Measurements measurements = io::read_measurements(arguments.measurements, file);
         patterns = compute_from(arguments.measurements, [&] {
-            JointSigns signs = fit_joint_signs(file, measurements);
+            detail::JointSigns signs = detail::fit_joint_signs(file, measurements);
             if (!signs.undetermined.empty()) throw InputError(signs.undetermined);
             return std::move(signs.patterns);
         });

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "../core/text.hpp"
 #include "commands.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/reproducible.hpp"
-#include "posewise/core/text.hpp"
 #include "posewise/core/version.hpp"
 
 namespace {
@@ -34,7 +34,7 @@ Exit code: 0 good, 1 unusable input (one line on standard error), 2 wrong usage.
 
 /// A message is one line, whatever it quotes.
 int fail(const std::string& message, int code) {
-    const std::string line = "posewise: " + posewise::escape_controls(message) + '\n';
+    const std::string line = "posewise: " + posewise::detail::escape_controls(message) + '\n';
     std::fwrite(line.data(), 1, line.size(), stderr);
     return code;
 }
@@ -62,7 +62,8 @@ std::string find_unknown_command(const CLI::App& program, int argc, char** argv)
     }
     const std::string first = argv[1];
     if (std::find(names.begin(), names.end(), first) != names.end()) return "";
-    return posewise::quote(first) + " is no command; " + posewise::suggest(first, names);
+    return posewise::detail::quote(first) + " is no command; " +
+           posewise::detail::suggest(first, names);
 }
 
 void add_commands(CLI::App& program) {

@@ -2,7 +2,7 @@
 
 #include "common.hpp"
 #include "files.hpp"
-#include "posewise/report/calibration_report.hpp"
+#include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
 

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "posewise/core/text.hpp"
+#include "../core/text.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -29,7 +29,7 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
             if (parse(text, number) && !has_leading_zero && number >= least && number <= most) {
                 return std::string();
             }
-            return fmt::format("is {}; must be a whole number from {}", quote(text), range);
+            return fmt::format("is {}; must be a whole number from {}", detail::quote(text), range);
         },
         range);
 }
@@ -40,7 +40,7 @@ CLI::Validator real_number(double least, double most) {
         [=](const std::string& text) {
             double number = 0;
             if (parse(text, number) && number >= least && number <= most) return std::string();
-            return fmt::format("is {}; must be a number from {}", quote(text), range);
+            return fmt::format("is {}; must be a number from {}", detail::quote(text), range);
         },
         range);
 }
@@ -60,9 +60,9 @@ CLI::Option* add_ids_option(CLI::App& command, const std::string& name,
             for (std::string rest = text + ','; !rest.empty();) {
                 const std::size_t comma = rest.find(',');
                 if (comma == 0) {
-                    throw CLI::ValidationError(
-                        name,
-                        "is " + quote(text) + "; must be ids separated by commas, none empty");
+                    throw CLI::ValidationError(name,
+                                               "is " + detail::quote(text) +
+                                                   "; must be ids separated by commas, none empty");
                 }
                 ids.push_back(rest.substr(0, comma));
                 rest.erase(0, comma + 1);

@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 
+#include "../core/format.hpp"
+#include "../report/sentences.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
@@ -13,10 +15,8 @@
 #include "options.hpp"
 #include "plan_inputs.hpp"
 #include "plan_options.hpp"
-#include "posewise/core/format.hpp"
 #include "posewise/io/plan_file.hpp"
-#include "posewise/report/plan_tables.hpp"
-#include "posewise/report/sentences.hpp"
+#include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -60,12 +60,12 @@ class ProgressNote {
         const double left = elapsed * static_cast<double>(state.total - state.done) /
                             static_cast<double>(state.done);
         // Unknown while the choice from the whole pool is still being made.
-        const std::string efficiency =
-            state.efficiency > 0
-                ? fmt::format(", efficiency {} over the pool", format_fixed(state.efficiency, 3))
-                : "";
-        return fmt::format("best {}{}, about {:.0f} s left", format_short(state.value), efficiency,
-                           left);
+        const std::string efficiency = state.efficiency > 0
+                                           ? fmt::format(", efficiency {} over the pool",
+                                                         detail::format_fixed(state.efficiency, 3))
+                                           : "";
+        return fmt::format("best {}{}, about {:.0f} s left", detail::format_short(state.value),
+                           efficiency, left);
     }
 
   private:
@@ -93,7 +93,7 @@ void print_planning(const Planning& planning, const std::string& out) {
               : format_other_counts(predict_other_counts(planning)));
     print(format_deviations(plan));
     print(fmt::format("\n{}plan:        {}\n",
-                      describe_scaling(planning.campaign, plan.request.repeats), out));
+                      detail::describe_scaling(planning.campaign, plan.request.repeats), out));
     if (plan.is_stopped_early()) {
         std::fputs("posewise: stopped early; the plan is the best so far\n", stderr);
     }

@@ -1,17 +1,17 @@
 #include "plan_inputs.hpp"
 
+#include "../io/groups_file.hpp"
+#include "../io/matrix_file.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "measured.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/io/groups_file.hpp"
-#include "posewise/io/matrix_file.hpp"
 
 namespace posewise::cli {
 namespace {
 
 Blocks read_blocks(const PlanSources& sources, const std::string& path) {
-    const RowMatrixXd matrix = io::read_matrix(path, sources.variable);
+    const RowMatrixXd matrix = detail::read_matrix(path, sources.variable);
     return compute_from(path, [&] { return make_equal_blocks(matrix, sources.rows_per_block); });
 }
 
@@ -79,7 +79,7 @@ ChoiceInputs read_choice_inputs(const PlanRequest& request, CandidateKind kind, 
         read_plain(inputs);
     }
     const std::string& groups = request.sources.groups;
-    if (!groups.empty()) inputs.options.groups = io::read_groups(groups, ids_of(inputs));
+    if (!groups.empty()) inputs.options.groups = detail::read_groups(groups, ids_of(inputs));
     return inputs;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "../report/sentences.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
@@ -14,8 +15,7 @@
 #include "plan_options.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/io/plan_file.hpp"
-#include "posewise/report/plan_tables.hpp"
-#include "posewise/report/sentences.hpp"
+#include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -98,7 +98,7 @@ std::string default_out(const PlanSources& sources) {
 
 void print_plan(const Plan& plan, const io::CampaignFile* campaign, const std::string& out) {
     print(format_choice(plan));
-    if (campaign != nullptr) print(describe_scaling(*campaign, plan.request.repeats));
+    if (campaign != nullptr) print(detail::describe_scaling(*campaign, plan.request.repeats));
     if (plan.request.has_prior) print("prior:      the scale, as standard deviation\n");
     print("plan:       " + out + '\n');
     if (plan.ending == Ending::Interrupted) {

@@ -3,13 +3,13 @@
 #include <memory>
 #include <optional>
 
+#include "../report/calibration_tables.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "options.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/report/calibration_tables.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -68,7 +68,7 @@ void run_simulation(Arguments arguments) {
                       simulation.measurements.observations.rows(), arguments.out));
     print_section(fmt::format("True parameters (errors of the robot, base, {})",
                               file.sensor->words().unknowns),
-                  value_table(file, simulation.truth));
+                  detail::value_table(file, simulation.truth));
 }
 
 void add_options(CLI::App& command, Arguments& arguments) {

@@ -6,16 +6,16 @@
 #include <memory>
 #include <optional>
 
+#include "../core/text.hpp"
+#include "../io/atomic_file.hpp"
+#include "../report/plot.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "measured.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/text.hpp"
-#include "posewise/io/atomic_file.hpp"
-#include "posewise/report/plot.hpp"
-#include "posewise/report/study_report.hpp"
+#include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -52,7 +52,7 @@ Index parse_count(std::string_view text) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
     if (error != std::errc() || end != text.data() + text.size() || count < 1 || count > 1000000) {
         throw CLI::ValidationError(
-            "--poses", quote(text) + " is not a pose count; must be like 5:24 or 6,9,12");
+            "--poses", detail::quote(text) + " is not a pose count; must be like 5:24 or 6,9,12");
     }
     return count;
 }
@@ -66,7 +66,7 @@ std::vector<Index> parse_counts(const std::string& text) {
         const Index last = colon == std::string::npos ? first : parse_count(part.substr(colon + 1));
         if (first > last) {
             throw CLI::ValidationError(
-                "--poses", "is " + quote(part) + "; the first must not be above the last");
+                "--poses", "is " + detail::quote(part) + "; the first must not be above the last");
         }
         for (Index count = first; count <= last; ++count) counts.push_back(count);
     }
@@ -115,7 +115,7 @@ class ScratchFolder {
 std::string leave_script(const std::string& script, const std::string& image_path) {
     const std::string path = image_path + ".gnuplot";
     if (fs::exists(fs::symlink_status(path))) return "";
-    io::write_file(path, script);
+    detail::write_file(path, script);
     return "; its script is left, try: gnuplot " + path;
 }
 
@@ -124,19 +124,20 @@ void draw_plot(const std::string& image_path, const Study& study) {
     const ScratchFolder folder;
     const std::string image = folder.path_of("image" + fs::path(image_path).extension().string());
     const std::string script = folder.path_of("script.gnuplot");
-    io::write_file(script, study_plot_script(study, image));
+    detail::write_file(script, detail::study_plot_script(study, image));
     try {
-        run_gnuplot(script);
+        detail::run_gnuplot(script);
     } catch (const InputError& error) {
-        throw input_error_at({image_path},
-                             std::string("the plot was not drawn, ") + error.what() +
-                                 leave_script(study_plot_script(study, image_path), image_path));
+        throw input_error_at(
+            {image_path},
+            std::string("the plot was not drawn, ") + error.what() +
+                leave_script(detail::study_plot_script(study, image_path), image_path));
     }
-    io::write_file(image_path, io::read_file(image));
+    detail::write_file(image_path, detail::read_file(image));
 }
 
 void study(const Arguments& arguments) {
-    if (!arguments.plot.empty()) check_image_path(arguments.plot);
+    if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
     check_outputs({arguments.paths.campaign, arguments.paths.measurements},
                   {arguments.csv, arguments.plot});
     auto file = io::read_campaign(arguments.paths.campaign);
@@ -156,7 +157,7 @@ void study(const Arguments& arguments) {
         throw input_error_at({arguments.paths.measurements}, result.undetermined);
     }
     print(format(result));
-    if (!arguments.csv.empty()) io::write_file(arguments.csv, study_csv(result));
+    if (!arguments.csv.empty()) detail::write_file(arguments.csv, study_csv(result));
     if (!arguments.plot.empty()) draw_plot(arguments.plot, result);
 }
 

@@ -10,7 +10,7 @@
 #include "plan_inputs.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/io/plan_file.hpp"
-#include "posewise/report/plan_tables.hpp"
+#include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
 namespace {

@@ -1,10 +1,10 @@
-#include "posewise/core/checksum.hpp"
+#include "checksum.hpp"
 
 #include <fmt/format.h>
 
 #include <bit>
 
-namespace posewise {
+namespace posewise::detail {
 
 void Checksum::add(std::uint64_t word) {
     for (int byte = 0; byte < 8; ++byte) {
@@ -25,4 +25,4 @@ void Checksum::add(const std::string& text) {
 
 std::string Checksum::text() const { return fmt::format("fnv1a64:{:016x}", state_); }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -1,4 +1,4 @@
-#include "posewise/core/ending.hpp"
+#include "posewise/core/progress.hpp"
 
 namespace posewise {
 

@@ -1,4 +1,4 @@
-#include "posewise/core/format.hpp"
+#include "format.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include "posewise/core/units.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 std::string format_fixed(double value, int decimals) {
     if (!std::isfinite(value)) return "-";
@@ -22,4 +22,4 @@ std::string format_mm(double metres, int decimals) {
 
 std::string format_short(double value, int digits) { return fmt::format("{:.{}g}", value, digits); }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "posewise/core/stop.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/core/types.hpp"
 
 /// All use of NLopt is behind this header.

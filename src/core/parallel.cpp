@@ -1,11 +1,11 @@
-#include "posewise/core/parallel.hpp"
+#include "parallel.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 /// The exception of the lowest index. None may leave an OpenMP region.
@@ -55,4 +55,4 @@ void for_each_range(Index count, Index grain, const std::function<void(Index, In
     });
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

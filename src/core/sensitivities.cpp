@@ -1,14 +1,14 @@
-#include "posewise/core/sensitivities.hpp"
+#include "sensitivities.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <vector>
 
-#include "posewise/core/parallel.hpp"
-#include "posewise/core/simd.hpp"
+#include "parallel.hpp"
+#include "simd.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 /// Columns of F are padded to whole pairs of the widest vectors.
@@ -113,4 +113,4 @@ VectorXd sensitivities(const Blocks& candidates, const MatrixXd& Z) {
     return result;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -1,10 +1,10 @@
-#include "posewise/core/statistics.hpp"
+#include "statistics.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
-namespace posewise {
+namespace posewise::detail {
 
 double quantile(VectorXd values, double p, QuantileRule rule) {
     assert(values.size() > 0 && p >= 0 && p <= 1);
@@ -22,4 +22,4 @@ double quantile(VectorXd values, double p, QuantileRule rule) {
     return std::isinf(next) ? next : *nth + part * (next - *nth);
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

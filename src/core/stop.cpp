@@ -1,8 +1,7 @@
-#include "posewise/core/stop.hpp"
-
 #include <fmt/format.h>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/core/progress.hpp"
 
 namespace posewise {
 

@@ -1,4 +1,4 @@
-#include "posewise/core/text.hpp"
+#include "text.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 /// Levenshtein's distance: insertions, deletions and replacements that turn one into the other.
@@ -117,4 +117,4 @@ std::string suggest(std::string_view unknown, const std::vector<std::string>& kn
     return "must be " + list_words(known);
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

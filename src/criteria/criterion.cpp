@@ -6,8 +6,8 @@
 #include <cctype>
 #include <limits>
 
+#include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/text.hpp"
 #include "spectral.hpp"
 
 namespace posewise {
@@ -33,7 +33,7 @@ Criterion parse_criterion(std::string_view name) {
         if (criterion_name(criterion) == lower) return criterion;
         all += (all.empty() ? "" : ", ") + std::string(criterion_name(criterion));
     }
-    throw InputError(quote(name) + " is no criterion; must be one of " + all +
+    throw InputError(detail::quote(name) + " is no criterion; must be one of " + all +
                      " (or i, the same as v)");
 }
 
@@ -58,7 +58,7 @@ double evaluate(Criterion criterion, const VectorXd& singular_values, Index pose
         throw InputError("criterion " + std::string(criterion_name(criterion)) +
                          " needs test poses, singular values are not enough");
     }
-    const Objective objective = make_objective(criterion, pose_count);
+    const detail::Objective objective = detail::make_objective(criterion, pose_count);
     const auto s = singular_values.array();
     if (s.size() == 0) return -std::numeric_limits<double>::infinity();
     const double largest = s[0];
@@ -71,7 +71,7 @@ double evaluate(Criterion criterion, const VectorXd& singular_values, Index pose
 
 double evaluate(Criterion criterion, const MatrixXd& M, Index pose_count,
                 const Blocks* test_poses) {
-    return evaluate(make_objective(criterion, pose_count, test_poses), M);
+    return evaluate(detail::make_objective(criterion, pose_count, test_poses), M);
 }
 
 }  // namespace posewise

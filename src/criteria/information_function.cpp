@@ -1,11 +1,11 @@
-#include "posewise/criteria/information_function.hpp"
+#include "information_function.hpp"
 
 #include <cmath>
 
 #include "prediction.hpp"
 #include "regular.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 /// Whether phi is its square.
@@ -80,4 +80,4 @@ MatrixXd supporting_matrix(const Objective& objective, const MatrixXd& M) {
     return information_slope(objective, evaluate(objective, M), M.rows()) * Z;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -1,4 +1,4 @@
-#include "posewise/criteria/objective.hpp"
+#include "objective.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "regular.hpp"
 #include "spectral.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
@@ -131,4 +131,4 @@ MatrixXd gradient(const Objective& objective, const MatrixXd& M, double* value) 
     return slope;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

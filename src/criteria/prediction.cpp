@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "posewise/core/sensitivities.hpp"
+#include "../core/sensitivities.hpp"
 #include "regular.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 Sloped worst_variance(const Objective& objective, const Eigen::LLT<MatrixXd>& cholesky) {
     const VectorXd variances = sensitivities(*objective.test_poses, inverse(cholesky));
@@ -28,4 +28,4 @@ MatrixXd weighted_information(const Blocks& blocks, const VectorXd& weights) {
     return M;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

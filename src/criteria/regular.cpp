@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace posewise {
+namespace posewise::detail {
 
 Reduction eliminate(const MatrixXd& M, const std::vector<Index>& nuisance) {
     std::vector<Index> interest;
@@ -22,4 +22,4 @@ Reduction eliminate(const MatrixXd& M, const std::vector<Index>& nuisance) {
     return reduction;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

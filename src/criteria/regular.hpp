@@ -4,7 +4,7 @@
 
 #include "posewise/core/types.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// Whether M is positive definite beyond rounding. What is left of a column after those before it,
 /// relative to the column, must exceed 1e-13: free of the columns' scales.
@@ -26,4 +26,4 @@ struct Reduction {
 };
 Reduction eliminate(const MatrixXd& M, const std::vector<Index>& nuisance);
 
-}  // namespace posewise
+}  // namespace posewise::detail

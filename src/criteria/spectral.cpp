@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace posewise {
+namespace posewise::detail {
 
 Sloped soft_least(const VectorXd& x, double p) {
     Sloped result{0, VectorXd::Zero(x.size())};
@@ -82,4 +82,4 @@ Sloped spectral_criterion(const Objective& objective, const VectorXd& eigenvalue
     return {value, value * (least.slope / least.value - 0.5 * largest.slope / largest.value)};
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

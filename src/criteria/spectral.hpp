@@ -1,8 +1,8 @@
 #pragma once
 
-#include "posewise/criteria/objective.hpp"
+#include "objective.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// A function of several numbers and its slope by each of them.
 struct Sloped {
@@ -22,4 +22,4 @@ double value_of_log_determinant(const Objective& objective, double log_determina
 /// All criteria but G and V as a function of M's eigenvalues (ascending, positive).
 Sloped spectral_criterion(const Objective& objective, const VectorXd& eigenvalues);
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -1,4 +1,4 @@
-#include "posewise/io/atomic_file.hpp"
+#include "atomic_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -11,7 +11,7 @@
 
 #include "posewise/core/errors.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 namespace fs = std::filesystem;
@@ -127,4 +127,4 @@ std::string read_file(const std::string& path, std::size_t most) {
     return content;
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -2,15 +2,18 @@
 
 #include <algorithm>
 
+#include "../model/complete_model.hpp"
+#include "atomic_file.hpp"
 #include "campaign_sections.hpp"
-#include "posewise/io/atomic_file.hpp"
 #include "posewise/jacobian/identifiability.hpp"
-#include "posewise/model/complete_model.hpp"
-#include "posewise/model/transforms.hpp"
 #include "text.hpp"
 
 namespace posewise::io {
 namespace {
+
+using detail::Quantity;
+using detail::YamlMap;
+using detail::YamlValue;
 
 void read_base(const YamlValue& value, Campaign& campaign) {
     const YamlMap base(value, {"position_<length>", "rpy_<angle>", "known"});
@@ -37,16 +40,16 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign) {
     if (!parameters) return spread;
     const std::vector<std::string> names = parameter_names(campaign);
     const std::vector<bool> is_angle = parameter_is_angle(campaign);
-    for (const YamlEntry& entry : parameters->entries()) {
+    for (const detail::YamlEntry& entry : parameters->entries()) {
         const auto found = std::find(names.begin(), names.end(), entry.key);
         if (found == names.end()) {
-            throw input_error_at(entry.key_location, quote(entry.key) +
+            throw input_error_at(entry.key_location, detail::quote(entry.key) +
                                                          " is no parameter of this campaign; " +
-                                                         suggest(entry.key, names));
+                                                         detail::suggest(entry.key, names));
         }
         const auto index = static_cast<std::size_t>(found - names.begin());
         const auto quantity = is_angle[index] ? Quantity::Angle : Quantity::Length;
-        spread.by_name[entry.key] = read_amount(entry.value, quantity, Sign::Positive);
+        spread.by_name[entry.key] = read_amount(entry.value, quantity, detail::Sign::Positive);
     }
     return spread;
 }
@@ -54,10 +57,10 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign) {
 double read_unit(const YamlMap& map, std::string_view key, Quantity quantity) {
     const auto value = map.find(key);
     if (!value) return 1;
-    const Unit* const unit = find_unit(value->text());
+    const detail::Unit* const unit = detail::find_unit(value->text());
     if (unit == nullptr || unit->quantity != quantity) {
-        throw value->error("is " + quote(value->text()) + "; must be " +
-                           list_words(unit_names(quantity)));
+        throw value->error("is " + detail::quote(value->text()) + "; must be " +
+                           detail::list_words(unit_names(quantity)));
     }
     return unit->to_si(1);
 }
@@ -98,84 +101,25 @@ Campaign make_complete(const Campaign& campaign, const YamlValue& robot) {
     }
 }
 
-constexpr const char* plausible_amount = "from 1e-12 to 1000 (m or rad)";
-
-bool is_plausible_amount(double si) { return si >= 1e-12 && si <= 1e3; }
-
 /// One line of text: it becomes the title of plots and a comment of other files.
 std::string read_name(const YamlValue& value) {
     const std::string name = value.text();
-    if (escape_controls(name) != name) {
-        throw value.error("is " + quote(name) + "; must be one line without control characters");
+    if (detail::escape_controls(name) != name) {
+        throw value.error("is " + detail::quote(name) +
+                          "; must be one line without control characters");
     }
     return name;
 }
 
 }  // namespace
 
-Isometry3d read_frame(const YamlMap& map) {
-    Isometry3d frame = Isometry3d::Identity();
-    frame.linear() = rotation_from_rpy(map.require_measure("rpy").vector_to_si());
-    frame.translation() = map.require_measure("position").vector_to_si();
-    return frame;
-}
-
-std::vector<bool> read_known(const YamlValue& known, const std::vector<std::string>& names) {
-    if (!known.is_list()) return std::vector<bool>(names.size(), known.boolean());
-    std::vector<bool> marks(names.size(), false);
-    for (const YamlValue& item : known.list()) {
-        const std::string name = item.text();
-        const auto found = std::find(names.begin(), names.end(), name);
-        if (found == names.end())
-            throw item.error("is " + quote(name) + "; " + suggest(name, names));
-        const auto k = static_cast<std::size_t>(found - names.begin());
-        if (marks[k]) throw item.error("is " + quote(name) + " again; keep one");
-        marks[k] = true;
-    }
-    return marks;
-}
-
-double read_positive(const YamlMeasure& measure, bool zero_allowed) {
-    const double value = measure.to_si();
-    const std::string stated = "is " + quote(measure.value.text());
-    if (value < 0 || (value == 0 && !zero_allowed)) {
-        throw measure.value.error(stated + "; must be " +
-                                  (zero_allowed ? "zero or positive" : "positive"));
-    }
-    if (value != 0 && !is_plausible_amount(value)) {
-        throw measure.value.error(stated + "; must be " + plausible_amount);
-    }
-    return value;
-}
-
-double read_amount(const YamlValue& value, Quantity quantity, Sign sign) {
-    const std::string text = value.text();
-    const auto blank = std::min(text.find_first_of(" \t"), text.size());
-    const ParsedNumber number = parse_number(std::string_view(text).substr(0, blank));
-    const Unit* const unit = find_unit(trim(std::string_view(text).substr(blank)));
-    const bool is_sign_right = sign == Sign::Any || number.value > 0;
-    if (!number.ok() || unit == nullptr || unit->quantity != quantity || !is_sign_right) {
-        throw value.error("is " + quote(text) + "; must be a " +
-                          (sign == Sign::Positive ? "positive " : "") + "number and a unit, " +
-                          list_words(unit_names(quantity)));
-    }
-    const double si = unit->to_si(number.value);
-    if (sign == Sign::Positive && !is_plausible_amount(si)) {
-        throw value.error("is " + quote(text) + "; must be " + plausible_amount);
-    }
-    if (!is_plausible(si, quantity)) {
-        throw value.error("is " + quote(text) + "; must be " + plausible(quantity));
-    }
-    return si;
-}
-
 CampaignFile read_campaign(const std::string& path) {
-    return parse_campaign(read_file(path, 1 << 20), path);
+    return parse_campaign(detail::read_file(path, 1 << 20), path);
 }
 
 CampaignFile parse_campaign(const std::string& content, const std::string& path) {
     const YamlMap map(
-        parse_yaml(content, path),
+        detail::parse_yaml(content, path),
         {"name", "robot", "sensor", "model_error_<length>", "model_error_orientation_<angle>",
          "base", "spread", "prior", "criterion", "seed", "measurements", "cell"});
     CampaignFile file;
@@ -183,12 +127,12 @@ CampaignFile parse_campaign(const std::string& content, const std::string& path)
     Campaign& campaign = file;
     campaign.name = read_name(map.require("name"));
 
-    const RobotSection robot = read_robot(map.require("robot"));
+    const detail::RobotSection robot = read_robot(map.require("robot"));
     file.declared_robot = robot.declared;
     file.error_model = robot.error_model;
     file.urdf = robot.urdf;
     campaign.joint_repeatability = robot.joint_repeatability;
-    const SensorSection sensor = read_sensor(map.require("sensor"));
+    const detail::SensorSection sensor = read_sensor(map.require("sensor"));
     campaign.sensor = sensor.sensor;
     campaign.nominal.sensor = sensor.unknowns;
     campaign.has_nominal_targets = sensor.has_positions;

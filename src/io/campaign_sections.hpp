@@ -8,14 +8,14 @@
 #include "yaml_reader.hpp"
 
 /// The sections of a campaign file, one function each.
-namespace posewise::io {
+namespace posewise::detail {
 
 struct RobotSection {
     Chain declared;
-    ErrorModel error_model = ErrorModel::Stated;
-    VectorXd joint_repeatability;    ///< rad or m; empty if not stated
-    std::optional<UrdfSource> urdf;  ///< where the robot comes from
-    VectorXd speed;                  ///< of the joints, rad/s or m/s; empty if not stated
+    io::ErrorModel error_model = io::ErrorModel::Stated;
+    VectorXd joint_repeatability;        ///< rad or m; empty if not stated
+    std::optional<io::UrdfSource> urdf;  ///< where the robot comes from
+    VectorXd speed;                      ///< of the joints, rad/s or m/s; empty if not stated
 };
 RobotSection read_robot(const YamlValue& robot);
 
@@ -43,4 +43,4 @@ enum class Sign { Positive, Any };
 /// A number and its unit in the value itself, `0.5 mrad`; m or rad.
 double read_amount(const YamlValue& value, Quantity quantity, Sign sign);
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

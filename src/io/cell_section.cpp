@@ -1,10 +1,11 @@
 #include <algorithm>
 
+#include "../model/halton.hpp"
+#include "../model/joint_limits.hpp"
 #include "campaign_sections.hpp"
-#include "posewise/model/joint_limits.hpp"
 #include "text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 Vector3d point_to_si(const YamlValue& value, const Unit& unit) {
@@ -244,7 +245,7 @@ void read_margin(const YamlMap& map, const Chain& robot, Cell& cell) {
     if (angle) cell.limit_margin.angle = read_positive(*angle, true);
     if (length) cell.limit_margin.length = read_positive(*length, true);
     try {
-        with_margin(robot, cell.limit_margin);
+        detail::with_margin(robot, cell.limit_margin);
     } catch (const InputError& problem) {
         throw(angle ? angle : length)->value.error(std::string("is too large: ") + problem.what());
     }
@@ -274,4 +275,4 @@ Cell read_cell(const YamlValue& value, const Chain& robot, Index target_count) {
     return cell;
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "posewise/io/atomic_file.hpp"
+#include "atomic_file.hpp"
 #include "text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 char find_separator(std::string_view header) {
@@ -88,4 +88,4 @@ std::string csv_field(std::string_view text) {
                : '"' + field + '"';
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -6,7 +6,7 @@
 
 #include "posewise/core/errors.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 
 /// Rows of separated fields, one line each. The separator (comma, semicolon or tab) is taken from
 /// the first row; blank lines and lines after `#` are skipped; a byte order mark and carriage
@@ -40,4 +40,4 @@ class CsvReader {
 /// Text as a field: in quotes if it must be. A quotation mark inside becomes an apostrophe.
 std::string csv_field(std::string_view text);
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

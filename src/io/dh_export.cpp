@@ -12,7 +12,7 @@ namespace posewise::io {
 namespace {
 
 double in_file_unit(Motion motion, double si) {
-    return find_unit(units_of(motion).reading)->from_si(si);
+    return detail::find_unit(units_of(motion).reading)->from_si(si);
 }
 
 /// "-q3 + 0.98*q2".

@@ -5,7 +5,7 @@
 #include "robot_parts.hpp"
 #include "text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 std::vector<std::string> row_keys() {
@@ -145,4 +145,4 @@ RobotSection read_dh(const YamlValue& value) {
     return section;
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -8,7 +8,7 @@
 #include "text.hpp"
 #include "units.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 
 /// A place in the text of one element.
 class ElementParser::Cursor {
@@ -322,4 +322,4 @@ JointFunction ElementParser::parse_function(Cursor& cursor) const {
     return function;
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -9,7 +9,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/model/chain.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 
 /// Reads a robot's elements, one line of text each, in order (notation: see read_campaign()).
 class ElementParser {
@@ -49,4 +49,4 @@ class ElementParser {
     std::map<std::string, long> parameter_lines_;
 };
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -9,6 +9,8 @@
 namespace posewise::io {
 namespace {
 
+using detail::Json;
+
 constexpr double mm = 1e3;
 
 Json metrics_to_json(const Metrics& metrics) {
@@ -36,17 +38,17 @@ Json metrics_to_json(const Metrics& metrics) {
 Json base_to_json(const Isometry3d& world_from_base) {
     Eigen::Quaterniond q(world_from_base.linear());
     if (q.w() < 0) q.coeffs() *= -1;
-    return {{"position_m", vector_to_json(Vector3d(world_from_base.translation()))},
+    return {{"position_m", detail::vector_to_json(Vector3d(world_from_base.translation()))},
             {"quaternion_wxyz", {q.w(), q.x(), q.y(), q.z()}},
-            {"rpy_deg", vector_to_json(rpy_from_rotation(world_from_base.linear()) *
-                                       (180 / std::numbers::pi))}};
+            {"rpy_deg", detail::vector_to_json(rpy_from_rotation(world_from_base.linear()) *
+                                               (180 / std::numbers::pi))}};
 }
 
 Json targets_to_json(const Sensor& sensor, const VectorXd& unknowns) {
     Json targets = Json::object();
     for (Index j = 0; j < sensor.target_count(); ++j) {
         targets["target" + std::to_string(j + 1)] = {
-            {"position_m", vector_to_json(sensor.target_position(j, unknowns))},
+            {"position_m", detail::vector_to_json(sensor.target_position(j, unknowns))},
             {"known", sensor.targets().is_known(j)}};
     }
     return targets;
@@ -58,7 +60,7 @@ Json unknowns_to_json(const Sensor& sensor, const VectorXd& unknowns) {
     const std::vector<bool> is_angle = sensor.unknown_is_angle();
     Json json = Json::object();
     for (std::size_t k = 0; k < names.size(); ++k) {
-        json[names[k] + si_suffix(is_angle[k])] = unknowns[static_cast<Index>(k)];
+        json[names[k] + detail::si_suffix(is_angle[k])] = unknowns[static_cast<Index>(k)];
     }
     return json;
 }
@@ -70,13 +72,13 @@ Json robot_to_json(const Campaign& campaign, const Estimate& estimate, const Vec
     Json robot = Json::object();
     for (Index k = 0; k < estimate.parameters.robot.size(); ++k) {
         const auto i = static_cast<std::size_t>(robot_begin + k);
-        const std::string unit = si_suffix(is_angle[i]);
+        const std::string unit = detail::si_suffix(is_angle[i]);
         robot[estimate.names[i]] = {{"value" + unit, estimate.parameters.robot[k]},
                                     {"sigma" + unit, sigmas[robot_begin + k]}};
     }
     for (const Compliance& compliance : compliances(campaign.robot)) {
         const auto i = static_cast<std::size_t>(robot_begin + compliance.parameter);
-        robot[estimate.names[i]][load_key(is_angle[i])] = compliance.largest;
+        robot[estimate.names[i]][detail::load_key(is_angle[i])] = compliance.largest;
     }
     return robot;
 }
@@ -90,7 +92,7 @@ Json other_sigmas_to_json(const Campaign& campaign, const Estimate& estimate,
     Json others = Json::object();
     for (std::size_t i = 0; i < estimate.names.size(); ++i) {
         if (i >= robot_begin && i < robot_end) continue;
-        others[estimate.names[i] + si_suffix(is_angle[i])] = sigmas[static_cast<Index>(i)];
+        others[estimate.names[i] + detail::si_suffix(is_angle[i])] = sigmas[static_cast<Index>(i)];
     }
     return others;
 }
@@ -183,7 +185,7 @@ void write_estimate(const std::string& path, const Calibration& calibration,
     const Campaign& campaign = calibration.campaign;
     const Estimate& estimate = calibration.estimate;
     const VectorXd sigmas = standard_deviations(estimate);
-    Json document = make_document("estimate");
+    Json document = detail::make_document("estimate");
     document["campaign"] = campaign.name;
     document["measurements"] = measurements;
     document["method"] = method_name(calibration.method);
@@ -208,8 +210,8 @@ void write_estimate(const std::string& path, const Calibration& calibration,
     }
     if (calibration.selection)
         document["model_selection"] = selection_to_json(*calibration.selection);
-    document["assumes"] = numbers_to_json(assumptions_of(campaign));
-    write_json(path, document);
+    document["assumes"] = detail::numbers_to_json(assumptions_of(campaign));
+    detail::write_json(path, document);
 }
 
 }  // namespace posewise::io

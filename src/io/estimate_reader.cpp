@@ -2,15 +2,18 @@
 
 #include <cmath>
 
+#include "../core/text.hpp"
 #include "json.hpp"
 #include "json_reader.hpp"
-#include "posewise/core/text.hpp"
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "units.hpp"
 
 namespace posewise::io {
 namespace {
+
+using detail::JsonValue;
+using detail::Quantity;
 
 std::vector<double> read_numbers(const JsonValue& value, std::size_t count) {
     const std::vector<JsonValue> items = value.list();
@@ -57,17 +60,17 @@ VectorXd read_robot(const JsonValue& robot, const Campaign& campaign) {
         const bool turns = campaign.robot.parameter_element(k).motion == Motion::Rotation;
         const std::string& name = names[static_cast<std::size_t>(k)];
         if (!robot.has(name)) {
-            throw robot.error("has no parameter " + quote(name) +
+            throw robot.error("has no parameter " + detail::quote(name) +
                               "; must be an estimate of this campaign");
         }
-        const JsonValue value = robot[name]["value" + si_suffix(turns)];
+        const JsonValue value = robot[name]["value" + detail::si_suffix(turns)];
         values[k] = check_size(value.number(), turns ? Quantity::Angle : Quantity::Length, value);
     }
     // What gives way is in proportion to the load, which limits or payload may have changed.
     for (const Compliance& compliance : compliances(campaign.robot)) {
         const bool turns = campaign.robot.joint(compliance.joint).motion == Motion::Rotation;
         const JsonValue load =
-            robot[names[static_cast<std::size_t>(compliance.parameter)]][load_key(turns)];
+            robot[names[static_cast<std::size_t>(compliance.parameter)]][detail::load_key(turns)];
         if (!(load.number() > 0)) throw load.error("must be above 0");
         values[compliance.parameter] *= compliance.largest / load.number();
     }
@@ -98,7 +101,7 @@ VectorXd read_unknowns(const JsonValue& values, const Sensor& sensor) {
     const std::vector<bool> is_angle = sensor.unknown_is_angle();
     VectorXd unknowns(static_cast<Index>(names.size()));
     for (std::size_t k = 0; k < names.size(); ++k) {
-        const JsonValue value = values[names[k] + si_suffix(is_angle[k])];
+        const JsonValue value = values[names[k] + detail::si_suffix(is_angle[k])];
         unknowns[static_cast<Index>(k)] =
             check_size(value.number(), is_angle[k] ? Quantity::Angle : Quantity::Length, value);
     }
@@ -108,7 +111,7 @@ VectorXd read_unknowns(const JsonValue& values, const Sensor& sensor) {
 }  // namespace
 
 Parameters read_estimate(const std::string& path, const Campaign& campaign) {
-    const Json document = read_document(path, "estimate");
+    const detail::Json document = detail::read_document(path, "estimate");
     const JsonValue root(document, path);
     Parameters parameters;
     parameters.world_from_base = read_base(root["base"]);

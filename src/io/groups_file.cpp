@@ -1,12 +1,12 @@
-#include "posewise/io/groups_file.hpp"
+#include "groups_file.hpp"
 
 #include <algorithm>
 #include <unordered_map>
 
+#include "../core/text.hpp"
 #include "csv_reader.hpp"
-#include "posewise/core/text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 constexpr Index no_group = -1;
@@ -53,4 +53,4 @@ std::vector<Index> read_groups(const std::string& path, const std::vector<std::s
     return groups;
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -5,11 +5,11 @@
 #include <set>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/core/text.hpp"
+#include "../core/text.hpp"
 #include "posewise/core/version.hpp"
-#include "posewise/io/atomic_file.hpp"
+#include "atomic_file.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 /// Line and column of a byte, counted from 1.
@@ -129,4 +129,4 @@ Json numbers_to_json(const std::vector<NamedNumber>& numbers) {
     return flat.unflatten();
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -6,7 +6,7 @@
 
 #include "posewise/task/plan.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 
 /// Keys stay in the order they were written, so equal content is equal bytes.
 using Json = nlohmann::ordered_json;
@@ -35,4 +35,4 @@ Json vector_to_json(const Vector3d& vector);
 /// pointer without the first slash).
 Json numbers_to_json(const std::vector<NamedNumber>& numbers);
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

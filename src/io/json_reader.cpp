@@ -1,6 +1,6 @@
 #include "json_reader.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 
 JsonValue::JsonValue(const Json& value, std::string path, std::string place)
     : value_(&value), path_(std::move(path)), place_(std::move(place)) {}
@@ -76,4 +76,4 @@ std::uint64_t JsonValue::natural_number() const {
     return value_->get<std::uint64_t>();
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -7,7 +7,7 @@
 #include "json.hpp"
 #include "posewise/core/errors.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 
 /// A value of a JSON document that knows its place, `poses[2].id`, counted from 0 as JSON does.
 /// Every reader throws InputError for a value of another kind. Refers to the document.
@@ -42,4 +42,4 @@ class JsonValue {
     std::string place_;
 };
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -6,11 +6,11 @@
 #include <climits>
 #include <cmath>
 
+#include "atomic_file.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/io/atomic_file.hpp"
 #include "text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 /// libmatio reports damage only through its log: as a line of text, and as a return value for part
@@ -156,4 +156,4 @@ MatrixXd MatReader::read_unchecked(const std::string& name, std::optional<Index>
     return values;
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

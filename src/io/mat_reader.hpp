@@ -9,7 +9,7 @@
 
 struct _mat_t;
 
-namespace posewise::io {
+namespace posewise::detail {
 
 /// Real matrices of a MATLAB file of version 5 to 7.3. Whatever is wrong with the file or a
 /// variable throws InputError.
@@ -34,4 +34,4 @@ class MatReader {
     std::unique_ptr<_mat_t, int (*)(_mat_t*)> file_;
 };
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

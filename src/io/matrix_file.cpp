@@ -1,4 +1,4 @@
-#include "posewise/io/matrix_file.hpp"
+#include "matrix_file.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "mat_reader.hpp"
 #include "text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 bool is_header(const CsvReader& csv) {
@@ -61,4 +61,4 @@ RowMatrixXd read_matrix(const std::string& path, const std::string& variable) {
     return variable.empty() ? file.read_first() : file.read(variable);
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -4,7 +4,7 @@
 
 #include <iterator>
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 const Joint& joint_of(const Chain& robot, const MeasuredTorque& torque) {
@@ -70,4 +70,4 @@ std::string joint_cells(const Campaign& campaign, const VectorXd& q) {
     return text;
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

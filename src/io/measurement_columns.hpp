@@ -9,7 +9,7 @@
 #include "units.hpp"
 
 /// Columns of CSV files of measurements and configurations, for reader and writers.
-namespace posewise::io {
+namespace posewise::detail {
 
 /// Of a configuration: the numbers of the targets it shows, from 1, separated by blanks.
 inline constexpr std::string_view visible_targets = "visible_targets";
@@ -57,4 +57,4 @@ double for_people(const Campaign& campaign, Index joint, double value);
 std::string joint_header(const Campaign& campaign);
 std::string joint_cells(const Campaign& campaign, const VectorXd& q);
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

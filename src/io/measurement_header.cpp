@@ -7,7 +7,7 @@
 #include "text.hpp"
 #include "units.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 /// The columns of the header. `q1_rad` is looked up by its stem and its unit checked.
@@ -159,4 +159,4 @@ std::vector<Column> read_header(const CsvReader& csv, const Campaign& campaign, 
     return HeaderReader(csv, campaign, content).read();
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -6,7 +6,7 @@
 #include "measurement_columns.hpp"
 
 /// The header of a CSV file of measurements or configurations.
-namespace posewise::io {
+namespace posewise::detail {
 
 /// A column of a file of measurements or configurations.
 struct Column {
@@ -24,4 +24,4 @@ enum class Content { JointsAndObservations, JointsAndVisibleTargets };
 /// checked. Throws InputError with the place for columns that are unknown, missing or there twice.
 std::vector<Column> read_header(const CsvReader& csv, const Campaign& campaign, Content content);
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

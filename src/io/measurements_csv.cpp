@@ -16,10 +16,14 @@
 namespace posewise::io {
 namespace {
 
+using detail::Column;
+using detail::Content;
+using detail::Role;
+
 /// One row's values, in SI.
 class RowReader {
   public:
-    RowReader(const CsvReader& csv, const Campaign& campaign, Content content,
+    RowReader(const detail::CsvReader& csv, const Campaign& campaign, Content content,
               std::vector<Column> columns)
         : csv_(csv),
           campaign_(campaign),
@@ -32,7 +36,8 @@ class RowReader {
             if (columns_[field].role == Role::Joint) field_of_joint_[index] = field;
             if (columns_[field].role == Role::Observation) field_of_observation_[index] = field;
             if (columns_[field].role == Role::Orientation) {
-                orientation_fields_.resize(orientation_forms[columns_[field].form].stems.size());
+                orientation_fields_.resize(
+                    detail::orientation_forms[columns_[field].form].stems.size());
                 orientation_fields_[index] = field;
             }
         }
@@ -44,7 +49,7 @@ class RowReader {
         }
     }
 
-    void add_to(SampleCollector& samples) {
+    void add_to(detail::SampleCollector& samples) {
         check_width();
         sample_.clear();
         for (std::size_t field = 0; field < columns_.size(); ++field) read_field(field);
@@ -84,8 +89,9 @@ class RowReader {
             case Role::Joint:
                 row_.joints[column.index] = read_number(field);
                 if (column.unit->name == "rad") {
-                    check_not_degrees(campaign_.robot, column.index, row_.joints[column.index],
-                                      [this, field] { return csv_.locate(field); });
+                    detail::check_not_degrees(campaign_.robot, column.index,
+                                              row_.joints[column.index],
+                                              [this, field] { return csv_.locate(field); });
                 }
                 return;
             case Role::Observation:
@@ -99,20 +105,20 @@ class RowReader {
     /// In SI units, or as it is if its column has no unit.
     double read_number(std::size_t field) const {
         const std::string_view text = csv_.fields()[field];
-        const ParsedNumber number = parse_number(text);
+        const detail::ParsedNumber number = detail::parse_number(text);
         if (!number.ok()) {
             throw input_error_at(csv_.locate(field),
                                  fmt::format("{} {}; must be a finite number with a decimal "
                                              "point",
-                                             quote(text), number.problem));
+                                             detail::quote(text), number.problem));
         }
         if (columns_[field].unit == nullptr) return number.value;
-        const Unit& unit = *columns_[field].unit;
+        const detail::Unit& unit = *columns_[field].unit;
         const double si = unit.to_si(number.value);
         if (!is_plausible(si, unit.quantity)) {
             throw input_error_at(csv_.locate(field),
-                                 fmt::format("{} is out of any cell; must be {}", quote(text),
-                                             plausible(unit.quantity)));
+                                 fmt::format("{} is out of any cell; must be {}",
+                                             detail::quote(text), plausible(unit.quantity)));
         }
         return si;
     }
@@ -124,8 +130,8 @@ class RowReader {
         bool is_good = !text.empty();
         for (std::string_view rest = text; !rest.empty();) {
             const std::string_view word = rest.substr(0, rest.find(' '));
-            rest = trim(rest.substr(word.size()));
-            const ParsedNumber number = parse_number(word);
+            rest = detail::trim(rest.substr(word.size()));
+            const detail::ParsedNumber number = detail::parse_number(word);
             is_good = is_good && number.ok() && number.value >= 1 &&
                       number.value <= static_cast<double>(row_.is_seen.size()) &&
                       number.value == std::floor(number.value);
@@ -135,7 +141,7 @@ class RowReader {
         throw input_error_at(
             csv_.locate(field),
             fmt::format("{} is {}; must be numbers of targets from 1 to {}, separated by blanks",
-                        visible_targets, quote(text), row_.is_seen.size()));
+                        detail::visible_targets, detail::quote(text), row_.is_seen.size()));
     }
 
     void read_targets() {
@@ -180,15 +186,16 @@ class RowReader {
         const std::size_t field = field_of_observation_[k];
         throw input_error_at(csv_.locate(field),
                              fmt::format("{} is {}; must be a distance above 0", name_of(field),
-                                         quote(csv_.fields()[field])));
+                                         detail::quote(csv_.fields()[field])));
     }
 
     /// The name of an observation's column, without unit.
     std::string name_of(std::size_t field) const {
         const Column& column = columns_[field];
         const auto index = static_cast<std::size_t>(column.index);
-        return column.role == Role::Orientation ? orientation_forms[column.form].stems[index]
-                                                : campaign_.sensor->observation_names()[index];
+        return column.role == Role::Orientation
+                   ? detail::orientation_forms[column.form].stems[index]
+                   : campaign_.sensor->observation_names()[index];
     }
 
     /// The rotation vector of an orientation in another form.
@@ -213,10 +220,10 @@ class RowReader {
         if (sample_.empty() || seen_.insert(row_.id + '\n' + sample_).second) return;
         throw input_error_at(csv_.locate(0),
                              fmt::format("sample {} of configuration {} occurs twice; keep one",
-                                         quote(sample_), quote(row_.id)));
+                                         detail::quote(sample_), detail::quote(row_.id)));
     }
 
-    const CsvReader& csv_;
+    const detail::CsvReader& csv_;
     const Campaign& campaign_;
     Content content_;
     std::vector<Column> columns_;
@@ -225,18 +232,18 @@ class RowReader {
     std::vector<std::size_t> orientation_fields_;  ///< if it is not a rotation vector
     std::unordered_set<std::string> seen_;
     std::string sample_;
-    Sample row_;
+    detail::Sample row_;
 };
 
 Measurements read_csv(const std::string& path, const Campaign& campaign, Content content) {
-    CsvReader csv(path);
+    detail::CsvReader csv(path);
     if (!csv.next_row()) {
         throw input_error_at({path},
                              "is empty; must begin with a header like "
                              "config,sample,q1_rad,...,p1_x_mm,...");
     }
     RowReader row(csv, campaign, content, read_header(csv, campaign, content));
-    SampleCollector samples(campaign);
+    detail::SampleCollector samples(campaign);
     while (csv.next_row()) row.add_to(samples);
     return samples.finish(path);
 }

@@ -2,10 +2,10 @@
 
 #include <iterator>
 
+#include "../core/text.hpp"
+#include "atomic_file.hpp"
 #include "csv_reader.hpp"
 #include "measurement_columns.hpp"
-#include "posewise/core/text.hpp"
-#include "posewise/io/atomic_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 
 namespace posewise::io {
@@ -65,14 +65,14 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
     std::string text;
     const auto out = std::back_inserter(text);
     for (const std::string& line : comment_lines) {
-        fmt::format_to(out, "# {}\n", escape_controls(line));
+        fmt::format_to(out, "# {}\n", detail::escape_controls(line));
     }
     text += "config,sample";
     std::vector<double> joint_factors;  // to the unit written
-    for (const WantedColumn& column : wanted_columns(campaign)) {
+    for (const detail::WantedColumn& column : detail::wanted_columns(campaign)) {
         text += ',' + column.example();
-        if (column.role == Role::Joint) {
-            joint_factors.push_back(column.quantity == Quantity::Length ? 1e3 : 1);
+        if (column.role == detail::Role::Joint) {
+            joint_factors.push_back(column.quantity == detail::Quantity::Length ? 1e3 : 1);
         }
     }
     text += '\n';
@@ -80,12 +80,13 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
         const auto k = static_cast<std::size_t>(i);
         const std::string joints = joint_cells(measurements, i, joint_factors);
         for (Index sample = 0; sample < measurements.sample_count(i); ++sample) {
-            fmt::format_to(out, "{},{}{}{}\n", csv_field(measurements.ids[k]), sample, joints,
+            fmt::format_to(out, "{},{}{}{}\n", detail::csv_field(measurements.ids[k]), sample,
+                           joints,
                            observation_cells(*campaign.sensor, measurements,
                                              measurements.first_sample[k] + sample));
         }
     }
-    write_file(path, text);
+    detail::write_file(path, text);
 }
 
 }  // namespace posewise::io

@@ -1,8 +1,8 @@
 #include "posewise/io/measurements_file.hpp"
 
+#include "../core/text.hpp"
+#include "../model/joint_limits.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/text.hpp"
-#include "posewise/model/joint_limits.hpp"
 
 namespace posewise::io {
 namespace {
@@ -28,10 +28,10 @@ Configurations read_configurations(const std::string& path, const CampaignFile& 
     Configurations read = read_any(path, file);
     for (Index i = 0; i < read.joints.rows(); ++i) {
         const std::string violation =
-            describe_limit_violation(file.robot, read.joints.row(i).transpose());
+            detail::describe_limit_violation(file.robot, read.joints.row(i).transpose());
         if (violation.empty()) continue;
         throw input_error_at({path}, "configuration " +
-                                         quote(read.ids[static_cast<std::size_t>(i)]) +
+                                         detail::quote(read.ids[static_cast<std::size_t>(i)]) +
                                          " is beyond the joint limits: " + violation);
     }
     return read;

@@ -9,7 +9,7 @@ namespace posewise::io {
 namespace {
 
 /// Joint values, samples x joints, in rad and m.
-MatrixXd read_joints(const MatReader& file, const std::string& path, const Chain& robot,
+MatrixXd read_joints(const detail::MatReader& file, const std::string& path, const Chain& robot,
                      const MatMapping& mapping) {
     const Index count = robot.joint_count();
     MatrixXd joints = file.read(mapping.joints, count);
@@ -18,7 +18,7 @@ MatrixXd read_joints(const MatReader& file, const std::string& path, const Chain
         joints.col(j) *= turns ? mapping.angle_unit : mapping.length_unit;
         if (mapping.angle_unit != 1) continue;
         for (Index row = 0; row < joints.rows(); ++row) {
-            check_not_degrees(robot, j, joints(row, j), [&] {
+            detail::check_not_degrees(robot, j, joints(row, j), [&] {
                 return FileLocation{path + ": variable '" + mapping.joints + "', row " +
                                     std::to_string(row + 1)};
             });
@@ -39,7 +39,7 @@ MatrixXd read_joints(const MatReader& file, const std::string& path, const Chain
 }
 
 /// Three numbers a target; NaN: it was not seen.
-void take_seen(const VectorXd& points, Sample& sample) {
+void take_seen(const VectorXd& points, detail::Sample& sample) {
     sample.observation = points;
     sample.is_seen.resize(points.size() / 3);
     for (Index k = 0; k < points.size(); k += 3) {
@@ -64,7 +64,7 @@ Measurements read_measurements_mat(const std::string& path, const Campaign& camp
                                          std::to_string(rows / 3) +
                                          " under measurements.mat.points");
     }
-    const MatReader file(path);
+    const detail::MatReader file(path);
     const MatrixXd joints = read_joints(file, path, campaign.robot, mapping);
     MatrixXd observations(joints.rows(), rows);
     for (std::size_t k = 0; k < mapping.points.size(); ++k) {
@@ -77,10 +77,10 @@ Measurements read_measurements_mat(const std::string& path, const Campaign& camp
         }
         observations.middleCols(3 * static_cast<Index>(k), 3) = mapping.length_unit * points;
     }
-    SampleCollector samples(campaign);
+    detail::SampleCollector samples(campaign);
     std::map<std::vector<double>, std::string> ids;
     for (Index row = 0; row < joints.rows(); ++row) {
-        Sample sample;
+        detail::Sample sample;
         sample.joints = joints.row(row).transpose();
         const auto next = std::to_string(ids.size());
         const auto end = sample.joints.begin() + campaign.robot.joint_count();

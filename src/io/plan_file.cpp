@@ -6,26 +6,27 @@
 #include <cmath>
 #include <iterator>
 
+#include "atomic_file.hpp"
 #include "csv_reader.hpp"
 #include "measurement_columns.hpp"
 #include "plan_format.hpp"
 #include "plan_paths.hpp"
 #include "posewise/core/units.hpp"
-#include "posewise/io/atomic_file.hpp"
 #include "posewise/measurement/seen.hpp"
 
 namespace posewise::io {
 namespace {
 
+using detail::Json;
+
 Json candidates_to_json(const Plan& plan, const std::string& plan_path) {
     const PlanSources& sources = plan.request.sources;
     Json json;
-    json["kind"] =
-        std::find_if(candidate_kinds.begin(), candidate_kinds.end(), [&](const auto& entry) {
-            return entry.first == plan.kind;
-        })->second;
-    json["campaign_file"] = path_to_json(sources.campaign, plan_path);
-    json["source"] = path_to_json(sources.candidates, plan_path);
+    json["kind"] = std::find_if(detail::candidate_kinds.begin(), detail::candidate_kinds.end(),
+                                [&](const auto& entry) { return entry.first == plan.kind; })
+                       ->second;
+    json["campaign_file"] = detail::path_to_json(sources.campaign, plan_path);
+    json["source"] = detail::path_to_json(sources.candidates, plan_path);
     if (plan.kind == CandidateKind::Blocks) {
         json["rows_per_block"] = sources.rows_per_block;
         json["variable"] = sources.variable;
@@ -42,18 +43,18 @@ Json problem_to_json(const Plan& plan, const std::string& plan_path) {
     Json json = {{"pose_count", request.pose_count},
                  {"prior", request.has_prior},
                  {"focus", request.is_focused_on_robot ? "robot" : "all"},
-                 {"augment", path_to_json(request.sources.augment, plan_path)}};
+                 {"augment", detail::path_to_json(request.sources.augment, plan_path)}};
     if (plan.is_continuous()) {
-        json["repaired_plan"] = path_to_json(request.sources.repaired, plan_path);
+        json["repaired_plan"] = detail::path_to_json(request.sources.repaired, plan_path);
         json["dropped"] = request.dropped;
-        json["workspace"] = path_to_json(request.sources.workspace, plan_path);
+        json["workspace"] = detail::path_to_json(request.sources.workspace, plan_path);
         json["workspace_poses"] = request.workspace_count;
         json["workspace_box_mm"] = request.workspace_box_mm;
         json["workspace_target"] = request.workspace_target;
         json["time_limit_s"] = request.time_limit;
     } else {
-        json["test_poses"] = path_to_json(request.sources.test_poses, plan_path);
-        json["groups"] = path_to_json(request.sources.groups, plan_path);
+        json["test_poses"] = detail::path_to_json(request.sources.test_poses, plan_path);
+        json["groups"] = detail::path_to_json(request.sources.groups, plan_path);
         json["group_limit"] = request.group_limit;
         json["excluded"] = request.excluded;
         json["repeat_limit"] = request.repeat_limit;
@@ -139,8 +140,8 @@ Json pose_to_json(const Plan& plan, const PlannedPose& pose) {
 }  // namespace
 
 void write_plan(const std::string& path, const Plan& plan) {
-    Json document = make_document(plan_kind);
-    document["format"] = plan_format;
+    Json document = detail::make_document(detail::plan_kind);
+    document["format"] = detail::plan_format;
     document["campaign"] = plan.campaign.empty() ? Json(nullptr) : Json(plan.campaign);
     document["candidates"] = candidates_to_json(plan, path);
     document["problem"] = problem_to_json(plan, path);
@@ -152,23 +153,24 @@ void write_plan(const std::string& path, const Plan& plan) {
                           {"starts_at_best", plan.starts_at_best},
                           {"stop_reason", ending_name(plan.ending)}};
     add_prediction(document, plan);
-    if (!plan.assumptions.empty()) document["assumes"] = numbers_to_json(plan.assumptions);
+    if (!plan.assumptions.empty()) document["assumes"] = detail::numbers_to_json(plan.assumptions);
     Json& poses = document["poses"] = Json::array();
     for (const PlannedPose& pose : plan.poses) poses.push_back(pose_to_json(plan, pose));
     if (!plan.is_continuous()) document["certificate"] = certificate_to_json(plan.certificate);
-    write_json(path, document);
+    detail::write_json(path, document);
 }
 
 void write_configurations_csv(const std::string& path, const Campaign& campaign,
                               const std::vector<PlannedPose>& poses) {
-    std::string text = fmt::format("config{},{}\n", joint_header(campaign), visible_targets);
+    std::string text =
+        fmt::format("config{},{}\n", detail::joint_header(campaign), detail::visible_targets);
     const Index targets = campaign.sensor->target_count();
     for (const PlannedPose& pose : poses) {
-        fmt::format_to(std::back_inserter(text), "{}{},{}\n", csv_field(pose.id),
-                       joint_cells(campaign, pose.configuration),
+        fmt::format_to(std::back_inserter(text), "{}{},{}\n", detail::csv_field(pose.id),
+                       detail::joint_cells(campaign, pose.configuration),
                        target_numbers(seen_targets(pose.targets, targets)));
     }
-    write_file(path, text);
+    detail::write_file(path, text);
 }
 
 }  // namespace posewise::io

@@ -8,7 +8,7 @@
 #include "posewise/task/plan.hpp"
 
 /// What writer and readers of plan files share.
-namespace posewise::io {
+namespace posewise::detail {
 
 inline constexpr const char* plan_kind = "plan";
 inline constexpr const char* old_pose_plan_kind = "pose plan";  // of format 1
@@ -27,4 +27,4 @@ inline constexpr std::array plan_endings{Ending::Converged, Ending::Optimal, End
 /// A document of a pose plan of format 1 as one of format 2. What it lacks stays missing.
 Json upgrade_pose_plan(const Json& old);
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

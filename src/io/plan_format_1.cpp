@@ -1,6 +1,6 @@
 #include "plan_format.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 /// Copies what is there.
@@ -71,4 +71,4 @@ Json upgrade_pose_plan(const Json& old) {
     return plan;
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace posewise::io {
+namespace posewise::detail {
 
 Json path_to_json(const std::string& path, const std::string& plan_path) {
     if (path.empty()) return nullptr;
@@ -21,4 +21,4 @@ std::string read_path(const JsonValue& value, const std::string& plan_path) {
     return std::filesystem::exists(from_plan, ignored) ? from_plan.string() : path.string();
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -2,14 +2,17 @@
 #include <limits>
 #include <map>
 
+#include "../core/text.hpp"
 #include "json_reader.hpp"
 #include "plan_format.hpp"
 #include "plan_paths.hpp"
-#include "posewise/core/text.hpp"
 #include "posewise/io/plan_file.hpp"
 
 namespace posewise::io {
 namespace {
+
+using detail::Json;
+using detail::JsonValue;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -17,9 +20,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 CandidateKind read_kind(const JsonValue& json) {
     const std::string kind = json.text();
-    const auto found = std::find_if(candidate_kinds.begin(), candidate_kinds.end(),
+    const auto found = std::find_if(detail::candidate_kinds.begin(), detail::candidate_kinds.end(),
                                     [&](const auto& entry) { return entry.second == kind; });
-    if (found != candidate_kinds.end()) return found->first;
+    if (found != detail::candidate_kinds.end()) return found->first;
     throw json.error("is '" + kind + "'; must be measurements, configurations, random or blocks");
 }
 
@@ -139,9 +142,9 @@ void read_search(const JsonValue& search, Plan& plan) {
     plan.request.starts = search["starts"].count(1);
     plan.starts_at_best = search["starts_at_best"].count(0);
     const std::string reason = search["stop_reason"].text();
-    const auto found = std::find_if(plan_endings.begin(), plan_endings.end(),
+    const auto found = std::find_if(detail::plan_endings.begin(), detail::plan_endings.end(),
                                     [&](Ending known) { return ending_name(known) == reason; });
-    if (found == plan_endings.end()) {
+    if (found == detail::plan_endings.end()) {
         throw search["stop_reason"].error("is '" + reason + "', which is none of posewise");
     }
     plan.ending = *found;
@@ -216,7 +219,7 @@ void read_poses(const Json& document, const std::string& path, Plan& plan) {
         PlannedPose pose = read_pose(json);
         const auto [first, is_new] = places.emplace(pose.id, plan.poses.size());
         if (!is_new) {
-            throw json["id"].error(quote(pose.id) + " occurs before in poses[" +
+            throw json["id"].error(detail::quote(pose.id) + " occurs before in poses[" +
                                    std::to_string(first->second) + "]; keep one");
         }
         if (json.has("joints")) {
@@ -239,14 +242,15 @@ void check_poses(const JsonValue& document, const Plan& plan) {
 }
 
 Json read_plan_document(const std::string& path) {
-    Json json = read_document(path, plan_kind, old_pose_plan_kind);
-    if (json["kind"] != std::string("posewise ") + plan_kind) return upgrade_pose_plan(json);
+    Json json = detail::read_document(path, detail::plan_kind, detail::old_pose_plan_kind);
+    if (json["kind"] != std::string("posewise ") + detail::plan_kind)
+        return detail::upgrade_pose_plan(json);
     if (!json.contains("format")) return json;  // a choice of format 1, which has the same keys
     const Index format = JsonValue(json, path)["format"].count(1);
-    if (format > plan_format) {
+    if (format > detail::plan_format) {
         throw input_error_at({path}, "format: is " + std::to_string(format) +
                                          ", written by a newer posewise; must be at most " +
-                                         std::to_string(plan_format));
+                                         std::to_string(detail::plan_format));
     }
     return json;
 }

@@ -7,7 +7,7 @@
 #include "campaign_sections.hpp"
 
 /// What the ways to state a robot share: elements, DH table, URDF.
-namespace posewise::io {
+namespace posewise::detail {
 
 // Far above any robot: what is more is no robot, and would only take memory and time.
 inline constexpr std::size_t most_joints = 100;
@@ -38,4 +38,4 @@ RobotSection read_urdf_robot(const YamlMap& robot);
 /// Adds the terms that `gravity`, `harmonics` and `compliance` state to `section.declared`.
 void add_stated_terms(const YamlMap& robot, RobotSection& section);
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

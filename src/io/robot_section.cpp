@@ -4,7 +4,7 @@
 #include "robot_parts.hpp"
 #include "text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 
 const std::vector<std::string> joint_keys{"limits_<angle>", "limits_<length>",
                                           "repeatability_<angle>", "repeatability_<length>"};
@@ -46,16 +46,16 @@ Joint to_joint(const YamlMeasure& limits, const std::string& name, Motion motion
     return {name, values[0], values[1]};
 }
 
-ErrorModel read_error_model(const YamlMap& robot, const std::vector<Element>& elements) {
+io::ErrorModel read_error_model(const YamlMap& robot, const std::vector<Element>& elements) {
     if (const auto errors = robot.find("errors")) {
         const std::string word = errors->text();
-        if (word == "stated") return ErrorModel::Stated;
-        if (word == "complete") return ErrorModel::Complete;
+        if (word == "stated") return io::ErrorModel::Stated;
+        if (word == "complete") return io::ErrorModel::Complete;
         throw errors->error("is " + quote(word) + "; " + suggest(word, {"stated", "complete"}));
     }
     const auto is_stated = [](const Element& element) { return !element.parameter.empty(); };
-    return std::any_of(elements.begin(), elements.end(), is_stated) ? ErrorModel::Stated
-                                                                    : ErrorModel::Complete;
+    return std::any_of(elements.begin(), elements.end(), is_stated) ? io::ErrorModel::Stated
+                                                                    : io::ErrorModel::Complete;
 }
 
 }  // namespace
@@ -158,4 +158,4 @@ RobotSection read_robot(const YamlValue& value) {
     return section;
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <numeric>
 
-#include "posewise/core/text.hpp"
+#include "../core/text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 constexpr double joint_tolerance = 1e-6;  // rad or m, within one configuration
@@ -138,4 +138,4 @@ void check_not_degrees(const Chain& robot, Index joint, double value,
                               limits.name, value, limits.lower, limits.upper));
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

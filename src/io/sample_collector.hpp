@@ -9,7 +9,7 @@
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 
 /// One sample, as a row of a file has it.
 struct Sample {
@@ -57,4 +57,4 @@ class SampleCollector {
 void check_not_degrees(const Chain& robot, Index joint, double value,
                        const std::function<FileLocation()>& locate);
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -5,12 +5,10 @@
 #include <cmath>
 
 #include "campaign_sections.hpp"
-#include "posewise/measurement/point_sensor.hpp"
-#include "posewise/measurement/pose_sensor.hpp"
-#include "posewise/measurement/scalar_sensor.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 /// Places for targets that the file does not state: a spiral about the flange's x axis, 0.2 to
@@ -222,4 +220,4 @@ SensorSection read_sensor(const YamlValue& value) {
     throw kind.error("is " + quote(name) + "; " + suggest(name, names));
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

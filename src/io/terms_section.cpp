@@ -7,7 +7,7 @@
 #include "robot_parts.hpp"
 #include "text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 constexpr std::size_t most_orders = 100;
@@ -202,4 +202,4 @@ void add_stated_terms(const YamlMap& robot, RobotSection& section) {
     if (const auto stated = robot.find("compliance")) chain = add_compliance(*stated, section);
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
@@ -40,4 +40,4 @@ ParsedNumber parse_number(std::string_view text) {
     return number;
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -3,9 +3,9 @@
 #include <string>
 #include <string_view>
 
-#include "posewise/core/text.hpp"
+#include "../core/text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 
 /// Without spaces, tabs and carriage returns at both ends.
 std::string_view trim(std::string_view text);
@@ -24,4 +24,4 @@ struct ParsedNumber {
 /// The whole text as one finite decimal number with a decimal point.
 ParsedNumber parse_number(std::string_view text);
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

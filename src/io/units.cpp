@@ -8,7 +8,7 @@
 
 #include "text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 constexpr std::array<Unit, 8> units{{
@@ -69,4 +69,4 @@ NameWithUnit split_unit(std::string_view name) {
                            : NameWithUnit{name, nullptr};
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -6,7 +6,7 @@
 
 #include "posewise/model/chain.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 
 enum class Quantity { Length, Angle, Torque };
 
@@ -47,4 +47,4 @@ struct NameWithUnit {
 };
 NameWithUnit split_unit(std::string_view name);
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "../core/text.hpp"
 #include "json.hpp"
-#include "posewise/core/text.hpp"
 #include "posewise/io/urdf_file.hpp"
 
 namespace posewise::io {
@@ -26,7 +26,7 @@ std::string quote_for_yaml(const std::string& text) {
     try {
         return nlohmann::json(text).dump();
     } catch (const nlohmann::json::exception&) {
-        throw InputError("the name '" + escape_controls(text) + "' must be UTF-8");
+        throw InputError("the name '" + detail::escape_controls(text) + "' must be UTF-8");
     }
 }
 

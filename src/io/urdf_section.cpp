@@ -4,7 +4,7 @@
 #include "robot_parts.hpp"
 #include "text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 /// A path of the campaign file is one from its folder.
@@ -21,17 +21,17 @@ std::string read_link_name(const YamlMap& robot, const char* key) {
 }
 
 /// The joints that move, by the names the campaign calls them.
-std::vector<UrdfJoint*> moving_joints(UrdfRobot& robot) {
-    std::vector<UrdfJoint*> joints;
-    for (UrdfJoint& joint : robot.joints) {
-        if (joint.kind != UrdfJointKind::Fixed) joints.push_back(&joint);
+std::vector<io::UrdfJoint*> moving_joints(io::UrdfRobot& robot) {
+    std::vector<io::UrdfJoint*> joints;
+    for (io::UrdfJoint& joint : robot.joints) {
+        if (joint.kind != io::UrdfJointKind::Fixed) joints.push_back(&joint);
     }
     return joints;
 }
 
-std::size_t find_joint(const std::vector<UrdfJoint*>& joints, const YamlEntry& entry) {
+std::size_t find_joint(const std::vector<io::UrdfJoint*>& joints, const YamlEntry& entry) {
     std::vector<std::string> names;
-    for (const UrdfJoint* joint : joints) names.push_back(chain_joint_name(joint->name));
+    for (const io::UrdfJoint* joint : joints) names.push_back(io::chain_joint_name(joint->name));
     const auto found = std::find(names.begin(), names.end(), entry.key);
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
     throw input_error_at(
@@ -42,9 +42,10 @@ std::size_t find_joint(const std::vector<UrdfJoint*>& joints, const YamlEntry& e
 }  // namespace
 
 RobotSection read_urdf_robot(const YamlMap& map) {
-    UrdfRobot robot = read_urdf({resolve(map.require("urdf")), read_link_name(map, "base_link"),
-                                 read_link_name(map, "tip_link")});
-    const std::vector<UrdfJoint*> joints = moving_joints(robot);
+    io::UrdfRobot robot =
+        io::read_urdf({resolve(map.require("urdf")), read_link_name(map, "base_link"),
+                       read_link_name(map, "tip_link")});
+    const std::vector<io::UrdfJoint*> joints = moving_joints(robot);
     RobotSection section;
     section.joint_repeatability = VectorXd::Zero(static_cast<Index>(joints.size()));
     if (const auto stated = map.find("joints")) {
@@ -65,4 +66,4 @@ RobotSection read_urdf_robot(const YamlMap& map) {
     return section;
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

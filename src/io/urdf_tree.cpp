@@ -7,7 +7,7 @@
 
 #include "text.hpp"
 
-namespace posewise::io::detail {
+namespace posewise::detail {
 namespace {
 
 using pugi::xml_node;
@@ -203,7 +203,7 @@ std::optional<Vector3d> read_vector(const XmlDocument& document, xml_node elemen
                                       rule);
 }
 
-UrdfPath find_path(const XmlDocument& document, const UrdfSource& source) {
+UrdfPath find_path(const XmlDocument& document, const io::UrdfSource& source) {
     refuse_template(document);
     const Tree tree(document);
     UrdfPath path{source, {}, {}};
@@ -228,4 +228,4 @@ xml_node find_child(const XmlDocument& document, xml_node parent, const char* na
     return child;
 }
 
-}  // namespace posewise::io::detail
+}  // namespace posewise::detail

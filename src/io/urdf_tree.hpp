@@ -3,17 +3,17 @@
 #include "posewise/io/urdf_file.hpp"
 #include "xml_document.hpp"
 
-namespace posewise::io::detail {
+namespace posewise::detail {
 
 /// The way from a base link to a tip link in the tree of a URDF document.
 struct UrdfPath {
-    UrdfSource source;                   ///< links filled in
+    io::UrdfSource source;               ///< links filled in
     std::vector<pugi::xml_node> links;   ///< base to tip
     std::vector<pugi::xml_node> joints;  ///< one less
 };
 
 /// Throws InputError as read_urdf() does for what is wrong with the tree.
-UrdfPath find_path(const XmlDocument& document, const UrdfSource& source);
+UrdfPath find_path(const XmlDocument& document, const io::UrdfSource& source);
 
 /// The only child of that name; an empty node if there is none. Throws InputError if there are two.
 pugi::xml_node find_child(const XmlDocument& document, pugi::xml_node parent, const char* name);
@@ -26,6 +26,6 @@ std::optional<Vector3d> read_vector(const XmlDocument& document, pugi::xml_node 
                                     const char* attribute, const std::string& subject);
 
 /// The joint in an element <joint> on the way from base to tip.
-UrdfJoint read_urdf_joint(const XmlDocument& document, pugi::xml_node element);
+io::UrdfJoint read_urdf_joint(const XmlDocument& document, pugi::xml_node element);
 
-}  // namespace posewise::io::detail
+}  // namespace posewise::detail

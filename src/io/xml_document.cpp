@@ -5,10 +5,10 @@
 #include <set>
 #include <string_view>
 
-#include "posewise/core/text.hpp"
-#include "posewise/io/atomic_file.hpp"
+#include "../core/text.hpp"
+#include "atomic_file.hpp"
 
-namespace posewise::io::detail {
+namespace posewise::detail {
 namespace {
 
 using pugi::xml_node;
@@ -191,4 +191,4 @@ InputError XmlDocument::mismatch_error(std::size_t end_tag) const {
                                                        std::to_string(place.line)));
 }
 
-}  // namespace posewise::io::detail
+}  // namespace posewise::detail

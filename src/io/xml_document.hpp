@@ -6,7 +6,7 @@
 
 #include "posewise/core/errors.hpp"
 
-namespace posewise::io::detail {
+namespace posewise::detail {
 
 /// The bytes [begin, end) of `<name ...>` or `<name .../>` in a text.
 struct StartTag {
@@ -49,4 +49,4 @@ class XmlDocument {
     std::vector<pugi::xml_node> elements_;
 };
 
-}  // namespace posewise::io::detail
+}  // namespace posewise::detail

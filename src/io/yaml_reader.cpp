@@ -8,7 +8,7 @@
 
 #include "text.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
 
 FileLocation locate(const std::string& path, const YAML::Mark& mark) {
@@ -229,4 +229,4 @@ YamlValue parse_yaml(const std::string& content, const std::string& path) {
     return YamlValue(documents[0], locate(path, documents[0].Mark()), "");
 }
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -11,7 +11,7 @@
 #include "posewise/core/types.hpp"
 #include "units.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 
 struct YamlEntry;
 
@@ -92,4 +92,4 @@ class YamlMap {
 /// with path:line:column.
 YamlValue parse_yaml(const std::string& content, const std::string& path);
 
-}  // namespace posewise::io
+}  // namespace posewise::detail

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "../model/complete_model.hpp"
+#include "../model/sampling.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/model/complete_model.hpp"
-#include "posewise/model/sampling.hpp"
 
 namespace posewise {
 namespace {
@@ -46,7 +46,7 @@ std::vector<Index> make_priority(const Campaign& campaign) {
 
 MatrixXd stack_at_nominal(const Campaign& campaign, Index pose_count) {
     const RowMatrixXd configurations =
-        random_configurations(campaign.robot, pose_count, configuration_seed);
+        detail::random_configurations(campaign.robot, pose_count, configuration_seed);
     return make_plain_blocks(campaign, campaign.nominal, configurations).matrix;
 }
 
@@ -155,7 +155,7 @@ Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names)
 }
 
 Chain irreducible_model(const Campaign& campaign) {
-    const Campaign complete = with_robot(campaign, complete_model(campaign.robot));
+    const Campaign complete = with_robot(campaign, detail::complete_model(campaign.robot));
     const auto names = parameter_names(complete);
     std::vector<std::string> kept;
     for (const Index k : find_identifiable(complete).kept) {

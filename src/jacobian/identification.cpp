@@ -1,8 +1,8 @@
 #include "posewise/jacobian/identification.hpp"
 
+#include "../core/parallel.hpp"
+#include "../measurement/noise.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/parallel.hpp"
-#include "posewise/measurement/noise.hpp"
 
 namespace posewise {
 namespace {
@@ -30,7 +30,7 @@ Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
     for (Index i = 0; i < configurations.rows(); ++i) {
         campaign.robot.check_configuration(configurations.row(i).transpose());
     }
-    check_noise(campaign);
+    detail::check_noise(campaign);
     check_repeats(campaign, configurations.rows(), repeats);
     const Sensor& sensor = *campaign.sensor;
     Blocks blocks;
@@ -39,7 +39,7 @@ Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
         blocks.first_row.push_back(blocks.first_row.back() + seen * sensor.rows_per_target());
     }
     blocks.matrix.resize(blocks.first_row.back(), parameter_count(campaign));
-    for_each_range(configurations.rows(), grain, [&](Index first, Index last) {
+    detail::for_each_range(configurations.rows(), grain, [&](Index first, Index last) {
         FlangeMotion motion;
         RowMatrixXd J(sensor.row_count(), blocks.parameter_count());
         VectorXd q(configurations.cols());
@@ -96,7 +96,7 @@ Blocks make_position_blocks(const Campaign& campaign, const Parameters& paramete
         blocks.first_row.push_back(blocks.first_row.back() + rows);
     }
     blocks.matrix.resize(blocks.first_row.back(), parameter_count(campaign));
-    for_each_range(configurations.rows(), grain, [&](Index first, Index last) {
+    detail::for_each_range(configurations.rows(), grain, [&](Index first, Index last) {
         FlangeMotion motion;
         for (Index i = first; i < last; ++i) {
             differentiate_flange(campaign, parameters, configurations.row(i).transpose(), motion);
@@ -115,7 +115,7 @@ Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,
     return fill_blocks(
         campaign, parameters, configurations, repeats,
         [&](const FlangeMotion& motion, const VectorXd& times, const RowMatrixXd& J) {
-            RowMatrixXd block = whiten_seen(campaign, motion, parameters.sensor, times, J);
+            RowMatrixXd block = detail::whiten_seen(campaign, motion, parameters.sensor, times, J);
             block *= scale.asDiagonal();
             return block;
         });

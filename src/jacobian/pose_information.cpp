@@ -1,15 +1,15 @@
-#include "posewise/jacobian/pose_information.hpp"
+#include "pose_information.hpp"
 
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "../measurement/noise.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/measurement/noise.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 bool is_blind(const SeenTargets& is_seen) { return is_seen.size() > 0 && !is_seen.any(); }
@@ -98,4 +98,4 @@ VectorXd PoseInformation::differentiate(const VectorXd& q, const MatrixXd& Z,
     return gradient;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

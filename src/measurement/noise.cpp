@@ -1,4 +1,4 @@
-#include "posewise/measurement/noise.hpp"
+#include "noise.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "posewise/core/errors.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 /// J_q diag(s): how far one standard deviation of each joint moves the observation.
@@ -146,4 +146,4 @@ MatrixXd cholesky_factor(const MatrixXd& covariance) {
     return cholesky.matrixL();
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

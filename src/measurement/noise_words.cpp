@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "../core/format.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/format.hpp"
 #include "posewise/core/units.hpp"
 
 namespace posewise::detail {

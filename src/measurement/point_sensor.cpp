@@ -1,6 +1,5 @@
-#include "posewise/measurement/point_sensor.hpp"
-
 #include "noise_words.hpp"
+#include "posewise/measurement/sensors.hpp"
 
 namespace posewise {
 

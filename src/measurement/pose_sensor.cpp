@@ -1,13 +1,12 @@
-#include "posewise/measurement/pose_sensor.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
+#include "../core/format.hpp"
 #include "noise_words.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/format.hpp"
 #include "posewise/core/units.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "posewise/model/transforms.hpp"
 
 namespace posewise {
@@ -161,7 +160,7 @@ SensorWords PoseSensor::words() const {
     return {"poses", "tool", "tool in the flange frame", "sensor.tool",
             fmt::format("poses of a tool ({}), {} and {} mrad in orientation",
                         known_tool_ ? "known" : "to be identified", detail::describe(noise_),
-                        format_short(mrad_per_rad * sigma_orientation_))};
+                        detail::format_short(mrad_per_rad * sigma_orientation_))};
 }
 
 std::optional<ObservedPoints> PoseSensor::observed_points() const {

@@ -1,14 +1,13 @@
-#include "posewise/measurement/scalar_sensor.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "../core/format.hpp"
 #include "noise_words.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/format.hpp"
 #include "posewise/core/units.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "posewise/model/transforms.hpp"
 
 namespace posewise {
@@ -97,7 +96,7 @@ SensorWords ScalarSensor::words() const {
     words.readings = "lengths";
     words.unknowns += ", " + features();
     words.sentence = fmt::format("{} lengths a pose at {}, sigma {} mm", row_count(),
-                                 describe(targets_), format_short(mm_per_m * sigma_));
+                                 describe(targets_), detail::format_short(mm_per_m * sigma_));
     return words;
 }
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "posewise/core/format.hpp"
+#include "../core/format.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/model/transforms.hpp"
 
@@ -46,7 +46,7 @@ std::string describe_sigmas(const Sensor& sensor) {
         }
         if (count == 0) continue;
         text += fmt::format("{} {} {}", text.empty() ? "sigma" : " and",
-                            format_short(mm_per_m * std::sqrt(squares / count)),
+                            detail::format_short(mm_per_m * std::sqrt(squares / count)),
                             units_of(of_angles).error);
     }
     return text;

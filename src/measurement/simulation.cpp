@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "../model/sampling.hpp"
+#include "noise.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
-#include "posewise/measurement/noise.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/sampling.hpp"
 
 namespace posewise {
 namespace {
@@ -33,10 +33,10 @@ Parameters draw_truth(const Campaign& campaign, std::uint64_t seed) {
 Measurements simulate_measurements(const Campaign& campaign, const Parameters& truth,
                                    const RowMatrixXd& configurations, Index repeats,
                                    std::uint64_t seed) {
-    check_noise(campaign);
+    detail::check_noise(campaign);
     const Sensor& sensor = *campaign.sensor;
     const Index rows = sensor.row_count();
-    const VectorXd model_error = model_error_of_rows(campaign);
+    const VectorXd model_error = detail::model_error_of_rows(campaign);
     Measurements measurements;
     measurements.configurations = configurations;
     measurements.observations.resize(configurations.rows() * repeats, rows);
@@ -53,7 +53,8 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
         const VectorXd expected =
             sensor.deviate(sensor.predict(flange, truth.sensor),
                            model_error.cwiseProduct(draw_normal(stream, rows)));
-        const MatrixXd noise_factor = cholesky_factor(sensor.covariance(flange, truth.sensor));
+        const MatrixXd noise_factor =
+            detail::cholesky_factor(sensor.covariance(flange, truth.sensor));
         for (Index k = 0; k < repeats; ++k) {
             const VectorXd noise = noise_factor * draw_normal(stream, rows);
             measurements.observations.row(i * repeats + k) =
@@ -72,9 +73,10 @@ Simulation simulate(const Campaign& campaign, const SimulateOptions& options) {
     // Configurations and noise come from different streams of one seed.
     const std::uint64_t configuration_seed = ~options.seed;
     const Index targets = campaign.sensor->target_count();
-    return simulate(campaign,
-                    random_configurations(campaign.robot, options.pose_count, configuration_seed),
-                    all_seen(options.pose_count, targets), options);
+    return simulate(
+        campaign,
+        detail::random_configurations(campaign.robot, options.pose_count, configuration_seed),
+        all_seen(options.pose_count, targets), options);
 }
 
 Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,

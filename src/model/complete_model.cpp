@@ -1,6 +1,6 @@
-#include "posewise/model/complete_model.hpp"
+#include "complete_model.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 std::string axis_letter(Index axis) { return {static_cast<char>('x' + axis)}; }
@@ -43,4 +43,4 @@ Chain complete_model(const Chain& chain) {
     return chain.with_elements(std::move(elements));
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

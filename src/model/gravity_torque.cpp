@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/model/sampling.hpp"
+#include "sampling.hpp"
 
 namespace posewise {
 namespace {
@@ -72,7 +72,7 @@ GravityTorque::GravityTorque(const Chain& chain, std::size_t element, const Vect
         }
     }
     constexpr Index samples = 1000;
-    const RowMatrixXd configurations = random_configurations(chain_, samples, 1);
+    const RowMatrixXd configurations = detail::random_configurations(chain_, samples, 1);
     double low = 0, high = 0, moment = 0;
     for (Index i = 0; i < samples; ++i) {
         const VectorXd q = configurations.row(i).transpose();

@@ -1,4 +1,4 @@
-#include "posewise/model/halton.hpp"
+#include "halton.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 /// The radical inverse in one base: the digits of an index, mirrored at the point.
@@ -127,4 +127,4 @@ Chain with_margin(const Chain& chain, const JointMargin& margin) {
     return Chain(std::move(joints), chain.elements(), chain.torques());
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

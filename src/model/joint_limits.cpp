@@ -1,8 +1,8 @@
-#include "posewise/model/joint_limits.hpp"
+#include "joint_limits.hpp"
 
 #include <fmt/format.h>
 
-namespace posewise {
+namespace posewise::detail {
 
 std::string describe_limit_violation(const Chain& robot, const VectorXd& q) {
     constexpr double rounding = 1e-6;
@@ -17,4 +17,4 @@ std::string describe_limit_violation(const Chain& robot, const VectorXd& q) {
     return "";
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

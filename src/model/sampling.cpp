@@ -1,8 +1,8 @@
-#include "posewise/model/sampling.hpp"
+#include "sampling.hpp"
 
 #include "posewise/core/random.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 RowMatrixXd random_configurations(const Chain& chain, Index count, std::uint64_t seed) {
     RowMatrixXd configurations(count, chain.configuration_size());
@@ -20,4 +20,4 @@ RowMatrixXd random_configurations(const Chain& chain, Index count, std::uint64_t
     return configurations;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -8,7 +8,7 @@
 
 #include "posewise/core/errors.hpp"
 
-namespace posewise::planner {
+namespace posewise::detail {
 namespace {
 
 void require(bool is_met, const std::string& problem) {
@@ -195,4 +195,4 @@ VectorXd clearance_rates(const Chain& robot, const std::vector<Link>& links) {
     return rates;
 }
 
-}  // namespace posewise::planner
+}  // namespace posewise::detail

@@ -7,7 +7,7 @@
 #include "posewise/model/cell.hpp"
 
 /// What Constraints finds out once, when it is made.
-namespace posewise::planner {
+namespace posewise::detail {
 
 /// Nominal targets in the flange frame; none if the sensor has no targets. Throws InputError if
 /// the cell needs them, or the tracker, and the campaign does not state them.
@@ -25,4 +25,4 @@ std::vector<std::pair<std::size_t, std::size_t>> colliding_pairs(const std::vect
 /// lengths between the joint and the link's far end.
 VectorXd clearance_rates(const Chain& robot, const std::vector<Link>& links);
 
-}  // namespace posewise::planner
+}  // namespace posewise::detail

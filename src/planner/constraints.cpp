@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "../model/halton.hpp"
 #include "cell_check.hpp"
 
 namespace posewise {
@@ -61,13 +62,13 @@ double ConstraintReport::margin() const {
 
 Constraints::Constraints(const Campaign& campaign, Cell cell)
     : cell_(std::move(cell)),
-      robot_(without_parameters(with_margin(campaign.robot, cell_.limit_margin))),
+      robot_(without_parameters(detail::with_margin(campaign.robot, cell_.limit_margin))),
       target_count_(campaign.sensor->target_count()),
       tracker_from_base_(campaign.nominal.world_from_base),
-      targets_(planner::nominal_targets(campaign, cell_)),
-      pairs_(planner::colliding_pairs(cell_.links)),
-      clearance_rates_(planner::clearance_rates(robot_, cell_.links)) {
-    planner::check_cell(cell_, robot_, targets_);
+      targets_(detail::nominal_targets(campaign, cell_)),
+      pairs_(detail::colliding_pairs(cell_.links)),
+      clearance_rates_(detail::clearance_rates(robot_, cell_.links)) {
+    detail::check_cell(cell_, robot_, targets_);
     const Vector3d tracker = tracker_from_base_.inverse().translation();
     for (std::size_t i = 0; i < cell_.keep_outs.size(); ++i) {
         if (!contains(cell_.keep_outs[i].solid, tracker)) screens_.push_back(i);

@@ -1,8 +1,8 @@
-#include "posewise/planner/design_space.hpp"
+#include "design_space.hpp"
 
-#include "posewise/jacobian/pose_information.hpp"
+#include "../jacobian/pose_information.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 DesignSpace make_design_space(const Campaign& campaign, const Parameters& parameters,
                               double repeats, const Constraints* constraints) {
     const auto pose = std::make_shared<PoseInformation>(campaign, parameters, repeats);
@@ -33,4 +33,4 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
     return space;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

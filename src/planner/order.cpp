@@ -1,4 +1,4 @@
-#include "posewise/planner/order.hpp"
+#include "order.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 using Path = std::vector<Index>;  // of nodes; the start, 0, comes first and stays there
@@ -180,4 +180,4 @@ VisitingOrder shortest_order(const MatrixXd& times, const OrderOptions& options)
     return to_order(times, best);
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "../core/parallel.hpp"
+#include "../model/halton.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/parallel.hpp"
 
 namespace posewise {
 namespace {
@@ -75,7 +76,7 @@ Pool join(const std::vector<Pool>& parts) {
 
 Pool filter_pool(const Constraints& constraints, const RowMatrixXd& candidates) {
     std::vector<ConstraintReport> reports(static_cast<std::size_t>(candidates.rows()));
-    for_each_range(candidates.rows(), 64, [&](Index first, Index last) {
+    detail::for_each_range(candidates.rows(), 64, [&](Index first, Index last) {
         for (Index i = first; i < last; ++i) {
             reports[static_cast<std::size_t>(i)] = constraints.check(candidates.row(i).transpose());
         }
@@ -107,7 +108,7 @@ Pool make_pool(const Constraints& constraints, Index count, std::uint64_t seed,
     while (drawn < count && !(drawn > 0 && stop.is_set())) {
         const Index size = std::min(count - drawn, drawn_at_once);
         RowMatrixXd candidates =
-            halton_configurations(constraints.robot(), size, {{}, 1 + drawn, seed});
+            detail::halton_configurations(constraints.robot(), size, {{}, 1 + drawn, seed});
         for (const auto& [joint, value] : constraints.cell().fixed_joints) {
             candidates.col(joint).setConstant(value);
         }

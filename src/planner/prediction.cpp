@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/statistics.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
-#include "posewise/core/statistics.hpp"
 #include "posewise/jacobian/identification.hpp"
 
 namespace posewise {
@@ -58,7 +58,7 @@ PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
         }
     }
     accuracy.rms = std::sqrt(sum / static_cast<double>(positions));
-    accuracy.percentile95 = quantile(std::move(errors), 0.95, QuantileRule::Upper);
+    accuracy.percentile95 = quantile(std::move(errors), 0.95, detail::QuantileRule::Upper);
     return accuracy;
 }
 

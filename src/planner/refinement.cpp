@@ -1,4 +1,4 @@
-#include "posewise/planner/refinement.hpp"
+#include "refinement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,8 @@
 #include "../core/nlopt_adapter.hpp"
 #include "posewise/core/errors.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
-
-using namespace detail;
 
 /// What is maximised: D as it is, the others' logarithm, so that differences are relative.
 double merit(const Objective& objective, const MatrixXd& M) {
@@ -288,4 +286,4 @@ Refinement refine_poses(const DesignSpace& space, const Objective& objective, co
     return result;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

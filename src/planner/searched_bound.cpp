@@ -1,17 +1,15 @@
-#include "posewise/planner/searched_bound.hpp"
+#include "searched_bound.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "../core/nlopt_adapter.hpp"
-#include "posewise/core/parallel.hpp"
-#include "posewise/criteria/information_function.hpp"
+#include "../core/parallel.hpp"
+#include "../criteria/information_function.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
-
-using namespace detail;
 
 constexpr Index start_limit = 4000;  // looked at
 constexpr Index search_count = 12;   // followed uphill
@@ -92,4 +90,4 @@ double search_bound(const DesignSpace& space, const Objective& objective, const 
     return bound;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

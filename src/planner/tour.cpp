@@ -1,14 +1,14 @@
-#include "posewise/planner/tour.hpp"
+#include "tour.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "../core/parallel.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/parallel.hpp"
 #include "posewise/core/random.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -199,4 +199,4 @@ Tour plan_tour(const Constraints& constraints, const RowMatrixXd& poses,
     return tour;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -1,12 +1,11 @@
-#include "posewise/report/calibration_report.hpp"
-
 #include <fmt/format.h>
 
-#include "posewise/core/format.hpp"
-#include "posewise/core/text.hpp"
+#include "../core/format.hpp"
+#include "../core/text.hpp"
+#include "calibration_tables.hpp"
 #include "posewise/core/units.hpp"
-#include "posewise/report/calibration_tables.hpp"
-#include "posewise/report/sentences.hpp"
+#include "posewise/report/reports.hpp"
+#include "sentences.hpp"
 
 namespace posewise {
 namespace {
@@ -42,15 +41,17 @@ std::string describe_ending(const Calibration& calibration) {
     return text + fmt::format(
                       "\nvariance factor {} with {} degrees of freedom (1: noise and model "
                       "error stated right)\n",
-                      format_short(estimate.variance_factor, 4), estimate.degrees_of_freedom);
+                      detail::format_short(estimate.variance_factor, 4),
+                      estimate.degrees_of_freedom);
 }
 
 /// What to do if the residuals are not as large as stated.
 std::string judge_residuals(const Calibration& calibration) {
     const auto& ratio = calibration.doubts.residual_ratio;
     if (!ratio) return "";
-    const std::string text = fmt::format(
-        "the residuals are {} times what sigma and model error say: ", format_short(*ratio, 2));
+    const std::string text =
+        fmt::format("the residuals are {} times what sigma and model error say: ",
+                    detail::format_short(*ratio, 2));
     if (*ratio < 1) return text + "a smaller model_error_mm or sigma would do\n";
     return text +
            (calibration.estimate.loss.kind == LossKind::Squares
@@ -63,10 +64,10 @@ std::string describe_noise_floor(const Calibration& calibration) {
     const auto& repeatability = calibration.repeatability;
     if (!repeatability) return "noise floor: unknown, no configuration was repeated\n";
     std::string text = fmt::format("noise floor from repeats: {} mm per coordinate",
-                                   format_mm(repeatability->length, 5));
+                                   detail::format_mm(repeatability->length, 5));
     if (calibration.nominal.has_orientation) {
         text += fmt::format(", {} mrad per angle",
-                            format_fixed(mrad_per_rad * repeatability->orientation, 5));
+                            detail::format_fixed(mrad_per_rad * repeatability->orientation, 5));
     }
     return text + '\n';
 }
@@ -81,7 +82,7 @@ std::string format_accuracy(const Calibration& calibration) {
     }
     if (calibration.left_out) columns.emplace_back("not in plan", *calibration.left_out);
     if (calibration.validation) columns.emplace_back("validation", *calibration.validation);
-    std::string text = format_section("Accuracy", metrics_table(columns)) + '\n';
+    std::string text = format_section("Accuracy", detail::metrics_table(columns)) + '\n';
     if (calibration.held_out) {
         text += fmt::format("held out: {} folds, {} of them not identifiable\n",
                             calibration.held_out->folds, calibration.held_out->failures.size());
@@ -90,9 +91,9 @@ std::string format_accuracy(const Calibration& calibration) {
 }
 
 std::string format_without_outliers(const WithoutOutliers& others) {
-    std::string text = fmt::format("without them: means {} mm", format_mm(others.fit_rms));
+    std::string text = fmt::format("without them: means {} mm", detail::format_mm(others.fit_rms));
     if (others.held_out_rms) {
-        text += fmt::format(", held-out means {} mm", format_mm(*others.held_out_rms));
+        text += fmt::format(", held-out means {} mm", detail::format_mm(*others.held_out_rms));
     }
     return text + " (distance RMS)\n";
 }
@@ -101,14 +102,15 @@ std::string format_outliers(const Calibration& calibration) {
     const Estimate& estimate = calibration.estimate;
     if (estimate.loss.kind == LossKind::Squares) return "";
     const auto count = static_cast<Index>(estimate.outliers.size());
-    std::string text =
-        fmt::format("\nloss {} with width {} standard deviations: {} outliers\n",
-                    loss_name(estimate.loss.kind), format_short(estimate.loss.width, 4), count);
+    std::string text = fmt::format("\nloss {} with width {} standard deviations: {} outliers\n",
+                                   loss_name(estimate.loss.kind),
+                                   detail::format_short(estimate.loss.width, 4), count);
     if (count == 0) return text;
     if (calibration.without_outliers) {
         text += format_without_outliers(*calibration.without_outliers);
     }
-    text += format_section("Outliers, farthest first", outlier_table(estimate, outliers_shown));
+    text +=
+        format_section("Outliers, farthest first", detail::outlier_table(estimate, outliers_shown));
     if (count > outliers_shown) text += fmt::format("... and {} more\n", count - outliers_shown);
     return text;
 }
@@ -128,13 +130,14 @@ std::string format_parameters(const Calibration& calibration) {
     const Campaign& campaign = calibration.campaign;
     std::string text = format_section(fmt::format("Parameters (errors of the robot, base, {})",
                                                   campaign.sensor->words().unknowns),
-                                      parameter_table(campaign, calibration.estimate));
-    const Table compliance = compliance_table(campaign, calibration.estimate);
+                                      detail::parameter_table(campaign, calibration.estimate));
+    const detail::Table compliance = detail::compliance_table(campaign, calibration.estimate);
     if (!compliance.rows.empty()) {
         text += format_section("Compliances", compliance) + judge_compliances(calibration);
     }
-    return text + format_section("Strongest correlations",
-                                 correlation_table(calibration.estimate, correlations_shown));
+    return text +
+           format_section("Strongest correlations",
+                          detail::correlation_table(calibration.estimate, correlations_shown));
 }
 
 const char* advise(OrientationSense sense) {
@@ -154,13 +157,14 @@ const char* advise(OrientationSense sense) {
 std::string describe_orientations(const OrientationDoubt& doubt) {
     const std::string text =
         fmt::format("the nominal robot misses the orientations by {} deg (RMS)",
-                    format_short(to_degrees(doubt.rms), 3));
+                    detail::format_short(to_degrees(doubt.rms), 3));
     if (doubt.sense == OrientationSense::AsRead) {
         return text +
                "; is qw the real part of the quaternion, are roll, pitch and yaw about the fixed "
                "axes x, y and z?";
     }
-    return text + fmt::format(", but by {} deg {}", format_short(to_degrees(doubt.rms_in_sense), 2),
+    return text + fmt::format(", but by {} deg {}",
+                              detail::format_short(to_degrees(doubt.rms_in_sense), 2),
                               advise(doubt.sense));
 }
 
@@ -168,7 +172,7 @@ std::string describe_sizes(const std::vector<SizeDoubt>& sizes) {
     std::string words;
     for (const SizeDoubt& size : sizes) {
         words += fmt::format("{}{} ({} times)", words.empty() ? "" : ", ", size.parameter,
-                             format_short(size.times, 3));
+                             detail::format_short(size.times, 3));
     }
     return fmt::format(
         "far above the expected size: {}; are sign, unit and nominal value in the campaign right, "
@@ -189,7 +193,7 @@ std::string format(const Calibration& calibration) {
 
 std::string format(const ModelSelection& selection) {
     std::string text = "Parameter sets, each holding those above it\n\n" +
-                       format_table(model_table(selection)) + '\n';
+                       format_table(detail::model_table(selection)) + '\n';
     for (const ModelTrial& trial : selection.trials) {
         if (!trial.failure.empty()) text += trial.set.name + ": " + trial.failure + '\n';
     }
@@ -217,7 +221,7 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
             "{}the nominal robot misses the {} by {} m (RMS); if some are grossly wrong, try "
             "--loss cauchy",
             at, calibration.campaign.sensor->words().readings,
-            format_short(*doubts.gross_error, 3)));
+            detail::format_short(*doubts.gross_error, 3)));
     }
     if (doubts.orientations) sentences.push_back(at + describe_orientations(*doubts.orientations));
     if (!doubts.sizes.empty()) sentences.push_back(describe_sizes(doubts.sizes));
@@ -229,7 +233,7 @@ std::string describe(const BeyondLimits& beyond, const Measurements& measurement
         "{} of {} measured configurations are beyond the campaign's joint limits, the first is {}: "
         "{}",
         beyond.count, measurements.configuration_count(),
-        quote(measurements.ids[static_cast<std::size_t>(beyond.first)]), beyond.violation);
+        detail::quote(measurements.ids[static_cast<std::size_t>(beyond.first)]), beyond.violation);
 }
 
 }  // namespace posewise

@@ -1,14 +1,14 @@
-#include "posewise/report/calibration_tables.hpp"
+#include "calibration_tables.hpp"
 
 #include <algorithm>
 #include <functional>
 
-#include "posewise/core/format.hpp"
+#include "../core/format.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/model/transforms.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 using MetricRow = std::pair<std::string, std::function<double(const Metrics&)>>;
@@ -153,4 +153,4 @@ Table model_table(const ModelSelection& selection) {
     return table;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -1,16 +1,17 @@
-#include "posewise/report/correction_report.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "posewise/core/format.hpp"
-#include "posewise/core/text.hpp"
+#include "../core/format.hpp"
+#include "../core/text.hpp"
 #include "posewise/core/units.hpp"
-#include "posewise/report/table.hpp"
+#include "posewise/report/reports.hpp"
+#include "table.hpp"
 
 namespace posewise {
 namespace {
+
+using detail::Table;
 
 /// RMS and maximum before and after.
 Table error_table(const std::vector<Correction>& corrections) {
@@ -22,8 +23,8 @@ Table error_table(const std::vector<Correction>& corrections) {
             correction.uncorrected.orientation, correction.residual.orientation;
     }
     const auto row = [&](const char* name, Index first, const auto& measure) {
-        return std::vector<std::string>{name, format_mm(measure(errors.col(first))),
-                                        format_mm(measure(errors.col(first + 1)))};
+        return std::vector<std::string>{name, detail::format_mm(measure(errors.col(first))),
+                                        detail::format_mm(measure(errors.col(first + 1)))};
     };
     const auto rms = [&](const auto& column) { return std::sqrt(column.square().mean()); };
     const auto largest = [](const auto& column) { return column.maxCoeff(); };
@@ -44,8 +45,8 @@ Table change_table(const CorrectedPoses& poses) {
         }
         const Joint& joint = poses.robot.joint(j);
         const AmountUnits& units = units_of(joint.motion);
-        table.rows.push_back(
-            {joint.name, format_fixed(units.to_reading(largest), 4), std::string(units.reading)});
+        table.rows.push_back({joint.name, detail::format_fixed(units.to_reading(largest), 4),
+                              std::string(units.reading)});
     }
     return table;
 }
@@ -60,8 +61,9 @@ std::string format_shortfalls(const CorrectedPoses& poses) {
         const std::string why = describe_shortfall(poses.robot, correction);
         if (why.empty() || ++count > most) continue;
         const PoseError& left = correction.residual;
-        table.rows.push_back({escape_controls(poses.ids[i]), format_mm(left.position),
-                              format_mm(left.orientation), why});
+        table.rows.push_back({detail::escape_controls(poses.ids[i]),
+                              detail::format_mm(left.position), detail::format_mm(left.orientation),
+                              why});
     }
     if (count == 0) return "";
     std::string text = format_section(

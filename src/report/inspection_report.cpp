@@ -1,16 +1,15 @@
-#include "posewise/report/inspection_report.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <cmath>
 #include <map>
 
-#include "posewise/core/format.hpp"
+#include "../core/format.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/report/robot_tables.hpp"
-#include "posewise/report/table.hpp"
+#include "posewise/report/reports.hpp"
+#include "robot_tables.hpp"
+#include "table.hpp"
 
 namespace posewise {
 namespace {
@@ -27,13 +26,13 @@ std::string format_absorbed(const DroppedParameter& dropped, const std::vector<s
     for (const ParameterTerm& term : dropped.absorbed_by) {
         const bool negative = term.coefficient < 0;
         text += text.empty() ? (negative ? "-" : "") : (negative ? " - " : " + ");
-        text += fmt::format("{} {} {}", format_short(std::abs(term.coefficient), 4),
+        text += fmt::format("{} {} {}", detail::format_short(std::abs(term.coefficient), 4),
                             unit(term.parameter), name(term.parameter));
     }
     return fmt::format("1 {} {} = {}", unit(dropped.parameter), name(dropped.parameter), text);
 }
 
-Table parameter_table(const Campaign& campaign, const Identifiability& identifiability) {
+detail::Table parameter_table(const Campaign& campaign, const Identifiability& identifiability) {
     const auto names = parameter_names(campaign);
     const auto is_angle = parameter_is_angle(campaign);
     const VectorXd scale = parameter_scale(campaign);
@@ -41,12 +40,12 @@ Table parameter_table(const Campaign& campaign, const Identifiability& identifia
     for (const DroppedParameter& dropped : identifiability.dropped) {
         absorbed[dropped.parameter] = format_absorbed(dropped, names, is_angle);
     }
-    Table table{{"parameter", "unit", "expected error", "identifiable", "absorbed by"}, {}};
+    detail::Table table{{"parameter", "unit", "expected error", "identifiable", "absorbed by"}, {}};
     for (std::size_t k = 0; k < names.size(); ++k) {
         const auto index = static_cast<Index>(k);
         const bool kept = absorbed.count(index) == 0;
         table.rows.push_back({names[k], std::string(units_of(is_angle[k]).error),
-                              format_short(mm_per_m * scale[index]), kept ? "yes" : "no",
+                              detail::format_short(mm_per_m * scale[index]), kept ? "yes" : "no",
                               kept ? "" : absorbed[index]});
     }
     return table;
@@ -88,7 +87,7 @@ std::string describe_compliances(const Chain& robot) {
     for (const Compliance& compliance : compliances(robot)) {
         const Joint& joint = robot.joint(compliance.joint);
         text += fmt::format("{}{} {} {}", text.empty() ? "compliances are stated at " : ", ",
-                            joint.name, format_short(compliance.largest, 4),
+                            joint.name, detail::format_short(compliance.largest, 4),
                             units_of(joint.motion).load);
     }
     return text.empty() ? "" : text + ", about the largest that occur\n";
@@ -124,17 +123,17 @@ std::string format_reduced(const Inspection& inspection) {
            fmt::format(
                "Of a column of norm 1, those before leave at least {} of one that is kept, "
                "at most {} of one that is dropped.\n",
-               format_short(found.least_kept_residual, 2),
-               format_short(found.largest_dropped_residual, 2));
+               detail::format_short(found.least_kept_residual, 2),
+               detail::format_short(found.largest_dropped_residual, 2));
 }
 
 }  // namespace
 
 std::string format_robot(const Chain& robot) {
-    return format_section("Elements, base to flange", element_table(robot)) +
-           format_section("Joint limits", joint_table(robot)) +
-           format_section("Axes in the base frame, all joints at zero", axis_table(robot)) +
-           "\nflange at zero: " + describe_flange_at_zero(robot) + '\n';
+    return format_section("Elements, base to flange", detail::element_table(robot)) +
+           format_section("Joint limits", detail::joint_table(robot)) +
+           format_section("Axes in the base frame, all joints at zero", detail::axis_table(robot)) +
+           "\nflange at zero: " + detail::describe_flange_at_zero(robot) + '\n';
 }
 
 std::string format(const Inspection& inspection) {
@@ -155,8 +154,8 @@ std::string describe_gap(const Inspection& inspection) {
         "leave {} of one that is kept and {} of one that is dropped; the weakest direction kept is "
         "of {}: state fewer terms (orders of harmonics), a larger range of their joints, or prior: "
         "true",
-        format_short(found.least_kept_residual, 2), format_short(found.largest_dropped_residual, 2),
-        fmt::join(weakest, ", "));
+        detail::format_short(found.least_kept_residual, 2),
+        detail::format_short(found.largest_dropped_residual, 2), fmt::join(weakest, ", "));
 }
 
 }  // namespace posewise

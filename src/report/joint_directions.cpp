@@ -1,15 +1,15 @@
-#include "posewise/report/joint_directions.hpp"
+#include "joint_directions.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "posewise/core/format.hpp"
-#include "posewise/report/sentences.hpp"
-#include "posewise/report/table.hpp"
+#include "../core/format.hpp"
+#include "sentences.hpp"
+#include "table.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 std::string name_reversed(const Chain& robot, const SignPattern& pattern) {
@@ -69,4 +69,4 @@ std::string describe_joint_directions(const Campaign& campaign,
                        "nominal robot right (zero positions, lengths, units)?\n");
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

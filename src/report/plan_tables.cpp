@@ -1,20 +1,21 @@
-#include "posewise/report/plan_tables.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "posewise/core/format.hpp"
+#include "../core/format.hpp"
 #include "posewise/core/units.hpp"
-#include "posewise/report/sentences.hpp"
-#include "posewise/report/table.hpp"
+#include "posewise/report/reports.hpp"
+#include "sentences.hpp"
+#include "table.hpp"
 
 namespace posewise {
 namespace {
 
+using detail::Table;
+
 /// Says, where little is proven about a plan, what tells more.
 std::string describe_bound(const Plan& plan) {
-    return describe_looseness(plan.efficiency, plan.starts_at_best, plan.request.starts);
+    return detail::describe_looseness(plan.efficiency, plan.starts_at_best, plan.request.starts);
 }
 
 /// What the bound says, in words, where the numbers alone may mislead.
@@ -38,7 +39,7 @@ std::string indent_lines(const std::string& text) {
 
 /// A criterion's value; V and G are inverse mean and worst squares of position errors.
 std::string format_value(Criterion criterion, double value) {
-    return format_short(value, 8) + (needs_test_poses(criterion) ? " /m^2" : "");
+    return detail::format_short(value, 8) + (needs_test_poses(criterion) ? " /m^2" : "");
 }
 
 std::string describe_pool(const Pool& pool) {
@@ -68,15 +69,16 @@ std::string describe_searched_bound(const Plan& plan) {
     }
     return fmt::format("{}, efficiency {}: by a search, not a proof",
                        format_value(plan.request.criterion, plan.searched_bound),
-                       format_fixed(plan.searched_efficiency, 4));
+                       detail::format_fixed(plan.searched_efficiency, 4));
 }
 
 std::string describe_order(const Tour& tour) {
-    std::string text = fmt::format(
-        "{} s, {} % shorter than as planned ({} s); to the nearest pose each: {} s",
-        format_fixed(tour.time, 1),
-        format_fixed(100 * (1 - tour.time / tour.planning_order_time), 0),
-        format_fixed(tour.planning_order_time, 1), format_fixed(tour.nearest_neighbour_time, 1));
+    std::string text =
+        fmt::format("{} s, {} % shorter than as planned ({} s); to the nearest pose each: {} s",
+                    detail::format_fixed(tour.time, 1),
+                    detail::format_fixed(100 * (1 - tour.time / tour.planning_order_time), 0),
+                    detail::format_fixed(tour.planning_order_time, 1),
+                    detail::format_fixed(tour.nearest_neighbour_time, 1));
     if (tour.blocked_count > 0) {
         text += fmt::format("\n{} moves are blocked: find a way by hand", tour.blocked_count);
     }
@@ -93,7 +95,7 @@ struct Column {
 };
 
 std::string format_joint(const std::string& column, double value) {
-    return format_fixed(Column(column).units.to_reading(value), 2);
+    return detail::format_fixed(Column(column).units.to_reading(value), 2);
 }
 
 std::string describe_way(const Plan& plan, const PlannedPose& pose) {
@@ -140,9 +142,9 @@ std::string describe_ids(const Plan& plan) {
 
 std::string describe(const Finding& finding) {
     if (!finding.text.empty()) return finding.text;
-    if (finding.is_right) return "as stated, " + format_short(finding.stated, 8);
-    return fmt::format("stated {}, is {}", format_short(finding.stated, 12),
-                       format_short(finding.actual, 12));
+    if (finding.is_right) return "as stated, " + detail::format_short(finding.stated, 8);
+    return fmt::format("stated {}, is {}", detail::format_short(finding.stated, 12),
+                       detail::format_short(finding.actual, 12));
 }
 
 }  // namespace
@@ -151,9 +153,10 @@ std::string format_choice(const Plan& plan) {
     return fmt::format(
         "chosen:     {}\ncriterion:  {}\nvalue:      {}\nbound:      {}\n"
         "efficiency: {} proven\nstarts:     {} of {} ended here, {}\n{}",
-        describe_ids(plan), criterion_name(plan.request.criterion), format_short(plan.value, 8),
-        format_short(plan.bound, 8), format_fixed(plan.efficiency, 4), plan.starts_at_best,
-        plan.request.starts, ending_name(plan.ending), describe_proof(plan));
+        describe_ids(plan), criterion_name(plan.request.criterion),
+        detail::format_short(plan.value, 8), detail::format_short(plan.bound, 8),
+        detail::format_fixed(plan.efficiency, 4), plan.starts_at_best, plan.request.starts,
+        ending_name(plan.ending), describe_proof(plan));
 }
 
 std::string format_planning(const Planning& planning) {
@@ -165,13 +168,13 @@ std::string format_planning(const Planning& planning) {
                     criterion_name(criterion), format_value(criterion, plan.value));
     text += fmt::format(
         "predicted:   position error {} mm RMS, 95 % are below {} mm, over {} workspace poses\n",
-        format_mm(plan.predicted->rms), format_mm(plan.predicted->percentile95),
+        detail::format_mm(plan.predicted->rms), detail::format_mm(plan.predicted->percentile95),
         planning.workspace_count);
     text += fmt::format(
         "pool bound:  {}, proven: no choice from the pool has a larger value\n"
         "best choice: {} from the pool, efficiency {} proven\n",
         format_value(criterion, plan.bound), format_value(criterion, plan.choice_value),
-        format_fixed(plan.efficiency, 4));
+        detail::format_fixed(plan.efficiency, 4));
     const std::string looseness = describe_bound(plan);
     if (!looseness.empty()) text += "note:        " + looseness + '\n';
     text +=
@@ -184,10 +187,11 @@ std::string format_planning(const Planning& planning) {
 std::string format_other_counts(const std::vector<CountAccuracy>& counts) {
     Table table{{"new poses", "how", "RMS/mm", "95 %/mm"}, {}};
     for (const CountAccuracy& count : counts) {
-        table.rows.push_back({std::to_string(count.pose_count),
-                              count.is_planned ? "planned" : "chosen from the pool",
-                              count.accuracy ? format_mm(count.accuracy->rms) : "-",
-                              count.accuracy ? format_mm(count.accuracy->percentile95) : "-"});
+        table.rows.push_back(
+            {std::to_string(count.pose_count),
+             count.is_planned ? "planned" : "chosen from the pool",
+             count.accuracy ? detail::format_mm(count.accuracy->rms) : "-",
+             count.accuracy ? detail::format_mm(count.accuracy->percentile95) : "-"});
     }
     return format_section("Predicted position error by number of poses", table);
 }
@@ -196,8 +200,8 @@ std::string format_deviations(const Plan& plan) {
     Table table{{"parameter", "std dev", ""}, {}};
     for (const NamedNumber& one : plan.standard_deviations) {
         const Column column(one.name);
-        table.rows.push_back(
-            {column.name, format_fixed(mm_per_m * one.value, 4), std::string(column.units.error)});
+        table.rows.push_back({column.name, detail::format_fixed(mm_per_m * one.value, 4),
+                              std::string(column.units.error)});
     }
     return format_section("Expected standard deviation of each parameter", table);
 }

@@ -1,4 +1,4 @@
-#include "posewise/report/plot.hpp"
+#include "plot.hpp"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,11 @@
 #include <limits>
 #include <optional>
 
+#include "../core/format.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/format.hpp"
 #include "posewise/core/units.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 /// A gnuplot single-quoted string: nothing in it is expanded; a quote is written twice.
@@ -184,4 +184,4 @@ std::string study_plot_script(const Study& study, const std::string& image_path)
         drawing.clauses);
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

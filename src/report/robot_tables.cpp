@@ -1,14 +1,14 @@
-#include "posewise/report/robot_tables.hpp"
+#include "robot_tables.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "posewise/core/format.hpp"
+#include "../core/format.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/model/transforms.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 std::string format_terms(const std::vector<JointTerm>& terms, const Chain& robot) {
@@ -97,4 +97,4 @@ std::string describe_flange_at_zero(const Chain& robot) {
                        format_fixed(to_degrees(rpy.y()), 4), format_fixed(to_degrees(rpy.z()), 4));
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

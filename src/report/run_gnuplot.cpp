@@ -6,12 +6,12 @@
 #include <cstring>
 #include <string>
 
+#include "plot.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/report/plot.hpp"
 
 extern char** environ;
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 /// The exit code of a child; -1 if it was killed by a signal.
@@ -42,4 +42,4 @@ void run_gnuplot(const std::string& script_path) {
     if (code != 0) throw InputError("gnuplot failed");
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

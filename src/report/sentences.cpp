@@ -1,14 +1,14 @@
-#include "posewise/report/sentences.hpp"
+#include "sentences.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "posewise/core/format.hpp"
+#include "../core/format.hpp"
 #include "posewise/core/units.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 /// ", joints repeat to 0.01 mrad"; nothing if they repeat exactly. Several values as a range.
@@ -75,4 +75,4 @@ std::string format_error(double si_value, bool is_angle) {
     return format_short(mm_per_m * si_value, 4) + ' ' + std::string(units_of(is_angle).error);
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

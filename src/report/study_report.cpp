@@ -1,23 +1,14 @@
-#include "posewise/report/study_report.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "posewise/core/format.hpp"
+#include "../core/format.hpp"
 #include "posewise/core/units.hpp"
+#include "posewise/report/reports.hpp"
+#include "study_table.hpp"
 
 namespace posewise {
 namespace {
-
-std::string cell(const std::optional<double>& metres) { return metres ? format_mm(*metres) : "-"; }
-
-std::string unidentified_cell(const std::vector<StudyCase>& cases) {
-    if (cases.empty()) return "-";
-    return std::to_string(
-        std::count_if(cases.begin(), cases.end(),
-                      [](const StudyCase& study_case) { return !study_case.identified; }));
-}
 
 /// As a CSV field: in quotes if it needs them.
 std::string quote(const std::string& text) {
@@ -32,8 +23,8 @@ std::string csv_line(const StudyRow& row, const StudyCase& study_case, std::stri
     std::string rms;
     std::string max;
     if (study_case.identified && study_case.held_out.point_count > 0) {
-        rms = format_short(mm_per_m * study_case.held_out.distance_rms, 9);
-        max = format_short(mm_per_m * study_case.held_out.distance_max, 9);
+        rms = detail::format_short(mm_per_m * study_case.held_out.distance_rms, 9);
+        max = detail::format_short(mm_per_m * study_case.held_out.distance_max, 9);
     }
     std::string poses;
     for (const Index pose : study_case.poses) {
@@ -45,32 +36,9 @@ std::string csv_line(const StudyRow& row, const StudyCase& study_case, std::stri
 
 }  // namespace
 
-Table study_table(const Study& study) {
-    Table table;
-    table.header = {"poses"};
-    for (const Criterion criterion : study.criteria) {
-        table.header.push_back(std::string(criterion_name(criterion)) + "/mm");
-    }
-    for (const char* name : {"random 10 %/mm", "50 %/mm", "90 %/mm", "subsets", "unidentified"}) {
-        table.header.emplace_back(name);
-    }
-    for (const StudyRow& row : study.rows) {
-        std::vector<std::string> cells{std::to_string(row.pose_count)};
-        for (const StudyCase& optimal : row.optimal) {
-            cells.push_back(cell(held_out_quantile({optimal}, 0.5)));
-        }
-        for (const double p : {0.1, 0.5, 0.9})
-            cells.push_back(cell(held_out_quantile(row.random, p)));
-        cells.push_back(std::to_string(row.random.size()));
-        cells.push_back(unidentified_cell(row.random));
-        table.rows.push_back(std::move(cells));
-    }
-    return table;
-}
-
 std::string format(const Study& study) {
     if (study.ending == Ending::NotIdentifiable) return study.undetermined + '\n';
-    return format_table(study_table(study));
+    return format_table(detail::study_table(study));
 }
 
 std::string study_csv(const Study& study) {

@@ -1,9 +1,9 @@
-#include "posewise/report/table.hpp"
+#include "table.hpp"
 
 #include <algorithm>
 #include <cstdlib>
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 bool is_number(const std::string& cell) {
@@ -62,4 +62,4 @@ std::string format_section(const std::string& title, const Table& table) {
     return '\n' + title + "\n\n" + format_table(table);
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

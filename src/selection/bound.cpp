@@ -1,16 +1,16 @@
-#include "posewise/selection/bound.hpp"
+#include "bound.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "../core/sensitivities.hpp"
+#include "../criteria/information_function.hpp"
 #include "limits.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/sensitivities.hpp"
-#include "posewise/criteria/information_function.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -135,4 +135,4 @@ double efficiency(Criterion criterion, double value, double bound, Index paramet
     return std::clamp(ratio, 0.0, 1.0);
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/sensitivities.hpp"
+#include "../criteria/information_function.hpp"
 #include "limits.hpp"
-#include "posewise/core/sensitivities.hpp"
-#include "posewise/criteria/information_function.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 struct Fixing {
@@ -122,4 +122,4 @@ std::optional<ScoredPoses> enumerate_open_choices(const SearchProblem& problem,
     return Enumerator(problem, best, fixing).run();
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

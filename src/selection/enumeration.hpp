@@ -5,7 +5,7 @@
 #include "local_search.hpp"
 #include "relaxation.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// Fixes candidates by the bound: one whose presence (or absence) would push the bound of the
 /// relaxation's certificate below the value of `best` is out (or in). If what stays open has at
@@ -15,4 +15,4 @@ std::optional<ScoredPoses> enumerate_open_choices(const SearchProblem& problem,
                                                   const Relaxation& relaxation,
                                                   const ScoredPoses& best);
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -7,16 +7,22 @@
 #include <numeric>
 #include <optional>
 
+#include "../core/parallel.hpp"
+#include "../core/progress_counter.hpp"
+#include "../core/sensitivities.hpp"
 #include "enumeration.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/parallel.hpp"
-#include "posewise/core/sensitivities.hpp"
 #include "relaxation.hpp"
 #include "validation.hpp"
 
 namespace posewise {
 namespace {
+
+using detail::Relaxation;
+using detail::ScoredPoses;
+using detail::SearchProblem;
+using detail::Shortlist;
 
 constexpr Index sweep_limit = 50;  // of the last sweeps over all candidates
 constexpr Index sweep_size = 4096;
@@ -34,7 +40,7 @@ std::vector<Index> by_decreasing(const VectorXd& values) {
 /// where the limits leave no more.
 std::vector<Index> take_in_order(const SearchProblem& problem, const std::vector<Index>& order) {
     const SelectOptions& options = problem.options;
-    Occupancy occupancy(problem.candidates.count(), options);
+    detail::Occupancy occupancy(problem.candidates.count(), options);
     std::vector<Index> poses;
     const auto K = static_cast<std::size_t>(options.pose_count);
     for (Index round = 0; round < options.repeat_limit && poses.size() < K; ++round) {
@@ -49,7 +55,7 @@ std::vector<Index> take_in_order(const SearchProblem& problem, const std::vector
 }
 
 ScoredPoses make_choice(const SearchProblem& problem, std::vector<Index> poses) {
-    const Score score = problem.score(problem.regularised_information(poses));
+    const detail::Score score = problem.score(problem.regularised_information(poses));
     return {std::move(poses), score};
 }
 
@@ -82,12 +88,12 @@ std::optional<ScoredPoses> make_random_start(const SearchProblem& problem,
 ScoredPoses make_identifying(const SearchProblem& problem, const Shortlist& shortlist,
                              const ScoredPoses& choice, RandomStream& random) {
     if (choice.score.identifies || problem.objective.criterion == Criterion::D) return choice;
-    const Objective determinant;
+    const detail::Objective determinant;
     SearchProblem by_determinant{problem.candidates, problem.options, determinant, problem.held,
                                  problem.ridge};
-    const ScoredPoses changed =
-        improve_with_kicks(by_determinant, make_shortlist(problem.candidates, shortlist.members),
-                           make_choice(by_determinant, choice.poses), random);
+    const ScoredPoses changed = improve_with_kicks(
+        by_determinant, detail::make_shortlist(problem.candidates, shortlist.members),
+        make_choice(by_determinant, choice.poses), random);
     return make_choice(problem, changed.poses);
 }
 
@@ -100,23 +106,25 @@ Index shortlist_size(const Blocks& candidates, const SelectOptions& options) {
 
 /// The most sensitive candidates at the relaxed optimum that are not excluded.
 Shortlist shortlist_by_sensitivity(const SearchProblem& problem, const Relaxation& relaxation) {
-    const std::vector<Index> capacity = capacities(problem.candidates.count(), problem.options);
+    const std::vector<Index> capacity =
+        detail::capacities(problem.candidates.count(), problem.options);
     const Index size = shortlist_size(problem.candidates, problem.options);
     std::vector<Index> members;
     for (const Index i : by_decreasing(relaxation.sensitivity)) {
         if (static_cast<Index>(members.size()) == size) break;
         if (capacity[static_cast<std::size_t>(i)] > 0) members.push_back(i);
     }
-    return make_shortlist(problem.candidates, std::move(members));
+    return detail::make_shortlist(problem.candidates, std::move(members));
 }
 
 /// Searches from `first`, the start of the relaxation, and from random ones.
 std::vector<ScoredPoses> run_starts(const SearchProblem& problem, const Relaxation& relaxation,
                                     const Shortlist& shortlist, const ScoredPoses& first) {
     const SelectOptions& options = problem.options;
-    ProgressCounter counter(options.progress, {.total = options.starts, .bound = relaxation.bound});
+    detail::ProgressCounter counter(options.progress,
+                                    {.total = options.starts, .bound = relaxation.bound});
     std::vector<std::optional<ScoredPoses>> ends(static_cast<std::size_t>(options.starts));
-    for_each_index(options.starts, [&](Index start) {
+    detail::for_each_index(options.starts, [&](Index start) {
         if (start > 0 && options.stop.is_set()) return;
         RandomStream random(options.seed, static_cast<std::uint64_t>(start));
         ScoredPoses choice = first;
@@ -141,19 +149,20 @@ std::vector<ScoredPoses> run_starts(const SearchProblem& problem, const Relaxati
 /// does.
 ScoredPoses sweep_all(const SearchProblem& problem, ScoredPoses choice) {
     for (Index sweep = 0; sweep < sweep_limit && !problem.options.stop.is_set(); ++sweep) {
-        const VectorXd d = sensitivities(
+        const VectorXd d = detail::sensitivities(
             problem.candidates,
             gradient(problem.objective, problem.regularised_information(choice.poses)));
         double least = std::numeric_limits<double>::infinity();
         for (const Index pose : choice.poses) least = std::min(least, d[pose]);
-        const std::vector<Index> capacity = capacities(problem.candidates.count(), problem.options);
+        const std::vector<Index> capacity =
+            detail::capacities(problem.candidates.count(), problem.options);
         std::vector<Index> members;
         for (const Index i : by_decreasing(d)) {
             if (d[i] <= least || static_cast<Index>(members.size()) == sweep_size) break;
             if (capacity[static_cast<std::size_t>(i)] > 0) members.push_back(i);
         }
         if (members.empty()) break;
-        const Shortlist shortlist = make_shortlist(problem.candidates, std::move(members));
+        const Shortlist shortlist = detail::make_shortlist(problem.candidates, std::move(members));
         const ScoredPoses improved = improve(problem, shortlist, choice);
         if (!is_better(improved.score, choice.score)) break;
         choice = improved;
@@ -208,12 +217,13 @@ Choice determined(Choice choice) {
 }
 
 Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
-    validate(candidates, options);
-    const std::string unseen = describe_unseen(candidates, options);
+    detail::validate(candidates, options);
+    const std::string unseen = detail::describe_unseen(candidates, options);
     if (!unseen.empty()) return unidentified(unseen);
-    const Objective objective = make_objective(candidates, options);
+    const detail::Objective objective = detail::make_objective(candidates, options);
     const SearchProblem problem{candidates, options, objective,
-                                held_information(candidates, options), ridge_of(candidates)};
+                                detail::held_information(candidates, options),
+                                ridge_of(candidates)};
     const Relaxation relaxation = relax(objective, candidates, options);
     const Outcome outcome = search(problem, relaxation);
     const ScoredPoses& best = outcome.best;
@@ -235,11 +245,11 @@ Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     plan.poses = best.poses;
     std::sort(plan.poses.begin(), plan.poses.end());
     plan.criterion = options.criterion;
-    plan.value = choice_value(candidates, options, plan.poses);
+    plan.value = detail::choice_value(candidates, options, plan.poses);
     plan.bound = std::max(plan.bound, plan.value);
-    plan.efficiency =
-        efficiency(plan.criterion, plan.value, plan.bound,
-                   candidates.parameter_count() - static_cast<Index>(options.nuisance.size()));
+    plan.efficiency = detail::efficiency(
+        plan.criterion, plan.value, plan.bound,
+        candidates.parameter_count() - static_cast<Index>(options.nuisance.size()));
     plan.certificate = relaxation.certificate;
     plan.seed = options.seed;
     return plan;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace posewise {
+namespace posewise::detail {
 
 Shortlist make_shortlist(const Blocks& candidates, std::vector<Index> members) {
     Shortlist shortlist{std::move(members), {}};
@@ -90,4 +90,4 @@ VectorXd Gains::compute(const std::vector<Index>& positions) {
     return result;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -4,7 +4,7 @@
 
 #include "lanes.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// Candidates to exchange with, prepared once and read by all starts.
 struct Shortlist {
@@ -61,4 +61,4 @@ class Gains {
     std::vector<Lane> gains_;
 };
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cassert>
 
-#include "posewise/core/simd.hpp"
+#include "../core/simd.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 /// The lower triangle's entry (a, b), b <= a.
@@ -290,4 +290,4 @@ void lane_traces(const LaneBlocks& blocks, const LaneGrams& G, const LaneGrams& 
     });
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -6,7 +6,7 @@
 
 #include "posewise/core/blocks.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// One number of eight candidates side by side, so that one instruction works on all of them.
 struct alignas(64) Lane {
@@ -53,4 +53,4 @@ void lane_traces(const LaneBlocks& blocks, const LaneGrams& G, const LaneGrams& 
                  const MatrixXd& P, const MatrixXd& Q, std::span<const char> asked,
                  std::span<Lane> result);
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -4,7 +4,7 @@
 #include <map>
 #include <numeric>
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 bool has_group_limit(const SelectOptions& options) {
@@ -87,4 +87,4 @@ void Occupancy::count(Index candidate, Index change) {
     }
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -2,7 +2,7 @@
 
 #include "posewise/selection/exchange.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// How often each candidate may be chosen: 0 if excluded, else the repeat limit.
 std::vector<Index> capacities(Index candidate_count, const SelectOptions& options);
@@ -36,4 +36,4 @@ class Occupancy {
     std::vector<Index> group_;
 };
 
-}  // namespace posewise
+}  // namespace posewise::detail

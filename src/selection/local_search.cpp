@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 constexpr Index quick_evaluations = 8;
@@ -167,4 +167,4 @@ ScoredPoses improve_with_kicks(const SearchProblem& problem, const Shortlist& sh
     return best;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -3,7 +3,7 @@
 #include "neighbourhood.hpp"
 #include "posewise/core/random.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// How good a choice is: first whether it identifies the parameters, then the objective, of the
 /// regularised information matrix if it does not.
@@ -42,4 +42,4 @@ ScoredPoses improve(const SearchProblem& problem, const Shortlist& shortlist,
 ScoredPoses improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
                                const ScoredPoses& choice, RandomStream& random);
 
-}  // namespace posewise
+}  // namespace posewise::detail

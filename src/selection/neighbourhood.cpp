@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "posewise/core/sensitivities.hpp"
+#include "../core/sensitivities.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 constexpr Index witness_count = 32;
@@ -192,4 +192,4 @@ Index Neighbourhood::best_replacement(Index removed, double value, const Occupan
                  : best_by_gains(removed, value, occupancy);
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -2,13 +2,13 @@
 
 #include <optional>
 
+#include "../criteria/objective.hpp"
 #include "gains.hpp"
 #include "limits.hpp"
-#include "posewise/core/stop.hpp"
-#include "posewise/criteria/objective.hpp"
+#include "posewise/core/progress.hpp"
 #include "rayleigh_ritz.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// Finds the best candidate to take a removed pose's place. One for each search: it keeps what
 /// depends on the current plan. What is cheap to know about an exchange depends on the criterion:
@@ -65,4 +65,4 @@ class Neighbourhood {
     std::optional<RayleighRitz> ritz_;    // for E, O3, O2 and O4
 };
 
-}  // namespace posewise
+}  // namespace posewise::detail

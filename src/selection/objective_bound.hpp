@@ -1,8 +1,8 @@
 #pragma once
 
-#include "posewise/selection/bound.hpp"
+#include "bound.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// options.held, or zeros.
 MatrixXd held_information(const Blocks& candidates, const SelectOptions& options);
@@ -11,4 +11,4 @@ MatrixXd held_information(const Blocks& candidates, const SelectOptions& options
 double upper_bound(const Objective& objective, const Blocks& candidates,
                    const SelectOptions& options, const MatrixXd& M);
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -5,9 +5,9 @@
 #include <deque>
 #include <numeric>
 
-#include "posewise/criteria/information_function.hpp"
+#include "../criteria/information_function.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 /// How much better the linear model of slope g can do than w, and the slope at which its best
@@ -116,4 +116,4 @@ WeightSearch ascend(const WeightProblem& problem, const VectorXd& start, double 
     return search;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "posewise/core/stop.hpp"
-#include "posewise/criteria/objective.hpp"
+#include "../criteria/objective.hpp"
+#include "posewise/core/progress.hpp"
 #include "working_set.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// The nearest point of {0 <= w <= upper, sum w = total}. Requires sum upper >= total.
 VectorXd project_on_capped_simplex(const VectorXd& point, const VectorXd& upper, double total);
@@ -34,4 +34,4 @@ struct WeightSearch {
 WeightSearch ascend(const WeightProblem& problem, const VectorXd& start, double tolerance,
                     Index iteration_limit, const StopSignal& stop);
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posewise/criteria/information_function.hpp"
+#include "../criteria/information_function.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 RayleighRitz::RayleighRitz(const Objective& objective, const Blocks& candidates,
                            const std::vector<Index>& members)
@@ -55,4 +55,4 @@ bool RayleighRitz::may_exceed(Index position, double value) const {
     return Eigen::LLT<Eigen::Ref<Compressed>>(shifted).info() == Eigen::Success;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

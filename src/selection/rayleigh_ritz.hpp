@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "posewise/criteria/objective.hpp"
+#include "../criteria/objective.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// Rules out exchanges for criteria of extreme eigenvalues (E, O3, O2, O4). With U the eigenvectors
 /// of M's least eigenvalues and v that of its largest, every M* has
@@ -43,4 +43,4 @@ class RayleighRitz {
     Compression remaining_;  // of M without the removed candidate
 };
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "../core/sensitivities.hpp"
+#include "../criteria/information_function.hpp"
 #include "limits.hpp"
 #include "objective_bound.hpp"
-#include "posewise/core/sensitivities.hpp"
-#include "posewise/criteria/information_function.hpp"
 #include "projected_gradient.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 constexpr Index first_set_size = 1000;
@@ -169,4 +169,4 @@ Relaxation relax(const Objective& objective, const Blocks& candidates,
     return Relaxer(objective, candidates, options).run();
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

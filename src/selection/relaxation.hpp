@@ -1,8 +1,8 @@
 #pragma once
 
-#include "posewise/selection/bound.hpp"
+#include "bound.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// The continuous relaxation: weights between 0 and the repeat limit that sum to K.
 struct Relaxation {
@@ -20,4 +20,4 @@ struct Relaxation {
 Relaxation relax(const Objective& objective, const Blocks& candidates,
                  const SelectOptions& options);
 
-}  // namespace posewise
+}  // namespace posewise::detail

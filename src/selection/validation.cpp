@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/text.hpp"
 #include "limits.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/text.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 void require_at_least(const char* name, Index value, Index least) {
@@ -136,4 +136,4 @@ std::string describe_unseen(const Blocks& candidates, const SelectOptions& optio
            "); drop redundant parameters, add poses or state a prior";
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

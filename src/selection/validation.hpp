@@ -2,7 +2,7 @@
 
 #include "posewise/selection/exchange.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// Throws InputError for options that contradict the candidates or each other.
 void validate(const Blocks& candidates, const SelectOptions& options);
@@ -11,4 +11,4 @@ void validate(const Blocks& candidates, const SelectOptions& options);
 /// unseen, as a sentence; empty: none.
 std::string describe_unseen(const Blocks& candidates, const SelectOptions& options);
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -1,8 +1,8 @@
 #include "working_set.hpp"
 
-#include "posewise/core/parallel.hpp"
+#include "../core/parallel.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 void WorkingSet::add(const std::vector<Index>& candidates) {
     const Index L = candidates_->parameter_count();
@@ -48,4 +48,4 @@ VectorXd WorkingSet::sensitivities(const MatrixXd& Z) const {
     return packed_ * packed;
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -2,7 +2,7 @@
 
 #include "posewise/core/blocks.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 
 /// Some candidates with their B_i^T B_i, each packed into one row, so that weighted sums and
 /// sensitivities are matrix-vector products.
@@ -25,4 +25,4 @@ class WorkingSet {
     RowMatrixXd packed_;  // members x parameters (parameters + 1) / 2
 };
 
-}  // namespace posewise
+}  // namespace posewise::detail

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../core/progress_counter.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -14,7 +15,7 @@ struct Work {
     const Measurements& used;
     const CalibrationOptions& options;
     Index folds;
-    ProgressCounter counter;
+    detail::ProgressCounter counter;
 
     /// One part is done.
     ProgressCallback step() {
@@ -172,7 +173,7 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
     const Measurements& used = options.used.empty() ? measurements : part;
     const Index folds = options.folds.value_or(default_folds(used.configuration_count()));
     Work work{campaign, used, options, folds,
-              ProgressCounter(options.progress, part_count(campaign, options, folds))};
+              detail::ProgressCounter(options.progress, part_count(campaign, options, folds))};
     Calibration result;
     result.campaign = campaign;
     result.method = options.method;

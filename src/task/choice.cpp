@@ -1,8 +1,8 @@
 #include "posewise/task/choice.hpp"
 
+#include "../model/halton.hpp"
 #include "choice_problem.hpp"
 #include "inputs.hpp"
-#include "posewise/model/halton.hpp"
 
 namespace posewise {
 namespace {
@@ -69,7 +69,7 @@ Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_
     Candidates candidates;
     candidates.kind = CandidateKind::Random;
     candidates.ids = detail::number_ids(count);
-    candidates.configurations = halton_configurations(campaign.robot, count, {{}, 1, seed});
+    candidates.configurations = detail::halton_configurations(campaign.robot, count, {{}, 1, seed});
     candidates.share = RowMatrixXd::Ones(count, campaign.sensor->target_count());
     return candidates;
 }

@@ -1,8 +1,8 @@
 #include "choice_problem.hpp"
 
+#include "../core/checksum.hpp"
 #include "inputs.hpp"
 #include "posewise/calibrator/registration.hpp"
-#include "posewise/core/checksum.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/planner/planning.hpp"

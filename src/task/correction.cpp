@@ -1,7 +1,7 @@
 #include "posewise/task/correction.hpp"
 
+#include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/text.hpp"
 
 namespace posewise {
 namespace {
@@ -11,7 +11,7 @@ Isometry3d estimated_base_from_base(const Campaign& campaign, const Parameters& 
                                     CorrectionBase base) {
     if (base == CorrectionBase::Estimate) return Isometry3d::Identity();
     if (!campaign.has_nominal_base) {
-        throw InputError("the campaign " + quote(campaign.name) +
+        throw InputError("the campaign " + detail::quote(campaign.name) +
                          " states no base; must state the one that the poses are meant in");
     }
     return found.world_from_base.inverse() * campaign.nominal.world_from_base;
@@ -32,8 +32,8 @@ CorrectedPoses correct_poses(const Campaign& campaign, const Parameters& found,
                 campaign.robot, found.robot, nominal,
                 from_base * campaign.robot.base_from_flange(nominal, no_errors), options));
         } catch (const InputError& error) {
-            throw InputError("configuration " + quote(ids[static_cast<std::size_t>(i)]) + ": " +
-                             error.what());
+            throw InputError("configuration " + detail::quote(ids[static_cast<std::size_t>(i)]) +
+                             ": " + error.what());
         }
     }
     return corrected;

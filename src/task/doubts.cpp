@@ -6,13 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "../core/format.hpp"
+#include "../core/statistics.hpp"
+#include "../model/joint_limits.hpp"
 #include "other_senses.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/format.hpp"
-#include "posewise/core/statistics.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/joint_limits.hpp"
 #include "posewise/planner/prediction.hpp"
 
 namespace posewise {
@@ -55,7 +55,7 @@ double measured_extent(const Campaign& campaign, const Measurements& measured) {
 /// Of residuals as mean_residuals() gives them, the median: some may be grossly wrong.
 double median_distance(const RowMatrixXd& residuals) {
     const auto coordinates = residuals.leftCols(std::min<Index>(3, residuals.cols()));
-    return quantile(coordinates.rowwise().norm(), 0.5, QuantileRule::Upper);
+    return quantile(coordinates.rowwise().norm(), 0.5, detail::QuantileRule::Upper);
 }
 
 UnitDoubt find_unit_doubt(const Campaign& campaign, const Measurements& measured) {
@@ -91,9 +91,10 @@ const char* ask_about(UnitDoubt unit) {
 }
 
 std::string describe(const Plane& plane) {
-    return fmt::format("normal [{}, {}, {}] and offset {} mm", format_fixed(plane.normal.x(), 3),
-                       format_fixed(plane.normal.y(), 3), format_fixed(plane.normal.z(), 3),
-                       format_mm(plane.offset, 1));
+    return fmt::format(
+        "normal [{}, {}, {}] and offset {} mm", detail::format_fixed(plane.normal.x(), 3),
+        detail::format_fixed(plane.normal.y(), 3), detail::format_fixed(plane.normal.z(), 3),
+        detail::format_mm(plane.offset, 1));
 }
 
 std::optional<double> find_residual_ratio(const Estimate& estimate) {
@@ -139,8 +140,8 @@ std::optional<BeyondLimits> find_beyond_limits(const Campaign& campaign,
                                                const Measurements& measured) {
     BeyondLimits beyond;
     for (Index i = 0; i < measured.configuration_count(); ++i) {
-        std::string violation =
-            describe_limit_violation(campaign.robot, measured.configurations.row(i).transpose());
+        std::string violation = detail::describe_limit_violation(
+            campaign.robot, measured.configurations.row(i).transpose());
         if (violation.empty()) continue;
         if (++beyond.count > 1) continue;
         beyond.first = i;
@@ -192,9 +193,9 @@ std::string describe_misfit(const Campaign& campaign, const Misfit& misfit) {
     return fmt::format(
         "are these of another robot? The nominal robot misses half of them by over {} mm; must be "
         "about {} mm, as the spread of {} says{}{}{}",
-        format_short(mm_per_m * misfit.distance, 3), format_short(mm_per_m * misfit.expected, 3),
-        campaign.name, ask_about(misfit.unit), misfit.planes.empty() ? "" : "; ",
-        describe_planes(misfit.planes));
+        detail::format_short(mm_per_m * misfit.distance, 3),
+        detail::format_short(mm_per_m * misfit.expected, 3), campaign.name, ask_about(misfit.unit),
+        misfit.planes.empty() ? "" : "; ", describe_planes(misfit.planes));
 }
 
 Doubts find_doubts(const Campaign& campaign, const Measurements& measured,

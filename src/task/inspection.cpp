@@ -1,13 +1,13 @@
 #include "posewise/task/inspection.hpp"
 
-#include "posewise/model/complete_model.hpp"
+#include "../model/complete_model.hpp"
 
 namespace posewise {
 
 Inspection inspect(const Campaign& campaign, const Chain& declared, bool is_stated) {
     Inspection inspection;
     inspection.campaign = campaign;
-    inspection.complete = with_robot(campaign, complete_model(declared));
+    inspection.complete = with_robot(campaign, detail::complete_model(declared));
     if (is_stated) inspection.stated = find_identifiable(campaign);
     inspection.of_complete = find_identifiable(inspection.complete);
     inspection.least_pose_count = least_pose_count(campaign);

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "posewise/core/text.hpp"
+#include "../core/text.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/measurement/campaign.hpp"
 
@@ -93,8 +93,8 @@ std::vector<NamedNumber> assumptions_of(const Campaign& campaign) {
 
 std::string describe_mismatch(const Plan& plan, const Campaign& campaign) {
     if (plan.campaign != campaign.name) {
-        return fmt::format("campaign: is {}; must be a plan of {}", quote(plan.campaign),
-                           quote(campaign.name));
+        return fmt::format("campaign: is {}; must be a plan of {}", detail::quote(plan.campaign),
+                           detail::quote(campaign.name));
     }
     const std::string columns = describe_columns(plan, configuration_columns(campaign));
     if (!columns.empty()) return columns;

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <set>
 
+#include "../planner/tour.hpp"
 #include "inputs.hpp"
 #include "planning_problem.hpp"
 #include "posewise/core/units.hpp"
@@ -121,10 +122,10 @@ Planning make_plan(const Campaign& campaign, const PlanningOptions& options) {
         make_pool(problem.constraints, asked_for, options.seed, options.stop.with_half_the_time());
     problem.request.pool_count = pool.candidate_count;
     detail::check_memory(problem.campaign, pool.configurations.rows(), "--pool");
-    plan_tour(problem.constraints, pool.configurations.topRows(1));  // throws early if home
+    detail::plan_tour(problem.constraints, pool.configurations.topRows(1));  // throws early if home
     detail::draw_workspace(problem, options);
     const PlannedPoses planned = search(problem, pool, options);
-    TourOptions tour_options;
+    detail::TourOptions tour_options;
     tour_options.order.seed = options.seed;
     Tour tour =
         plan_tour(problem.constraints, all_poses(problem, planned.configurations), tour_options);

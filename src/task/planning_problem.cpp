@@ -4,14 +4,14 @@
 
 #include <algorithm>
 
+#include "../core/text.hpp"
+#include "../model/joint_limits.hpp"
 #include "inputs.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/text.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/model/joint_limits.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <numeric>
 
+#include "../core/format.hpp"
+#include "../core/text.hpp"
+#include "../selection/bound.hpp"
 #include "findings.hpp"
 #include "planning_problem.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/format.hpp"
-#include "posewise/core/text.hpp"
 #include "posewise/core/units.hpp"
-#include "posewise/selection/bound.hpp"
 
 namespace posewise {
 namespace {
@@ -36,7 +36,7 @@ void check_poses(const PlanningProblem& problem, const std::vector<PlannedPose>&
     const double least = problem.constraints.cell().least_joint_distance;
     bool is_right = true;
     const auto blame = [&](const PlannedPose& pose, const std::string& fault) {
-        findings.note("poses", false, quote(pose.id) + ' ' + fault);
+        findings.note("poses", false, detail::quote(pose.id) + ' ' + fault);
         is_right = false;
     };
     for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -46,7 +46,8 @@ void check_poses(const PlanningProblem& problem, const std::vector<PlannedPose>&
             const double distance = joint_distance(poses[i].configuration, poses[k].configuration);
             if (distance >= least - rounding) continue;
             blame(poses[i], fmt::format("is nearer to {} than least_joint_distance allows, {} deg",
-                                        quote(poses[k].id), format_short(to_degrees(distance))));
+                                        detail::quote(poses[k].id),
+                                        detail::format_short(to_degrees(distance))));
         }
     }
     if (is_right) findings.note("poses", true, fmt::format("{}, all feasible", poses.size()));
@@ -63,7 +64,7 @@ void check_value(const Plan& plan, const PlanningProblem& problem, const Blocks&
     options.held_pose_count = problem.search.held_pose_count;
     std::vector<Index> all(plan.poses.size());
     std::iota(all.begin(), all.end(), Index{0});
-    const double value = choice_value(blocks, options, all);
+    const double value = detail::choice_value(blocks, options, all);
     findings.compare("value", plan.value, value,
                      detail::is_same_value(options.criterion, plan.value, value, rounding));
 }

@@ -4,12 +4,13 @@
 #include <limits>
 #include <set>
 
+#include "../core/parallel.hpp"
+#include "../core/progress_counter.hpp"
+#include "../core/statistics.hpp"
 #include "inputs.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/parallel.hpp"
 #include "posewise/core/random.hpp"
-#include "posewise/core/statistics.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/selection/exchange.hpp"
 #include "posewise/task/doubts.hpp"
@@ -138,8 +139,8 @@ void run_all(const Setting& setting, std::vector<StudyRow>& rows) {
     const std::vector<Job> jobs = list_jobs(rows);
     std::vector<char> is_done(jobs.size(), 0);
     const auto count = static_cast<Index>(jobs.size());
-    ProgressCounter counter(setting.options.progress, count);
-    for_each_index(count, [&](Index i) {
+    detail::ProgressCounter counter(setting.options.progress, count);
+    detail::for_each_index(count, [&](Index i) {
         if (setting.options.stop.is_set()) return;
         const auto k = static_cast<std::size_t>(i);
         run(setting, jobs[k]);
@@ -185,7 +186,7 @@ std::optional<double> held_out_quantile(const std::vector<StudyCase>& cases, dou
     if (errors.empty()) return std::nullopt;
     const double error =
         quantile(Eigen::Map<const VectorXd>(errors.data(), static_cast<Index>(errors.size())),
-                 std::clamp(p, 0.0, 1.0), QuantileRule::Linear);
+                 std::clamp(p, 0.0, 1.0), detail::QuantileRule::Linear);
     if (error == worst) return std::nullopt;
     return error;
 }

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <map>
 
+#include "../core/format.hpp"
+#include "../selection/bound.hpp"
 #include "choice_problem.hpp"
 #include "findings.hpp"
-#include "posewise/core/format.hpp"
 #include "posewise/core/units.hpp"
-#include "posewise/selection/bound.hpp"
 
 namespace posewise {
 namespace {
@@ -90,7 +90,8 @@ void check_distance(const ChoiceProblem& problem, Index a, Index b,
     const double distance = (options.positions.row(b) - options.positions.row(a)).norm();
     if (distance >= options.least_distance) return;
     violations.push_back(fmt::format("'{}' and '{}' are {} deg apart, too near", id_of(problem, a),
-                                     id_of(problem, b), format_short(to_degrees(distance))));
+                                     id_of(problem, b),
+                                     detail::format_short(to_degrees(distance))));
 }
 
 /// Where a choice breaks the limits it was made under; one line each.
@@ -141,7 +142,7 @@ double prove_bound(const Plan& plan, const ChoiceProblem& problem, Findings& fin
     const Index L = problem.blocks.parameter_count();
     const Index size = plan.certificate.M.rows();
     if (size == L && plan.certificate.sharpness > 0) {
-        return upper_bound(problem.blocks, problem.options, plan.certificate);
+        return detail::upper_bound(problem.blocks, problem.options, plan.certificate);
     }
     findings.note("certificate", size == 0,
                   size == 0 ? "none, so nothing is proven"
@@ -152,7 +153,7 @@ double prove_bound(const Plan& plan, const ChoiceProblem& problem, Findings& fin
 void check_numbers(const Plan& plan, const ChoiceProblem& problem, const std::vector<Index>& poses,
                    Findings& findings) {
     const Criterion criterion = problem.options.criterion;
-    const double value = choice_value(problem.blocks, problem.options, poses);
+    const double value = detail::choice_value(problem.blocks, problem.options, poses);
     findings.compare("value", plan.value, value, agree(criterion, plan.value, value));
 
     double bound = std::max(value, prove_bound(plan, problem, findings));
@@ -165,7 +166,7 @@ void check_numbers(const Plan& plan, const ChoiceProblem& problem, const std::ve
     findings.compare("bound", plan.bound, bound, agree(criterion, plan.bound, bound));
     const auto nuisance = static_cast<Index>(problem.options.nuisance.size());
     const double actual =
-        efficiency(criterion, value, bound, problem.blocks.parameter_count() - nuisance);
+        detail::efficiency(criterion, value, bound, problem.blocks.parameter_count() - nuisance);
     findings.compare("efficiency", plan.efficiency, actual,
                      std::abs(plan.efficiency - actual) <= 1e-8);
 }

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
+#include "../../src/planner/tour.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/planner/tour.hpp"
 #include "support/cell_recheck.hpp"
 #include "support/fanuc_planning.hpp"
 #include "support/parameter_error.hpp"
@@ -16,6 +16,7 @@
 namespace posewise {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 io::CampaignFile demo() {

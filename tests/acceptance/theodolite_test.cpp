@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "../../src/jacobian/pose_information.hpp"
+#include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
@@ -12,9 +14,7 @@
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/io/plan_file.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/jacobian/pose_information.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/model/sampling.hpp"
 #include "posewise/task/verification.hpp"
 #include "support/derivative_check.hpp"
 #include "support/robots.hpp"
@@ -23,6 +23,7 @@
 namespace posewise {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 constexpr double arc_second = degree / 3600;

@@ -4,7 +4,8 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "posewise/calibrator/global_identification.hpp"
+#include "../../src/calibrator/global_identification.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/measurement/simulation.hpp"
@@ -17,6 +18,8 @@
 /// POSEWISE_BENCHMARK_ROBOTS: how many robots (default 1000).
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 Index robot_count() {
     const char* const text = std::getenv("POSEWISE_BENCHMARK_ROBOTS");

@@ -2,12 +2,14 @@
 // (target: at most 2 us on one core) and by central differences as the reference.
 #include <benchmark/benchmark.h>
 
+#include "../../src/model/sampling.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 /// A campaign and configurations enough to defeat the branch predictor.
 struct Scene {

@@ -2,11 +2,15 @@
 // values), the same by central differences as the reference, and one whole refinement.
 #include <benchmark/benchmark.h>
 
+#include "../../src/planner/plan_space.hpp"
+#include "../../src/planner/refinement.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "support/fanuc_planning.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 struct Scene {
     Campaign campaign = testing::fanuc_planning_campaign();

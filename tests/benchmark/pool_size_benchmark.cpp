@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cstdlib>
 
+#include "../../src/selection/bound.hpp"
 #include "../../src/selection/relaxation.hpp"
-#include "posewise/selection/bound.hpp"
 #include "support/fanuc_pool.hpp"
 
 /// Cost of the whole selection against the number of candidates N, up from the smallest so that the
@@ -13,6 +13,8 @@
 /// with POSEWISE_BENCHMARK_MILLION set.
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 double peak_memory_mib() {
     rusage usage{};

@@ -9,6 +9,8 @@
 namespace posewise {
 namespace {
 
+using namespace detail;
+
 struct Setting {
     Blocks pool;
     MatrixXd X = pool.matrix;

@@ -3,16 +3,18 @@
 #include <Eigen/Cholesky>
 #include <numeric>
 
+#include "../../src/core/sensitivities.hpp"
+#include "../../src/selection/bound.hpp"
 #include "../../src/selection/gains.hpp"
 #include "../../src/selection/relaxation.hpp"
-#include "posewise/core/sensitivities.hpp"
-#include "posewise/selection/bound.hpp"
 #include "support/fanuc_pool.hpp"
 
 /// Speed of selection on pools of the FANUC robot (blocks of 9 x 33), each kernel beside a plain
 /// reference that does the same work with Eigen alone.
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 std::vector<Index> indices_below(Index count) {
     std::vector<Index> indices(static_cast<std::size_t>(count));

@@ -2,17 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 #include "support/sweep.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using testing::degree;
 using testing::tracked_campaign;

@@ -1,19 +1,22 @@
-#include "posewise/calibrator/global_identification.hpp"
+#include "../../src/calibrator/global_identification.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "../../src/model/sampling.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 #include "support/sweep.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using testing::degree;
 using testing::tracked_campaign;

@@ -5,15 +5,17 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 #include "support/parameter_error.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using testing::error_of;
 using testing::tracked_campaign;

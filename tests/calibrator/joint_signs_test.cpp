@@ -1,18 +1,20 @@
-#include "posewise/calibrator/joint_signs.hpp"
+#include "../../src/calibrator/joint_signs.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "../../src/model/sampling.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 #include "support/sweep.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using testing::tracked_campaign;
 

@@ -4,18 +4,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 #include "support/parameter_error.hpp"
 
 /// Calibration from measurements that do not show every target in every sample.
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using testing::error_of;
 using testing::hide_at_random;

@@ -5,15 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using testing::tracked_campaign;
 

@@ -2,15 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 #include "support/sweep.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using testing::tracked_campaign;
 

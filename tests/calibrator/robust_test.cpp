@@ -5,17 +5,20 @@
 #include <cmath>
 #include <functional>
 
+#include "../../src/calibrator/loss.hpp"
+#include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 #include "support/parameter_error.hpp"
 
 /// Calibration by robust losses, of measurements with gross errors and without.
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using testing::error_of;
 using testing::tracked_campaign;

@@ -2,17 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/sweep.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 /// The campaign with what it can identify of the FANUC's geometry.

@@ -1,4 +1,4 @@
-#include "posewise/core/checksum.hpp"
+#include "../../src/core/checksum.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,8 @@
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 std::string checksum_of(const RowMatrixXd& matrix) {
     Checksum checksum;

@@ -1,8 +1,8 @@
-#include "posewise/core/ending.hpp"
-
 #include <gtest/gtest.h>
 
 #include <set>
+
+#include "posewise/core/progress.hpp"
 
 namespace posewise {
 namespace {

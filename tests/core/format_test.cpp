@@ -1,4 +1,4 @@
-#include "posewise/core/format.hpp"
+#include "../../src/core/format.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,8 @@
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 TEST(FormatMm, PrintsMillimetresAndNoNegativeZero) {
     EXPECT_EQ(format_mm(1.23456e-3), "1.2346");

@@ -1,4 +1,4 @@
-#include "posewise/core/parallel.hpp"
+#include "../../src/core/parallel.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,8 @@
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 TEST(ForEachIndex, VisitsEveryIndexOnce) {
     for (const Index count : {0, 1, 2, 1000}) {

@@ -1,14 +1,15 @@
-#include "posewise/core/progress.hpp"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 #include <vector>
 
-#include "posewise/core/parallel.hpp"
+#include "../../src/core/parallel.hpp"
+#include "../../src/core/progress_counter.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 TEST(ProgressCounter, TellsOfEveryPartOnceAndInOrder) {
     std::vector<Progress> told;

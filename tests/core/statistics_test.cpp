@@ -1,4 +1,4 @@
-#include "posewise/core/statistics.hpp"
+#include "../../src/core/statistics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,8 @@
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using enum QuantileRule;
 

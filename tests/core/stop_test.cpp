@@ -1,10 +1,9 @@
-#include "posewise/core/stop.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/core/progress.hpp"
 
 namespace posewise {
 namespace {

@@ -1,9 +1,11 @@
-#include "posewise/core/text.hpp"
+#include "../../src/core/text.hpp"
 
 #include <gtest/gtest.h>
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 TEST(EscapeControls, LeavesOneHarmlessLine) {
     EXPECT_EQ(escape_controls("a\nb\x1b[31m\x7f"), "a\\x0ab\\x1b[31m\\x7f");

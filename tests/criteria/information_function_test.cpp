@@ -1,4 +1,4 @@
-#include "posewise/criteria/information_function.hpp"
+#include "../../src/criteria/information_function.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,8 @@
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Index L = 5;

@@ -1,4 +1,4 @@
-#include "posewise/criteria/objective.hpp"
+#include "../../src/criteria/objective.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,8 @@
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 

@@ -1,4 +1,4 @@
-#include "posewise/io/atomic_file.hpp"
+#include "../../src/io/atomic_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,8 @@
 
 namespace posewise::io {
 namespace {
+
+using namespace detail;
 
 using testing::input_error_of;
 using testing::TemporaryFolder;

@@ -6,7 +6,7 @@
 
 #include "campaign_text.hpp"
 #include "posewise/jacobian/identifiability.hpp"
-#include "posewise/measurement/point_sensor.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {

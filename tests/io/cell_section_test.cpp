@@ -2,7 +2,7 @@
 
 #include "campaign_text.hpp"
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/measurement/point_sensor.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "support/cells.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "../../src/model/complete_model.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/dh_file.hpp"
 #include "posewise/jacobian/identifiability.hpp"
-#include "posewise/model/complete_model.hpp"
 #include "support/robots.hpp"
 #include "support/slips.hpp"
 #include "support/sweep.hpp"
@@ -11,6 +11,8 @@
 
 namespace posewise::io {
 namespace {
+
+using namespace detail;
 
 using testing::degree;
 using testing::input_error_of;

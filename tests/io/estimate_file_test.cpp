@@ -4,13 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "../../src/io/atomic_file.hpp"
 #include "campaign_text.hpp"
-#include "posewise/io/atomic_file.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
 namespace {
+
+using namespace detail;
 
 using Json = nlohmann::json;
 

@@ -1,4 +1,4 @@
-#include "posewise/io/groups_file.hpp"
+#include "../../src/io/groups_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,8 @@
 
 namespace posewise::io {
 namespace {
+
+using namespace detail;
 
 class ReadGroups : public ::testing::Test {
   protected:

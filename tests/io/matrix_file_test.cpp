@@ -1,4 +1,4 @@
-#include "posewise/io/matrix_file.hpp"
+#include "../../src/io/matrix_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,8 @@
 
 namespace posewise::io {
 namespace {
+
+using namespace detail;
 
 using testing::input_error_of;
 

@@ -5,14 +5,16 @@
 #include <limits>
 #include <numbers>
 
+#include "../../src/io/atomic_file.hpp"
 #include "campaign_text.hpp"
-#include "posewise/io/atomic_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "support/slips.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
 namespace {
+
+using namespace detail;
 
 using testing::input_error_of;
 using testing::replaced;

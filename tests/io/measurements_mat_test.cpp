@@ -1,13 +1,15 @@
 #include <gtest/gtest.h>
 
+#include "../../src/io/atomic_file.hpp"
 #include "campaign_text.hpp"
 #include "mat_writer.hpp"
-#include "posewise/io/atomic_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
 namespace {
+
+using namespace detail;
 
 using testing::input_error_of;
 using testing::TemporaryFolder;

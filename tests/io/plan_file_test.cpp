@@ -4,14 +4,16 @@
 
 #include <filesystem>
 
+#include "../../src/io/atomic_file.hpp"
 #include "campaign_text.hpp"
 #include "posewise/core/version.hpp"
-#include "posewise/io/atomic_file.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
 namespace {
+
+using namespace detail;
 
 using testing::input_error_of;
 using testing::TemporaryFolder;

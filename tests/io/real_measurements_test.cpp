@@ -3,12 +3,14 @@
 #include <cmath>
 #include <filesystem>
 
-#include "posewise/io/atomic_file.hpp"
+#include "../../src/io/atomic_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
 namespace {
+
+using namespace detail;
 
 /// The measured campaign of the FANUC R-2000iC/165F, which is not part of the repository.
 class FanucMeasurements : public ::testing::Test {

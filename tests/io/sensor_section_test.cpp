@@ -3,9 +3,7 @@
 #include <numbers>
 
 #include "posewise/io/measurements_file.hpp"
-#include "posewise/measurement/point_sensor.hpp"
-#include "posewise/measurement/pose_sensor.hpp"
-#include "posewise/measurement/scalar_sensor.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "support/slips.hpp"
 #include "support/temporary_folder.hpp"

@@ -2,15 +2,15 @@
 
 #include <sstream>
 
+#include "../../src/model/complete_model.hpp"
+#include "../../src/model/sampling.hpp"
 #include "campaign_text.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/model/complete_model.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/sweep.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/urdf_text.hpp"
@@ -18,6 +18,7 @@
 namespace posewise::io {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 std::string vector_text(const Vector3d& v) {

@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "posewise/model/complete_model.hpp"
+#include "../../src/model/complete_model.hpp"
 #include "posewise/model/transforms.hpp"
 #include "support/slips.hpp"
 #include "support/sweep.hpp"
@@ -14,6 +14,7 @@
 namespace posewise::io {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 /// A column that slides, an arm behind a fixed joint, a wrist; a finger that mimics beside the way.

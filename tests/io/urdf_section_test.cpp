@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "../../src/model/complete_model.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/jacobian/identifiability.hpp"
-#include "posewise/model/complete_model.hpp"
 #include "posewise/model/transforms.hpp"
 #include "support/robots.hpp"
 #include "support/slips.hpp"
@@ -15,6 +15,7 @@
 namespace posewise::io {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 const std::string sensor_text = "sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n";

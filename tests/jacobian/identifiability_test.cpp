@@ -5,14 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../../src/model/complete_model.hpp"
+#include "../../src/model/sampling.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/model/complete_model.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using testing::driven;
 using testing::rotation;

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "../../src/measurement/noise.hpp"
+#include "../../src/model/sampling.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/noise.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 #include "support/derivative_check.hpp"
 #include "support/sweep.hpp"
@@ -16,6 +16,7 @@
 namespace posewise {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 TEST(DifferentiatePose, AgreesWithDifferencesInAll33ColumnsOfTheFanuc) {

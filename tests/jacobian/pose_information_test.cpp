@@ -1,13 +1,13 @@
-#include "posewise/jacobian/pose_information.hpp"
+#include "../../src/jacobian/pose_information.hpp"
 
 #include <gtest/gtest.h>
 
+#include "../../src/measurement/noise.hpp"
+#include "../../src/model/complete_model.hpp"
+#include "../../src/model/sampling.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/measurement/noise.hpp"
-#include "posewise/model/complete_model.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 #include "support/derivative_check.hpp"
 #include "support/sensors.hpp"
@@ -16,6 +16,7 @@
 namespace posewise {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 /// Both motions about and along every axis, driven, coupled and fixed, each with a parameter.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "posewise/measurement/scalar_sensor.hpp"
+#include "posewise/measurement/sensors.hpp"
 
 namespace posewise {
 namespace {

@@ -1,4 +1,4 @@
-#include "posewise/measurement/noise.hpp"
+#include "../../src/measurement/noise.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,8 @@
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 Campaign one_target_campaign(double sigma, double model_error) {
     Campaign campaign = testing::tracked_campaign(testing::fanuc());

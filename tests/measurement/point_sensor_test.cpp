@@ -1,11 +1,10 @@
-#include "posewise/measurement/point_sensor.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <numbers>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/sensors.hpp"
 
 namespace posewise {
 namespace {

@@ -2,14 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include "../../src/measurement/noise.hpp"
+#include "../../src/model/sampling.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/noise.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 
 namespace posewise {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 /// Bounds that a chi-square sum over n degrees of freedom, divided by n, leaves once in 15000.

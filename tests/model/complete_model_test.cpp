@@ -1,4 +1,4 @@
-#include "posewise/model/complete_model.hpp"
+#include "../../src/model/complete_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 namespace posewise {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 TEST(CompleteModel, GivesEveryJointItsFiveErrors) {

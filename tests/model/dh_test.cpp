@@ -4,13 +4,14 @@
 
 #include <numbers>
 
-#include "posewise/model/complete_model.hpp"
+#include "../../src/model/complete_model.hpp"
 #include "support/robots.hpp"
 #include "support/sweep.hpp"
 
 namespace posewise {
 namespace {
 
+using namespace detail;
 using namespace testing;
 using Eigen::Matrix4d;
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "../../src/model/sampling.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/derivative_check.hpp"
 #include "support/robots.hpp"
 #include "support/sweep.hpp"
@@ -11,6 +11,7 @@
 namespace posewise {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 constexpr auto R = Motion::Rotation;

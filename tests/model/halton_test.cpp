@@ -1,4 +1,4 @@
-#include "posewise/model/halton.hpp"
+#include "../../src/model/halton.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,8 @@
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using testing::degree;
 using testing::fanuc;

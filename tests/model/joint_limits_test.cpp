@@ -1,9 +1,11 @@
-#include "posewise/model/joint_limits.hpp"
+#include "../../src/model/joint_limits.hpp"
 
 #include <gtest/gtest.h>
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 TEST(DescribeLimitViolation, NamesTheFirstJointBeyondItsLimits) {
     const Element turn{Motion::Rotation, Axis::Z, 0, {{0, 1}}};

@@ -1,4 +1,4 @@
-#include "posewise/model/sampling.hpp"
+#include "../../src/model/sampling.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,8 @@
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using testing::fanuc;
 

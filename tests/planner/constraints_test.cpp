@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "../../src/model/halton.hpp"
 #include "posewise/core/errors.hpp"
 #include "support/cells.hpp"
 #include "support/sweep.hpp"
@@ -11,6 +12,7 @@
 namespace posewise {
 namespace {
 
+using namespace detail;
 using testing::cell_campaign;
 using testing::degree;
 using testing::demo_cell;

@@ -1,4 +1,4 @@
-#include "posewise/planner/order.hpp"
+#include "../../src/planner/order.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,8 @@
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 

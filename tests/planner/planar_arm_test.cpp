@@ -2,14 +2,16 @@
 
 #include <numbers>
 
+#include "../../src/planner/refinement.hpp"
 #include "posewise/core/random.hpp"
-#include "posewise/planner/refinement.hpp"
 #include "support/designs.hpp"
 
 /// The planar n-link arm with x and y measured (parameters: lengths, joint offsets), whose optimal
 /// plans are known in closed form.
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 constexpr double pi = std::numbers::pi;
 

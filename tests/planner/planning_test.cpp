@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "../../src/criteria/objective.hpp"
+#include "../../src/planner/plan_space.hpp"
+#include "../../src/planner/refinement.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "support/fanuc_planning.hpp"
@@ -10,6 +13,7 @@
 namespace posewise {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 struct Scene {

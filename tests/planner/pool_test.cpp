@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "../../src/model/halton.hpp"
 #include "posewise/core/errors.hpp"
 #include "support/cell_recheck.hpp"
 #include "support/cells.hpp"
@@ -10,6 +11,7 @@
 namespace posewise {
 namespace {
 
+using namespace detail;
 using testing::cell_campaign;
 using testing::CellRecheck;
 using testing::degree;

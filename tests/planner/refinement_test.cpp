@@ -1,4 +1,4 @@
-#include "posewise/planner/refinement.hpp"
+#include "../../src/planner/refinement.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 namespace posewise {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 /// Each criterion of a whole plan, those with kinks smoothed, by one pose of it.

@@ -1,7 +1,8 @@
-#include "posewise/planner/tour.hpp"
+#include "../../src/planner/tour.hpp"
 
 #include <gtest/gtest.h>
 
+#include "../../src/model/halton.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/planner/pool.hpp"
 #include "support/cells.hpp"
@@ -9,6 +10,8 @@
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using testing::cell_campaign;
 using testing::degree;

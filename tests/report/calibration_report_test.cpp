@@ -1,8 +1,7 @@
-#include "posewise/report/calibration_report.hpp"
-
 #include <gtest/gtest.h>
 
 #include "posewise/measurement/simulation.hpp"
+#include "posewise/report/reports.hpp"
 #include "support/campaigns.hpp"
 
 namespace posewise {

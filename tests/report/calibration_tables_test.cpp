@@ -1,4 +1,4 @@
-#include "posewise/report/calibration_tables.hpp"
+#include "../../src/report/calibration_tables.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,8 @@
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 using Row = std::vector<std::string>;
 

@@ -1,16 +1,18 @@
-#include "posewise/report/study_report.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
+#include "../../src/report/plot.hpp"
+#include "../../src/report/study_table.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/report/plot.hpp"
+#include "posewise/report/reports.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 StudyCase identified(std::vector<Index> poses, double rms, double max) {
     StudyCase result;

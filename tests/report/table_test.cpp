@@ -1,9 +1,11 @@
-#include "posewise/report/table.hpp"
+#include "../../src/report/table.hpp"
 
 #include <gtest/gtest.h>
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 TEST(FormatTable, AlignsNumbersRightAndTextLeft) {
     const Table table{{"name", "RMS/mm"}, {{"x", "1.5"}, {"distance", "-"}, {"y", "-12.25"}}};

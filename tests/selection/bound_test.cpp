@@ -1,4 +1,4 @@
-#include "posewise/selection/bound.hpp"
+#include "../../src/selection/bound.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +12,8 @@
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 

@@ -6,12 +6,14 @@
 #include <array>
 #include <cmath>
 
+#include "../../src/selection/bound.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/selection/bound.hpp"
 #include "support/designs.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 SelectOptions make_options(Criterion criterion, Index pose_count) {
     SelectOptions options;

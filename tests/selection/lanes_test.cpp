@@ -5,12 +5,14 @@
 #include <Eigen/Cholesky>
 #include <numeric>
 
+#include "../../src/core/sensitivities.hpp"
 #include "../../src/selection/projected_gradient.hpp"
-#include "posewise/core/sensitivities.hpp"
 #include "support/designs.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 std::vector<Index> indices_below(Index count) {
     std::vector<Index> indices(static_cast<std::size_t>(count));

@@ -10,6 +10,8 @@
 namespace posewise {
 namespace {
 
+using namespace detail;
+
 /// Exchanges of one of the first K candidates for any other, and their values.
 struct Exchanges {
     Blocks candidates;

@@ -7,6 +7,8 @@
 namespace posewise {
 namespace {
 
+using namespace detail;
+
 /// Members 7, 2 and then 100 more, compared with sums over the candidates themselves.
 TEST(WorkingSet, MatchesSumsOverItsMembers) {
     const Blocks candidates = test::random_blocks(120, 3, 5, 1);

@@ -6,7 +6,7 @@
 #include "posewise/core/random.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
-#include "posewise/measurement/point_sensor.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "support/robots.hpp"
 
 namespace posewise::testing {

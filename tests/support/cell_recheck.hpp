@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/measurement/point_sensor.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "posewise/model/cell.hpp"
 #include "support/robots.hpp"
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/measurement/point_sensor.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "posewise/model/cell.hpp"
 #include "support/robots.hpp"
 

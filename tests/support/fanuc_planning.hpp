@@ -1,6 +1,6 @@
 #pragma once
 
-#include "posewise/model/halton.hpp"
+#include "../../src/model/halton.hpp"
 #include "posewise/planner/planning.hpp"
 #include "posewise/planner/prediction.hpp"
 #include "support/campaigns.hpp"
@@ -35,13 +35,13 @@ inline Campaign fanuc_planning_campaign() {
 }
 
 inline RowMatrixXd fanuc_workspace(Index count = 500) {
-    return halton_configurations(fanuc_in_workspace(), count,
-                                 {{17, 19, 23, 29, 31, 37}, 201, std::nullopt});
+    return detail::halton_configurations(fanuc_in_workspace(), count,
+                                         {{17, 19, 23, 29, 31, 37}, 201, std::nullopt});
 }
 
 inline RowMatrixXd fanuc_pool(Index count) {
-    return halton_configurations(fanuc_in_workspace(), count,
-                                 {{2, 3, 5, 7, 11, 13}, 1, std::nullopt});
+    return detail::halton_configurations(fanuc_in_workspace(), count,
+                                         {{2, 3, 5, 7, 11, 13}, 1, std::nullopt});
 }
 
 }  // namespace posewise::testing

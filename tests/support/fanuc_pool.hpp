@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "../../src/model/sampling.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/measurement/point_sensor.hpp"
-#include "posewise/model/sampling.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "support/robots.hpp"
 
 namespace posewise::testing {
@@ -21,7 +21,7 @@ inline Blocks fanuc_pool(Index count, std::uint64_t seed) {
     campaign.nominal.sensor.resize(9);
     campaign.nominal.sensor << 0.28, 0.05, 0.1, 0.2, -0.15, 0.08, 0.15, 0.1, -0.2;
     return make_blocks(campaign, campaign.nominal,
-                       random_configurations(campaign.robot, count, seed));
+                       detail::random_configurations(campaign.robot, count, seed));
 }
 
 }  // namespace posewise::testing

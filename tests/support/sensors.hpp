@@ -1,7 +1,6 @@
 #pragma once
 
-#include "posewise/measurement/pose_sensor.hpp"
-#include "posewise/measurement/scalar_sensor.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "support/campaigns.hpp"
 
 namespace posewise::testing {

@@ -2,14 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include "../../src/model/sampling.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/model/sampling.hpp"
 #include "support/campaigns.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise {
 namespace {
+
+using namespace detail;
 
 TEST(CorrectPoses, BringsTheRobotWhereTheNominalOneWouldBe) {
     const Campaign campaign = testing::tracked_campaign(testing::fanuc());

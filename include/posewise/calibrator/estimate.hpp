@@ -2,14 +2,35 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "posewise/calibrator/loss.hpp"
-#include "posewise/core/ending.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 
 namespace posewise {
+
+/// How much a large residual counts. All agree on small ones, where the loss is u^2.
+enum class LossKind {
+    Squares,  ///< u^2: best for normal errors, at the mercy of one bad point
+    Huber,    ///< grows as |u| beyond the width: one optimum, gross errors still pull a little
+    Cauchy,   ///< width^2 log(1 + (u / width)^2): gross errors hardly pull at all
+};
+std::string_view loss_name(LossKind kind);
+
+/// The loss of the length u of one target's residual, in standard deviations of one coordinate.
+struct Loss {
+    LossKind kind = LossKind::Squares;
+    double width = 0;  ///< where it leaves u^2, in standard deviations; not looked at for squares
+
+    double value(double u) const;
+    /// Part with which the residual counts in the weighted least squares with the same gradient:
+    /// value'(u) / 2u, from 1 down.
+    double weight(double u) const;
+    /// Rate of weight(u) u.
+    double influence_rate(double u) const;
+};
 
 /// Residual metrics over targets seen: distances between observed and predicted points, or by how
 /// much measured lengths are off (m), and by how much orientations are (rad). For points the ten
@@ -61,7 +82,8 @@ struct Estimate {
     Metrics fit;        ///< all samples
     Metrics fit_means;  ///< means of each configuration
     Loss loss;          ///< as used
-    /// Under a robust loss: targets farther off than outlier_length(), in the measurements' order.
+    /// Under a robust loss: targets farther off than normal errors are in 3e-5 of cases, in the
+    /// measurements' order.
     std::vector<Outlier> outliers;
 };
 

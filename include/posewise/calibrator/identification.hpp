@@ -1,14 +1,16 @@
 #pragma once
 
+#include <cstdint>
+#include <numbers>
+
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/core/progress.hpp"
-#include "posewise/core/stop.hpp"
 
 namespace posewise {
 
 /// Under a robust loss each target of a configuration's mean counts as loss(u), u the length of its
 /// whitened residual in robust standard deviations: those stated times s, s = median length /
-/// median_length() * sqrt(equations / degrees of freedom), so that noise stated wrong does not make
+/// normal errors' * sqrt(equations / degrees of freedom), so that noise stated wrong does not make
 /// outliers. s is found together with the parameters; s^2 is the estimate's variance factor. The
 /// weighted least squares J^T W J of the optimum give the covariance f (J^T W J)^-1,
 /// f = sum |w r|^2 / dof * mean(w) / mean(((w u)' + (p - 1) w) / p)^2 for p rows a target
@@ -17,7 +19,7 @@ struct LevenbergMarquardtOptions {
     Index iteration_limit = 100;
     double relative_tolerance =
         1e-12;             ///< predicted relative fall of the sum of squares to stop at
-    Loss loss = {};        ///< width 0: default_width()
+    Loss loss = {};        ///< width 0: 95 % of the efficiency of squares on normal errors
     StopSignal stop = {};  ///< ends it with the best so far
 };
 
@@ -62,5 +64,37 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
                                const Parameters& start, Index folds,
                                const LevenbergMarquardtOptions& options = {},
                                const ProgressCallback& progress = {});
+
+/// Where the starts of a global identification are: anywhere, or where a population search, over
+/// the robot's errors alone with base and targets registered for each, has found its best.
+enum class StartSearch { Random, Crs2, Esch, Isres, CmaEs };
+
+/// How far the nominal robot may be off, and how hard to search.
+struct GlobalOptions {
+    double length_share = 0.3;                   ///< error of a length, as part of it
+    double least_length = 0.05;                  ///< m; that of any length at least
+    double angle = 20 * std::numbers::pi / 180;  ///< error of an angle, rad
+    StartSearch search = StartSearch::Random;
+    Index evaluation_limit = 20000;  ///< of one population search
+    Index start_limit = 200;
+    Index agreeing_starts = 3;  ///< stop when so many ended at the best sum of squares
+    std::uint64_t seed = 1;     ///< start i draws from stream (seed, i)
+    LevenbergMarquardtOptions start_options{};  ///< of each start; its loss must be squares
+    ProgressCallback progress{};  ///< of the starts; agreeing ones end them before the total
+};
+
+struct GlobalEstimate {
+    Estimate estimate;  ///< the best
+    Index starts = 0;
+    Index starts_at_best = 0;  ///< one alone: there may be better ones
+};
+
+/// Identification of a robot whose nominal parameters are far off: identify() from the nominal
+/// robot and from others within the bounds, base and targets registered anew for each. The
+/// same for any number of threads. Ends NotIdentifiable where every start does, as the first.
+/// Throws InputError as identify() does, for options out of range, and where the spread is a prior,
+/// since that says errors are small.
+GlobalEstimate identify_globally(const Campaign& campaign, const Measurements& measurements,
+                                 const GlobalOptions& options = {});
 
 }  // namespace posewise

@@ -1,12 +1,53 @@
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <functional>
 #include <limits>
-#include <mutex>
+#include <string_view>
 
 #include "posewise/core/types.hpp"
 
+/// How a long computation is watched, stopped early, and how it ended.
 namespace posewise {
+
+/// How something that iterates or searches ended. Whatever stopped it, its result is the best met.
+enum class Ending {
+    NotRun,
+    Converged,        ///< nothing near improves it any more
+    Optimal,          ///< all choices that could be better were ruled out or tried: none is
+    RoundoffLimited,  ///< no step improves beyond rounding: as good as converged
+    IterationLimit,   ///< still improving: usable, not the optimum
+    Stalled,          ///< no step improves although the gradient is not zero
+    TimeLimit,        ///< the best so far when the time was up
+    Interrupted,      ///< the best so far when the caller asked to stop
+    NotIdentifiable,  ///< the data leave a direction of the parameters open
+    Failed,           ///< the optimiser gave up
+};
+
+/// In words, "time limit".
+std::string_view ending_name(Ending ending);
+
+/// What makes a long computation stop early, with the best found so far. With a deadline, results
+/// depend on the machine.
+struct StopSignal {
+    const std::atomic<bool>* interrupted = nullptr;  ///< set by a signal handler or another thread
+    std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
+
+    bool is_interrupted() const { return interrupted != nullptr && interrupted->load(); }
+    bool is_late() const {
+        return deadline != std::chrono::steady_clock::time_point::max() &&
+               std::chrono::steady_clock::now() >= deadline;
+    }
+    bool is_set() const { return is_interrupted() || is_late(); }
+    /// With half of the time that is left.
+    StopSignal with_half_the_time() const;
+    /// Interrupted or TimeLimit if it is set, else `ending`.
+    Ending ending_or(Ending ending) const;
+};
+
+/// The deadline `seconds` from now; 0: none. Throws InputError for less than 0.
+std::chrono::steady_clock::time_point deadline_after(double seconds);
 
 /// How far a long computation has come, in parts of it (starts, folds, cases). Computations fill
 /// in what they know.
@@ -20,33 +61,5 @@ struct Progress {
 
 /// Called from one thread at a time. What it throws ends the computation and reaches its caller.
 using ProgressCallback = std::function<void(const Progress&)>;
-
-/// Counts the parts that are done, whichever thread did them, and tells the callback.
-class ProgressCounter {
-  public:
-    /// The callback may be empty; it must live as long as the counter.
-    ProgressCounter(const ProgressCallback& callback, const Progress& begin)
-        : callback_(callback), progress_(begin) {}
-    ProgressCounter(const ProgressCallback& callback, Index total)
-        : ProgressCounter(callback, Progress{.total = total}) {}
-
-    /// One more part is done; `update(Progress&)` states what else is new.
-    template <typename Update>
-    void count(const Update& update) {
-        if (!callback_) return;
-        const std::lock_guard lock(mutex_);
-        ++progress_.done;
-        update(progress_);
-        callback_(progress_);
-    }
-    void count() {
-        count([](Progress&) {});
-    }
-
-  private:
-    const ProgressCallback& callback_;
-    Progress progress_;
-    std::mutex mutex_;
-};
 
 }  // namespace posewise

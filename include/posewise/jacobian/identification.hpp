@@ -28,7 +28,7 @@ Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
 Blocks make_position_blocks(const Campaign& campaign, const Parameters& parameters,
                             const RowMatrixXd& configurations);
 
-/// make_plain_blocks() whitened by the noise of means (see mean_covariance()) over so many
+/// make_plain_blocks() whitened by the noise of means (sensor, joints, model) over so many
 /// `repeats` of each target (m x targets) and scaled by parameter_scale(): without units, ready
 /// for criteria and selection.
 Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,

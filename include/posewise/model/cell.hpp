@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "posewise/model/geometry.hpp"
-#include "posewise/model/halton.hpp"
 
 /// What stands around a robot and what it may do there: plain data, every part optional. All
 /// places are in the robot's base frame, where a cell is surveyed; the tracker's comes from the
@@ -50,6 +49,12 @@ struct Sight {
     bool is_line_required = true;
     /// How many targets must be seen at once; nothing: all. A pose measures those it shows.
     std::optional<Index> least_visible;
+};
+
+/// What configurations keep from the joint limits.
+struct JointMargin {
+    double angle = 0;   ///< of revolute joints, rad
+    double length = 0;  ///< of prismatic joints, m
 };
 
 struct Cell {

@@ -1,12 +1,18 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "posewise/planner/pool.hpp"
-#include "posewise/planner/refinement.hpp"
 #include "posewise/selection/exchange.hpp"
 
 namespace posewise {
+
+/// What a plan has besides the poses that are refined: a prior, poses already measured, or both.
+struct HeldPoses {
+    MatrixXd information;        ///< parameters square; empty: none
+    RowMatrixXd configurations;  ///< poses x joints; for the least joint distance
+};
 
 struct PlanOptions {
     Criterion criterion = Criterion::V;
@@ -19,7 +25,7 @@ struct PlanOptions {
     Index held_pose_count = 0;  ///< poses measured; m of O1 is K more
 
     Index starts = 16;           ///< plans that are refined; the first is the best of the pool
-    Index bound_iterations = 8;  ///< of search_bound(); 0: no bound over the continuous region
+    Index bound_iterations = 8;  ///< of searched_bound; 0: no bound over the continuous region
     std::uint64_t seed = 1;      ///< start i draws from stream (seed, i)
     StopSignal stop{};           ///< ends the search with the best so far
     ProgressCallback
@@ -33,10 +39,10 @@ struct PlannedPoses {
     double value = -std::numeric_limits<double>::infinity();
     MatrixXd information;  ///< of held and planned poses together
     Choice pool_choice;    ///< the best choice from the pool, its bound over the pool
-    /// No plan is better, if the search of search_bound() met the global maxima. Infinity:
+    /// No plan is better, if the search for it met the global maxima. Infinity:
     /// not searched (O2, O4), or stopped before.
     double searched_bound = std::numeric_limits<double>::infinity();
-    /// efficiency() of the value against the searched bound; 0 without.
+    /// As Choice::efficiency, of the value against the searched bound; 0 without.
     double efficiency = 0;
     std::vector<Ending> endings;  ///< of each start; NotRun: it identified too little
     Index starts_at_best = 0;     ///< how many starts ended at the best of them, to 1e-6 of it
@@ -44,18 +50,30 @@ struct PlannedPoses {
     std::uint64_t seed = 0;
 };
 
-/// K continuous poses: starts from selection on the pool (the first on all of it, the others on
-/// random parts), each refined by refine_poses() on one thread, the best finished. The result does
-/// not depend on the number of threads. `blocks` are those of `pool` (poses x joints, feasible).
-/// Throws InputError as select_poses(), or if pool and blocks differ in count.
-PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const Blocks& blocks,
-                        const PlanOptions& options);
-
-/// The same for a campaign in a cell, at nominal parameters.
+/// K continuous poses in a cell, at nominal parameters: starts from selection on the pool (the
+/// first on all of it, the others on random parts), each refined continuously on one thread, the
+/// best finished. The result does not depend on the number of threads. Throws InputError as
+/// select_poses(), or if the pool has too few poses.
 PlannedPoses plan_poses(const Campaign& campaign, const Constraints& constraints, const Pool& pool,
                         double repeats, const PlanOptions& options);
 
 /// Columns of base and sensor unknowns: the nuisance if only the robot is of interest.
 std::vector<Index> nuisance_of_robot(const Campaign& campaign);
+
+/// One pose of a tour and how it is reached.
+struct Visit {
+    Index pose = 0;
+    std::optional<VectorXd> via;  ///< configuration to pass on the way, if the straight way is not
+                                  ///< free
+    bool is_blocked = false;      ///< no free way was found: the user must find one
+};
+
+struct Tour {
+    std::vector<Visit> visits;
+    double time = 0;                 ///< s, vias included; a blocked move counts as if it were free
+    double planning_order_time = 0;  ///< of straight moves in the order the poses were given
+    double nearest_neighbour_time = 0;  ///< of straight moves to the nearest pose each
+    Index blocked_count = 0;
+};
 
 }  // namespace posewise

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
+#include "posewise/core/progress.hpp"
 #include "posewise/planner/constraints.hpp"
-#include "posewise/core/stop.hpp"
 
 namespace posewise {
 

@@ -5,17 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "posewise/core/ending.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/criteria/criterion.hpp"
 
 namespace posewise {
 
-/// What proves the bound of a choice: upper_bound() needs nothing else, so it can be verified
+/// What proves the bound of a choice: verify() needs nothing else, so it can be verified
 /// without an optimiser. Any positive definite M proves some bound; the optimum of the continuous
 /// relaxation the best one.
 struct Certificate {
     MatrixXd M;
-    double sharpness = std::numeric_limits<double>::infinity();  ///< Objective::sharpness at M
+    double sharpness =
+        std::numeric_limits<double>::infinity();  ///< of smoothing at M; infinity: none
 };
 
 /// A choice of poses out of candidates.
@@ -33,8 +34,8 @@ struct Choice {
     Index starts = 0;
     Index starts_at_best = 0;  ///< how many independent starts ended at this value
     Ending ending = Ending::NotRun;
-    /// Where the ending is NotIdentifiable, which directions stay open and what would close them, as
-    /// a sentence; then there are no poses.
+    /// Where the ending is NotIdentifiable, which directions stay open and what would close them,
+    /// as a sentence; then there are no poses.
     std::string undetermined;
 };
 

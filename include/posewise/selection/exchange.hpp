@@ -4,7 +4,6 @@
 #include <string>
 
 #include "posewise/core/progress.hpp"
-#include "posewise/core/stop.hpp"
 #include "posewise/selection/choice.hpp"
 
 namespace posewise {

@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 
-#include "posewise/calibrator/global_identification.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/model_selection.hpp"
-#include "posewise/core/stop.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/task/doubts.hpp"
 
 namespace posewise {

@@ -2,7 +2,6 @@
 
 #include "posewise/core/blocks.hpp"
 #include "posewise/core/progress.hpp"
-#include "posewise/core/stop.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/task/plan.hpp"

@@ -6,7 +6,7 @@
 
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/calibrator/registration.hpp"
-#include "posewise/measurement/scalar_sensor.hpp"
+#include "posewise/measurement/sensors.hpp"
 
 /// What looks wrong with measurements and what was identified from them. A doubt stops nothing; it
 /// is what to look at first.
@@ -16,7 +16,7 @@ namespace posewise {
 struct BeyondLimits {
     Index count = 0;
     Index first = 0;        ///< the first of them
-    std::string violation;  ///< its first joint: describe_limit_violation()
+    std::string violation;  ///< its first joint: "q2 is 61 deg, must be from -50 to 60 deg"
 };
 std::optional<BeyondLimits> find_beyond_limits(const Campaign& campaign,
                                                const Measurements& measurements);

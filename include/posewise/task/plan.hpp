@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "posewise/core/ending.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/planner/prediction.hpp"
 #include "posewise/selection/choice.hpp"
@@ -99,7 +99,7 @@ struct Plan {
     double choice_value = -std::numeric_limits<double>::infinity();
     /// Proven: no choice from the candidates has a larger value.
     double bound = std::numeric_limits<double>::infinity();
-    double efficiency = 0;    ///< of choice_value against the bound, see efficiency()
+    double efficiency = 0;    ///< of choice_value against the bound, see Choice::efficiency
     Certificate certificate;  ///< proves the bound; not kept for a pool
 
     // Of continuous plans: by a search, not a proof. Infinity: not searched.

@@ -1,10 +1,8 @@
 #pragma once
 
 #include "posewise/core/progress.hpp"
-#include "posewise/core/stop.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/planner/planning.hpp"
-#include "posewise/planner/tour.hpp"
 #include "posewise/task/plan.hpp"
 
 namespace posewise {

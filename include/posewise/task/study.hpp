@@ -7,7 +7,6 @@
 
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/progress.hpp"
-#include "posewise/core/stop.hpp"
 #include "posewise/criteria/criterion.hpp"
 
 namespace posewise {

@@ -1,0 +1,210 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewise/measurement/point_noise.hpp"
+#include "posewise/measurement/sensor.hpp"
+
+/// The instruments there are; another one is a subclass of Sensor.
+namespace posewise {
+
+/// An instrument that returns the position of n targets fixed to the flange, in its own frame
+/// (laser tracker with SMRs, stereo camera).
+class PointSensor final : public Sensor {
+  public:
+    /// Throws InputError as check_noise() does.
+    PointSensor(Targets targets, PointNoise noise);
+    /// `known_targets[i]` is target i's position in the flange frame (m), or nothing if it is
+    /// unknown. Throws InputError as Targets does.
+    PointSensor(const std::vector<std::optional<Vector3d>>& known_targets, PointNoise noise);
+    /// With isotropic noise of standard deviation sigma (m).
+    PointSensor(const std::vector<std::optional<Vector3d>>& known_targets, double sigma);
+
+    const PointNoise& noise() const { return noise_; }
+    /// Standard deviation of one coordinate of one observation, m (root mean square over the axes;
+    /// a laser tracker's at 3 m).
+    double sigma() const { return coordinate_sigma(noise_, 3); }
+
+    const Targets& targets() const override { return targets_; }
+    Index row_count() const override { return 3 * targets_.count(); }
+    std::vector<std::string> observation_names() const override;
+    std::vector<std::string> unknown_names() const override { return targets_.unknown_names(); }
+    VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const override;
+    void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                       const VectorXd& unknowns,
+                       Eigen::Ref<RowMatrixXd> J_measured_parameters) const override;
+    void differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                             const Twist& direction, const TwistMatrix& twist_rates,
+                             const VectorXd& unknowns,
+                             Eigen::Ref<RowMatrixXd> J_rate) const override;
+    MatrixXd covariance(const Isometry3d& world_from_flange,
+                        const VectorXd& unknowns) const override;
+    MatrixXd covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
+                             const VectorXd& unknowns) const override;
+    bool has_constant_covariance() const override;
+    std::vector<NoiseNumber> noise_numbers() const override;
+    SensorWords words() const override;
+    std::optional<ObservedPoints> observed_points() const override;
+
+  private:
+    Targets targets_;
+    PointNoise noise_;
+};
+
+/// An instrument that returns position and orientation of one body fixed to the flange (a tool or
+/// a six-degree-of-freedom probe) in its own frame. Observations are x, y, z and the rotation
+/// vector; deviations of orientation are rotation vectors in the world. The body's position and its
+/// orientation (rotation vector) in the flange frame are six unknowns, tool.x to tool.rz, or known.
+class PoseSensor final : public Sensor {
+  public:
+    /// `known_tool` is the body in the flange frame. Throws InputError if it is not finite, if
+    /// sigma_orientation (standard deviation of each of the three angles, rad) is not finite or
+    /// below 1e-15, or as check_noise() does.
+    PoseSensor(std::optional<Isometry3d> known_tool, PointNoise position_noise,
+               double sigma_orientation);
+
+    const PointNoise& noise() const { return noise_; }
+    double sigma_orientation() const { return sigma_orientation_; }
+    /// The body in the flange frame.
+    Isometry3d tool(const VectorXd& unknowns) const;
+
+    /// The origin of the body.
+    const Targets& targets() const override { return origin_; }
+    Index row_count() const override { return 6; }
+    std::vector<std::string> observation_names() const override;
+    bool is_angle(Index row) const override { return row >= 3; }
+    bool has_orientation() const override { return true; }
+    std::vector<std::string> unknown_names() const override;
+    std::vector<bool> unknown_is_angle() const override;
+    VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const override;
+    VectorXd deviation(const VectorXd& observation, const VectorXd& reference) const override;
+    VectorXd deviate(const VectorXd& reference, const VectorXd& deviation) const override;
+    void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                       const VectorXd& unknowns,
+                       Eigen::Ref<RowMatrixXd> J_measured_parameters) const override;
+    void differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                             const Twist& direction, const TwistMatrix& twist_rates,
+                             const VectorXd& unknowns,
+                             Eigen::Ref<RowMatrixXd> J_rate) const override;
+    MatrixXd covariance(const Isometry3d& world_from_flange,
+                        const VectorXd& unknowns) const override;
+    MatrixXd covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
+                             const VectorXd& unknowns) const override;
+    bool has_constant_covariance() const override;
+    std::vector<NoiseNumber> noise_numbers() const override;
+    SensorWords words() const override;
+    /// Four points of the body: its origin and one on each axis.
+    std::optional<ObservedPoints> observed_points() const override;
+
+  private:
+    std::optional<Isometry3d> known_tool_;
+    Targets origin_;  ///< of the body: a target whose unknowns are tool.x to tool.z
+    PointNoise noise_;
+    double sigma_orientation_;
+};
+
+/// A tool as the six unknowns of a PoseSensor.
+VectorXd tool_unknowns(const Isometry3d& flange_from_tool);
+
+/// An instrument with features fixed in the world (anchors, planes), that returns one length of a
+/// target at a feature. What is seen or missed is such a pair: those of the first target come
+/// first. Every length has the same standard deviation.
+class ScalarSensor : public Sensor {
+  public:
+    double sigma() const { return sigma_; }
+
+    const Targets& targets() const final { return targets_; }
+    Index row_count() const final { return targets_.count() * feature_count_; }
+    Index target_count() const final { return row_count(); }
+    std::vector<std::string> observation_names() const final;
+    VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const final;
+    void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                       const VectorXd& unknowns,
+                       Eigen::Ref<RowMatrixXd> J_measured_parameters) const final;
+    void differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                             const Twist& direction, const TwistMatrix& twist_rates,
+                             const VectorXd& unknowns, Eigen::Ref<RowMatrixXd> J_rate) const final;
+    MatrixXd covariance(const Isometry3d&, const VectorXd&) const final;
+    bool has_constant_covariance() const final { return true; }
+    std::vector<NoiseNumber> noise_numbers() const final { return {{"sigma_m", {sigma_}}}; }
+    SensorWords words() const final;
+
+  protected:
+    /// A length as a function of the target's position x in the world and of the feature.
+    struct Length {
+        double value = 0;
+        Vector3d gradient;       ///< by x
+        Matrix3d gradient_by_x;  ///< derivative of the gradient by x
+        Vector3d by_feature;     ///< by the feature's three unknowns
+        Matrix3d feature_by_x;   ///< row k: derivative of by_feature[k] by x
+    };
+    /// Throws InputError if there is no feature, or sigma (m) is not finite or below 1e-15.
+    ScalarSensor(Targets targets, Index feature_count, bool are_known, std::string letter,
+                 double sigma);
+    /// "anchors", "planes".
+    virtual std::string features() const = 0;
+    virtual Length measure(const Vector3d& x, Index feature, const VectorXd& unknowns) const = 0;
+
+    Index feature_count() const { return feature_count_; }
+    bool are_known() const { return are_known_; }
+    /// Index of a feature's first unknown; they follow the targets'.
+    Index unknown_index(Index feature) const { return targets_.unknown_count() + 3 * feature; }
+
+  private:
+    Targets targets_;
+    Index feature_count_;
+    bool are_known_;
+    std::string letter_;  ///< of a feature in observation names
+    double sigma_;
+};
+
+/// Distances of n targets from anchors fixed in the world (draw-wires, ball-bars), m. Anchors'
+/// positions are known or three unknowns each, anchor1.x, ...
+class DistanceSensor final : public ScalarSensor {
+  public:
+    /// `anchors`: positions in the world (m), not looked at if unknown. Throws InputError as
+    /// ScalarSensor does, or if one that is known is not finite.
+    DistanceSensor(Targets targets, std::vector<Vector3d> anchors, bool are_known, double sigma);
+
+    bool is_distance(Index) const override { return true; }
+    std::vector<std::string> unknown_names() const override;
+
+  protected:
+    std::string features() const override { return "anchors"; }
+    Length measure(const Vector3d& x, Index anchor, const VectorXd& unknowns) const override;
+
+  private:
+    std::vector<Vector3d> anchors_;
+};
+
+/// A plane in the world: the points x with normal . x = offset.
+struct Plane {
+    Vector3d normal = Vector3d::UnitZ();
+    double offset = 0;  ///< m
+};
+
+/// Signed distances of n targets from planes fixed in the world (a touch probe on ground faces:
+/// 0 where it touches), m, positive on the side the normal points to. Planes are known, or have
+/// three unknowns each: plane1.tilt1 and .tilt2 (rad, from the stated normal, about two axes in
+/// the plane; a rotation vector) and plane1.offset (m).
+class PlaneSensor final : public ScalarSensor {
+  public:
+    /// Throws InputError as ScalarSensor does, or if a plane is not finite or a normal zero.
+    PlaneSensor(Targets targets, std::vector<Plane> planes, bool are_known, double sigma);
+
+    const std::vector<Plane>& planes() const { return planes_; }
+
+    std::vector<std::string> unknown_names() const override;
+    std::vector<bool> unknown_is_angle() const override;
+
+  protected:
+    std::string features() const override { return "planes"; }
+    Length measure(const Vector3d& x, Index plane, const VectorXd& unknowns) const override;
+
+  private:
+    std::vector<Plane> planes_;  ///< normals of length 1
+};
+
+}  // namespace posewise

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "posewise/task/calibration.hpp"
+#include "posewise/task/correction.hpp"
+#include "posewise/task/inspection.hpp"
+#include "posewise/task/planning.hpp"
+#include "posewise/task/study.hpp"
+#include "posewise/task/verification.hpp"
+
+/// What tasks found, as text: all that the program prints of it.
+namespace posewise {
+
+/// Elements, joints and axes of a robot, as text.
+std::string format_robot(const Chain& robot);
+
+/// The robot, and which of its errors can be found: every parameter with its expected error and, if
+/// no measurement can tell it from others, the errors that do the same, as text.
+std::string format(const Inspection& inspection);
+
+/// Says that there is no clear gap between what is identifiable and what is not, where that is so.
+std::string describe_gap(const Inspection& inspection);
+
+/// What was identified, how accurate the robot is with it and how sure each parameter is, as text:
+/// all that `posewise calibrate` prints. Of a calibration that is not identified, why.
+std::string format(const Calibration& calibration);
+
+/// Parameter sets side by side, and which is recommended.
+std::string format(const ModelSelection& selection);
+
+/// One sentence each: what looks wrong with the measurements, which `measurements` names if it is
+/// not empty, or with the errors found. What format() says already is not repeated.
+std::vector<std::string> describe_doubts(const Calibration& calibration,
+                                         const std::string& measurements = "");
+
+/// "2 of 24 measured configurations are beyond ..."
+std::string describe(const BeyondLimits& beyond, const Measurements& measurements);
+
+/// The pose error with and without correction (mm, mrad), by how much joints change, and the first
+/// twenty poses whose correction is not complete, with the reason, as text.
+std::string format(const CorrectedPoses& poses);
+
+/// What was chosen, its value, and what is proven about it, a line each.
+std::string format_choice(const Plan& plan);
+
+/// What was planned, how good it is, and the poses in visiting order.
+std::string format_planning(const Planning& planning);
+
+/// Predicted accuracy for other numbers of poses.
+std::string format_other_counts(const std::vector<CountAccuracy>& counts);
+
+/// Expected standard deviation of each parameter.
+std::string format_deviations(const Plan& plan);
+
+/// A line for each finding: "value:      as stated, -12.345678".
+std::string format_findings(const std::vector<Finding>& findings);
+
+/// The table as text, or why there is nothing to study.
+std::string format(const Study& study);
+
+/// Every case of a study as CSV text: pose count, who chose (criterion or "random"), number of the
+/// subset, whether it identified the model, held-out distance RMS and maximum in mm (9 digits), and
+/// the configurations by id, separated by blanks.
+std::string study_csv(const Study& study);
+
+}  // namespace posewise

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "posewise/core/types.hpp"
+
+namespace posewise::detail {
+
+/// Which number is the p-quantile of n sorted ones where p falls between two of them.
+enum class QuantileRule {
+    Lower,   ///< number ceil(p n): the least that p of them do not exceed
+    Upper,   ///< number floor(p n) + 1: differs from Lower only where p n is whole
+    Linear,  ///< between numbers floor(p (n - 1)) + 1 and the next [Hyndman & Fan 1996, rule 7]
+};
+
+/// The p-quantile (p from 0 to 1) of at least one number, in any order; infinite ones are allowed.
+double quantile(VectorXd values, double p, QuantileRule rule);
+
+}  // namespace posewise::detail

@@ -1,0 +1,73 @@
+#include "campaign_sections.hpp"
+
+#include <algorithm>
+
+#include "posewise/model/transforms.hpp"
+#include "text.hpp"
+
+namespace posewise::detail {
+namespace {
+
+constexpr const char* plausible_amount = "from 1e-12 to 1000 (m or rad)";
+
+bool is_plausible_amount(double si) { return si >= 1e-12 && si <= 1e3; }
+
+}  // namespace
+
+Isometry3d read_frame(const YamlMap& map) {
+    Isometry3d frame = Isometry3d::Identity();
+    frame.linear() = rotation_from_rpy(map.require_measure("rpy").vector_to_si());
+    frame.translation() = map.require_measure("position").vector_to_si();
+    return frame;
+}
+
+std::vector<bool> read_known(const YamlValue& known, const std::vector<std::string>& names) {
+    if (!known.is_list()) return std::vector<bool>(names.size(), known.boolean());
+    std::vector<bool> marks(names.size(), false);
+    for (const YamlValue& item : known.list()) {
+        const std::string name = item.text();
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end())
+            throw item.error("is " + quote(name) + "; " + suggest(name, names));
+        const auto k = static_cast<std::size_t>(found - names.begin());
+        if (marks[k]) throw item.error("is " + quote(name) + " again; keep one");
+        marks[k] = true;
+    }
+    return marks;
+}
+
+double read_positive(const YamlMeasure& measure, bool zero_allowed) {
+    const double value = measure.to_si();
+    const std::string stated = "is " + quote(measure.value.text());
+    if (value < 0 || (value == 0 && !zero_allowed)) {
+        throw measure.value.error(stated + "; must be " +
+                                  (zero_allowed ? "zero or positive" : "positive"));
+    }
+    if (value != 0 && !is_plausible_amount(value)) {
+        throw measure.value.error(stated + "; must be " + plausible_amount);
+    }
+    return value;
+}
+
+double read_amount(const YamlValue& value, Quantity quantity, Sign sign) {
+    const std::string text = value.text();
+    const auto blank = std::min(text.find_first_of(" \t"), text.size());
+    const ParsedNumber number = parse_number(std::string_view(text).substr(0, blank));
+    const Unit* const unit = find_unit(trim(std::string_view(text).substr(blank)));
+    const bool is_sign_right = sign == Sign::Any || number.value > 0;
+    if (!number.ok() || unit == nullptr || unit->quantity != quantity || !is_sign_right) {
+        throw value.error("is " + quote(text) + "; must be a " +
+                          (sign == Sign::Positive ? "positive " : "") + "number and a unit, " +
+                          list_words(unit_names(quantity)));
+    }
+    const double si = unit->to_si(number.value);
+    if (sign == Sign::Positive && !is_plausible_amount(si)) {
+        throw value.error("is " + quote(text) + "; must be " + plausible_amount);
+    }
+    if (!is_plausible(si, quantity)) {
+        throw value.error("is " + quote(text) + "; must be " + plausible(quantity));
+    }
+    return si;
+}
+
+}  // namespace posewise::detail

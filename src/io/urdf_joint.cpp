@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <numbers>
+
+#include "text.hpp"
+#include "urdf_tree.hpp"
+
+namespace posewise::detail {
+namespace {
+
+using pugi::xml_node;
+
+/// Reads one <joint>.
+class JointReader {
+  public:
+    JointReader(const XmlDocument& document, xml_node element)
+        : document_(document), element_(element), name_(element.attribute("name").value()) {}
+
+    io::UrdfJoint read() const {
+        refuse_misspelt_children();
+        io::UrdfJoint joint;
+        joint.name = name_;
+        joint.location = document_.location(element_);
+        joint.kind = read_kind();
+        if (const xml_node origin = find("origin", {"xyz", "rpy"})) {
+            joint.xyz = read_vector(origin, "xyz").value_or(joint.xyz);
+            joint.rpy = read_vector(origin, "rpy").value_or(joint.rpy);
+        }
+        if (joint.kind == io::UrdfJointKind::Fixed) return joint;
+        if (element_.child("mimic")) {
+            throw error(element_,
+                        "mimics another joint; only joints that move by themselves can "
+                        "be part of the chain");
+        }
+        read_axis(joint);
+        read_limit(joint);
+        return joint;
+    }
+
+  private:
+    InputError error(xml_node at, const std::string& problem) const {
+        return document_.error(at, "joint " + quote(name_) + ' ' + problem);
+    }
+
+    /// A misspelt <origin> would silently be no origin.
+    void refuse_misspelt_children() const {
+        const std::vector<std::string> known{"origin", "parent",   "child",
+                                             "axis",   "limit",    "calibration",
+                                             "mimic",  "dynamics", "safety_controller"};
+        for (const xml_node child : element_.children()) {
+            if (child.type() != pugi::node_element) continue;
+            const std::string name = child.name();
+            if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+            const std::string advice = suggest(name, known);
+            if (!advice.starts_with("did you mean")) continue;
+            throw error(child, "has an element " + quote(name) + "; " + advice);
+        }
+    }
+
+    xml_node find(const char* name, const std::vector<std::string>& attributes) const {
+        const xml_node found = find_child(document_, element_, name);
+        for (const pugi::xml_attribute attribute : found.attributes()) {
+            const std::string stated = attribute.name();
+            if (std::find(attributes.begin(), attributes.end(), stated) != attributes.end()) {
+                continue;
+            }
+            throw error(found, std::string("has ") + name + " with unknown attribute " +
+                                   quote(stated) + "; " + suggest(stated, attributes));
+        }
+        return found;
+    }
+
+    io::UrdfJointKind read_kind() const {
+        const pugi::xml_attribute type = element_.attribute("type");
+        if (!type) throw error(element_, "has no type; it must be stated");
+        const std::string word = type.value();
+        if (word == "fixed") return io::UrdfJointKind::Fixed;
+        if (word == "revolute") return io::UrdfJointKind::Revolute;
+        if (word == "continuous") return io::UrdfJointKind::Continuous;
+        if (word == "prismatic") return io::UrdfJointKind::Prismatic;
+        const std::vector<std::string> known{"revolute", "continuous", "prismatic", "fixed"};
+        const bool has_many_freedoms = word == "floating" || word == "planar";
+        throw error(element_, "is of type " + quote(word) +
+                                  (has_many_freedoms
+                                       ? ", which moves in several ways at once; must be one of " +
+                                             list_words(known)
+                                       : "; " + suggest(word, known)));
+    }
+
+    std::optional<Vector3d> read_vector(xml_node element, const char* attribute) const {
+        return detail::read_vector(document_, element, attribute, "joint " + quote(name_));
+    }
+
+    void read_axis(io::UrdfJoint& joint) const {
+        const xml_node axis = find("axis", {"xyz"});
+        if (!axis) return;  // x, says the format
+        const Vector3d direction = read_vector(axis, "xyz").value_or(joint.axis);
+        constexpr double least = 1e-6;
+        if (direction.norm() < least) {
+            throw error(axis, "has the axis " + quote(axis.attribute("xyz").value()) +
+                                  ", which has no direction; must not be zero");
+        }
+        joint.axis = direction.normalized();
+    }
+
+    void read_limit(io::UrdfJoint& joint) const {
+        const xml_node limit = find("limit", {"lower", "upper", "effort", "velocity",
+                                              "acceleration", "deceleration", "jerk"});
+        const auto read = [&](const char* attribute) {
+            if (!limit) return 0.0;
+            return read_number(document_, limit, attribute, "joint " + quote(name_)).value_or(0);
+        };
+        joint.speed = read("velocity");
+        if (joint.speed < 0) throw error(limit, "has a negative velocity; must be positive");
+        joint.limits = Interval{read("lower"), read("upper")};
+        if (joint.kind == io::UrdfJointKind::Continuous) {
+            joint.limits = Interval{-std::numbers::pi, std::numbers::pi};
+        } else if (joint.limits->lower > joint.limits->upper) {
+            throw error(limit, "has limits that are not in order; lower must be below upper");
+        } else if (joint.limits->lower == joint.limits->upper) {
+            joint.limits.reset();
+        }
+    }
+
+    const XmlDocument& document_;
+    const xml_node element_;
+    std::string name_;
+};
+
+}  // namespace
+
+io::UrdfJoint read_urdf_joint(const XmlDocument& document, xml_node element) {
+    return JointReader(document, element).read();
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/seen.hpp"
+
+namespace posewise::detail {
+
+/// What one pose tells about the parameters as a function of its joints: the information
+/// B(q)^T B(q) of its block, whitened and scaled as by make_blocks(), and its derivative. Made once
+/// for many configurations; every call is free of side effects, so threads may share one.
+class PoseInformation {
+  public:
+    /// `campaign` is referred to and must outlive this. Throws InputError as check_noise() and
+    /// parameter_scale() do, or if repeats is not positive and finite.
+    PoseInformation(const Campaign& campaign, Parameters parameters, double repeats = 1);
+
+    Index joint_count() const { return campaign_.robot.joint_count(); }
+    Index parameter_count() const { return scale_.size(); }
+
+    /// B^T B: parameter_count() square, without units. `is_seen` are the targets that the pose
+    /// shows; empty: all.
+    MatrixXd evaluate(const VectorXd& q, const SeenTargets& is_seen = {}) const;
+
+    /// Derivative of trace(Z B^T B) by the joints, for a symmetric Z (per rad or m). With Z the
+    /// gradient of a criterion by the information matrix, this is the criterion's by this pose:
+    /// with J the scaled Jacobian, S the covariance of the mean, P = S^-1 J,
+    /// d trace = 2 trace(Z P^T dJ) - trace(P Z P^T dS).
+    VectorXd differentiate(const VectorXd& q, const MatrixXd& Z,
+                           const SeenTargets& is_seen = {}) const;
+
+  private:
+    const Campaign& campaign_;
+    Parameters parameters_;
+    double repeats_;
+    VectorXd scale_;
+};
+
+}  // namespace posewise::detail

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/seen.hpp"
+
+namespace posewise::detail {
+
+/// Throws InputError if joint_repeatability has another size than the joints (and is not empty) or
+/// a value that is negative or not finite, or if a model error is.
+void check_noise(const Campaign& campaign);
+
+/// What repeats do not reduce: the model error of each of the sensor's rows (m or rad).
+VectorXd model_error_of_rows(const Campaign& campaign);
+
+/// Covariance of the mean observation of the targets seen at a pose, target j over repeats[j]
+/// observations (0: not seen): the sensor's divided by repeats, plus what repeats do not reduce:
+/// model_error^2 on the diagonal, and J_q diag(s^2) J_q^T of the joints' repeatability s (the
+/// robot stands still while it is observed again), which correlates the targets. Square, its rows
+/// those of seen_rows(), m^2.
+MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
+                         const VectorXd& sensor_unknowns, const VectorXd& repeats);
+
+/// The same with all targets seen equally often: sensor rows square.
+MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
+                         const VectorXd& sensor_unknowns, double repeats);
+
+/// Whether mean_covariance() is the same at every pose.
+bool has_constant_noise(const Campaign& campaign);
+
+/// Rate of mean_covariance() with one joint. `rate` is that joint's, as of
+/// Chain::differentiate_twice().
+MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& motion, Index joint,
+                              const FlangeMotionRate& rate, const VectorXd& sensor_unknowns,
+                              double repeats);
+
+/// Multiplies `rows` from the left by L^-1, where covariance = L L^T (Cholesky): errors with this
+/// covariance become independent with variance 1. Throws as cholesky_factor().
+void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows);
+
+/// Of `rows`, one for each number of an observation, those of the targets seen, whitened by the
+/// mean_covariance() of target j over repeats[j] observations (0: not seen).
+RowMatrixXd whiten_seen(const Campaign& campaign, const FlangeMotion& motion,
+                        const VectorXd& sensor_unknowns, const VectorXd& repeats,
+                        const RowMatrixXd& rows);
+
+/// L such that covariance = L L^T, for drawing noise. Throws InputError if the covariance is not
+/// positive definite.
+MatrixXd cholesky_factor(const MatrixXd& covariance);
+
+}  // namespace posewise::detail

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "posewise/model/chain.hpp"
+
+namespace posewise::detail {
+
+/// "q2 is 61 deg, must be from -50 to 60 deg" (mm where it slides): the first joint that is beyond
+/// its limits by more than rounding, 1e-6 rad or m. Empty: none is.
+std::string describe_limit_violation(const Chain& robot, const VectorXd& q);
+
+}  // namespace posewise::detail

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/planner/constraints.hpp"
+
+namespace posewise::detail {
+
+/// All poses that could be measured, as continuous refinement needs them: where they may lie and
+/// what each tells. A campaign is one instance; an experiment that is no robot could be another.
+/// The functions must be free of side effects, since threads share them.
+struct DesignSpace {
+    VectorXd lower;  ///< of each joint, rad or m
+    VectorXd upper;  ///< equal to lower: that joint stays
+    Index parameter_count = 0;
+    /// Information of one pose, parameter_count square.
+    std::function<MatrixXd(const VectorXd& q)> information;
+    /// Derivative of trace(Z information(q)) by q, for symmetric Z.
+    std::function<VectorXd(const VectorXd& q, const MatrixXd& Z)> information_gradient;
+    /// At least 0 where a pose is feasible; may have kinks. Empty: everywhere within the limits.
+    std::function<double(const VectorXd& q)> margin;
+    /// Two poses of a plan differ at least so much in one joint (rad or m).
+    double least_joint_distance = 0;
+    std::vector<std::string> parameter_names;  ///< for messages; empty: they are numbered from 1
+
+    Index joint_count() const { return lower.size(); }
+};
+
+/// The poses of a campaign within the joint limits, or within `constraints`, each telling what the
+/// targets it shows tell. Campaign and constraints must outlive the result. Throws InputError as
+/// PoseInformation.
+DesignSpace make_design_space(const Campaign& campaign, const Parameters& parameters,
+                              double repeats = 1, const Constraints* constraints = nullptr);
+
+}  // namespace posewise::detail

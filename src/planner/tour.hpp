@@ -1,0 +1,32 @@
+#pragma once
+
+#include "order.hpp"
+#include "posewise/planner/planning.hpp"
+
+namespace posewise::detail {
+
+/// Time of a straight joint move in which every joint starts and stops together, the slowest at
+/// its largest speed (Chebyshev): max_j |b_j - a_j| / speed_j.
+double move_time(const VectorXd& speed, const VectorXd& a, const VectorXd& b);
+
+/// Whether the straight joint move from a to b keeps the links off keep-outs and each other. It is
+/// followed in steps that the clearance at hand allows (conservative advancement), but no shorter
+/// than `resolution` (m) of motion, so that at most half of it can be missed.
+bool is_move_free(const Constraints& constraints, const VectorXd& a, const VectorXd& b,
+                  double resolution = 1e-3);
+
+struct TourOptions {
+    OrderOptions order;
+    /// Random via points tried for a move that is not free.
+    Index via_attempts = 200;
+    double resolution = 1e-3;  ///< of is_move_free(), m
+};
+
+/// The shortest tour found from the cell's home (or from anywhere, if it has none) through all
+/// poses (K x joints). A straight move that is not free is avoided by another order or, where that
+/// is shorter or inevitable, given a via point; what is left is marked as blocked. Throws
+/// InputError if the home is not free or a pose has the wrong size.
+Tour plan_tour(const Constraints& constraints, const RowMatrixXd& poses,
+               const TourOptions& options = {});
+
+}  // namespace posewise::detail

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "posewise/measurement/campaign.hpp"
+
+/// Sentences about a campaign and about results, as reports and messages use them.
+namespace posewise::detail {
+
+/// The model error of what is measured, lengths and angles: "0.1 mm and 0.1 mrad".
+std::string describe_model_error(const Campaign& campaign);
+
+/// The noise and column scales that whitened, scaled numbers rest on; `repeats` samples each.
+std::string describe_scaling(const Campaign& campaign, double repeats);
+
+/// Says, where little is proven about a choice, what tells more; empty where it is nearly optimal.
+std::string describe_looseness(double efficiency, Index starts_at_best, Index starts);
+
+/// "1 mm", "-0.5 mrad": a small error with its unit.
+std::string format_error(double si_value, bool is_angle);
+
+}  // namespace posewise::detail
