@@ -6,12 +6,15 @@ The table is the posewise_module(<module> <modules it may use>...) lines, and RE
 | module | holds | may use |; "../core/x.hpp" is a private header of core. Public headers moreover
 include no third-party header but Eigen's, so that no dependency of ours becomes everyone's. What
 `task` computes must be of use without a file or a terminal, so it may use neither io nor report.
+Private headers hold posewise::detail and nothing else, and public ones nothing of it, so that what
+is no promise to users can be seen from its name.
 """
 
 import pathlib
 import re
 import sys
 
+NAMESPACE = re.compile(r"^(?:inline )?namespace ([\w:]*) ?\{", re.MULTILINE)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
@@ -68,6 +71,18 @@ def public_header_faults(bracket, included):
         yield f"{included}: a public header includes only posewise, Eigen and the standard library"
 
 
+def namespace_faults(path, is_public):
+    text = path.read_text()
+    names = NAMESPACE.findall(text)
+    if is_public and re.search(r"\bdetail::|::detail\b", text):
+        yield "a public header does not speak of posewise::detail"
+    if not is_public and not names:
+        yield "has no namespace; names in a private header are in posewise::detail"
+    for name in names:
+        if not is_public and not (name + "::").startswith("posewise::detail::"):
+            yield f"namespace '{name}': names in a private header are in posewise::detail"
+
+
 def check(repository):
     table = read_table(repository)
     faults, count = list(table_faults(table, read_readme_table(repository))), 0
@@ -84,6 +99,8 @@ def check(repository):
         if module not in table:
             faults.append(f"{name}: '{module}' is not a module of CMakeLists.txt")
             continue
+        if ".hpp" in path.suffixes:
+            faults += [f"{name}: {fault}" for fault in namespace_faults(path, is_public)]
         for line, bracket, included in includes(path):
             found = list(layering_faults(table, module, included))
             if is_public:
