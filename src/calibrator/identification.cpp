@@ -5,6 +5,7 @@
 
 #include "../core/parallel.hpp"
 #include "../core/progress_counter.hpp"
+#include "../measurement/noise.hpp"
 #include "least_squares.hpp"
 #include "posewise/core/errors.hpp"
 #include "robust.hpp"
@@ -34,6 +35,7 @@ struct LevenbergMarquardt {
     Estimate& estimate;
     double cost = total_loss(problem, estimate.parameters);
     double damping = 1e-6;
+    bool has_constant_noise = detail::has_constant_noise(problem.campaign);
     Index deviations_open = problem.loss.kind == LossKind::Squares ? 0 : 50;
 
     /// The unit of the loss follows the residuals until it stays; from then on all steps lower one
@@ -61,10 +63,13 @@ struct LevenbergMarquardt {
             const VectorXd step = damped_step(triangle, damping);
             const Parameters moved =
                 advance(problem.campaign, estimate.parameters, problem.scale.cwiseProduct(step));
-            const double moved_cost = total_loss(problem, moved);
+            // Where noise depends on the pose a step is judged with that before it: the fixed
+            // point of reweighted least squares is where no such step is left.
+            const double moved_cost = total_loss(
+                problem, moved, has_constant_noise ? nullptr : &estimate.parameters);
             if (moved_cost < cost) {
                 estimate.parameters = moved;
-                cost = moved_cost;
+                cost = has_constant_noise ? moved_cost : total_loss(problem, moved);
                 damping = std::max(damping / 100, 1e-15);
                 return;
             }

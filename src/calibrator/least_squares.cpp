@@ -131,7 +131,8 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
     return system;
 }
 
-VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters& parameters) {
+VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters& parameters,
+                          const Parameters* noise_at) {
     const Campaign& campaign = problem.campaign;
     VectorXd lengths(problem.means.is_seen.count());
     Index count = 0;
@@ -143,17 +144,20 @@ VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters
         const VectorXd r = campaign.sensor->deviation(
             problem.means.observations.row(i).transpose(),
             campaign.sensor->predict(motion.world_from_flange, parameters.sensor));
+        const Parameters& of_noise = noise_at != nullptr ? *noise_at : parameters;
+        if (noise_at != nullptr) differentiate_flange(campaign, of_noise, q, motion);
         const VectorXd of_pose =
-            target_lengths(problem, whiten_equations(problem, i, motion, parameters, r));
+            target_lengths(problem, whiten_equations(problem, i, motion, of_noise, r));
         lengths.segment(count, of_pose.size()) = of_pose;
         count += of_pose.size();
     }
     return lengths;
 }
 
-double total_loss(const IdentificationProblem& problem, const Parameters& parameters) {
+double total_loss(const IdentificationProblem& problem, const Parameters& parameters,
+                  const Parameters* noise_at) {
     double sum = 0;
-    for (const double length : residual_lengths(problem, parameters)) {
+    for (const double length : residual_lengths(problem, parameters, noise_at)) {
         sum += problem.loss.value(length / problem.deviation);
     }
     sum *= problem.deviation * problem.deviation;

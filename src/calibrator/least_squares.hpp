@@ -50,10 +50,15 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
 /// Length of the whitened mean residual of each target seen, one configuration after another: in
 /// standard deviations of one coordinate, as stated. Where errors of the joints correlate targets,
 /// a target's is what those before it leave open.
-VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters& parameters);
+/// `noise_at` (nullptr: `parameters`) are those at which the noise is taken where it depends on the
+/// pose: it must not change between two sums that are compared, or larger noise would count as a
+/// better fit.
+VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters& parameters,
+                          const Parameters* noise_at = nullptr);
 
 /// The loss of all targets, with squares chi^2, and the sum of squares of what the prior says.
-double total_loss(const IdentificationProblem& problem, const Parameters& parameters);
+double total_loss(const IdentificationProblem& problem, const Parameters& parameters,
+                  const Parameters* noise_at = nullptr);
 
 /// J reduced to its triangle by Householder QR: |J d - r|^2 = |R d - c|^2 + rest.
 struct Triangle {

@@ -174,6 +174,21 @@ TEST(Identify, SaysWhenIterationsRanOut) {
               Ending::IterationLimit);
 }
 
+TEST(Identify, ConvergesWhereNoiseDependsOnThePoseAndOnePointIsGrosslyWrong) {
+    Campaign campaign = tracked_campaign(testing::fanuc());
+    campaign.sensor = std::make_shared<PointSensor>(
+        std::vector<std::optional<Vector3d>>(3, std::nullopt), LaserTrackerNoise{1e-5, 1.5e-5});
+    Measurements measured = simulate(campaign, {20, 1, 7, 8}).measurements;
+    for (const double error : {3e-3, 3e-2, 0.1}) {
+        measured.observations(4, 1) += error;
+        const Estimate estimate = calibrate(campaign, measured);
+        EXPECT_EQ(estimate.ending, Ending::Converged) << error;
+        const Estimate again = identify(campaign, measured, estimate.parameters);
+        EXPECT_EQ(again.ending, Ending::Converged) << error;
+        EXPECT_LT(error_of(again.parameters, estimate.parameters).norm(), 1e-9) << error;
+    }
+}
+
 TEST(IdentifyTwoStep, HeadsToTheJointOptimumAndSaysIfItGotThere) {
     const Campaign campaign = with_sigma(5e-5);
     const auto measurements = simulate(campaign, {24, 1, 7, 8}).measurements;
