@@ -87,14 +87,6 @@ void print_warning(const std::string& text) {
     std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
-void check_torques_known(const std::string& campaign_path, const Chain& robot) {
-    if (robot.torques().empty()) return;
-    throw input_error_at(
-        {campaign_path},
-        "its torques are measured with each configuration, and of poses that are drawn nobody "
-        "knows them; state robot.compliance.links and payload instead of torques_Nm");
-}
-
 ProgressLine::ProgressLine(std::string label, bool asked_for)
     : label_(std::move(label)), shown_(asked_for || isatty(STDERR_FILENO) == 1) {}
 

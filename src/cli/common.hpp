@@ -33,10 +33,6 @@ void print_section(const std::string& title, const detail::Table& table);
 /// "posewise: warning: ..." on standard error, one line whatever it quotes.
 void print_warning(const std::string& text);
 
-/// Throws InputError for a robot whose torques are measured with each configuration: of poses that
-/// are drawn nobody knows them.
-void check_torques_known(const std::string& campaign_path, const Chain& robot);
-
 /// A counter on standard error, shown if that is a terminal or the user asks for it.
 class ProgressLine {
   public:

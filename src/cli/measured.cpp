@@ -14,12 +14,4 @@ Measurements read_measured(const std::string& path, const io::CampaignFile& file
     return measured;
 }
 
-void check_is_of_robot(const Campaign& campaign, const Measurements& measured,
-                       const std::string& path) {
-    compute_from(path, [&] {
-        posewise::check_is_of_robot(campaign, measured,
-                                    register_base_and_targets(campaign, measured));
-    });
-}
-
 }  // namespace posewise::cli

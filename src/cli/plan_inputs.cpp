@@ -15,16 +15,10 @@ Blocks read_blocks(const PlanSources& sources, const std::string& path) {
     return compute_from(path, [&] { return make_equal_blocks(matrix, sources.rows_per_block); });
 }
 
-Measurements read_of_robot(const std::string& path, const io::CampaignFile& campaign) {
-    Measurements measured = read_measured(path, campaign);
-    check_is_of_robot(campaign, measured, path);
-    return measured;
-}
-
 Candidates read_candidates(const std::string& path, CandidateKind kind,
                            const io::CampaignFile& campaign) {
     if (kind == CandidateKind::Measurements) {
-        return measured_candidates(read_of_robot(path, campaign));
+        return measured_candidates(read_measured(path, campaign));
     }
     auto [ids, joints, is_seen] = io::read_configurations(path, campaign);
     return {kind, std::move(ids), std::move(joints), is_seen.cast<double>(), std::nullopt};
@@ -48,9 +42,8 @@ void read_with_robot(ChoiceInputs& inputs, CandidateKind kind, Index count) {
     if (kind != CandidateKind::Random) {
         inputs.candidates = read_candidates(sources.candidates, kind, campaign);
     }
-    if (!sources.augment.empty()) options.held = read_of_robot(sources.augment, campaign);
+    if (!sources.augment.empty()) options.held = read_measured(sources.augment, campaign);
     if (kind == CandidateKind::Random) {
-        check_torques_known(sources.campaign, campaign.robot);
         inputs.candidates = random_candidates(campaign, count, options.seed);
     }
     if (!sources.test_poses.empty()) {
@@ -84,11 +77,10 @@ ChoiceInputs read_choice_inputs(const PlanRequest& request, CandidateKind kind, 
 }
 
 PlanningOptions read_planning_inputs(const PlanRequest& request, const io::CampaignFile& campaign) {
-    check_torques_known(request.sources.campaign, campaign.robot);
     PlanningOptions options;
     static_cast<PlanRequest&>(options) = request;
     const PlanSources& sources = request.sources;
-    if (!sources.augment.empty()) options.held = read_of_robot(sources.augment, campaign);
+    if (!sources.augment.empty()) options.held = read_measured(sources.augment, campaign);
     if (!sources.workspace.empty()) {
         options.workspace = io::read_configurations(sources.workspace, campaign).joints;
     }

@@ -65,6 +65,7 @@ Candidates measured_candidates(Measurements measured) {
 }
 
 Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_t seed) {
+    detail::check_torques_known(campaign);
     detail::check_memory(campaign, count, "--random");
     Candidates candidates;
     candidates.kind = CandidateKind::Random;

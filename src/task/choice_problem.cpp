@@ -2,7 +2,6 @@
 
 #include "../core/checksum.hpp"
 #include "inputs.hpp"
-#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/planner/planning.hpp"
@@ -78,13 +77,16 @@ std::string checksum_of(const ChoiceProblem& problem, const Candidates& candidat
 /// them, else registered from the poses measured already.
 Parameters find_parameters(const Campaign& campaign, const Candidates& candidates,
                            const ChoiceOptions& options) {
-    const auto register_from = [&](const std::string& name, const Measurements& measured) {
-        return compute_from(
-            name, [&] { return determined(register_base_and_targets(campaign, measured)); });
-    };
-    if (candidates.measured) return register_from(options.sources.candidates, *candidates.measured);
-    if (campaign.has_nominal_base && campaign.has_nominal_targets) return campaign.nominal;
-    if (options.held) return register_from(options.sources.augment, *options.held);
+    const std::string& held = options.sources.augment;
+    const bool is_stated = campaign.has_nominal_base && campaign.has_nominal_targets;
+    if (options.held && (candidates.measured || is_stated)) {
+        check_measured(campaign, *options.held, held);
+    }
+    if (candidates.measured) {
+        return register_measured(campaign, *candidates.measured, options.sources.candidates);
+    }
+    if (is_stated) return campaign.nominal;
+    if (options.held) return register_measured(campaign, *options.held, held);
     const std::string key = campaign.sensor->words().key;
     throw InputError(campaign.name + ": the campaign file states no " +
                      (campaign.has_nominal_base ? key : "base") +

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 
+#include "posewise/calibrator/registration.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/task/choice.hpp"
+#include "posewise/task/doubts.hpp"
 
 namespace posewise::detail {
 
@@ -21,6 +23,30 @@ Blocks measured_blocks(const Campaign& campaign, const Parameters& parameters,
                        const Measurements& measured) {
     return make_blocks(campaign, parameters, measured.configurations,
                        RowMatrixXd(mean_repeats(measured) * share_seen(measured)));
+}
+
+Parameters register_measured(const Campaign& campaign, const Measurements& measured,
+                             const std::string& name) {
+    return compute_from(name, [&] {
+        Registration registration = register_base_and_targets(campaign, measured);
+        check_is_of_robot(campaign, measured, registration);
+        return determined(std::move(registration));
+    });
+}
+
+void check_measured(const Campaign& campaign, const Measurements& measured,
+                    const std::string& name) {
+    compute_from(name, [&] {
+        check_is_of_robot(campaign, measured, register_base_and_targets(campaign, measured));
+    });
+}
+
+void check_torques_known(const Campaign& campaign) {
+    if (campaign.robot.torques().empty()) return;
+    throw InputError(campaign.name +
+                     ": its torques are measured with each configuration, and of poses that are "
+                     "drawn nobody knows them; state robot.compliance.links and payload instead of "
+                     "torques_Nm");
 }
 
 void check_memory(const Campaign& campaign, Index count, const std::string& option) {

@@ -31,6 +31,19 @@ std::vector<std::string> number_ids(Index count);
 Blocks measured_blocks(const Campaign& campaign, const Parameters& parameters,
                        const Measurements& measured);
 
+/// Base and targets from what was measured. Throws InputError, which begins with the name of where
+/// that is from, for another robot's measurements, and if they do not determine them.
+Parameters register_measured(const Campaign& campaign, const Measurements& measured,
+                             const std::string& name);
+
+/// Throws InputError, which begins with `name`, if another robot's measurements are given.
+void check_measured(const Campaign& campaign, const Measurements& measured,
+                    const std::string& name);
+
+/// Throws InputError for a robot whose torques are measured with each configuration: of poses that
+/// are drawn nobody knows them.
+void check_torques_known(const Campaign& campaign);
+
 /// Throws InputError if so many candidates need more memory than this machine has; `option` is
 /// what says how many.
 void check_memory(const Campaign& campaign, Index count, const std::string& option);

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <set>
 
-#include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/task/planning.hpp"
 
@@ -29,15 +28,12 @@ SelectOptions quick_options(const Planning& planning) {
 
 std::optional<PredictedAccuracy> predict_choice(const Blocks& prediction, const Blocks& blocks,
                                                 const SelectOptions& options) {
-    const Index L = blocks.parameter_count();
-    const MatrixXd held = options.held.size() > 0 ? options.held : MatrixXd::Zero(L, L);
-    try {
-        const Choice choice = select_poses(blocks, options);
-        if (choice.ending == Ending::NotIdentifiable) return std::nullopt;
-        return predict_accuracy(prediction, held + information(blocks, choice.poses));
-    } catch (const InputError&) {
-        return std::nullopt;  // more than the pool has
-    }
+    if (options.pose_count > blocks.count()) return std::nullopt;
+    const Choice choice = select_poses(blocks, options);
+    if (choice.ending == Ending::NotIdentifiable) return std::nullopt;
+    MatrixXd M = information(blocks, choice.poses);
+    if (options.held.size() > 0) M += options.held;
+    return predict_accuracy(prediction, M);
 }
 
 }  // namespace

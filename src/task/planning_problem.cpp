@@ -7,7 +7,6 @@
 #include "../core/text.hpp"
 #include "../model/joint_limits.hpp"
 #include "inputs.hpp"
-#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/jacobian/identifiability.hpp"
@@ -23,15 +22,20 @@ constexpr double distance_from_dropped = to_radians(5);
 // ---- What is known before ----
 
 /// Base and targets: as stated, else registered from what was measured.
-Campaign with_base(Campaign campaign, const std::optional<Measurements>& measured) {
-    if (campaign.has_nominal_base && campaign.has_nominal_targets) return campaign;
+Campaign with_base(Campaign campaign, const PlanningOptions& options) {
+    const std::optional<Measurements>& measured = options.held;
+    const std::string& name = options.sources.augment;
+    if (campaign.has_nominal_base && campaign.has_nominal_targets) {
+        if (measured) check_measured(campaign, *measured, name);
+        return campaign;
+    }
     if (!measured) {
         const std::string key = campaign.sensor->words().key;
         throw InputError(campaign.name + ": the campaign file states no " +
                          (campaign.has_nominal_base ? key : "base") + "; must state base and " +
                          key + " to plan, or measured poses (--augment) must tell them");
     }
-    campaign.nominal = determined(register_base_and_targets(campaign, *measured));
+    campaign.nominal = register_measured(campaign, *measured, name);
     campaign.nominal.robot.setZero();
     campaign.has_nominal_base = campaign.has_nominal_targets = true;
     return campaign;
@@ -118,7 +122,8 @@ RowMatrixXd draw_configurations(const Campaign& campaign, const PlanRequest& req
 }  // namespace
 
 PlanningProblem state_planning(const Campaign& given, const PlanningOptions& options) {
-    const Campaign campaign = with_base(given, options.held);
+    check_torques_known(given);
+    const Campaign campaign = with_base(given, options);
     Cell cell = campaign.cell;
     if (options.repaired) {
         cell.least_joint_distance = std::max(cell.least_joint_distance, distance_from_dropped);
