@@ -19,6 +19,7 @@ int step_of(const Chain& chain, Index parameter) {
     if (const ErrorTerm* const term = chain.parameter_term(parameter)) {
         switch (term->kind) {
             case TermKind::Gravity:
+            case TermKind::Torque:
                 return 4;
             case TermKind::Free:
                 return 5;

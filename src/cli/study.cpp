@@ -41,6 +41,7 @@ struct Arguments {
     InputPaths paths;
     std::vector<Criterion> criteria;
     std::optional<std::uint64_t> seed;
+    std::optional<Index> splits;
     std::string csv;
     std::string plot;
     bool progress = false;
@@ -146,6 +147,7 @@ void study(const Arguments& arguments) {
     const auto measurements = read_measured(arguments.paths.measurements, file);
     StudyOptions options = arguments.options;
     options.seed = arguments.seed.value_or(file.seed);
+    options.splits = arguments.splits;
     options.criteria = arguments.criteria;
     if (options.criteria.empty()) options.criteria = {file.criterion};
 
@@ -169,6 +171,16 @@ void add_options(CLI::App& command, Arguments& arguments) {
     command
         .add_option("--random", arguments.options.random_subsets, "Random subsets per pose count")
         ->check(whole_number(0, 1000000))
+        ->capture_default_str();
+    command
+        .add_option("--splits", arguments.splits,
+                    "Splits into configurations to choose from and to judge on; 0: judge each "
+                    "subset on all that it leaves (default: 10 if enough were measured)")
+        ->check(whole_number(0, 1000));
+    command
+        .add_option("--holdout", arguments.options.holdout,
+                    "Part of the configurations that a split judges on")
+        ->check(real_number(0.01, 0.99))
         ->capture_default_str();
     command.add_option_function<std::string>(
         "-k,--poses",

@@ -1,6 +1,8 @@
 #include "statistics.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cassert>
 #include <cmath>
 
@@ -20,6 +22,14 @@ double quantile(VectorXd values, double p, QuantileRule rule) {
     if (!(part > 0)) return *nth;
     const double next = *std::min_element(nth + 1, values.end());
     return std::isinf(next) ? next : *nth + part * (next - *nth);
+}
+
+double student_quantile(double p, double degrees_of_freedom) {
+    return boost::math::quantile(boost::math::students_t(degrees_of_freedom), p);
+}
+
+double chi_squared_quantile(double p, double degrees_of_freedom) {
+    return boost::math::quantile(boost::math::chi_squared(degrees_of_freedom), p);
 }
 
 }  // namespace posewise::detail

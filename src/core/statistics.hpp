@@ -14,4 +14,10 @@ enum class QuantileRule {
 /// The p-quantile (p from 0 to 1) of at least one number, in any order; infinite ones are allowed.
 double quantile(VectorXd values, double p, QuantileRule rule);
 
+/// The p-quantile (0 < p < 1) of Student's t of so many degrees of freedom (above 0).
+double student_quantile(double p, double degrees_of_freedom);
+
+/// That of chi squared.
+double chi_squared_quantile(double p, double degrees_of_freedom);
+
 }  // namespace posewise::detail

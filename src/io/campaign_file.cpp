@@ -27,8 +27,8 @@ void read_base(const YamlValue& value, Campaign& campaign) {
 
 ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign) {
     const YamlMap map(value, {"length_<length>", "angle_<angle>", "gravity_<angle>",
-                              "harmonic_<angle>", "parameters"});
-    ParameterSpread spread;
+                              "harmonic_<angle>", "offset_<angle>", "parameters"});
+    ParameterSpread spread = campaign.spread;
     const auto read = [&map](std::string_view key, double& size) {
         if (const auto measure = map.find_measure(key)) size = read_positive(*measure);
     };
@@ -36,6 +36,7 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign) {
     read("angle", spread.angle);
     read("gravity", spread.gravity);
     read("harmonic", spread.harmonic);
+    if (const auto measure = map.find_measure("offset")) spread.offset = read_positive(*measure);
     const auto parameters = map.find("parameters");
     if (!parameters) return spread;
     const std::vector<std::string> names = parameter_names(campaign);
@@ -140,6 +141,10 @@ CampaignFile parse_campaign(const std::string& content, const std::string& path)
     campaign = with_robot(campaign, robot.declared);
     if (robot.error_model == ErrorModel::Complete) {
         campaign = make_complete(campaign, map.require("robot"));
+    }
+    if (robot.error_model == ErrorModel::Full) {
+        campaign = with_robot(campaign, detail::full_model(robot.declared, robot.gravity));
+        campaign.spread = population_spread(robot.declared);
     }
     if (const auto error = map.find_measure("model_error")) {
         campaign.model_error = read_positive(*error, true);

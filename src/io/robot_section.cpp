@@ -50,8 +50,10 @@ io::ErrorModel read_error_model(const YamlMap& robot, const std::vector<Element>
     if (const auto errors = robot.find("errors")) {
         const std::string word = errors->text();
         if (word == "stated") return io::ErrorModel::Stated;
-        if (word == "complete") return io::ErrorModel::Complete;
-        throw errors->error("is " + quote(word) + "; " + suggest(word, {"stated", "complete"}));
+        if (word == "geometric" || word == "complete") return io::ErrorModel::Complete;
+        if (word == "full") return io::ErrorModel::Full;
+        throw errors->error("is " + quote(word) + "; " +
+                            suggest(word, {"full", "geometric", "stated"}));
     }
     const auto is_stated = [](const Element& element) { return !element.parameter.empty(); };
     return std::any_of(elements.begin(), elements.end(), is_stated) ? io::ErrorModel::Stated
@@ -152,8 +154,8 @@ RobotSection read_robot(const YamlValue& value) {
     const YamlMap robot(value, {"joints", "elements", "dh", "urdf", "base_link", "tip_link",
                                 "errors", "gravity", "harmonics", "compliance"});
     RobotSection section = read_described(robot, find_description(value, robot));
-    add_stated_terms(robot, section);
     section.error_model = read_error_model(robot, section.declared.elements());
+    add_stated_terms(robot, section);
     if (section.joint_repeatability.isZero(0)) section.joint_repeatability.resize(0);
     return section;
 }

@@ -63,17 +63,18 @@ Vector3d read_direction(const YamlMap& map) {
     return Eigen::Map<const Vector3d>(numbers.data());
 }
 
-Chain add_gravity(const YamlValue& value, const Chain& chain) {
-    Vector3d direction = -Vector3d::UnitZ();
+void add_gravity(const YamlValue& value, RobotSection& section) {
+    Chain& chain = section.declared;
     std::vector<Index> joints;
     if (value.is_map()) {
         const YamlMap map(value, {"direction", "joints"});
-        direction = read_direction(map);
+        section.gravity = read_direction(map);
         joints = read_joints(map, chain);
     } else if (!value.boolean()) {
-        return chain;
+        return;
     }
-    return add(value, [&] { return with_gravity_terms(chain, direction, joints); });
+    if (section.error_model == io::ErrorModel::Full) return;  // which has all that gravity does
+    chain = add(value, [&] { return with_gravity_terms(chain, section.gravity, joints); });
 }
 
 std::vector<double> read_list(const YamlValue& listed) {
@@ -197,7 +198,7 @@ Chain add_compliance(const YamlValue& value, const RobotSection& section) {
 
 void add_stated_terms(const YamlMap& robot, RobotSection& section) {
     Chain& chain = section.declared;
-    if (const auto gravity = robot.find("gravity")) chain = add_gravity(*gravity, chain);
+    if (const auto gravity = robot.find("gravity")) add_gravity(*gravity, section);
     if (const auto harmonics = robot.find("harmonics")) chain = add_harmonics(*harmonics, chain);
     if (const auto stated = robot.find("compliance")) chain = add_compliance(*stated, section);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "posewise/model/transforms.hpp"
 
 namespace posewise {
@@ -71,9 +72,14 @@ VectorXd parameter_scale(const Campaign& campaign) {
     }
     for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
         const ErrorTerm* const term = campaign.robot.parameter_term(k);
+        const Element& element = campaign.robot.parameter_element(k);
+        const bool turns = element.motion == Motion::Rotation;
+        if (term == nullptr && turns && !element.joints.empty() && campaign.spread.offset) {
+            scale[robot_begin + k] = *campaign.spread.offset;
+        }
         if (term == nullptr || term->kind == TermKind::Free) continue;
-        const bool is_gravity = term->kind == TermKind::Gravity;
-        scale[robot_begin + k] = is_gravity ? campaign.spread.gravity : campaign.spread.harmonic;
+        const bool is_harmonic = term->kind == TermKind::Harmonic;
+        scale[robot_begin + k] = is_harmonic ? campaign.spread.harmonic : campaign.spread.gravity;
     }
     for (const auto& [name, size] : campaign.spread.by_name) {
         const auto found = std::find(names.begin(), names.end(), name);
@@ -84,6 +90,18 @@ VectorXd parameter_scale(const Campaign& campaign) {
         scale[found - names.begin()] = size;
     }
     return scale;
+}
+
+ParameterSpread population_spread(const Chain& robot) {
+    constexpr double length_per_extent = 4e-4;
+    ParameterSpread spread;
+    spread.length = length_per_extent * extent(robot);
+    spread.angle = 7e-4;
+    spread.offset = 20e-3;
+    spread.gravity = 1e-3;
+    spread.harmonic = 3e-4;
+    spread.is_prior = true;
+    return spread;
 }
 
 MatrixXd prior_information(const Campaign& campaign) {

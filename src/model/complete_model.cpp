@@ -1,5 +1,7 @@
 #include "complete_model.hpp"
 
+#include "posewise/model/error_terms.hpp"
+
 namespace posewise::detail {
 namespace {
 
@@ -41,6 +43,10 @@ Chain complete_model(const Chain& chain) {
         }
     }
     return chain.with_elements(std::move(elements));
+}
+
+Chain full_model(const Chain& chain, const Vector3d& gravity) {
+    return complete_model(with_harmonics(with_torque_shapes(chain, gravity), {1, 2}));
 }
 
 }  // namespace posewise::detail

@@ -12,4 +12,10 @@ namespace posewise::detail {
 /// targets) can be told apart.
 Chain complete_model(const Chain& chain);
 
+/// complete_model() with the errors that depend on the configuration, too: those of joints that
+/// bend, with_torque_shapes(), and of encoders and gears, with_harmonics() of the orders 1 and 2.
+/// Far more than poses can tell apart without a prior; a robot that has few of them loses little by
+/// the others, one whose errors are left out loses much.
+Chain full_model(const Chain& chain, const Vector3d& gravity = -Vector3d::UnitZ());
+
 }  // namespace posewise::detail

@@ -220,6 +220,7 @@ std::vector<Compliance> compliances(const Chain& chain) {
             const auto element = &chain.parameter_element(k) - chain.elements().data();
             return element_owners(chain)[static_cast<std::size_t>(element)];
         };
+        if (term->kind == TermKind::Torque) continue;
         if (function.torque != nullptr) {
             found.push_back({k, owner_of(), function.torque->largest()});
         } else if (function.joints.front().joint >= chain.joint_count()) {

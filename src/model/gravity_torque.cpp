@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "posewise/core/errors.hpp"
@@ -30,10 +31,49 @@ void check_load(const Chain& chain, const Load& load) {
     }
 }
 
-/// How many driven elements are up to the first one that joint `link` (from 1) drives.
-Index count_driven(const Chain& chain, Index link) {
+TorqueShare divided(TorqueShare torque, double largest) {
+    torque.value /= largest;
+    torque.gradient /= largest;
+    torque.hessian /= largest;
+    return torque;
+}
+
+}  // namespace
+
+// ---- The arm ----
+
+GravityTorque::Arm::Arm(const Chain& chain) : chain_(with_driven_parameters(chain)) {
+    static std::atomic<std::uint64_t> last{0};
+    number_ = ++last;
+    driven_by_.setZero(driven_count(), joint_count());
+    for (Index e = 0; e < driven_count(); ++e) {
+        for (const JointTerm& term : chain_.parameter_element(e).joints) {
+            driven_by_(e, term.joint) += term.coefficient;
+        }
+    }
+}
+
+const GravityTorque::Arm::Motion& GravityTorque::Arm::at(const VectorXd& q) const {
+    struct Memory {
+        std::uint64_t number = 0;
+        VectorXd joints;
+        Motion motion;
+    };
+    thread_local Memory memory;
+    const auto joints = q.head(joint_count());
+    if (memory.number == number_ && memory.joints == joints) return memory.motion;
+    memory.number = 0;  // in case of an exception
+    memory.joints = joints;
+    const VectorXd nominal = VectorXd::Zero(chain_.parameter_count());
+    chain_.differentiate(Isometry3d::Identity(), memory.joints, nominal, memory.motion.flange);
+    memory.motion.links = chain_.base_from_links(memory.joints, nominal);
+    memory.number = number_;
+    return memory.motion;
+}
+
+Index GravityTorque::Arm::count_driven(Index link) const {
     Index count = 0;
-    for (const Element& element : chain.elements()) {
+    for (const Element& element : chain_.elements()) {
         if (link == 0) return 0;
         if (element.joints.empty()) continue;
         ++count;
@@ -44,35 +84,26 @@ Index count_driven(const Chain& chain, Index link) {
     return count;
 }
 
-TorqueShare divided(TorqueShare torque, double largest) {
-    torque.value /= largest;
-    torque.gradient /= largest;
-    torque.hessian /= largest;
-    return torque;
-}
+// ---- The torque ----
 
-}  // namespace
+GravityTorque::GravityTorque(std::shared_ptr<const Arm> arm, Index driven, const Vector3d& gravity,
+                             const std::vector<Load>& loads, double largest)
+    : arm_(std::move(arm)), driven_(driven), gravity_(gravity), largest_(largest), varies_(true) {
+    weigh(loads);
+}
 
 GravityTorque::GravityTorque(const Chain& chain, std::size_t element, const Vector3d& gravity,
                              std::vector<Load> loads)
-    : chain_(with_driven_parameters(chain)), gravity_(gravity), loads_(std::move(loads)) {
+    : arm_(std::make_shared<const Arm>(chain)), gravity_(gravity) {
     if (element >= chain.elements().size() || chain.elements()[element].joints.empty()) {
         throw InputError("the torque is of an element that no joint drives");
     }
     if (!gravity.allFinite()) throw InputError("gravity is not finite");
     for (std::size_t k = 0; k < element; ++k) driven_ += chain.elements()[k].joints.empty() ? 0 : 1;
-    for (const Load& load : loads_) {
-        check_load(chain, load);
-        moved_by_.push_back(count_driven(chain, load.link));
-    }
-    driven_by_.setZero(chain_.parameter_count(), chain_.joint_count());
-    for (Index e = 0; e < chain_.parameter_count(); ++e) {
-        for (const JointTerm& term : chain_.parameter_element(e).joints) {
-            driven_by_(e, term.joint) += term.coefficient;
-        }
-    }
+    for (const Load& load : loads) check_load(chain, load);
+    weigh(loads);
     constexpr Index samples = 1000;
-    const RowMatrixXd configurations = detail::random_configurations(chain_, samples, 1);
+    const RowMatrixXd configurations = detail::random_configurations(arm_->chain(), samples, 1);
     double low = 0, high = 0, moment = 0;
     for (Index i = 0; i < samples; ++i) {
         const VectorXd q = configurations.row(i).transpose();
@@ -87,13 +118,26 @@ GravityTorque::GravityTorque(const Chain& chain, std::size_t element, const Vect
     if (size > 0) largest_ = size;
 }
 
+void GravityTorque::weigh(const std::vector<Load>& loads) {
+    for (const Load& load : loads) {
+        const auto same = [&](const LinkWeight& weight) { return weight.link == load.link; };
+        auto found = std::find_if(weights_.begin(), weights_.end(), same);
+        if (found == weights_.end()) {
+            weights_.push_back({load.link, arm_->count_driven(load.link)});
+            found = weights_.end() - 1;
+        }
+        found->mass += load.mass;
+        found->moment += load.mass * load.center;
+    }
+}
+
 double GravityTorque::moment_about_base(const VectorXd& q) const {
-    const std::vector<Isometry3d> links =
-        chain_.base_from_links(q, VectorXd::Zero(chain_.parameter_count()));
+    const std::vector<Isometry3d>& links = arm_->at(q).links;
     double moment = 0;
-    for (const Load& load : loads_) {
-        const Vector3d center = links[static_cast<std::size_t>(load.link)] * load.center;
-        moment += load.mass * gravity_.norm() * center.norm();
+    for (const LinkWeight& weight : weights_) {
+        const Isometry3d& link = links[static_cast<std::size_t>(weight.link)];
+        const Vector3d first = link.linear() * weight.moment + weight.mass * link.translation();
+        moment += gravity_.norm() * first.norm();
     }
     return moment;
 }
@@ -107,43 +151,40 @@ TorqueShare GravityTorque::evaluate_twice(const VectorXd& q) const {
 }
 
 TorqueShare GravityTorque::torque(const VectorXd& q, bool is_twice) const {
-    const VectorXd joints = q.head(chain_.joint_count());
-    const VectorXd nominal = VectorXd::Zero(chain_.parameter_count());
-    FlangeMotion motion;
-    chain_.differentiate(Isometry3d::Identity(), joints, nominal, motion);
-    const std::vector<Isometry3d> links = chain_.base_from_links(joints, nominal);
-    const Index count = chain_.parameter_count();
-    const auto w = [&motion](Index e) { return Vector3d(motion.twists.col(6 + e).head<3>()); };
+    const Arm::Motion& motion = arm_->at(q);
+    const TwistMatrix& twists = motion.flange.twists;
+    const Index count = arm_->driven_count();
+    const auto w = [&](Index e) { return Vector3d(twists.col(6 + e).head<3>()); };
 
-    // By driven elements: the torque of element E is m g . D_E c. What element i moves turns with
+    // By driven elements: the torque of element E is g . D_E (m c). What element i moves turns with
     // it, so that D_i D_j c = w_i x D_j c for i before j, and likewise once more.
     double value = 0;
     VectorXd gradient = VectorXd::Zero(count);
     MatrixXd hessian = MatrixXd::Zero(is_twice ? count : 0, is_twice ? count : 0);
-    for (std::size_t l = 0; l < loads_.size(); ++l) {
-        if (driven_ >= moved_by_[l]) continue;
-        const Vector3d center = links[static_cast<std::size_t>(loads_[l].link)] * loads_[l].center;
-        const Vector3d weight = loads_[l].mass * gravity_;
+    for (const LinkWeight& weight : weights_) {
+        if (driven_ >= weight.moved_by) continue;
+        const Isometry3d& link = motion.links[static_cast<std::size_t>(weight.link)];
+        const Vector3d first_moment =
+            link.linear() * weight.moment + weight.mass * link.translation();
         const auto rate = [&](Index e) {
-            return Vector3d(motion.twists.col(6 + e).tail<3>() + w(e).cross(center));
+            return Vector3d(weight.mass * twists.col(6 + e).tail<3>() + w(e).cross(first_moment));
         };
-        value += weight.dot(rate(driven_));
-        for (Index i = 0; i < moved_by_[l]; ++i) {
+        value += gravity_.dot(rate(driven_));
+        for (Index i = 0; i < weight.moved_by; ++i) {
             const auto [first, second] = std::minmax(i, driven_);
-            const Vector3d twice = w(first).cross(rate(second));
-            gradient[i] += weight.dot(twice);
+            gradient[i] += gravity_.dot(w(first).cross(rate(second)));
             for (Index h = 0; is_twice && h <= i; ++h) {
                 std::array<Index, 3> order{h, i, driven_};
                 std::sort(order.begin(), order.end());
                 const double third =
-                    weight.dot(w(order[0]).cross(w(order[1]).cross(rate(order[2]))));
+                    gravity_.dot(w(order[0]).cross(w(order[1]).cross(rate(order[2]))));
                 hessian(h, i) += third;
                 if (h != i) hessian(i, h) += third;
             }
         }
     }
-    TorqueShare share{value, driven_by_.transpose() * gradient, {}};
-    if (is_twice) share.hessian = driven_by_.transpose() * hessian * driven_by_;
+    TorqueShare share{value, arm_->driven_by().transpose() * gradient, {}};
+    if (is_twice) share.hessian = arm_->driven_by().transpose() * hessian * arm_->driven_by();
     return share;
 }
 

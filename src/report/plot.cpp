@@ -80,11 +80,13 @@ std::string format_plotted(const std::optional<double>& metres, const std::strin
     return metres ? format_short(mm_per_m * *metres, 9) : if_absent;
 }
 
-ErrorAxis find_error_axis(const std::vector<StudyRow>& rows) {
+ErrorAxis find_error_axis(const std::vector<StudyRow>& rows, std::size_t criterion_count) {
     ErrorAxis axis;
     for (const StudyRow& row : rows) {
         for (const double p : band_quantiles) axis.include(held_out_quantile(row.random, p));
-        for (const StudyCase& optimal : row.optimal) axis.include(held_out_quantile({optimal}, 0));
+        for (std::size_t c = 0; c < criterion_count; ++c) {
+            axis.include(held_out_quantile(planned_cases(row, c, criterion_count), 0.5));
+        }
     }
     return axis;
 }
@@ -105,11 +107,12 @@ std::string band_lines(const std::vector<StudyRow>& rows, const ErrorAxis& axis)
     return lines;
 }
 
-/// Lines "count error" of one criterion, where it identified the model.
-std::string criterion_lines(const std::vector<StudyRow>& rows, std::size_t criterion) {
+/// Lines "count error" of one criterion, where it identified the model; of splits the median.
+std::string criterion_lines(const std::vector<StudyRow>& rows, std::size_t criterion,
+                            std::size_t criterion_count) {
     std::string lines;
     for (const StudyRow& row : rows) {
-        const auto error = held_out_quantile({row.optimal[criterion]}, 0);
+        const auto error = held_out_quantile(planned_cases(row, criterion, criterion_count), 0.5);
         if (error) lines += fmt::format("{} {}\n", row.pose_count, format_plotted(error, ""));
     }
     return lines;
@@ -141,7 +144,7 @@ Drawing draw(const std::vector<Criterion>& criteria, const std::vector<StudyRow>
     for (std::size_t i = 0; i < criteria.size(); ++i) {
         std::string name(criterion_name(criteria[i]));
         for (char& c : name) c = static_cast<char>(std::toupper(c));
-        drawing.add(fmt::format("optimal{}", i), criterion_lines(rows, i),
+        drawing.add(fmt::format("optimal{}", i), criterion_lines(rows, i, criteria.size()),
                     fmt::format("{{0}} using 1:2 with linespoints lw 2.5 pt 7 ps 0.6 lc rgb '{}' "
                                 "title 'optimal, {}'",
                                 colors[i % colors.size()], name));
@@ -163,7 +166,7 @@ void check_image_path(const std::string& path) {
 
 std::string study_plot_script(const Study& study, const std::string& image_path) {
     check_image_path(image_path);
-    const ErrorAxis axis = find_error_axis(study.rows);
+    const ErrorAxis axis = find_error_axis(study.rows, study.criteria.size());
     if (axis.is_empty()) {
         throw InputError(
             "the study has no held-out error to plot: no subset that left a "

@@ -16,6 +16,15 @@ std::string unidentified_cell(const std::vector<StudyCase>& cases) {
                       [](const StudyCase& study_case) { return !study_case.identified; }));
 }
 
+void add_advantage(const std::optional<Advantage>& advantage, std::vector<std::string>& cells) {
+    if (!advantage) {
+        cells.insert(cells.end(), {"-", "-"});
+        return;
+    }
+    cells.push_back(format_fixed(advantage->ratio, 2));
+    cells.push_back(format_fixed(advantage->lower, 2) + ".." + format_fixed(advantage->upper, 2));
+}
+
 }  // namespace
 
 Table study_table(const Study& study) {
@@ -23,14 +32,19 @@ Table study_table(const Study& study) {
     table.header = {"poses"};
     for (const Criterion criterion : study.criteria) {
         table.header.push_back(std::string(criterion_name(criterion)) + "/mm");
+        if (study.splits == 0) continue;
+        table.header.push_back(std::string(criterion_name(criterion)) + "/random");
+        table.header.emplace_back("95 %");
     }
     for (const char* name : {"random 10 %/mm", "50 %/mm", "90 %/mm", "subsets", "unidentified"}) {
         table.header.emplace_back(name);
     }
     for (const StudyRow& row : study.rows) {
         std::vector<std::string> cells{std::to_string(row.pose_count)};
-        for (const StudyCase& optimal : row.optimal) {
-            cells.push_back(cell(held_out_quantile({optimal}, 0.5)));
+        for (std::size_t c = 0; c < study.criteria.size(); ++c) {
+            const auto planned = planned_cases(row, c, study.criteria.size());
+            cells.push_back(cell(held_out_quantile(planned, 0.5)));
+            if (study.splits > 0) add_advantage(planned_advantage(study, row, c), cells);
         }
         for (const double p : {0.1, 0.5, 0.9})
             cells.push_back(cell(held_out_quantile(row.random, p)));

@@ -1,6 +1,9 @@
 #include "posewise/task/study.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -18,12 +21,19 @@
 namespace posewise {
 namespace {
 
+/// Configurations to choose from, and those that all subsets are judged on (none: on the rest).
+struct Split {
+    std::vector<Index> pool;
+    std::vector<Index> test;
+};
+
 /// What every case of a study shares.
 struct Setting {
     const Campaign& campaign;
     const Measurements& measurements;
     const StudyOptions& options;
-    Blocks blocks;  ///< of all configurations, at the registered parameters
+    Blocks blocks;               ///< of all configurations, at the registered parameters
+    std::vector<Split> splits;  ///< one of all configurations if nothing is held out
 };
 
 /// One subset to be chosen, calibrated with and judged; cases are independent of each other.
@@ -42,25 +52,61 @@ std::string describe_undetermined(const Campaign& campaign, const Measurements& 
 }
 
 void check_options(const StudyOptions& options) {
-    if (options.random_subsets >= 0 && options.starts >= 1) return;
-    throw InputError("random subsets and starts must be at least 0 and 1, are " +
-                     std::to_string(options.random_subsets) + " and " +
-                     std::to_string(options.starts));
+    if (options.random_subsets < 0 || options.starts < 1) {
+        throw InputError("random subsets and starts must be at least 0 and 1, are " +
+                         std::to_string(options.random_subsets) + " and " +
+                         std::to_string(options.starts));
+    }
+    if (options.splits && *options.splits < 0) {
+        throw InputError("splits are " + std::to_string(*options.splits) +
+                         ", must be at least 0");
+    }
+    if (!(options.holdout > 0 && options.holdout < 1)) {
+        throw InputError(fmt::format("holdout is {:g}, must be above 0 and below 1",
+                                     options.holdout));
+    }
 }
 
-std::vector<Index> choose_pose_counts(const Campaign& campaign, const Measurements& measurements,
-                                      const std::vector<Index>& asked) {
-    const Index all = measurements.configuration_count();
+/// Configurations that a split judges on.
+Index test_count(Index all, double holdout) {
+    return std::clamp<Index>(std::lround(holdout * static_cast<double>(all)), 1, all - 1);
+}
+
+/// Of a study with splits, up to a third of the pool: beyond it all subsets are much the same.
+std::vector<Index> usual_counts(Index pool, Index least) {
+    std::vector<Index> counts;
+    for (const Index count : {8, 12, 16, 20, 30, 50}) {
+        if (count >= least && 3 * count <= pool) counts.push_back(count);
+    }
+    return counts;
+}
+
+/// 0 where there are too few configurations for the counts asked for, or for the usual ones.
+Index choose_split_count(const Campaign& campaign, Index all, const StudyOptions& options) {
+    constexpr Index usual = 10;
+    if (options.splits) return *options.splits;
+    if (all < 2) return 0;
+    const Index pool = all - test_count(all, options.holdout);
+    const auto& asked = options.pose_counts;
+    const bool is_enough =
+        asked.empty() ? !usual_counts(pool, least_pose_count(campaign)).empty()
+                      : 3 * *std::max_element(asked.begin(), asked.end()) <= pool;
+    return is_enough ? usual : 0;
+}
+
+std::vector<Index> choose_pose_counts(const Campaign& campaign, const std::vector<Index>& asked,
+                                      Index all, bool is_split) {
     for (const Index count : asked) {
         if (count < 1 || count > all) {
             throw InputError("a pose count is " + std::to_string(count) +
-                             ", must be from 1 to the number of configurations, " +
-                             std::to_string(all));
+                             ", must be from 1 to the number of configurations" +
+                             (is_split ? " to choose from, " : ", ") + std::to_string(all));
         }
     }
     if (!asked.empty()) return asked;
     const Index least = least_pose_count(campaign);
-    std::vector<Index> counts;
+    std::vector<Index> counts = is_split ? usual_counts(all, least) : std::vector<Index>{};
+    if (!counts.empty()) return counts;
     for (Index count = least; count < all; ++count) counts.push_back(count);
     if (counts.empty()) {
         throw InputError("there are " + std::to_string(all) + " configurations, a study needs " +
@@ -70,28 +116,47 @@ std::vector<Index> choose_pose_counts(const Campaign& campaign, const Measuremen
     return counts;
 }
 
-/// None if no choice identifies the model.
-std::vector<Index> choose_poses(const Setting& setting, const Job& job) {
-    const Index all = setting.blocks.count();
+std::vector<Split> make_splits(Index all, Index count, const StudyOptions& options) {
+    std::vector<Split> splits;
+    for (Index s = 0; s < count; ++s) {
+        Split split;
+        // Streams of cases begin at 2^32.
+        split.test = RandomStream(options.seed, static_cast<std::uint64_t>(s))
+                         .subset(all, test_count(all, options.holdout));
+        split.pool = all_but(all, split.test);
+        splits.push_back(std::move(split));
+    }
+    if (splits.empty()) splits.push_back({all_but(all, {}), {}});
+    return splits;
+}
+
+/// Of the split's configurations; none if no choice identifies the model.
+std::vector<Index> choose_poses(const Setting& setting, const Job& job, const Split& split) {
+    const auto all = static_cast<Index>(split.pool.size());
     if (job.is_random) {
         // The stream depends on size and number only, so more subsets or sizes change no other.
         const auto item = (static_cast<std::uint64_t>(job.pose_count) << 32) + job.number;
         return RandomStream(setting.options.seed, item).subset(all, job.pose_count);
     }
+    const Blocks blocks =
+        split.test.empty() ? setting.blocks : take(setting.blocks, split.pool);
     SelectOptions options;
     options.criterion = setting.options.criteria[job.number];
     options.pose_count = job.pose_count;
     options.starts = setting.options.starts;
     if (setting.campaign.spread.is_prior) options.held = prior_information(setting.campaign);
     options.seed = setting.options.seed;
-    return select_poses(setting.blocks, options).poses;
+    return select_poses(blocks, options).poses;
 }
 
 /// Leaves the case "not identified" if its poses cannot be found or do not identify the model:
 /// that is what a study is to show.
 void run(const Setting& setting, const Job& job) {
     StudyCase& result = *job.result;
-    result.poses = choose_poses(setting, job);
+    const Split& split = setting.splits[static_cast<std::size_t>(result.split)];
+    for (const Index chosen : choose_poses(setting, job, split)) {
+        result.poses.push_back(split.pool[static_cast<std::size_t>(chosen)]);
+    }
     if (result.poses.empty()) return;
     const Measurements& measurements = setting.measurements;
     const Measurements chosen = take(measurements, result.poses);
@@ -99,35 +164,40 @@ void run(const Setting& setting, const Job& job) {
     if (!start.is_determined()) return;
     const Estimate estimate = identify(setting.campaign, chosen, start.parameters);
     if (estimate.ending == Ending::NotIdentifiable) return;
-    const auto left_out = all_but(measurements.configuration_count(), result.poses);
-    if (!left_out.empty()) {
+    const auto judged = split.test.empty()
+                            ? all_but(measurements.configuration_count(), result.poses)
+                            : split.test;
+    if (!judged.empty()) {
         result.held_out = make_metrics(
-            mean_residuals(setting.campaign, estimate.parameters, take(measurements, left_out)),
+            mean_residuals(setting.campaign, estimate.parameters, take(measurements, judged)),
             setting.campaign.sensor->lengths_per_target());
     }
     result.identified = true;
 }
 
 /// The cases of all rows; pointers into `rows`, which must not be resized any more.
-std::vector<Job> list_jobs(std::vector<StudyRow>& rows) {
+std::vector<Job> list_jobs(std::vector<StudyRow>& rows, std::size_t split_count) {
     std::vector<Job> jobs;
     for (StudyRow& row : rows) {
         for (std::size_t i = 0; i < row.optimal.size(); ++i) {
-            jobs.push_back({row.pose_count, &row.optimal[i], false, i});
+            row.optimal[i].split = static_cast<Index>(i % split_count);
+            jobs.push_back({row.pose_count, &row.optimal[i], false, i / split_count});
         }
         for (std::size_t i = 0; i < row.random.size(); ++i) {
+            row.random[i].split = static_cast<Index>(i % split_count);
             jobs.push_back({row.pose_count, &row.random[i], true, i});
         }
     }
     return jobs;
 }
 
-std::vector<StudyRow> make_rows(const std::vector<Index>& counts, const StudyOptions& options) {
+std::vector<StudyRow> make_rows(const std::vector<Index>& counts, const StudyOptions& options,
+                                std::size_t split_count) {
     std::vector<StudyRow> rows;
     for (const Index count : counts) {
         StudyRow row;
         row.pose_count = count;
-        row.optimal.resize(options.criteria.size());
+        row.optimal.resize(options.criteria.size() * split_count);
         row.random.resize(static_cast<std::size_t>(options.random_subsets));
         rows.push_back(std::move(row));
     }
@@ -136,7 +206,7 @@ std::vector<StudyRow> make_rows(const std::vector<Index>& counts, const StudyOpt
 
 /// Runs all cases; of a study that is stopped, those rows stay that are complete.
 void run_all(const Setting& setting, std::vector<StudyRow>& rows) {
-    const std::vector<Job> jobs = list_jobs(rows);
+    const std::vector<Job> jobs = list_jobs(rows, setting.splits.size());
     std::vector<char> is_done(jobs.size(), 0);
     const auto count = static_cast<Index>(jobs.size());
     detail::ProgressCounter counter(setting.options.progress, count);
@@ -161,16 +231,63 @@ Study study(const Campaign& campaign, const Measurements& measurements,
     const Registration registration = register_base_and_targets(campaign, measurements);
     check_is_of_robot(campaign, measurements, registration);
     check_options(options);
-    const auto counts = choose_pose_counts(campaign, measurements, options.pose_counts);
-    Study study{campaign.name, measurements.ids, options.criteria, {}, Ending::NotIdentifiable, {}};
+    const Index all = measurements.configuration_count();
+    const Index split_count = choose_split_count(campaign, all, options);
+    if (split_count > 0 && all < 2) {
+        throw InputError("there is 1 configuration, splits need at least 2");
+    }
+    std::vector<Split> splits = make_splits(all, split_count, options);
+    const auto counts =
+        choose_pose_counts(campaign, options.pose_counts,
+                           static_cast<Index>(splits.front().pool.size()), split_count > 0);
+    Study study;
+    study.campaign = campaign.name;
+    study.ids = measurements.ids;
+    study.criteria = options.criteria;
+    study.ending = Ending::NotIdentifiable;
+    study.splits = split_count;
+    study.test_count = static_cast<Index>(splits.front().test.size());
     study.undetermined = describe_undetermined(campaign, measurements, registration);
     if (!study.undetermined.empty()) return study;
     const Setting setting{campaign, measurements, options,
-                          detail::measured_blocks(campaign, registration.parameters, measurements)};
-    study.rows = make_rows(counts, options);
+                          detail::measured_blocks(campaign, registration.parameters, measurements),
+                          std::move(splits)};
+    study.rows = make_rows(counts, options, setting.splits.size());
     run_all(setting, study.rows);
     study.ending = options.stop.ending_or(Ending::Converged);
     return study;
+}
+
+std::vector<StudyCase> planned_cases(const StudyRow& row, std::size_t criterion,
+                                     std::size_t criterion_count) {
+    const auto each = static_cast<std::ptrdiff_t>(row.optimal.size() / criterion_count);
+    const auto begin = row.optimal.begin() + each * static_cast<std::ptrdiff_t>(criterion);
+    return {begin, begin + each};
+}
+
+std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
+                                           std::size_t criterion) {
+    if (study.splits == 0) return std::nullopt;
+    std::vector<double> logarithms;
+    for (const StudyCase& planned : planned_cases(row, criterion, study.criteria.size())) {
+        std::vector<StudyCase> random;
+        for (const StudyCase& other : row.random) {
+            if (other.split == planned.split) random.push_back(other);
+        }
+        const auto median = held_out_quantile(random, 0.5);
+        const auto found = held_out_quantile({planned}, 0.5);
+        if (!median || !found) return std::nullopt;
+        logarithms.push_back(std::log(*found / *median));
+    }
+    const Eigen::Map<const VectorXd> values(logarithms.data(),
+                                            static_cast<Index>(logarithms.size()));
+    const double mean = values.mean();
+    const double freedom = static_cast<double>(values.size()) - 1;
+    if (freedom < 1) return Advantage{std::exp(mean), std::exp(mean), std::exp(mean)};
+    const double deviation = std::sqrt((values.array() - mean).square().sum() / freedom /
+                                       static_cast<double>(values.size()));
+    const double width = student_quantile(0.975, freedom) * deviation;
+    return Advantage{std::exp(mean), std::exp(mean - width), std::exp(mean + width)};
 }
 
 std::optional<double> held_out_quantile(const std::vector<StudyCase>& cases, double p) {

@@ -24,13 +24,15 @@ struct MatMapping {
 enum class ErrorModel {
     Stated,    ///< those that the file names in brackets
     Complete,  ///< every geometric error of a rigid link, reduced to an irreducible set
+    Full,      ///< full_model(), with the sizes of errors that robots have as priors
 };
 
 /// A campaign, what else its file says, and the defaults of the command line.
 struct CampaignFile : Campaign {
     std::string path;
     /// The robot as the file's elements state it. With ErrorModel::Complete, `robot` is the
-    /// irreducible form of its complete model, else the same.
+    /// irreducible form of its complete model, with ErrorModel::Full its full model, else the
+    /// same.
     Chain declared_robot;
     ErrorModel error_model = ErrorModel::Stated;
     std::optional<UrdfSource> urdf;  ///< where the robot comes from, if from a URDF

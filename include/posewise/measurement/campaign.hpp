@@ -3,6 +3,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,13 @@ struct ParameterSpread {
     double angle = 1e-3;
     std::map<std::string, double> by_name;  ///< exceptions, by parameter name
     bool is_prior = false;      ///< whether it is also the prior standard deviation of robot errors
-    double gravity = 1e-3;      ///< of terms of TermKind::Gravity
+    double gravity = 1e-3;      ///< of terms of TermKind::Gravity and TermKind::Torque
     double harmonic = 0.15e-3;  ///< of terms of TermKind::Harmonic
+    std::optional<double> offset = {};  ///< of joints that turn; nothing: as other angles
 };
+
+/// What errors robots of this size have, as a prior: for full_model().
+ParameterSpread population_spread(const Chain& robot);
 
 /// Everything about a measurement campaign that is known before measuring: the robot, the sensor,
 /// how large the errors are expected to be. The subject of every question posewise answers.

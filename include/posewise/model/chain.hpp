@@ -49,6 +49,7 @@ enum class TermKind {
     Free,      ///< written by hand; as large as a constant error
     Gravity,   ///< torque of the weight on a compliant joint
     Harmonic,  ///< periodic error of an encoder or a gear
+    Torque,    ///< shape of the torque that unknown weights put on a compliant joint
 };
 
 /// An error of an element that depends on the configuration: its amount gains parameter * f(q).

@@ -14,23 +14,32 @@ namespace posewise {
 /// How well one subset calibrates the robot.
 struct StudyCase {
     std::vector<Index> poses;
+    Index split = 0;
     bool identified = false;  ///< false: these poses cannot identify the model
-    /// Means of the configurations left out (so that repeat noise does not blur the comparison); no
-    /// points if none is left.
+    /// Means of the configurations held out of the split, else of all that were not chosen (so that
+    /// repeat noise does not blur the comparison); no points if none is left.
     Metrics held_out;
 };
 
 /// All subsets of one size.
 struct StudyRow {
     Index pose_count = 0;
-    std::vector<StudyCase> optimal;  ///< one for each asked criterion
-    std::vector<StudyCase> random;
+    std::vector<StudyCase> optimal;  ///< of each asked criterion one for each split
+    std::vector<StudyCase> random;   ///< in turn of each split
 };
 
 struct StudyOptions {
     std::vector<Criterion> criteria{Criterion::D};
-    std::vector<Index> pose_counts;  ///< empty: from the least identifying count to all but one
+    /// Empty: from the least identifying count to all but one; with splits 8, 12, 16, 20, 30, 50
+    /// up to a third of what there is to choose from.
+    std::vector<Index> pose_counts;
     Index random_subsets = 100;
+    /// Splits of the configurations at random into those to choose from and those to judge all
+    /// subsets on. 0: none, each subset is judged on all that it leaves, so that a plan that takes
+    /// the telling configurations is judged on easier ones than others are. Nothing: 10 if there are
+    /// enough configurations for it.
+    std::optional<Index> splits;
+    double holdout = 0.3;  ///< part of the configurations that a split judges on
     Index starts = 20;  ///< of the exchange
     std::uint64_t seed = 1;
     StopSignal stop{};            ///< ends it with the pose counts that are complete
@@ -43,18 +52,35 @@ struct Study {
     std::vector<std::string> ids;     ///< of the configurations
     std::vector<Criterion> criteria;  ///< by which were chosen, as StudyRow::optimal has them
     std::vector<StudyRow> rows;       ///< none if there is nothing to study
+    Index splits = 0;                 ///< 0: each subset was judged on what it leaves
+    Index test_count = 0;             ///< configurations that each split judges on
     Ending ending = Ending::NotRun;
     /// Where it is NotIdentifiable, why not even all configurations identify the model.
     std::string undetermined;
 };
 
 /// Chooses k of the measured configurations by each criterion and at random, calibrates with them
-/// from registration on, and judges on the configurations left out. The same result for any number
-/// of threads.
+/// from registration on, and judges on configurations held out: the same ones for all subsets of a
+/// split. The same result for any number of threads.
 /// Throws InputError for measurements of another robot (check_is_of_robot()), for a pose count that
 /// is not in [1, configurations], and for other options out of range.
 Study study(const Campaign& campaign, const Measurements& measurements,
             const StudyOptions& options = {});
+
+/// The planned subsets against random ones.
+struct Advantage {
+    double ratio = 1;  ///< geometric mean over the splits, planned / median of the random ones
+    double lower = 1;  ///< its 95 % interval, by Student's t of the logarithms; of one split the
+    double upper = 1;  ///< ratio itself
+};
+/// Of the criterion of that number in one row of a study with splits. Nothing where a planned subset
+/// or half of the random ones of a split do not identify the model.
+std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
+                                           std::size_t criterion);
+
+/// The planned cases of one of so many criteria in a row.
+std::vector<StudyCase> planned_cases(const StudyRow& row, std::size_t criterion,
+                                     std::size_t criterion_count);
 
 /// The p-quantile (0..1, linear between order statistics) of the held-out distance RMS. Cases that
 /// are not identified count as worse than any other, so that dropping them cannot flatter the rest;
