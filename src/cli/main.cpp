@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -30,7 +31,8 @@ Start with:
   posewise correct campaign.yaml estimate.json --poses p.csv     joint values that hit the poses
 
 posewise COMMAND --help explains each with an example.
-Exit code: 0 good, 1 unusable input (one line on standard error), 2 wrong usage.)";
+Exit code: 0 good, 1 unusable input (one line on standard error), 2 wrong usage,
+70 internal error, a bug of posewise.)";
 
 /// A message is one line, whatever it quotes.
 int fail(const std::string& message, int code) {
@@ -81,6 +83,7 @@ void add_commands(CLI::App& program) {
 
 int main(int argc, char** argv) {
     posewise::fix_cache_sizes();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is an error like a full disk
     CLI::App program{"Which poses to measure, how many, and what a calibration achieved.",
                      "posewise"};
     try {

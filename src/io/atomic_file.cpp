@@ -4,10 +4,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
 
 #include "posewise/core/errors.hpp"
 
@@ -60,6 +63,48 @@ class FileDescriptor {
     int fd_;
 };
 
+/// While one lives, signals that end a program wait, so that no temporary file is left behind. Not
+/// by a mask, which holds for one thread only: another one would take the signal.
+class SignalDelay {
+  public:
+    SignalDelay() : lock_(mutex_) {
+        struct sigaction delay {};
+        delay.sa_handler = note;
+        delay.sa_flags = SA_RESTART;
+        for (std::size_t k = 0; k < signals.size(); ++k) {
+            has_come_[k] = false;
+            ::sigaction(signals[k], nullptr, &before_[k]);
+            if (before_[k].sa_handler != SIG_IGN) ::sigaction(signals[k], &delay, nullptr);
+        }
+    }
+    ~SignalDelay() {
+        for (std::size_t k = 0; k < signals.size(); ++k) {
+            ::sigaction(signals[k], &before_[k], nullptr);
+        }
+        for (std::size_t k = 0; k < signals.size(); ++k) {
+            if (has_come_[k]) ::raise(signals[k]);
+        }
+    }
+    SignalDelay(const SignalDelay&) = delete;
+    SignalDelay& operator=(const SignalDelay&) = delete;
+
+  private:
+    static constexpr std::array signals{SIGINT, SIGTERM, SIGHUP};
+
+    static void note(int signal) {
+        for (std::size_t k = 0; k < signals.size(); ++k) {
+            if (signals[k] == signal) has_come_[k] = true;
+        }
+    }
+
+    static inline std::mutex mutex_;  // what is done with a signal is of the whole program
+    static inline std::array<std::atomic<bool>, signals.size()> has_come_{};
+    static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
+
+    std::lock_guard<std::mutex> lock_;
+    std::array<struct sigaction, signals.size()> before_{};
+};
+
 /// A name beside the file that no other writer uses; short, since the file's own may be as long as
 /// names can be.
 std::string temporary_name(const std::string& path) {
@@ -95,6 +140,7 @@ void write_file(const std::string& path, const std::string& content) {
         if (!file.is_open() || !file.write(content)) throw failure(path, "cannot be written");
         return;
     }
+    const SignalDelay delay;
     const std::string temporary = temporary_name(target);
     {
         const FileDescriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC);

@@ -12,6 +12,8 @@
 namespace posewise::detail {
 namespace {
 
+constexpr int most_deep = 50;  // copying and destroying are recursive
+
 /// Line and column of a byte, counted from 1.
 FileLocation locate(const std::string& path, const std::string& content, std::size_t byte) {
     const std::string before = content.substr(0, byte > 0 ? byte - 1 : 0);
@@ -20,6 +22,10 @@ FileLocation locate(const std::string& path, const std::string& content, std::si
     const std::size_t column =
         line_begin == std::string::npos ? before.size() : before.size() - line_begin - 1;
     return {path, static_cast<long>(line), static_cast<long>(column) + 1};
+}
+
+std::string with_article(const std::string& kind) {
+    return (kind.starts_with('e') ? "an " : "a ") + kind;
 }
 
 /// Indented, but a list of plain values on one line: a matrix reads as one.
@@ -91,17 +97,22 @@ Json read_document(const std::string& path, const std::string& kind,
     RepeatedKey repeated;
     try {
         document =
-            Json::parse(content, [&](int /*depth*/, Json::parse_event_t event, const Json& parsed) {
+            Json::parse(content, [&](int depth, Json::parse_event_t event, const Json& parsed) {
+                if (depth > most_deep) {
+                    throw input_error_at({path}, "is nested more than " +
+                                                     std::to_string(most_deep) +
+                                                     " deep; must be less");
+                }
                 return repeated(event, parsed);
             });
     } catch (const Json::parse_error& problem) {
         const auto location =
             content.empty() ? FileLocation{path} : locate(path, content, problem.byte);
-        throw input_error_at(location,
-                             "is not JSON here; must be a " + kind + " as posewise writes it");
+        throw input_error_at(location, "is not JSON here; must be " + with_article(kind) +
+                                           " as posewise writes it");
     } catch (const Json::exception&) {  // a number that overflows; it has no place
-        throw input_error_at({path}, "has a number beyond the range of numbers; must be a " + kind +
-                                         " as posewise writes it");
+        throw input_error_at({path}, "has a number beyond the range of numbers; must be " +
+                                         with_article(kind) + " as posewise writes it");
     }
     if (repeated.key()) {
         throw input_error_at({path}, "key " + quote(*repeated.key()) +
@@ -111,8 +122,8 @@ Json read_document(const std::string& path, const std::string& kind,
     const bool is_old =
         found != document.end() && !old_kind.empty() && *found == "posewise " + old_kind;
     if (!is_old && (found == document.end() || *found != "posewise " + kind)) {
-        throw input_error_at({path}, "kind: must be \"posewise " + kind + "\", as in a " + kind +
-                                         " written by posewise");
+        throw input_error_at({path}, "kind: must be \"posewise " + kind + "\", as in " +
+                                         with_article(kind) + " written by posewise");
     }
     return document;
 }

@@ -121,6 +121,15 @@ TEST_F(BadInput, TheLargestSeedIsTaken) {
     EXPECT_NE(text_of("a.csv").find("--seed 18446744073709551615"), std::string::npos);
 }
 
+TEST_F(BadInput, AFileBeyondTheLimitOfSizeIsAnErrorAndLeavesNothing) {
+    const auto files = file_count();
+    const Outcome outcome = run("simulate c.yaml -k 1000 -o big.csv",
+                                "sh -c 'ulimit -f 16; exec \"$0\" \"$@\"'");
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_EQ(outcome.err, "posewise: big.csv: cannot be written: File too large\n");
+    EXPECT_EQ(file_count(), files);
+}
+
 TEST_F(BadInput, HelpThatCannotBePrintedIsAnError) {
     if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "needs the device /dev/full";
     for (const std::string arguments : {"--help", "--version", "study --help"}) {

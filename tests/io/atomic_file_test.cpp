@@ -1,6 +1,12 @@
 #include "../../src/io/atomic_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
 
 #include "support/temporary_folder.hpp"
 
@@ -76,6 +82,29 @@ TEST(WriteFile, SaysThatTheDiskIsFull) {
     if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "needs the device /dev/full";
     EXPECT_EQ(input_error_of([] { write_file("/dev/full", "text"); }),
               "/dev/full: cannot be written: No space left on device");
+}
+
+/// Until it is ended.
+[[noreturn]] void write_forever(const std::string& path) noexcept {
+    for (;;) write_file(path, std::string(1 << 16, 'x'));
+}
+
+TEST(WriteFile, LeavesNoTemporaryFileWhenASignalEndsTheProgram) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        for (int k = 0; k < 5; ++k) {
+            const TemporaryFolder folder;
+            const std::string path = folder.path("a");
+            const pid_t child = ::fork();
+            if (child == 0) write_forever(path);
+            while (!std::filesystem::exists(path)) std::this_thread::yield();
+            std::this_thread::sleep_for(std::chrono::microseconds(700 * k));
+            ::kill(child, signal);
+            int status = 0;
+            ::waitpid(child, &status, 0);
+            EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
+            EXPECT_EQ(folder.file_count(), 1U);
+        }
+    }
 }
 
 TEST(ReadFile, StopsAtTheLargestSize) {

@@ -181,7 +181,7 @@ TEST_F(EstimateFile, OfAnotherCampaignIsRefused) {
     EXPECT_EQ(error_with("\"quaternion_wxyz\": [", "\"quaternion_wxyz\": [1,"),
               "estimate.json: base.quaternion_wxyz: has 5 values; must have 4");
     EXPECT_EQ(error_with("\"posewise estimate\"", "\"posewise plan\""),
-              "estimate.json: kind: must be \"posewise estimate\", as in a estimate written by "
+              "estimate.json: kind: must be \"posewise estimate\", as in an estimate written by "
               "posewise");
     EXPECT_EQ(error_with("\"target2\"", "\"target7\""),
               "estimate.json: targets.target2: is missing; must be there as posewise writes it");

@@ -14,6 +14,19 @@ TEST(ReadJson, RefusesANumberThatOverflows) {
               "it");
 }
 
+TEST(ReadJson, RefusesDeepNesting) {
+    const testing::TemporaryFolder folder;
+    const auto error_of = [&](std::size_t depth) {
+        const std::string path =
+            folder.write("p.json", R"({"kind": "posewise plan", "x": )" + std::string(depth, '[') +
+                                       '1' + std::string(depth, ']') + R"(, "a": 1})");
+        return testing::input_error_of([&] { read_plan(path); });
+    };
+    EXPECT_EQ(error_of(49), "p.json: poses: must be a list of at least one pose");
+    EXPECT_EQ(error_of(50), "p.json: is nested more than 50 deep; must be less");
+    EXPECT_EQ(error_of(100000), error_of(50));
+}
+
 TEST(ReadJson, RefusesAKeyThatStandsTwice) {
     const testing::TemporaryFolder folder;
     const std::string path = folder.write(
