@@ -90,26 +90,24 @@ void write_json(const std::string& path, const Json& document) {
     }
 }
 
-Json read_document(const std::string& path, const std::string& kind,
-                   const std::string& old_kind) {
+Json read_document(const std::string& path, const std::string& kind, const std::string& old_kind) {
     const std::string content = read_file(path);
     Json document;
     RepeatedKey repeated;
     try {
-        document =
-            Json::parse(content, [&](int depth, Json::parse_event_t event, const Json& parsed) {
-                if (depth > most_deep) {
-                    throw input_error_at({path}, "is nested more than " +
-                                                     std::to_string(most_deep) +
-                                                     " deep; must be less");
-                }
-                return repeated(event, parsed);
-            });
+        document = Json::parse(content, [&](int depth, Json::parse_event_t event,
+                                            const Json& parsed) {
+            if (depth > most_deep) {
+                throw input_error_at({path}, "is nested more than " + std::to_string(most_deep) +
+                                                 " deep; must be less");
+            }
+            return repeated(event, parsed);
+        });
     } catch (const Json::parse_error& problem) {
         const auto location =
             content.empty() ? FileLocation{path} : locate(path, content, problem.byte);
-        throw input_error_at(location, "is not JSON here; must be " + with_article(kind) +
-                                           " as posewise writes it");
+        throw input_error_at(
+            location, "is not JSON here; must be " + with_article(kind) + " as posewise writes it");
     } catch (const Json::exception&) {  // a number that overflows; it has no place
         throw input_error_at({path}, "has a number beyond the range of numbers; must be " +
                                          with_article(kind) + " as posewise writes it");

@@ -62,9 +62,14 @@ double JsonValue::number() const {
 
 double JsonValue::number_or(double unknown) const { return is_null() ? unknown : number(); }
 
-Index JsonValue::count(Index least) const {
+Index JsonValue::count(Index least, Index most) const {
     if (!value_->is_number_integer()) throw wrong_type("a whole number");
     const auto value = value_->get<std::int64_t>();
+    const bool is_huge = value_->is_number_unsigned() &&
+                         value_->get<std::uint64_t>() > static_cast<std::uint64_t>(most);
+    if (is_huge || value > most) {
+        throw error("is " + value_->dump() + "; must be at most " + std::to_string(most));
+    }
     if (value < least) {
         throw error("is " + value_->dump() + "; must be at least " + std::to_string(least));
     }

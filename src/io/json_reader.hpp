@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +32,8 @@ class JsonValue {
     double number() const;
     /// Null is `unknown`, which JSON cannot write.
     double number_or(double unknown) const;
-    Index count(Index least) const;
+    /// A whole number of at least and at most so much.
+    Index count(Index least, Index most = std::numeric_limits<Index>::max()) const;
     std::uint64_t natural_number() const;
 
   private:

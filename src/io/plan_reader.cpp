@@ -16,6 +16,29 @@ using detail::JsonValue;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+// As much as the command line takes.
+constexpr Index most_poses = 1000000;
+constexpr Index most_continuous_poses = 10000;
+constexpr Index most_drawn = 10000000;
+constexpr Index most_workspace_poses = 20000;
+constexpr Index most_targets = 10000;
+constexpr Index most_starts = 1000000;
+constexpr double most_repeats = 1e9;
+
+double read_not_negative(const JsonValue& json) {
+    const double value = json.number();
+    if (!(value >= 0)) throw json.error("must not be negative");
+    return value;
+}
+
+/// From 0 to 1, but for rounding.
+double read_efficiency(const JsonValue& json) {
+    constexpr double rounding = 1e-9;
+    const double value = json.number();
+    if (!(value >= 0 && value <= 1 + rounding)) throw json.error("must be from 0 to 1");
+    return value;
+}
+
 // ---- What was asked for ----
 
 CandidateKind read_kind(const JsonValue& json) {
@@ -31,18 +54,20 @@ void read_candidates(const JsonValue& json, const std::string& path, Plan& plan)
     plan.kind = read_kind(json["kind"]);
     request.sources.campaign = read_path(json["campaign_file"], path);
     request.sources.candidates = read_path(json["source"], path);
-    plan.candidate_count = json["count"].count(1);
     if (plan.kind == CandidateKind::Blocks) {
-        request.sources.rows_per_block = json["rows_per_block"].count(1);
+        request.sources.rows_per_block = json["rows_per_block"].count(1, most_poses);
         request.sources.variable = json["variable"].text();
     }
     if (plan.is_continuous()) {
-        request.pool_count = json["drawn"].count(1);
+        request.pool_count = json["drawn"].count(1, most_drawn);
     } else {
         plan.checksum = json["checksum"].text();
     }
+    plan.candidate_count =
+        json["count"].count(1, plan.is_continuous() ? request.pool_count : most_drawn);
     request.repeats = json["repeats"].number();
     if (!(request.repeats >= 1)) throw json["repeats"].error("must be at least 1");
+    if (request.repeats > most_repeats) throw json["repeats"].error("must be at most 1e9");
 }
 
 Criterion read_criterion(const JsonValue& json) {
@@ -57,39 +82,42 @@ Criterion read_criterion(const JsonValue& json) {
 void read_choice_limits(const JsonValue& problem, const std::string& path, PlanRequest& request) {
     request.sources.test_poses = read_path(problem["test_poses"], path);
     request.sources.groups = read_path(problem["groups"], path);
-    request.group_limit = problem["group_limit"].count(0);
+    request.group_limit = problem["group_limit"].count(0, most_poses);
     for (const JsonValue& id : problem["excluded"].list()) request.excluded.push_back(id.text());
-    request.repeat_limit = problem["repeat_limit"].count(1);
-    request.least_distance = problem["least_distance_rad"].number();
-    if (!(request.least_distance >= 0)) {
-        throw problem["least_distance_rad"].error("must not be negative");
-    }
+    request.repeat_limit = problem["repeat_limit"].count(1, most_poses);
+    request.least_distance = read_not_negative(problem["least_distance_rad"]);
 }
 
 void read_workspace(const JsonValue& problem, const std::string& path, PlanRequest& request) {
     request.sources.repaired = read_path(problem["repaired_plan"], path);
     for (const JsonValue& id : problem["dropped"].list()) request.dropped.push_back(id.text());
     request.sources.workspace = read_path(problem["workspace"], path);
-    request.workspace_count = problem["workspace_poses"].count(1);
+    request.workspace_count = problem["workspace_poses"].count(1, most_workspace_poses);
     for (const JsonValue& number : problem["workspace_box_mm"].list()) {
         request.workspace_box_mm.push_back(number.number());
     }
     if (request.workspace_box_mm.size() != 0 && request.workspace_box_mm.size() != 6) {
         throw problem["workspace_box_mm"].error("must have 6 numbers or none");
     }
-    request.workspace_target = problem["workspace_target"].count(0);
-    request.time_limit = problem["time_limit_s"].number();
+    request.workspace_target = problem["workspace_target"].count(0, most_targets);
+    request.time_limit = read_not_negative(problem["time_limit_s"]);
 }
 
 void read_problem(const JsonValue& problem, const std::string& path, Plan& plan) {
     PlanRequest& request = plan.request;
-    request.pose_count = problem["pose_count"].count(1);
+    request.pose_count =
+        problem["pose_count"].count(1, plan.is_continuous() ? most_continuous_poses : most_poses);
     request.has_prior = problem["prior"].boolean();
     const std::string focus = problem["focus"].text();
     if (focus != "all" && focus != "robot") throw problem["focus"].error("must be all or robot");
     request.is_focused_on_robot = focus == "robot";
     request.sources.augment = read_path(problem["augment"], path);
     if (plan.is_continuous()) {
+        if (request.pose_count != static_cast<Index>(plan.poses.size())) {
+            throw problem["pose_count"].error("is " + std::to_string(request.pose_count) +
+                                              "; must be " + std::to_string(plan.poses.size()) +
+                                              ", as many as there are poses");
+        }
         read_workspace(problem, path, request);
     } else {
         read_choice_limits(problem, path, request);
@@ -131,16 +159,16 @@ void read_bounds(const JsonValue& document, Plan& plan) {
     const JsonValue pool = document["bounds"]["pool"];
     plan.choice_value = pool["value"].number_or(-infinity);
     plan.bound = pool["bound"].number_or(infinity);
-    plan.efficiency = pool["efficiency"].number();
+    plan.efficiency = read_efficiency(pool["efficiency"]);
     const JsonValue searched = document["bounds"]["continuous"];
     plan.searched_bound = searched["bound"].number_or(infinity);
-    plan.searched_efficiency = searched["efficiency"].number();
+    plan.searched_efficiency = read_efficiency(searched["efficiency"]);
 }
 
 void read_search(const JsonValue& search, Plan& plan) {
     plan.request.seed = search["seed"].natural_number();
-    plan.request.starts = search["starts"].count(1);
-    plan.starts_at_best = search["starts_at_best"].count(0);
+    plan.request.starts = search["starts"].count(1, most_starts);
+    plan.starts_at_best = search["starts_at_best"].count(0, plan.request.starts);
     const std::string reason = search["stop_reason"].text();
     const auto found = std::find_if(detail::plan_endings.begin(), detail::plan_endings.end(),
                                     [&](Ending known) { return ending_name(known) == reason; });
@@ -179,7 +207,8 @@ void read_prediction(const JsonValue& document, const Json& json, Plan& plan) {
     for (std::size_t k = 0; k < names.size(); ++k) {
         plan.standard_deviations.push_back({names[k], values[k].number_or(infinity)});
     }
-    plan.visiting_time = document["visiting_time_s"].number_or(infinity);
+    const JsonValue time = document["visiting_time_s"];
+    plan.visiting_time = time.is_null() ? infinity : read_not_negative(time);
 }
 
 // ---- The poses ----
@@ -199,7 +228,7 @@ PlannedPose read_pose(const JsonValue& json) {
     if (json.has("joints")) pose.configuration = read_configuration(json["joints"]);
     if (json.has("visible_targets")) {
         for (const JsonValue& target : json["visible_targets"].list()) {
-            pose.targets.push_back(target.count(1) - 1);
+            pose.targets.push_back(target.count(1, most_targets) - 1);
         }
     }
     if (json.has("via") && !json["via"].is_null()) pose.via = read_configuration(json["via"]);
@@ -227,6 +256,9 @@ void read_poses(const Json& document, const std::string& path, Plan& plan) {
             if (plan.poses.empty()) plan.columns = columns;
             if (columns != plan.columns) throw json["joints"].error("differ from poses[0].joints");
         }
+        if (pose.via && keys_of((*found)[plan.poses.size()]["via"]) != plan.columns) {
+            throw json["via"].error("has other joints than poses[0].joints; must have the same");
+        }
         plan.poses.push_back(std::move(pose));
     }
 }
@@ -234,8 +266,12 @@ void read_poses(const Json& document, const std::string& path, Plan& plan) {
 /// What stands with every pose of a plan of this kind.
 void check_poses(const JsonValue& document, const Plan& plan) {
     for (const JsonValue& pose : document["poses"].list()) {
-        pose["times"].count(1);
+        const Index times = pose["times"].count(1);
         if (!plan.is_continuous()) continue;
+        if (times != 1) {
+            throw pose["times"].error("is " + std::to_string(times) +
+                                      "; must be 1, since each pose is planned once");
+        }
         pose["joints"].values();
         pose["visible_targets"].list();
     }

@@ -123,8 +123,8 @@ TEST_F(BadInput, TheLargestSeedIsTaken) {
 
 TEST_F(BadInput, AFileBeyondTheLimitOfSizeIsAnErrorAndLeavesNothing) {
     const auto files = file_count();
-    const Outcome outcome = run("simulate c.yaml -k 1000 -o big.csv",
-                                "sh -c 'ulimit -f 16; exec \"$0\" \"$@\"'");
+    const Outcome outcome =
+        run("simulate c.yaml -k 1000 -o big.csv", "sh -c 'ulimit -f 16; exec \"$0\" \"$@\"'");
     EXPECT_EQ(outcome.code, 1);
     EXPECT_EQ(outcome.err, "posewise: big.csv: cannot be written: File too large\n");
     EXPECT_EQ(file_count(), files);

@@ -45,6 +45,16 @@ class PlanFileTest : public ::testing::Test {
         plan_.certificate.M = Eigen::Matrix2d{{1.0 / 3, -0.1}, {-0.1, 7}};
     }
 
+    /// The two poses, each once, as a continuous plan.
+    void make_continuous() {
+        plan_.kind = CandidateKind::Pool;
+        plan_.request.pose_count = 2;
+        plan_.poses[1].times = 1;
+        plan_.predicted = {1e-4, 2e-4, 0};
+        plan_.standard_deviations = {{"dq2_rad", 1e-5}};
+        plan_.visiting_time = 17.5;
+    }
+
     std::string written() const {
         write_plan(path_, plan_);
         return read_file(path_);
@@ -113,16 +123,13 @@ TEST_F(PlanFileTest, KeepsEveryKindOfCandidates) {
 }
 
 TEST_F(PlanFileTest, KeepsWhatAContinuousPlanIs) {
-    plan_.kind = CandidateKind::Pool;
+    make_continuous();
     plan_.poses[0].via = Eigen::Vector3d(0.1, 0.2, 0.3);
     plan_.poses[1].is_blocked = plan_.poses[1].is_kept = true;
     plan_.choice_value = -13;
     plan_.bound = -11;
     plan_.searched_bound = -12;
     plan_.searched_efficiency = 0.75;
-    plan_.predicted = {1e-4, 2e-4, 0};
-    plan_.standard_deviations = {{"dq2_rad", 1e-5}};
-    plan_.visiting_time = 17.5;
     plan_.request.dropped = {"p3"};
     plan_.request.workspace_box_mm = {0, 0, 0, 1, 2, 3};
     plan_.request.pool_count = 1234;
@@ -169,6 +176,48 @@ TEST_F(PlanFileTest, SaysWhereAnEditedFileIsWrong) {
               "or blocks");
     EXPECT_EQ(error_with("\"repeats\": 2.5", "\"repeats\": 0.5"),
               "p.json: candidates.repeats: must be at least 1");
+}
+
+TEST_F(PlanFileTest, RefusesNumbersNoPlanHas) {
+    EXPECT_EQ(error_with("\"pose_count\": 3", "\"pose_count\": 9223372036854775807"),
+              "p.json: problem.pose_count: is 9223372036854775807; must be at most 1000000");
+    EXPECT_EQ(error_with("\"pose_count\": 3", "\"pose_count\": 18446744073709551615"),
+              "p.json: problem.pose_count: is 18446744073709551615; must be at most 1000000");
+    EXPECT_EQ(error_with("\"count\": 3", "\"count\": 10000001"),
+              "p.json: candidates.count: is 10000001; must be at most 10000000");
+    EXPECT_EQ(error_with("\"group_limit\": 0", "\"group_limit\": 1000001"),
+              "p.json: problem.group_limit: is 1000001; must be at most 1000000");
+    EXPECT_EQ(error_with("\"repeat_limit\": 2", "\"repeat_limit\": 1000001"),
+              "p.json: problem.repeat_limit: is 1000001; must be at most 1000000");
+    EXPECT_EQ(error_with("\"starts\": 20", "\"starts\": 1000001"),
+              "p.json: search.starts: is 1000001; must be at most 1000000");
+    EXPECT_EQ(error_with("\"starts_at_best\": 4", "\"starts_at_best\": 21"),
+              "p.json: search.starts_at_best: is 21; must be at most 20");
+    EXPECT_EQ(error_with("\"visible_targets\": [1,2]", "\"visible_targets\": [1,10001]"),
+              "p.json: poses[0].visible_targets[1]: is 10001; must be at most 10000");
+    EXPECT_EQ(error_with("\"repeats\": 2.5", "\"repeats\": 2e9"),
+              "p.json: candidates.repeats: must be at most 1e9");
+}
+
+TEST_F(PlanFileTest, RefusesAContinuousPlanThatContradictsItself) {
+    make_continuous();
+    plan_.request.pool_count = 500;
+    EXPECT_EQ(error_with("\"pose_count\": 2", "\"pose_count\": 99"),
+              "p.json: problem.pose_count: is 99; must be 2, as many as there are poses");
+    EXPECT_EQ(error_with("\"times\": 1", "\"times\": 50"),
+              "p.json: poses[0].times: is 50; must be 1, since each pose is planned once");
+    EXPECT_EQ(error_with("\"count\": 3", "\"count\": 501"),
+              "p.json: candidates.count: is 501; must be at most 500");
+    EXPECT_EQ(error_with("\"workspace_poses\": 500", "\"workspace_poses\": 10000000"),
+              "p.json: problem.workspace_poses: is 10000000; must be at most 20000");
+    EXPECT_EQ(error_with("\"time_limit_s\": 0.0", "\"time_limit_s\": -1"),
+              "p.json: problem.time_limit_s: must not be negative");
+    EXPECT_EQ(error_with("\"visiting_time_s\": 17.5", "\"visiting_time_s\": -1"),
+              "p.json: visiting_time_s: must not be negative");
+    EXPECT_EQ(error_with("\"efficiency\": 0.0", "\"efficiency\": -7"),
+              "p.json: bounds.pool.efficiency: must be from 0 to 1");
+    EXPECT_EQ(error_with("\"via\": null", "\"via\": {}"),
+              "p.json: poses[0].via: has other joints than poses[0].joints; must have the same");
 }
 
 TEST_F(PlanFileTest, LeadsToItsFilesFromItsOwnFolder) {
