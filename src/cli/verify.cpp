@@ -27,7 +27,8 @@ and checks the candidates (a changed file is noticed by its checksum), the poses
 plan was made under. Where a plan claims to be optimal beyond its certificate, all other choices
 were ruled out or tried; that search is made again.
 Of a pose plan, as plan writes it, checks every pose (joint limits, the cell's constraints, targets
-seen), the value and the predicted accuracy; its bounds are not proven by what the file holds.
+seen), the value, the predicted accuracy and each parameter's standard deviation. The time of the
+visit is not checked, and its bounds are not proven by what the file holds.
 Exit code: 0 everything is as stated, 1 something is not.)";
 
 struct Arguments {
@@ -48,6 +49,22 @@ void redirect(PlanSources& sources, const Arguments& arguments) {
     redirect_one(sources.augment, arguments.augment);
     redirect_one(sources.groups, arguments.groups);
     redirect_one(sources.test_poses, arguments.test_poses);
+}
+
+/// Throws for files that a plan of this kind has none of.
+void check_usage(const Arguments& arguments, CandidateKind kind) {
+    const std::string others = arguments.groups + arguments.test_poses;
+    if (kind == CandidateKind::Pool && !(arguments.candidates + others).empty()) {
+        throw CLI::ValidationError("PLAN", "is a pose plan, which takes --campaign and --augment");
+    }
+    if (kind == CandidateKind::Blocks && !arguments.campaign.empty()) {
+        throw CLI::ValidationError("PLAN",
+                                   "is a choice from plain blocks, which takes no --campaign");
+    }
+    if (kind == CandidateKind::Random && !arguments.candidates.empty()) {
+        throw CLI::ValidationError(
+            "PLAN", "is a choice from random configurations, which takes no --candidates");
+    }
 }
 
 /// Throws InputError, naming what is wrong, if anything is.
@@ -83,14 +100,12 @@ void verify_file(const Arguments& arguments) {
     Plan plan = io::read_plan(arguments.plan);
     redirect(plan.request.sources, arguments);
     const std::string_view criterion = criterion_name(plan.request.criterion);
+    check_usage(arguments, plan.kind);
     if (!plan.is_continuous()) {
         const Verification verification = verify_choice(plan);
         print(fmt::format("{}: {} of {} candidates by {}\n", arguments.plan,
                           plan.request.pose_count, verification.candidate_count, criterion));
         return conclude(arguments.plan, verification);
-    }
-    if (!(arguments.candidates + arguments.groups + arguments.test_poses).empty()) {
-        throw CLI::ValidationError("PLAN", "is a pose plan, which takes --campaign and --augment");
     }
     const Verification verification = verify_continuous(plan, arguments.plan);
     print(fmt::format("{}: {} poses by {}\n", arguments.plan, plan.poses.size(), criterion));

@@ -1,12 +1,10 @@
 #include "posewise/task/planning.hpp"
 
-#include <Eigen/Cholesky>
 #include <set>
 
 #include "../planner/tour.hpp"
 #include "inputs.hpp"
 #include "planning_problem.hpp"
-#include "posewise/core/units.hpp"
 
 namespace posewise {
 namespace {
@@ -72,21 +70,6 @@ std::vector<PlannedPose> arrange(const PlanningProblem& problem, const RowMatrix
     return arranged;
 }
 
-/// Expected standard deviation of every parameter by the information matrix, m or rad.
-std::vector<NamedNumber> standard_deviations(const Campaign& campaign, const MatrixXd& M) {
-    const MatrixXd covariance = M.llt().solve(MatrixXd::Identity(M.rows(), M.cols()));
-    const VectorXd deviations =
-        covariance.diagonal().cwiseSqrt().cwiseProduct(parameter_scale(campaign));
-    const auto names = parameter_names(campaign);
-    const auto is_angle = parameter_is_angle(campaign);
-    std::vector<NamedNumber> named;
-    for (std::size_t k = 0; k < names.size(); ++k) {
-        named.push_back({names[k] + '_' + std::string(units_of(is_angle[k]).si),
-                         deviations[static_cast<Index>(k)]});
-    }
-    return named;
-}
-
 Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, const Pool& pool,
                  const Tour& tour) {
     const Campaign& campaign = problem.campaign;
@@ -106,7 +89,7 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.starts_at_best = planned.starts_at_best;
     plan.ending = Ending::Converged;
     plan.predicted = predict_accuracy(problem.prediction, planned.information);
-    plan.standard_deviations = standard_deviations(campaign, planned.information);
+    plan.standard_deviations = detail::standard_deviations(campaign, planned.information);
     plan.visiting_time = tour.time;
     plan.assumptions = assumptions_of(campaign);
     return plan;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "../core/text.hpp"
@@ -198,6 +199,20 @@ MatrixXd held_information(const PlanningProblem& problem) {
     const Index L = parameter_count(problem.campaign);
     const MatrixXd& held = problem.search.held.information;
     return held.size() > 0 ? held : MatrixXd::Zero(L, L);
+}
+
+std::vector<NamedNumber> standard_deviations(const Campaign& campaign, const MatrixXd& M) {
+    const MatrixXd covariance = M.llt().solve(MatrixXd::Identity(M.rows(), M.cols()));
+    const VectorXd deviations =
+        covariance.diagonal().cwiseSqrt().cwiseProduct(parameter_scale(campaign));
+    const auto names = parameter_names(campaign);
+    const auto is_angle = parameter_is_angle(campaign);
+    std::vector<NamedNumber> named;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        named.push_back({names[k] + '_' + std::string(units_of(is_angle[k]).si),
+                         deviations[static_cast<Index>(k)]});
+    }
+    return named;
 }
 
 std::string describe_violation(const Constraints& constraints, const PlannedPose& pose) {

@@ -69,17 +69,45 @@ void check_value(const Plan& plan, const PlanningProblem& problem, const Blocks&
                      detail::is_same_value(options.criterion, plan.value, value, rounding));
 }
 
+/// Each parameter's, which the plan must state, and no other.
+void check_deviations(const Plan& plan, const PlanningProblem& problem, const MatrixXd& M,
+                      Findings& findings) {
+    const auto deviations = detail::standard_deviations(problem.campaign, M);
+    const auto& stated = plan.standard_deviations;
+    if (stated.size() != deviations.size()) {
+        findings.note(
+            "deviations", false,
+            fmt::format("stated of {} parameters, there are {}", stated.size(), deviations.size()));
+    }
+    bool is_right = stated.size() == deviations.size();
+    for (const NamedNumber& one : deviations) {
+        const auto found = std::find_if(stated.begin(), stated.end(),
+                                        [&](const auto& other) { return other.name == one.name; });
+        if (found != stated.end() &&
+            detail::is_same_value(Criterion::A, found->value, one.value, rounding)) {
+            continue;
+        }
+        is_right = false;
+        findings.note("deviations", false,
+                      fmt::format("of {}: stated {}, is {}", one.name,
+                                  found != stated.end() ? format_short(found->value) : "none",
+                                  format_short(one.value)));
+    }
+    if (is_right) findings.note("deviations", true, fmt::format("as stated, {}", stated.size()));
+}
+
 void check_prediction(const Plan& plan, const PlanningProblem& problem, const Blocks& blocks,
                       Findings& findings) {
     const PredictedAccuracy stated = plan.predicted.value_or(PredictedAccuracy{});
-    const PredictedAccuracy accuracy =
-        predict_accuracy(problem.prediction, held_information(problem) + information(blocks));
+    const MatrixXd M = held_information(problem) + information(blocks);
+    const PredictedAccuracy accuracy = predict_accuracy(problem.prediction, M);
     const auto compare = [&](const char* name, double before, double now) {
         findings.compare(name, mm_per_m * before, mm_per_m * now,
                          detail::is_same_value(Criterion::A, before, now, rounding));
     };
     compare("RMS/mm", stated.rms, accuracy.rms);
     compare("95 %/mm", stated.percentile95, accuracy.percentile95);
+    check_deviations(plan, problem, M, findings);
 }
 
 }  // namespace

@@ -36,7 +36,17 @@ void check_candidates(const Plan& plan, const ChoiceProblem& problem, Findings& 
     }
 }
 
-/// Candidate indices of the plan's poses, repeats listed.
+/// Whether the targets that a plan states for a pose, if any, are those its candidate shows.
+bool has_same_targets(const ChoiceProblem& problem, const PlannedPose& pose, Index candidate) {
+    std::vector<Index> shown;
+    for (Index target = 0; target < problem.share.cols(); ++target) {
+        if (problem.share(candidate, target) > 0) shown.push_back(target);
+    }
+    return pose.targets.empty() || pose.targets == shown;
+}
+
+/// Candidate indices of the plan's poses, repeats listed (no more than show that there are too
+/// many).
 std::vector<Index> find_poses(const Plan& plan, const ChoiceProblem& problem, Findings& findings) {
     const detail::CandidateIndex index(problem.ids);
     std::vector<Index> poses;
@@ -50,7 +60,11 @@ std::vector<Index> find_poses(const Plan& plan, const ChoiceProblem& problem, Fi
         if (!has_same_joints) {
             findings.note("poses", false, "joints of '" + pose.id + "' are not the candidate's");
         }
-        const Index copies = std::min(pose.times, plan.request.pose_count + 1);
+        if (!has_same_targets(problem, pose, candidate)) {
+            findings.note("poses", false, "targets of '" + pose.id + "' are not the candidate's");
+        }
+        const Index room = plan.request.pose_count + 1 - static_cast<Index>(poses.size());
+        const Index copies = std::min(pose.times, std::max<Index>(room, 1));
         poses.insert(poses.end(), static_cast<std::size_t>(copies), candidate);
     }
     std::sort(poses.begin(), poses.end());

@@ -83,6 +83,11 @@ TEST_F(Verify, NoticesEditedPoses) {
                  "'0' is excluded or measured already", "poses");
     expect_found([](Json& plan) { plan["poses"][0]["times"] = 1000000000000; }, "is taken",
                  "poses");
+    expect_found(
+        [](Json& plan) {
+            plan["poses"][0]["visible_targets"] = {1, 7};
+        },
+        "are not the candidate's", "poses");
     Json plan = Json::parse(text_of("p.json"));
     plan["poses"][2]["id"] = "ghost";
     write_text("e.json", plan.dump());
@@ -138,6 +143,10 @@ TEST_F(Verify, ChecksPosePlans) {
                  "shows no target");
     expect_wrong([](Json& plan) { plan["poses"][1]["visible_targets"] = {1}; },
                  "value:      stated");
+    expect_wrong([](Json& plan) { plan["predicted"]["standard_deviation"]["base.x_m"] = 1e-9; },
+                 "deviations: of base.x_m: stated 1e-09, is ");
+    expect_wrong([](Json& plan) { plan["predicted"]["standard_deviation"].erase("Tx1_m"); },
+                 "deviations: of Tx1_m: stated none, is ");
     expect_wrong([](Json& plan) { plan["campaign"] = "another"; },
                  "e.json: campaign: is 'another'; must be a plan of ");
     expect_wrong([](Json& plan) { plan["assumes"]["model_error_m"] = 1; },
@@ -159,6 +168,22 @@ TEST_F(Verify, TakesFilesThatMoved) {
     expect_input_error("verify p.json", "s.csv");
     run_well("verify p.json -m moved.csv");
     run_well("verify p.json --campaign " + fanuc_design + " --measurements moved.csv");
+}
+
+TEST_F(Verify, RefusesFilesThePlanHasNoneOf) {
+    run_well("select " + fanuc_design + " --random 40 -k 8 --prior --starts 1 -o c.json");
+    const Outcome random = run("verify c.json -m s.csv");
+    EXPECT_EQ(random.code, 2);
+    EXPECT_NE(random.err.find("PLAN: is a choice from random configurations, which takes no "
+                              "--candidates"),
+              std::string::npos)
+        << random.err;
+    const std::string golden = std::string(POSEWISE_SOURCE_DIR) + "/tests/golden/plan_format_1/";
+    const Outcome plain = run("verify '" + golden + "blocks.plan.json' --campaign " + fanuc_design);
+    EXPECT_EQ(plain.code, 2);
+    EXPECT_NE(plain.err.find("PLAN: is a choice from plain blocks, which takes no --campaign"),
+              std::string::npos)
+        << plain.err;
 }
 
 TEST_F(Verify, FindsAnOptimumAgain) {
