@@ -29,6 +29,10 @@ std::string_view trim_row(std::string_view row) {
 
 CsvReader::CsvReader(const std::string& path) : path_(path), content_(read_file(path)) {
     if (content_.starts_with("\xEF\xBB\xBF")) content_.erase(0, 3);
+    const bool has_returns = content_.find('\r') < content_.find_last_not_of('\r');
+    if (has_returns && content_.find('\n') == std::string::npos) {
+        throw input_error_at({path}, "has line ends of CR only; must be of LF or CR LF");
+    }
 }
 
 bool CsvReader::next_row() {
@@ -38,7 +42,9 @@ bool CsvReader::next_row() {
         next_ = end + 1;
         ++line_;
         const std::string_view text = trim(row_);
-        if (text.empty() || text.starts_with('#')) continue;
+        const bool is_first = separator_ == '\0';
+        if (text.empty() || (is_first && text.starts_with('#'))) continue;
+        check_row();
         if (separator_ == '\0') separator_ = find_separator(row_);
         split();
         return true;
@@ -46,17 +52,59 @@ bool CsvReader::next_row() {
     return false;
 }
 
+void CsvReader::check_row() const {
+    const auto error = [&](std::size_t at, const std::string& problem) {
+        return input_error_at({path_, line_, static_cast<long>(at) + 1}, problem);
+    };
+    const std::size_t at = find_not_utf8(row_);
+    if (at != std::string_view::npos) {
+        throw error(at, "is not UTF-8 text here; must be UTF-8 (or plain ASCII)");
+    }
+    if (trim(row_).starts_with('#')) {
+        throw error(0,
+                    "the row begins with '#', which is a comment only before the header; must "
+                    "be left out, or have its first cell in quotes");
+    }
+}
+
+/// Where the quotation mark is closed; two of them are one of the text.
+std::size_t CsvReader::closing_quote(std::size_t opening) const {
+    std::size_t closing = row_.find('"', opening + 1);
+    while (closing != std::string_view::npos && row_.substr(closing + 1).starts_with('"')) {
+        closing = row_.find('"', closing + 2);
+    }
+    if (closing == std::string_view::npos) {
+        throw input_error_at({path_, line_, static_cast<long>(opening) + 1},
+                             "a quotation mark is not closed in its line");
+    }
+    return closing;
+}
+
 std::size_t CsvReader::field_end(std::size_t begin) const {
-    const std::size_t first = row_.find_first_not_of(' ', begin);
+    const char* const blanks = separator_ == '\t' ? " " : " \t";
+    const std::size_t first = row_.find_first_not_of(blanks, begin);
     if (first != std::string_view::npos && row_[first] == '"') {
-        const std::size_t closing = row_.find('"', first + 1);
-        if (closing == std::string_view::npos) {
-            throw input_error_at({path_, line_, static_cast<long>(first) + 1},
-                                 "a quotation mark is not closed in its line");
-        }
-        begin = closing;
+        begin = closing_quote(first) + 1;
+        const std::size_t end = std::min(row_.find(separator_, begin), row_.size());
+        if (trim(row_.substr(begin, end - begin)).empty()) return end;
+        throw input_error_at({path_, line_, static_cast<long>(begin)},
+                             "a quotation mark is closed before the cell ends; must be doubled "
+                             "inside quotes");
     }
     return std::min(row_.find(separator_, begin), row_.size());
+}
+
+/// Without the quotes around it; doubled ones inside become one, in place.
+std::string_view CsvReader::unquote(std::string_view field) {
+    field = field.substr(1, field.size() - 2);
+    if (field.find('"') == std::string_view::npos) return field;
+    const auto begin = static_cast<std::size_t>(field.data() - content_.data());
+    std::size_t size = 0;
+    for (std::size_t k = 0; k < field.size(); ++k) {
+        if (field[k] == '"' && k + 1 < field.size()) ++k;
+        content_[begin + size++] = field[k];
+    }
+    return field.substr(0, size);
 }
 
 void CsvReader::split() {
@@ -65,7 +113,7 @@ void CsvReader::split() {
         const std::size_t end = field_end(begin);
         std::string_view field = trim(row_.substr(begin, end - begin));
         if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
-            field = field.substr(1, field.size() - 2);
+            field = unquote(field);
         }
         fields_.push_back(field);
         begin = end + 1;
@@ -80,12 +128,14 @@ FileLocation CsvReader::locate(std::size_t field) const {
 }
 
 std::string csv_field(std::string_view text) {
-    std::string field(text);
-    std::replace(field.begin(), field.end(), '"', '\'');
-    std::replace(field.begin(), field.end(), '\n', ' ');
-    return field.find_first_of(",;\t#") == std::string::npos && trim(field) == field
-               ? field
-               : '"' + field + '"';
+    const bool is_plain = text.find_first_of(",;\t#\"\r\n") == std::string_view::npos;
+    if (is_plain && trim(text) == text) return std::string(text);
+    std::string field = "\"";
+    for (const char c : text) {
+        if (c == '"') field += '"';
+        field += c == '\n' || c == '\r' ? ' ' : c;
+    }
+    return field + '"';
 }
 
 }  // namespace posewise::detail

@@ -9,8 +9,9 @@
 namespace posewise::detail {
 
 /// Rows of separated fields, one line each. The separator (comma, semicolon or tab) is taken from
-/// the first row; blank lines and lines after `#` are skipped; a byte order mark and carriage
-/// returns at the end of lines do not matter; fields may stand in double quotes.
+/// the first row; blank lines are skipped, and before the first row lines that begin with `#`; a
+/// byte order mark and carriage returns at the end of lines do not matter; fields may stand in
+/// double quotes, in which two of them are one.
 class CsvReader {
   public:
     explicit CsvReader(const std::string& path);
@@ -25,8 +26,11 @@ class CsvReader {
     FileLocation locate(std::size_t field) const;
 
   private:
+    void check_row() const;
     void split();
+    std::size_t closing_quote(std::size_t opening) const;
     std::size_t field_end(std::size_t begin) const;
+    std::string_view unquote(std::string_view field);
 
     std::string path_;
     std::string content_;
@@ -37,7 +41,7 @@ class CsvReader {
     std::vector<std::string_view> fields_;
 };
 
-/// Text as a field: in quotes if it must be. A quotation mark inside becomes an apostrophe.
+/// Text as a field: in quotes if it must be, those inside doubled.
 std::string csv_field(std::string_view text);
 
 }  // namespace posewise::detail

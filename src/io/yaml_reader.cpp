@@ -49,6 +49,19 @@ std::string suggest_key(const std::string& unknown, const std::vector<std::strin
     return suggest(unknown, keys);
 }
 
+/// UTF-16, which begins with a byte order mark, is left to the parser.
+void check_utf8(const std::string& content, const std::string& path) {
+    if (content.starts_with("\xFF\xFE") || content.starts_with("\xFE\xFF")) return;
+    const std::size_t at = find_not_utf8(content);
+    if (at == std::string::npos) return;
+    const auto end = content.begin() + static_cast<std::ptrdiff_t>(at);
+    const auto line = 1 + std::count(content.begin(), end, '\n');
+    const std::size_t begin = at == 0 ? std::string::npos : content.rfind('\n', at - 1);
+    const std::size_t column = begin == std::string::npos ? at + 1 : at - begin;
+    throw input_error_at({path, static_cast<long>(line), static_cast<long>(column)},
+                         "is not UTF-8 text here; must be UTF-8 (or plain ASCII)");
+}
+
 }  // namespace
 
 YamlValue::YamlValue(YAML::Node node, FileLocation location, std::string name)
@@ -212,6 +225,7 @@ InputError YamlMap::missing(const std::vector<std::string>& alternatives) const 
 }
 
 YamlValue parse_yaml(const std::string& content, const std::string& path) {
+    check_utf8(content, path);
     std::vector<YAML::Node> documents;
     try {
         documents = YAML::LoadAll(content);

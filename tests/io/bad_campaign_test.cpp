@@ -34,6 +34,8 @@ TEST(BadCampaign, Files) {
         {campaign_text, "", " is empty; must be a campaign in YAML"},
         {campaign_text, "# nothing\n", " is empty; must be a campaign in YAML"},
         {campaign_text, std::string(2 << 20, 'a'), " is larger than 1 MiB; must be smaller"},
+        {campaign_text, "name: a\nrobot: \xC3\xA4\xE9\n",
+         "2:10: is not UTF-8 text here; must be UTF-8 (or plain ASCII)"},
         {campaign_text, "just words\n",
          "1:1: the file is 'just words'; must be a map of keys and values"},
         {campaign_text, "name: [a, b\nrobot: {\n", "[...]is not YAML[...]"},

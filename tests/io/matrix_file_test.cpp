@@ -35,7 +35,7 @@ class ReadMatrix : public ::testing::Test {
 
 TEST_F(ReadMatrix, TakesNumbersWithAndWithoutHeader) {
     EXPECT_EQ(read_matrix(folder_.write("b.csv", "1,2\n3,4\n5,6\n")), expected_);
-    EXPECT_EQ(read_matrix(folder_.write("b.csv", "x;y\n1;2\n# more\n3;4\n\n5;6")), expected_);
+    EXPECT_EQ(read_matrix(folder_.write("b.csv", "# more\nx;y\n1;2\n3;4\n\n5;6")), expected_);
 }
 
 TEST_F(ReadMatrix, TakesTheFirstOrANamedVariableOfAMatlabFile) {

@@ -114,10 +114,16 @@ TEST(ReadMeasurementsCsv, DoesNotMindHowTheFileWasSaved) {
     expect_equal(read(with(',', ";")), plain);
     expect_equal(read(with(',', "\t")), plain);
     expect_equal(read(with(',', " , ")), plain);
-    expect_equal(read("# made by hand\n\n" + with('\n', "\n# more, of it\n\n")), plain);
+    expect_equal(read("# made by hand\n\n# more, of it\n" + with('\n', "\n\n")), plain);
     expect_equal(read(good.substr(0, good.size() - 1)), plain);
     expect_equal(read(replaced(replaced(good, "config", "\"config\""), "b,0", "\"b\",\"0\"")),
                  plain);
+}
+
+TEST(ReadMeasurementsCsv, DoubledQuotationMarksInQuotesAreOne) {
+    const Measurements measurements = read(replaced(good, "b,0", "\"b \"\"2\"\"\" ,\"0\""));
+    EXPECT_EQ(measurements.ids, (std::vector<std::string>{"a", "b \"2\""}));
+    EXPECT_EQ(measurements.configurations(1, 1), 0.25);
 }
 
 TEST(ReadMeasurementsCsv, IsFastEnoughForAHundredThousandRows) {
@@ -135,7 +141,7 @@ TEST(ReadMeasurementsCsv, IsFastEnoughForAHundredThousandRows) {
 
 TEST(WriteMeasurementsCsv, IsReadBackExactly) {
     Measurements measurements = read(good);
-    measurements.ids = {"a,1", "#2"};
+    measurements.ids = {"a \"1\", \"left\"", "#2"};
     measurements.configurations(0, 0) = 1.0 / 3;
     measurements.observations(0, 3) = 0.1 + 0.2;
     const TemporaryFolder folder;
@@ -245,6 +251,14 @@ TEST(BadMeasurementsCsv, Rows) {
         {"a,1", "a,0", "3:1: sample '0' of configuration 'a' occurs twice; keep one"},
         {"b,0", ",0", "4:1: config is empty; must be an id"},
         {"b,0", "\"b,0", "4:1: a quotation mark is not closed in its line"},
+        {"b,0", "\"b\"c,0",
+         "4:3: a quotation mark is closed before the cell ends; must be doubled inside quotes"},
+        {"b,0", "#b,0",
+         "4:1: the row begins with '#', which is a comment only before the header; must be left "
+         "out, or have its first cell in quotes"},
+        {"b,0", "b\xE9,0", "4:2: is not UTF-8 text here; must be UTF-8 (or plain ASCII)"},
+        {"b,0", "b\xED\xA0\x80,0", "4:2: is not UTF-8 text here; must be UTF-8 (or plain ASCII)"},
+        {good, "config,sample\ra,0\r", " has line ends of CR only; must be of LF or CR LF"},
     });
     EXPECT_EQ(error_of(replaced(good, "a,1,0.1,0.2,", "a,1,0.1,0.2000005,")), "no error");
 }
