@@ -94,7 +94,8 @@ void add_options(CLI::App& command, Arguments& arguments) {
         ->capture_default_str();
     command
         .add_option("--tool-mm", arguments.tool_mm,
-                    "Point whose position counts, in the flange frame: X Y Z (default: the flange)")
+                    "Point whose position counts, in the flange frame: X,Y,Z (default: the flange)")
+        ->delimiter(',')
         ->check(real_number(-1e4, 1e4));
     command
         .add_option("--mm-per-mrad", arguments.mm_per_mrad,

@@ -65,7 +65,7 @@ std::string joint_header(const Campaign& campaign) {
 std::string joint_cells(const Campaign& campaign, const VectorXd& q) {
     std::string text;
     for (Index j = 0; j < q.size(); ++j) {
-        fmt::format_to(std::back_inserter(text), ",{}", for_people(campaign, j, q[j]));
+        fmt::format_to(std::back_inserter(text), ",{:.12g}", for_people(campaign, j, q[j]));
     }
     return text;
 }

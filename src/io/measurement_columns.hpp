@@ -53,7 +53,7 @@ std::string torque_stem(const Joint& joint);
 double for_people(const Campaign& campaign, Index joint, double value);
 
 /// Columns of a configuration for people and controllers, each after a comma: ",q1_deg,q2_mm", and
-/// the values (rad or m, N m) for them, digits enough to read them back exactly.
+/// the values (rad or m, N m) for them to 12 digits.
 std::string joint_header(const Campaign& campaign);
 std::string joint_cells(const Campaign& campaign, const VectorXd& q);
 

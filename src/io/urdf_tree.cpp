@@ -64,9 +64,9 @@ class Tree {
         if (leaves.size() == 1) return leaves.front();
         std::sort(leaves.begin(), leaves.end());
         throw input_error_at({document_.path()},
-                             leaves.empty()
-                                 ? "has no tip link below base link " + quote(base)
-                                 : "the tip link must be named, it could be " + list_words(leaves));
+                             leaves.empty() ? "has no tip link below base link " + quote(base)
+                                            : "the tip link must be named (--tip), it could be " +
+                                                  list_words(leaves));
     }
 
     void check_link(const std::string& name) const {

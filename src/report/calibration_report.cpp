@@ -90,6 +90,10 @@ std::string format_accuracy(const Calibration& calibration) {
     return text + describe_noise_floor(calibration);
 }
 
+std::string count_outliers(Index count) {
+    return fmt::format("{} outlier{}", count, count == 1 ? "" : "s");
+}
+
 std::string format_without_outliers(const WithoutOutliers& others) {
     std::string text = fmt::format("without them: means {} mm", detail::format_mm(others.fit_rms));
     if (others.held_out_rms) {
@@ -102,9 +106,9 @@ std::string format_outliers(const Calibration& calibration) {
     const Estimate& estimate = calibration.estimate;
     if (estimate.loss.kind == LossKind::Squares) return "";
     const auto count = static_cast<Index>(estimate.outliers.size());
-    std::string text = fmt::format("\nloss {} with width {} standard deviations: {} outliers\n",
+    std::string text = fmt::format("\nloss {} with width {} standard deviations: {}\n",
                                    loss_name(estimate.loss.kind),
-                                   detail::format_short(estimate.loss.width, 4), count);
+                                   detail::format_short(estimate.loss.width, 4), count_outliers(count));
     if (count == 0) return text;
     if (calibration.without_outliers) {
         text += format_without_outliers(*calibration.without_outliers);
@@ -199,7 +203,7 @@ std::string format(const ModelSelection& selection) {
     }
     text += fmt::format("{} folds over configurations; distances of means", selection.folds);
     if (!selection.not_judged.empty()) {
-        text += fmt::format(", without {} outliers", selection.not_judged.size());
+        text += ", without " + count_outliers(static_cast<Index>(selection.not_judged.size()));
     }
     text += selection.recommended < 0
                 ? "; no set could be judged\n"

@@ -91,7 +91,8 @@ Objective make_objective(const Blocks& candidates, const SelectOptions& options)
     }
     if (objective.test_poses != nullptr || !has_information_function(options.criterion)) {
         throw InputError("criterion " + std::string(criterion_name(options.criterion)) +
-                         " cannot have nuisance columns; d, a, e, o1, o3 and o5 can");
+                         " cannot leave columns out of account (--focus robot, nuisance columns); "
+                         "must be d, a, e, o1, o3 or o5");
     }
     objective.nuisance = options.nuisance;
     return objective;

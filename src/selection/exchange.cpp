@@ -63,9 +63,12 @@ ScoredPoses make_choice(const SearchProblem& problem, std::vector<Index> poses) 
 ScoredPoses make_first_start(const SearchProblem& problem, const Relaxation& relaxation) {
     std::vector<Index> poses = take_in_order(problem, by_decreasing(relaxation.weights));
     if (static_cast<Index>(poses.size()) < problem.options.pose_count) {
-        throw InputError("pose count is " + std::to_string(problem.options.pose_count) +
-                         ", but only " + std::to_string(poses.size()) +
-                         " poses were found that exclusions, groups and distances allow together");
+        const bool is_one = poses.size() == 1;
+        throw InputError(fmt::format(
+            "pose count is {}, but only {} {} found that exclusions, groups and distances "
+            "(least_joint_distance_deg of a cell) allow{}",
+            problem.options.pose_count, poses.size(), is_one ? "pose was" : "poses were",
+            is_one ? "" : " together"));
     }
     return make_choice(problem, std::move(poses));
 }
@@ -230,8 +233,9 @@ Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     if (!best.score.identifies) {
         return unidentified(
             fmt::format("pose count is {}: no choice was found that identifies all {} parameters; "
-                        "ask for more poses or state a prior",
-                        options.pose_count, candidates.parameter_count()));
+                        "ask for more poses{}",
+                        options.pose_count, candidates.parameter_count(),
+                        options.held.size() == 0 ? " or state a prior" : ""));
     }
     Choice plan;
     plan.starts = static_cast<Index>(outcome.starts.size());

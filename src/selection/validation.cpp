@@ -109,6 +109,12 @@ void validate(const Blocks& candidates, const SelectOptions& options) {
     validate_held(options, candidates.parameter_count());
     Index open = 0;
     for (const Index capacity : capacities(candidates.count(), options)) open += capacity;
+    if (open == 0 && candidates.count() > 0) {
+        throw InputError(
+            fmt::format("all {} candidates are excluded or measured already; must "
+                        "leave at least one to choose",
+                        candidates.count()));
+    }
     if (options.pose_count < 1 || options.pose_count > open) {
         throw InputError("pose count is " + std::to_string(options.pose_count) +
                          ", must be from 1 to " + std::to_string(open) +
@@ -132,8 +138,8 @@ std::string describe_unseen(const Blocks& candidates, const SelectOptions& optio
     }
     return "all " + std::to_string(candidates.count()) + " candidates together leave " +
            std::to_string(missing) + " of " + std::to_string(L) + " parameter directions unseen (" +
-           directions + (missing > 3 ? "; ..." : "") +
-           "); drop redundant parameters, add poses or state a prior";
+           directions + (missing > 3 ? "; ..." : "") + "); drop redundant parameters" +
+           (options.held.size() == 0 ? ", add poses or state a prior" : " or add poses");
 }
 
 }  // namespace posewise::detail

@@ -69,9 +69,13 @@ void check_kept(const PlanningProblem& problem, const PlannedPose& pose) {
 /// Throws InputError for a plan that is not of this campaign, or without a pose to drop.
 void check_repaired(const PlanningProblem& problem, const Plan& repaired) {
     const std::string& name = problem.request.sources.repaired;
-    std::string fault = describe_mismatch(repaired, problem.campaign);
-    if (fault.empty() && !repaired.is_continuous()) {
-        fault = "is a choice from candidates; must be a plan of continuous poses to be repaired";
+    std::string fault;
+    if (!repaired.is_continuous()) {
+        fault =
+            fmt::format("is a choice from {}; must be a plan of continuous poses to be repaired",
+                        repaired.kind == CandidateKind::Blocks ? "plain blocks" : "candidates");
+    } else {
+        fault = describe_mismatch(repaired, problem.campaign);
     }
     if (!fault.empty()) throw input_error_at({name}, fault);
     for (const std::string& id : problem.request.dropped) {

@@ -116,6 +116,13 @@ std::vector<Index> choose_pose_counts(const Campaign& campaign, const std::vecto
     return counts;
 }
 
+/// Among several counts one may take all configurations; alone it would tell nothing.
+void check_some_are_left(const std::vector<Index>& counts, Index all) {
+    if (*std::min_element(counts.begin(), counts.end()) < all) return;
+    throw InputError("the pose count is " + std::to_string(all) +
+                     ", all configurations; must be less, so that some are left to judge on");
+}
+
 std::vector<Split> make_splits(Index all, Index count, const StudyOptions& options) {
     std::vector<Split> splits;
     for (Index s = 0; s < count; ++s) {
@@ -249,6 +256,7 @@ Study study(const Campaign& campaign, const Measurements& measurements,
     study.test_count = static_cast<Index>(splits.front().test.size());
     study.undetermined = describe_undetermined(campaign, measurements, registration);
     if (!study.undetermined.empty()) return study;
+    check_some_are_left(counts, measurements.configuration_count());
     const Setting setting{campaign, measurements, options,
                           detail::measured_blocks(campaign, registration.parameters, measurements),
                           std::move(splits)};

@@ -113,6 +113,10 @@ TEST_F(PlanCommand, ChecksThePlanItRepairs) {
     plan = sound;
     plan.at("campaign") = "another cell";
     expect_refused(plan, "campaign: is 'another cell'; must be a plan of 'FANUC");
+    const std::string blocks = "/tests/golden/plan_format_1/blocks.plan.json";
+    expect_input_error("plan " + cell_design + " --plan '" + POSEWISE_SOURCE_DIR + blocks +
+                           "' --drop p2" + quick + "-o x.json",
+                       "is a choice from plain blocks; must be a plan of continuous poses");
 }
 
 TEST_F(PlanCommand, SaysThatThePoolIsTooSmall) {

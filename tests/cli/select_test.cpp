@@ -107,12 +107,19 @@ TEST_F(Select, APriorAllowsFewerPosesThanParametersNeed) {
     run_well("verify q.json");
 }
 
+TEST_F(Select, SaysThatAllCandidatesAreMeasuredAlready) {
+    expect_input_error("select " + input_ + "-k 6 --augment s.csv -o p.json",
+                       "all 24 candidates are excluded or measured already; must leave at least "
+                       "one to choose");
+}
+
 TEST_F(Select, FocusOnTheRobotLeavesBaseAndTargetsOut) {
     const std::string all = run_well("select " + input_ + "-k 8");
     const std::string robot = run_well("select " + input_ + "-k 8 --focus robot");
     EXPECT_LT(number_behind(robot, "value:"), number_behind(all, "value:"));
     run_well("verify s.plan.json");
-    expect_input_error("select " + input_ + "-k 8 --focus robot -c g -o no.json", "uisance");
+    expect_input_error("select " + input_ + "-k 8 --focus robot -c g -o no.json",
+                       "criterion g cannot leave columns out of account (--focus robot, ");
 }
 
 TEST_F(Select, MeasuredPosesAreHeldAndNotChosenAgain) {

@@ -90,7 +90,7 @@ TEST_F(Urdf, IsInspectedWithoutACampaign) {
 
 TEST_F(Urdf, NeedsATipWhereThereAreSeveral) {
     expect_input_error("inspect arm.urdf",
-                       "arm.urdf: the tip link must be named, it could be finger or tool0");
+                       "arm.urdf: the tip link must be named (--tip), it could be finger or tool0");
     expect_input_error("inspect arm.urdf --tip tol0", "did you mean 'tool0'?");
     expect_input_error("inspect arm.urdf --tip finger --write-campaign c.yaml", "mimics another");
 }

@@ -72,6 +72,7 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
     {"export a.yaml b.json", "--urdf or --dh is required"},
     {"correct a.yaml b.json", "--poses is required"},
     {"correct a.yaml b.json --poses c.csv --tool-mm 1 2", "--tool-mm: 3 required"},
+    {"correct a.yaml b.json --poses c.csv --tool-mm 1,2", "--tool-mm: 3 required"},
     {"correct a.yaml b.json --poses c.csv --base robot", "--base: robot"},
     {"correct a.yaml b.json --poses c.csv --largest-change-deg 0",
      "--largest-change-deg: is '0'; must be a number from 1e-06 to 180"},

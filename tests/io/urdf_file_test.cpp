@@ -245,7 +245,7 @@ TEST(BadUrdf, Ends) {
     }
     const std::string two = replaced(text, "<parent link=\"tool\"/>", "<parent link=\"arm\"/>");
     EXPECT_EQ(error_of(two, "", ""),
-              "robot.urdf: the tip link must be named, it could be finger or tool");
+              "robot.urdf: the tip link must be named (--tip), it could be finger or tool");
     const std::string ring = replaced(urdf_text({{"fixed", "", ""}, {"fixed", "", ""}}),
                                       "<child link=\"link2\"/>", "<child link=\"link0\"/>");
     EXPECT_EQ(error_of(ring, "link1", ""), "robot.urdf: has no tip link below base link 'link1'");

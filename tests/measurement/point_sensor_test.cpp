@@ -23,6 +23,13 @@ TEST(PointSensor, PredictsTargetsInTheWorld) {
     EXPECT_TRUE(partly_known().predict(flange, unknowns).isApprox(expected, 1e-15));
 }
 
+TEST(PointSensor, CountsItsTargetsInWords) {
+    const PointSensor one(std::vector<std::optional<Vector3d>>{std::nullopt}, 5e-5);
+    EXPECT_EQ(one.words().sentence.rfind("points of 1 target (0 known, 1 to be identified)", 0),
+              0U);
+    EXPECT_EQ(partly_known().words().sentence.rfind("points of 3 targets (1 known", 0), 0U);
+}
+
 TEST(PointSensor, NamesOnlyUnknownTargets) {
     const PointSensor sensor = partly_known();
     EXPECT_EQ(sensor.unknown_names(),

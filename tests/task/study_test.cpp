@@ -188,6 +188,8 @@ TEST(StudyPoseCounts, RefusesWhatCannotBeStudied) {
     StudyOptions options = small_options();
     options.pose_counts = {15};
     EXPECT_THROW(study(example.campaign, example.measurements, options), InputError);
+    options.pose_counts = {14};  // none would be left to judge on
+    EXPECT_THROW(study(example.campaign, example.measurements, options), InputError);
     options.pose_counts = {0};
     EXPECT_THROW(study(example.campaign, example.measurements, options), InputError);
     options = small_options();
