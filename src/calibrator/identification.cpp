@@ -65,8 +65,8 @@ struct LevenbergMarquardt {
                 advance(problem.campaign, estimate.parameters, problem.scale.cwiseProduct(step));
             // Where noise depends on the pose a step is judged with that before it: the fixed
             // point of reweighted least squares is where no such step is left.
-            const double moved_cost = total_loss(
-                problem, moved, has_constant_noise ? nullptr : &estimate.parameters);
+            const double moved_cost =
+                total_loss(problem, moved, has_constant_noise ? nullptr : &estimate.parameters);
             if (moved_cost < cost) {
                 estimate.parameters = moved;
                 cost = has_constant_noise ? moved_cost : total_loss(problem, moved);

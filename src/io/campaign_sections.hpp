@@ -14,9 +14,9 @@ struct RobotSection {
     Chain declared;
     io::ErrorModel error_model = io::ErrorModel::Stated;
     Vector3d gravity = -Vector3d::UnitZ();  ///< its direction in the base frame
-    VectorXd joint_repeatability;        ///< rad or m; empty if not stated
-    std::optional<io::UrdfSource> urdf;  ///< where the robot comes from
-    VectorXd speed;                      ///< of the joints, rad/s or m/s; empty if not stated
+    VectorXd joint_repeatability;           ///< rad or m; empty if not stated
+    std::optional<io::UrdfSource> urdf;     ///< where the robot comes from
+    VectorXd speed;                         ///< of the joints, rad/s or m/s; empty if not stated
 };
 RobotSection read_robot(const YamlValue& robot);
 

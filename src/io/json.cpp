@@ -4,10 +4,10 @@
 #include <optional>
 #include <set>
 
-#include "posewise/core/errors.hpp"
 #include "../core/text.hpp"
-#include "posewise/core/version.hpp"
 #include "atomic_file.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/version.hpp"
 
 namespace posewise::detail {
 namespace {

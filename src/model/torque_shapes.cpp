@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sampling.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "sampling.hpp"
 
 namespace posewise {
 namespace {
@@ -33,8 +33,9 @@ std::vector<Probe> make_probes(const Chain& chain, double distance) {
         probes.push_back({name, {{link, 1, Vector3d::Zero()}}});
         for (Index axis = 0; axis < 3; ++axis) {
             const Vector3d center = distance * Vector3d::Unit(axis);
-            probes.push_back({name + '.' + "xyz"[axis],
-                              {{link, 1, center}, {link, -1, Vector3d::Zero()}}});
+            probes.push_back({name + '.' + "xyz" [axis], {
+                                  {link, 1, center}, { link, -1, Vector3d::Zero() }
+                              }});
         }
     }
     return probes;
@@ -102,7 +103,8 @@ std::vector<Shape> find_shapes(const MatrixXd& moments, const std::vector<Probe>
 }  // namespace
 
 double extent(const Chain& chain) {
-    const RowMatrixXd configurations = detail::random_configurations(chain, samples, configuration_seed);
+    const RowMatrixXd configurations =
+        detail::random_configurations(chain, samples, configuration_seed);
     const VectorXd nominal = VectorXd::Zero(chain.parameter_count());
     RowMatrixXd flange(samples, 3);
     for (Index i = 0; i < samples; ++i) {

@@ -106,9 +106,9 @@ std::string format_outliers(const Calibration& calibration) {
     const Estimate& estimate = calibration.estimate;
     if (estimate.loss.kind == LossKind::Squares) return "";
     const auto count = static_cast<Index>(estimate.outliers.size());
-    std::string text = fmt::format("\nloss {} with width {} standard deviations: {}\n",
-                                   loss_name(estimate.loss.kind),
-                                   detail::format_short(estimate.loss.width, 4), count_outliers(count));
+    std::string text = fmt::format(
+        "\nloss {} with width {} standard deviations: {}\n", loss_name(estimate.loss.kind),
+        detail::format_short(estimate.loss.width, 4), count_outliers(count));
     if (count == 0) return text;
     if (calibration.without_outliers) {
         text += format_without_outliers(*calibration.without_outliers);

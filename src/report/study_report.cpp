@@ -30,17 +30,12 @@ std::string csv_line(const StudyRow& row, const StudyCase& study_case, std::stri
     for (const Index pose : study_case.poses) {
         poses += (poses.empty() ? "" : " ") + ids[static_cast<std::size_t>(pose)];
     }
-    return fmt::format("{},{},{},{},{},{},{},{}\n", row.pose_count, chosen_by, subset,
-                       study_case.split, study_case.identified ? "yes" : "no", rms, max, quote(poses));
+    return fmt::format("{},{},{},{},{},{},{}\n", row.pose_count, chosen_by, subset,
+                       study_case.identified ? "yes" : "no", rms, max, quote(poses));
 }
 
 /// On what all were judged, and whether to plan was worth it.
 std::string describe_judgement(const Study& study) {
-    if (study.splits == 0) {
-        return "\nEach subset was judged on all configurations that it leaves, not all on the same "
-               "ones: few\nwere measured. A plan takes the telling ones, so that its own rest may "
-               "be easier.\n";
-    }
     std::string text = fmt::format(
         "\nJudged on {} configurations held out, the same ones for all subsets of a split; {} "
         "splits.\nPlanned and random: medians; their ratio: the geometric mean over the splits.\n",
@@ -63,17 +58,18 @@ std::string describe_judgement(const Study& study) {
 std::string format(const Study& study) {
     if (study.ending == Ending::NotIdentifiable) return study.undetermined + '\n';
     const bool has_random = !study.rows.empty() && !study.rows.front().random.empty();
-    return format_table(detail::study_table(study)) + (has_random ? describe_judgement(study) : "");
+    return format_table(detail::study_table(study)) +
+           (has_random && study.splits > 0 ? describe_judgement(study) : "");
 }
 
 std::string study_csv(const Study& study) {
     std::string text =
-        "poses,chosen_by,subset,split,identified,held_out_rms_mm,held_out_max_mm,configurations\n";
+        "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,configurations\n";
+    const auto each = static_cast<std::size_t>(std::max<Index>(1, study.splits));
     for (const StudyRow& row : study.rows) {
         for (std::size_t i = 0; i < row.optimal.size(); ++i) {
-            const auto each = static_cast<std::size_t>(std::max<Index>(1, study.splits));
-            text += csv_line(row, row.optimal[i], criterion_name(study.criteria[i / each]), 0,
-                             study.ids);
+            text += csv_line(row, row.optimal[i], criterion_name(study.criteria[i / each]),
+                             i % each, study.ids);
         }
         for (std::size_t i = 0; i < row.random.size(); ++i) {
             text += csv_line(row, row.random[i], "random", i, study.ids);

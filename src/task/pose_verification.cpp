@@ -88,10 +88,11 @@ void check_deviations(const Plan& plan, const PlanningProblem& problem, const Ma
             continue;
         }
         is_right = false;
-        findings.note("deviations", false,
-                      fmt::format("of {}: stated {}, is {}", one.name,
-                                  found != stated.end() ? format_short(found->value) : "none",
-                                  format_short(one.value)));
+        findings.note(
+            "deviations", false,
+            fmt::format("of {}: stated {}, is {}", one.name,
+                        found != stated.end() ? detail::format_short(found->value) : "none",
+                        detail::format_short(one.value)));
     }
     if (is_right) findings.note("deviations", true, fmt::format("as stated, {}", stated.size()));
 }

@@ -32,7 +32,7 @@ struct Setting {
     const Campaign& campaign;
     const Measurements& measurements;
     const StudyOptions& options;
-    Blocks blocks;               ///< of all configurations, at the registered parameters
+    Blocks blocks;              ///< of all configurations, at the registered parameters
     std::vector<Split> splits;  ///< one of all configurations if nothing is held out
 };
 
@@ -57,13 +57,12 @@ void check_options(const StudyOptions& options) {
                          std::to_string(options.random_subsets) + " and " +
                          std::to_string(options.starts));
     }
-    if (options.splits && *options.splits < 0) {
-        throw InputError("splits are " + std::to_string(*options.splits) +
-                         ", must be at least 0");
+    if (options.splits < 0) {
+        throw InputError("splits are " + std::to_string(options.splits) + ", must be at least 0");
     }
     if (!(options.holdout > 0 && options.holdout < 1)) {
-        throw InputError(fmt::format("holdout is {:g}, must be above 0 and below 1",
-                                     options.holdout));
+        throw InputError(
+            fmt::format("holdout is {:g}, must be above 0 and below 1", options.holdout));
     }
 }
 
@@ -79,19 +78,6 @@ std::vector<Index> usual_counts(Index pool, Index least) {
         if (count >= least && 3 * count <= pool) counts.push_back(count);
     }
     return counts;
-}
-
-/// 0 where there are too few configurations for the counts asked for, or for the usual ones.
-Index choose_split_count(const Campaign& campaign, Index all, const StudyOptions& options) {
-    constexpr Index usual = 10;
-    if (options.splits) return *options.splits;
-    if (all < 2) return 0;
-    const Index pool = all - test_count(all, options.holdout);
-    const auto& asked = options.pose_counts;
-    const bool is_enough =
-        asked.empty() ? !usual_counts(pool, least_pose_count(campaign)).empty()
-                      : 3 * *std::max_element(asked.begin(), asked.end()) <= pool;
-    return is_enough ? usual : 0;
 }
 
 std::vector<Index> choose_pose_counts(const Campaign& campaign, const std::vector<Index>& asked,
@@ -145,8 +131,7 @@ std::vector<Index> choose_poses(const Setting& setting, const Job& job, const Sp
         const auto item = (static_cast<std::uint64_t>(job.pose_count) << 32) + job.number;
         return RandomStream(setting.options.seed, item).subset(all, job.pose_count);
     }
-    const Blocks blocks =
-        split.test.empty() ? setting.blocks : take(setting.blocks, split.pool);
+    const Blocks blocks = split.test.empty() ? setting.blocks : take(setting.blocks, split.pool);
     SelectOptions options;
     options.criterion = setting.options.criteria[job.number];
     options.pose_count = job.pose_count;
@@ -171,9 +156,8 @@ void run(const Setting& setting, const Job& job) {
     if (!start.is_determined()) return;
     const Estimate estimate = identify(setting.campaign, chosen, start.parameters);
     if (estimate.ending == Ending::NotIdentifiable) return;
-    const auto judged = split.test.empty()
-                            ? all_but(measurements.configuration_count(), result.poses)
-                            : split.test;
+    const auto judged =
+        split.test.empty() ? all_but(measurements.configuration_count(), result.poses) : split.test;
     if (!judged.empty()) {
         result.held_out = make_metrics(
             mean_residuals(setting.campaign, estimate.parameters, take(measurements, judged)),
@@ -239,7 +223,7 @@ Study study(const Campaign& campaign, const Measurements& measurements,
     check_is_of_robot(campaign, measurements, registration);
     check_options(options);
     const Index all = measurements.configuration_count();
-    const Index split_count = choose_split_count(campaign, all, options);
+    const Index split_count = options.splits;
     if (split_count > 0 && all < 2) {
         throw InputError("there is 1 configuration, splits need at least 2");
     }
@@ -294,7 +278,7 @@ std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& r
     if (freedom < 1) return Advantage{std::exp(mean), std::exp(mean), std::exp(mean)};
     const double deviation = std::sqrt((values.array() - mean).square().sum() / freedom /
                                        static_cast<double>(values.size()));
-    const double width = student_quantile(0.975, freedom) * deviation;
+    const double width = detail::student_quantile(0.975, freedom) * deviation;
     return Advantage{std::exp(mean), std::exp(mean - width), std::exp(mean + width)};
 }
 

@@ -123,7 +123,7 @@ TEST_F(Compliance, OfTheWrongSignIsSaid) {
 TEST_F(Compliance, UnderMeasuredTorquesCannotBePlannedFromNothing) {
     write_text("c.yaml", arm(torques));
     const std::string rule =
-        "c.yaml: its torques are measured with each configuration, and of poses that are drawn "
+        "arm: its torques are measured with each configuration, and of poses that are drawn "
         "nobody";
     expect_input_error("plan c.yaml -k 12", rule);
     expect_input_error("select c.yaml --random 100 -k 20", rule);

@@ -40,7 +40,7 @@ class HiddenTargets : public Program {
         std::string text;
         for (std::string line; std::getline(lines, line);) {
             if (line[0] >= '0' && line[0] <= '9') {
-                for (int cell = 0; cell < 3; ++cell) line.erase(line.rfind(','));
+                for (int k = 0; k < 3; ++k) line.erase(line.rfind(','));
                 line += ",,,";
             }
             text += line + '\n';

@@ -49,5 +49,12 @@ TEST(Quantile, TakesInfiniteNumbersAsTheLargest) {
     EXPECT_EQ(quantile(numbers({infinity, infinity}), 0.5, Linear), infinity);
 }
 
+TEST(DistributionQuantile, IsThatOfTables) {
+    EXPECT_NEAR(student_quantile(0.975, 10), 2.2281388520, 1e-9);
+    EXPECT_NEAR(student_quantile(0.025, 4), -2.7764451052, 1e-9);
+    EXPECT_NEAR(chi_squared_quantile(0.95, 5), 11.0704976935, 1e-9);
+    EXPECT_NEAR(chi_squared_quantile(0.05, 2.5), 0.2101, 2e-3);
+}
+
 }  // namespace
 }  // namespace posewise

@@ -94,8 +94,8 @@ TEST(BadCampaign, Robots) {
          "8:5: robot.elements lists 1007 elements; must be at most 1000"},
         {"    lift:", joints + "    lift:",
          "4:5: robot.joints states 103 joints; must be at most 100"},
-        {"  elements:", "  errors: completed\n  elements:",
-         "7:11: robot.errors is 'completed'; did you mean 'complete'?"},
+        {"  elements:", "  errors: geometrical\n  elements:",
+         "7:11: robot.errors is 'geometrical'; did you mean 'geometric'?"},
     });
 }
 

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "campaign_text.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/sensors.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -175,6 +177,45 @@ TEST(ReadCampaign, TakesKnownTargets) {
     EXPECT_EQ(campaign.nominal.sensor.size(), 0);
     const auto& sensor = dynamic_cast<const PointSensor&>(*campaign.sensor);
     EXPECT_EQ(sensor.target_position(1, VectorXd()), Vector3d(0, 0.2, -0.01));
+}
+
+TEST(ReadCampaign, TakesTheFullErrorModelWithTheSizesThatErrorsHave) {
+    const std::string text =
+        R"(name: arm
+robot:
+  errors: full
+  joints: {q1: {limits_deg: [-90, 90]}, q2: {limits_deg: [-90, 90]}, q3: {limits_deg: [-90, 90]}}
+  elements: [Rz q1, Tz 0.3 m, Ry q2, Tz 0.5 m, Ry q3, Tx 0.4 m]
+sensor: {kind: points, sigma_mm: 0.1, targets: {count: 3}}
+)";
+    const CampaignFile file = read(text);
+    EXPECT_EQ(file.error_model, ErrorModel::Full);
+    EXPECT_TRUE(file.spread.is_prior);
+    const auto names = parameter_names(file);
+    const VectorXd scale = parameter_scale(file);
+    const auto size_of = [&](const std::string& name) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        return found == names.end() ? -1 : scale[found - names.begin()];
+    };
+    EXPECT_EQ(size_of("dq2"), 20e-3);
+    EXPECT_EQ(size_of("Rx2"), 0.7e-3);
+    EXPECT_EQ(size_of("q2.torque(q2.x)"), 1e-3);
+    EXPECT_EQ(size_of("q3.cos(2q3)"), 0.3e-3);
+    EXPECT_NEAR(size_of("Tx1"), 4e-4 * extent(file.declared_robot), 1e-15);
+    EXPECT_EQ(size_of("q1.torque(q2)"), -1);
+
+    const CampaignFile stated =
+        read(text + "spread: {offset_mrad: 2, gravity_mrad: 3}\nprior: false\n");
+    EXPECT_EQ(*stated.spread.offset, 2e-3);
+    EXPECT_EQ(stated.spread.gravity, 3e-3);
+    EXPECT_EQ(stated.spread.harmonic, 0.3e-3);
+    EXPECT_FALSE(stated.spread.is_prior);
+
+    const CampaignFile on_wall =
+        read(replaced(text, "errors: full", "errors: full\n  gravity: {direction: [1, 0, 0]}"));
+    const auto has_torque_of_q1 = on_wall.robot.parameter_names();
+    EXPECT_TRUE(std::any_of(has_torque_of_q1.begin(), has_torque_of_q1.end(),
+                            [](const auto& n) { return n.starts_with("q1.torque("); }));
 }
 
 TEST(ReadCampaign, HasTheStatedErrorsIfAnyIsStated) {

@@ -206,6 +206,70 @@ TEST(StudyPoseCounts, RefusesWhatCannotBeStudied) {
     EXPECT_THROW(study(too_few.campaign, too_few.measurements, options), InputError);
 }
 
+TEST(StudyPoseCounts, JudgesAllSubsetsOfASplitOnTheSameConfigurations) {
+    const Example example(30);
+    StudyOptions options = small_options();
+    options.pose_counts = {6};
+    options.splits = 3;
+    const Study result = study(example.campaign, example.measurements, options);
+    EXPECT_EQ(result.splits, 3);
+    EXPECT_EQ(result.test_count, 9);
+    ASSERT_EQ(result.rows.size(), 1u);
+    const StudyRow& row = result.rows.front();
+    ASSERT_EQ(row.optimal.size(), 6u);  // two criteria, three splits
+    std::vector<StudyCase> all = row.random;
+    all.insert(all.end(), row.optimal.begin(), row.optimal.end());
+    std::vector<std::set<Index>> taken(3);
+    for (const StudyCase& subset : all) {
+        EXPECT_EQ(subset.held_out.point_count, 9 * 3);
+        taken[static_cast<std::size_t>(subset.split)].insert(subset.poses.begin(),
+                                                             subset.poses.end());
+    }
+    for (const std::set<Index>& poses : taken) EXPECT_LE(poses.size(), 21u);
+    EXPECT_NE(taken[0], taken[1]);
+    const auto planned = planned_cases(row, 1, 2);
+    ASSERT_EQ(planned.size(), 3u);
+    EXPECT_EQ(planned[2].poses, row.optimal[5].poses);
+    EXPECT_EQ(planned[2].split, 2);
+}
+
+TEST(StudyPoseCounts, WithSplitsGoesUpToAThirdOfWhatThereIsToChooseFrom) {
+    StudyOptions options;
+    options.criteria = {Criterion::D};
+    options.random_subsets = 0;
+    options.starts = 1;
+    options.splits = 1;
+    const Example example(54);  // 38 to choose from
+    std::vector<Index> counts;
+    for (const StudyRow& row : study(example.campaign, example.measurements, options).rows) {
+        counts.push_back(row.pose_count);
+    }
+    EXPECT_EQ(counts, (std::vector<Index>{8, 12}));
+    options.holdout = 1;
+    EXPECT_THROW(study(example.campaign, example.measurements, options), InputError);
+}
+
+TEST(PlannedAdvantage, IsTheGeometricMeanOverSplits) {
+    Study study;
+    study.criteria = {Criterion::V};
+    study.splits = 2;
+    StudyRow row;
+    for (const double rms : {1.0, 4.0}) row.optimal.push_back(case_with_error(rms));
+    row.optimal[1].split = 1;
+    for (const double rms : {2.0, 2.0}) row.random.push_back(case_with_error(rms));
+    row.random[1].split = 1;
+    const auto advantage = planned_advantage(study, row, 0);
+    ASSERT_TRUE(advantage);
+    EXPECT_NEAR(advantage->ratio, 1, 1e-15);
+    // Logarithms -ln 2 and ln 2: their mean has the deviation ln 2, Student's t is 12.706.
+    EXPECT_NEAR(std::log(advantage->upper), 12.7062047 * std::log(2.0), 1e-6);
+    EXPECT_NEAR(std::log(advantage->lower), -std::log(advantage->upper), 1e-12);
+    row.random[1].identified = false;
+    EXPECT_FALSE(planned_advantage(study, row, 0));
+    study.splits = 0;
+    EXPECT_FALSE(planned_advantage(study, row, 0));
+}
+
 TEST(HeldOutQuantile, IsLinearBetweenOrderStatistics) {
     const std::vector<StudyCase> cases{case_with_error(4), case_with_error(1), case_with_error(2),
                                        case_with_error(8)};

@@ -38,13 +38,13 @@ Chain with_compliance(const Chain& chain, const std::vector<Load>& loads,
                       const std::vector<Index>& joints = {});
 
 /// The robot with the shapes of the torque that its own weight and its tool's, neither known, put
-/// on every joint that turns: it gives way by a sum of them. A shape is the moment about the joint's
-/// axis, with gravity in `direction` of the base frame, of a mass at the origin of a later joint or
-/// of the flange, or of one beside it along an axis of that frame, less what the shapes before it
-/// explain over the joints' ranges; what is left below 3 % of the joint's largest is dropped. Named
-/// `q2.torque(q3)` and `q2.torque(q3.x)`, `q2.torque(flange)`; of each the RMS is that of a sine, so
-/// that parameters in rad compare with those of harmonics. A joint whose moments are always the
-/// same (upright axes) gets none. Throws InputError for a zero direction.
+/// on every joint that turns: it gives way by a sum of them. A shape is the moment about the
+/// joint's axis, with gravity in `direction` of the base frame, of a mass at the origin of a later
+/// joint or of the flange, or of one beside it along an axis of that frame, less what the shapes
+/// before it explain over the joints' ranges; what is left below 3 % of the joint's largest is
+/// dropped. Named `q2.torque(q3)` and `q2.torque(q3.x)`, `q2.torque(flange)`; of each the RMS is
+/// that of a sine, so that parameters in rad compare with those of harmonics. A joint whose moments
+/// are always the same (upright axes) gets none. Throws InputError for a zero direction.
 Chain with_torque_shapes(const Chain& chain, const Vector3d& direction = -Vector3d::UnitZ());
 
 /// RMS distance (m) of the flange from its mean within the joint limits: how large the robot is.

@@ -87,7 +87,7 @@ class GravityTorque::Arm {
     explicit Arm(const Chain& chain);
 
     struct Motion {
-        FlangeMotion flange;             ///< column 6 + e of its twists: by driven element e
+        FlangeMotion flange;            ///< column 6 + e of its twists: by driven element e
         std::vector<Isometry3d> links;  ///< as Chain::base_from_links()
     };
     /// At the joint values that q begins with; valid until this thread asks again, of any arm.

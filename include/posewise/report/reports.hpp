@@ -61,8 +61,8 @@ std::string format_findings(const std::vector<Finding>& findings);
 std::string format(const Study& study);
 
 /// Every case of a study as CSV text: pose count, who chose (criterion or "random"), number of the
-/// subset, whether it identified the model, held-out distance RMS and maximum in mm (9 digits), and
-/// the configurations by id, separated by blanks.
+/// subset (planned: of its split), whether it identified the model, held-out distance RMS and
+/// maximum in mm (9 digits), and the configurations by id, separated by blanks.
 std::string study_csv(const Study& study);
 
 }  // namespace posewise

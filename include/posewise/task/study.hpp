@@ -14,11 +14,11 @@ namespace posewise {
 /// How well one subset calibrates the robot.
 struct StudyCase {
     std::vector<Index> poses;
-    Index split = 0;
     bool identified = false;  ///< false: these poses cannot identify the model
     /// Means of the configurations held out of the split, else of all that were not chosen (so that
     /// repeat noise does not blur the comparison); no points if none is left.
     Metrics held_out;
+    Index split = 0;
 };
 
 /// All subsets of one size.
@@ -36,11 +36,10 @@ struct StudyOptions {
     Index random_subsets = 100;
     /// Splits of the configurations at random into those to choose from and those to judge all
     /// subsets on. 0: none, each subset is judged on all that it leaves, so that a plan that takes
-    /// the telling configurations is judged on easier ones than others are. Nothing: 10 if there are
-    /// enough configurations for it.
-    std::optional<Index> splits;
+    /// the telling configurations is judged on easier ones than others are.
+    Index splits = 0;
     double holdout = 0.3;  ///< part of the configurations that a split judges on
-    Index starts = 20;  ///< of the exchange
+    Index starts = 20;     ///< of the exchange
     std::uint64_t seed = 1;
     StopSignal stop{};            ///< ends it with the pose counts that are complete
     ProgressCallback progress{};  ///< of the cases
@@ -52,11 +51,11 @@ struct Study {
     std::vector<std::string> ids;     ///< of the configurations
     std::vector<Criterion> criteria;  ///< by which were chosen, as StudyRow::optimal has them
     std::vector<StudyRow> rows;       ///< none if there is nothing to study
-    Index splits = 0;                 ///< 0: each subset was judged on what it leaves
-    Index test_count = 0;             ///< configurations that each split judges on
     Ending ending = Ending::NotRun;
     /// Where it is NotIdentifiable, why not even all configurations identify the model.
     std::string undetermined;
+    Index splits = 0;      ///< 0: each subset was judged on what it leaves
+    Index test_count = 0;  ///< configurations that each split judges on
 };
 
 /// Chooses k of the measured configurations by each criterion and at random, calibrates with them
@@ -73,8 +72,8 @@ struct Advantage {
     double lower = 1;  ///< its 95 % interval, by Student's t of the logarithms; of one split the
     double upper = 1;  ///< ratio itself
 };
-/// Of the criterion of that number in one row of a study with splits. Nothing where a planned subset
-/// or half of the random ones of a split do not identify the model.
+/// Of the criterion of that number in one row of a study with splits. Nothing where a planned
+/// subset or half of the random ones of a split do not identify the model.
 std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
                                            std::size_t criterion);
 

@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+
+#include "../../src/model/complete_model.hpp"
+#include "../../src/model/sampling.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/model/error_terms.hpp"
+#include "posewise/model/gravity_torque.hpp"
+#include "support/derivative_check.hpp"
+#include "support/robots.hpp"
+#include "support/sweep.hpp"
+
+namespace posewise {
+namespace {
+
+using namespace detail;
+using namespace testing;
+
+/// Values of the torque shapes of one joint, samples x shapes.
+MatrixXd shape_values(const Chain& robot, const std::string& joint, const RowMatrixXd& q) {
+    std::vector<const JointFunction*> functions;
+    for (Index k = 0; k < robot.parameter_count(); ++k) {
+        const ErrorTerm* const term = robot.parameter_term(k);
+        if (term == nullptr || term->kind != TermKind::Torque) continue;
+        if (term->parameter.starts_with(joint + '.')) functions.push_back(&term->function);
+    }
+    MatrixXd values(q.rows(), static_cast<Index>(functions.size()));
+    for (Index i = 0; i < q.rows(); ++i) {
+        for (std::size_t k = 0; k < functions.size(); ++k) {
+            values(i, static_cast<Index>(k)) =
+                functions[k]->torque->evaluate(q.row(i).transpose()).value;
+        }
+    }
+    return values;
+}
+
+TEST(TorqueShapes, AreOrthogonalAndAsLargeAsASine) {
+    const Chain robot = with_torque_shapes(without_parameters(fanuc()));
+    const RowMatrixXd q = random_configurations(robot, 4000, 77);
+    for (const std::string joint : {"q2", "q3", "q5"}) {
+        MatrixXd values = shape_values(robot, joint, q);
+        ASSERT_GT(values.cols(), 1) << joint;
+        values.rowwise() -= values.colwise().mean().eval();
+        const MatrixXd gram = values.transpose() * values / static_cast<double>(q.rows());
+        const MatrixXd expected = 0.5 * MatrixXd::Identity(gram.rows(), gram.cols());
+        EXPECT_LT((gram - expected).cwiseAbs().maxCoeff(), 0.15) << joint << '\n' << gram;
+    }
+    EXPECT_EQ(shape_values(robot, "q1", q).cols(), 0);  // its axis is upright
+}
+
+TEST(TorqueShapes, ExplainTheTorqueOfAnyWeights) {
+    RandomStream stream(5, 0);
+    for (const Chain& robot : {fanuc(), ur_type(), seven_joint_arm()}) {
+        const Chain shaped = with_torque_shapes(without_parameters(robot));
+        const RowMatrixXd q = random_configurations(robot, 300, 8);
+        std::vector<Load> loads;
+        for (Index link = 1; link <= robot.joint_count() + 1; ++link) {
+            loads.push_back({link, stream.uniform(2, 20), random_vector(stream, 3, 0.1)});
+        }
+        const Chain bending = with_compliance(without_parameters(robot), loads);
+        for (Index k = 0; k < bending.parameter_count(); ++k) {
+            const ErrorTerm& term = *bending.parameter_term(k);
+            VectorXd torque(q.rows());
+            for (Index i = 0; i < q.rows(); ++i) {
+                torque[i] = term.function.torque->evaluate(q.row(i).transpose()).value;
+            }
+            const MatrixXd shapes =
+                shape_values(shaped, term.parameter.substr(0, term.parameter.find('.')), q);
+            MatrixXd explaining(q.rows(), shapes.cols() + 1);
+            explaining << shapes, VectorXd::Ones(q.rows());
+            const VectorXd rest = torque - explaining * explaining.householderQr().solve(torque);
+            torque.array() -= torque.mean();
+            EXPECT_LT(rest.norm(), 0.05 * torque.norm()) << term.parameter;
+        }
+    }
+}
+
+TEST(TorqueShapes, AreDifferentiatedInTheFullModel) {
+    const Chain robot = full_model(without_parameters(fanuc()));
+    const RowMatrixXd configurations = random_configurations(robot, 3, 4);
+    RandomStream stream(6, 0);
+    const VectorXd parameters = random_vector(stream, robot.parameter_count(), 1e-2);
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        const VectorXd q = configurations.row(i).transpose();
+        FlangeMotion motion;
+        robot.differentiate(Isometry3d::Identity(), q, parameters, motion);
+        const Vector3d p = motion.world_from_flange.translation();
+        const auto at_flange = [&](const TwistMatrix& twists) {
+            MatrixXd J(3, twists.cols());
+            for (Index k = 0; k < twists.cols(); ++k) {
+                J.col(k) = twists.col(k).tail<3>() + Vector3d(twists.col(k).head<3>()).cross(p);
+            }
+            return J;
+        };
+        const auto position = [&](const VectorXd& joints, const VectorXd& errors) {
+            return VectorXd(robot.base_from_flange(joints, errors).translation());
+        };
+        expect_is_jacobian(
+            at_flange(motion.twists.rightCols(robot.parameter_count())),
+            [&](const VectorXd& errors) { return position(q, errors); }, parameters);
+        expect_is_jacobian(
+            at_flange(motion.joint_twists),
+            [&](const VectorXd& joints) { return position(joints, parameters); }, q);
+    }
+}
+
+TEST(TorqueShapes, AreNotTakenForCompliances) {
+    EXPECT_TRUE(compliances(with_torque_shapes(without_parameters(fanuc()))).empty());
+    EXPECT_THROW(with_torque_shapes(fanuc(), Vector3d::Zero()), InputError);
+}
+
+TEST(Extent, IsHowFarTheFlangeSpreads) {
+    const Chain lift({{"z", 0, 1.2}}, {driven(Motion::Translation, Axis::Z, 0)});
+    EXPECT_NEAR(extent(lift), 1.2 / std::sqrt(12.0), 0.02);
+}
+
+}  // namespace
+}  // namespace posewise
