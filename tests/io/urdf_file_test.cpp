@@ -5,10 +5,9 @@
 #include <sstream>
 
 #include "../../src/model/complete_model.hpp"
+#include "lift_urdf.hpp"
 #include "posewise/model/transforms.hpp"
-#include "support/slips.hpp"
 #include "support/sweep.hpp"
-#include "support/temporary_folder.hpp"
 #include "support/urdf_text.hpp"
 
 namespace posewise::io {
@@ -17,58 +16,7 @@ namespace {
 using namespace detail;
 using namespace testing;
 
-/// A column that slides, an arm behind a fixed joint, a wrist; a finger that mimics beside the way.
-const std::string text = R"(<?xml version="1.0"?>
-<!-- A robot -->
-<robot name="lift &amp; arm">
-  <link name="base"/>
-  <link name="column"/>
-  <link name="plate"/>
-  <link name="arm"/>
-  <link name="tool"/>
-  <link name="finger"/>
-  <joint name="lift" type="prismatic">
-    <parent link="base"/><child link="column"/>
-    <origin xyz="0.1 0 0.5"/>
-    <axis xyz="0 0 2"/>
-    <limit lower="0" upper="0.8" effort="100" velocity="0.5"/>
-  </joint>
-  <joint name="mount" type="fixed">
-    <origin xyz="0 0.2 0" rpy="0.1 -0.2 1.5"/>
-    <parent link="column"/><child link="plate"/>
-  </joint>
-  <joint name="arm-joint" type="revolute">
-    <parent link="plate"/><child link="arm"/>
-    <origin rpy="0.4 0 0" xyz="0 0 0.3"/>
-    <axis xyz="0 -1 0"/>
-    <limit lower="-1.5" upper="2" effort="10" velocity="1.5"/>
-  </joint>
-  <joint name="wrist" type="continuous">
-    <parent link="arm"/><child link="tool"/>
-    <origin xyz="0.4 0 0"/>
-  </joint>
-  <joint name="grip" type="revolute">
-    <parent link="tool"/><child link="finger"/>
-    <mimic joint="wrist"/>
-  </joint>
-</robot>
-)";
-
-UrdfRobot read(const std::string& content, const std::string& base = "base",
-               const std::string& tip = "tool") {
-    const TemporaryFolder folder;
-    return read_urdf({folder.write("robot.urdf", content), base, tip});
-}
-
-std::string error_of(const std::string& content, const std::string& base = "base",
-                     const std::string& tip = "tool") {
-    return input_error_of([&] { make_chain(read(content, base, tip)); });
-}
-
-void expect_messages_of(const std::vector<Slip>& slips) {
-    const auto error = [](const std::string& changed) { return error_of(changed); };
-    expect_messages(text, slips, error, "robot.urdf:");
-}
+const std::string& text = lift_urdf;
 
 TEST(ReadUrdf, GivesTheJointsFromBaseToTip) {
     const UrdfRobot robot = read(text);
@@ -249,152 +197,6 @@ TEST(BadUrdf, Ends) {
     const std::string ring = replaced(urdf_text({{"fixed", "", ""}, {"fixed", "", ""}}),
                                       "<child link=\"link2\"/>", "<child link=\"link0\"/>");
     EXPECT_EQ(error_of(ring, "link1", ""), "robot.urdf: has no tip link below base link 'link1'");
-}
-
-TEST(HostileXml, IsRefusedWithItsPlace) {
-    const std::string base = "<link name=\"base\"/>";
-    const std::string tag = "begins a tag that is not XML; must be like <name a=\"1\" b=\"2\">";
-    const std::string question =
-        "is not XML: a <?...?> must end with ?>, and <?xml must stand first";
-    const std::string markup = "is not XML: a '<' must begin a tag or be written &lt;";
-    const std::string outside = "is not XML: text outside of the root element";
-    expect_messages_of({
-        {text, "", " is not XML: it has no element"},
-        {text, "<!-- only this -->", " is not XML: it has no element"},
-        {text, "no markup at all", "1:1: " + outside},
-        {"</robot>", "</robot>\n and more", "35:2: " + outside},
-        {"</robot>", "", "3:1: is not XML: <robot> is never closed"},
-        {"</robot>", "</robot", "34:1: is not XML: an end tag must be </name>"},
-        {"</robot>", "</robot></robot>", "34:9: is not XML: an end tag without a start tag"},
-        {"</robot>", "</robot><robot/>",
-         "34:9: is not XML: a second root element begins; must be one"},
-        {base, "<link name=\"base\">",
-         "4:3: is not XML: <link> is not closed before the end tag in line 34"},
-        {base, "<link name=\"base\"><a/></lnk>",
-         "4:3: is not XML: <link> is not closed before the end tag in line 4"},
-        {base, "<link name=\"base/>", "4:3: " + tag},
-        {base, "<link name=base/>", "4:3: " + tag},
-        {base, "<link a='1'name='base'/>", "4:3: " + tag},
-        {base, "<link name='base' <a/>", "4:3: " + tag},
-        {base, base + " <", "4:23: " + markup},
-        {base, base + " < b", "4:23: " + markup},
-        {"</robot>\n", "</robot><", "34:9: " + markup},
-        {"<!-- A robot -->", "<!-- A robot", "2:1: begins a comment that never ends"},
-        {base, base + "<![CDATA[ <b> ]]", "4:22: begins a CDATA section that never ends"},
-        {base, base + "<?b", "4:22: " + question},
-        {base, base + "<?xml version='1.0'?>", "4:22: " + question},
-        {"<?xml", "<!-- first --><?xml", "1:15: " + question},
-        {base, "<xacro:property name=\"a\" value=\"1\"/>",
-         "4:3: is a template for xacro; must be what xacro makes of it"},
-        {"A robot", std::string("A\0robot", 7), "2:7: has a NUL byte; must be text in UTF-8"},
-        {text, std::string("\xFF\xFE<\0r\0", 6), "1:4: has a NUL byte; must be text in UTF-8"},
-        {"xyz=\"0.4 0 0\"", "xyz=\"0.4 0 0\" xyz=\"0 0 0\"",
-         "28:5: is not XML: a second attribute 'xyz' in one <origin>; must be one"},
-    });
-}
-
-/// What a well-formed file may have, and a reader that looks for '<' and '>' only falls over.
-TEST(ReadUrdf, TakesEveryMarkupThatIsNoElement) {
-    const std::string base = "<link name=\"base\"/>";
-    for (const std::string by :
-         {"<link name='base'><![CDATA[ </robot> ]]></link>", "<link name = 'b&#x61;se'></link >",
-          "<link name=\"base\" note=\"'>'\"/>", "<link name='base'/><!-- <link> -->",
-          "<link name='base'/> text > &amp; &#60; more <?php <a> ?>",
-          "<link\n\tname='base'\r\n/>"}) {
-        EXPECT_EQ(error_of(replaced(text, base, by)), "no error") << by;
-    }
-    EXPECT_EQ(error_of("\xEF\xBB\xBF" + text), "no error");
-    EXPECT_EQ(error_of(text + "<!-- end --><?end?>\n"), "no error");
-    EXPECT_EQ(error_of(replaced(text, "?>", " encoding='latin1'?>")), "no error");
-}
-
-TEST(HostileXml, OfEntitiesIsRefused) {
-    const std::string problem = "declares a document type or an entity; must have none";
-    expect_messages_of({
-        {"<!-- A robot -->",
-         "<!DOCTYPE robot [ <!ENTITY a \"aaaaaaaaaa\"> <!ENTITY b \"&a;&a;\"> ]>",
-         "2:1: " + problem},
-        {"<!-- A robot -->", "<!DOCTYPE robot SYSTEM \"file:///etc/passwd\">", "2:1: " + problem},
-        {"<!-- A robot -->", "<!DOCTYPE robot [", "2:1: " + problem},
-        {"<link name=\"base\"/>", "<!DOCTYPE robot>", "4:3: " + problem},
-        {"<link name=\"base\"/>", "<!ENTITY a 'b'>", "4:3: " + problem},
-        {"xyz=\"0.4 0 0\"", "xyz=\"&a; 0 0\"",
-         "28:5: joint 'wrist' has origin xyz '&a; 0 0'; must be three numbers, each at most 1e+06 "
-         "in magnitude"},
-    });
-}
-
-TEST(HostileXml, ThatIsDeepLongOrHugeIsRefusedAtOnce) {
-    std::string deep;
-    for (int i = 0; i < 200000; ++i) deep += "<a>";
-    EXPECT_EQ(error_of(deep), "robot.urdf:1:151: is nested more than 50 deep; must be less");
-    EXPECT_EQ(error_of("<robot name=\"" + std::string(1 << 20, 'x') + "\"/>"),
-              "robot.urdf:1:1: begins a tag longer than 64 KiB; must be shorter");
-    std::string attributes;
-    for (int i = 0; i < 300000; ++i) attributes += " a" + std::to_string(i) + "=''";
-    EXPECT_EQ(error_of("<robot" + attributes + "/>"),
-              "robot.urdf:1:1: begins a tag longer than 64 KiB; must be shorter");
-    EXPECT_EQ(error_of(std::string((4 << 20) + 1, ' ')),
-              "robot.urdf: is larger than 4 MiB; must be smaller");
-}
-
-/// Takes a moment if the tree is walked again and again.
-TEST(HostileXml, ThatIsALongTreeIsReadAtOnce) {
-    const std::vector<JointText> joints(10000, {"fixed", "", ""});
-    EXPECT_EQ(error_of(urdf_text(joints), "", ""),
-              "robot.urdf: has no joint that moves between base link 'link0' and tip link "
-              "'link10000'");
-    EXPECT_EQ(
-        error_of(urdf_text(std::vector<JointText>(101, {"revolute", "", ""})), "", ""),
-        "robot.urdf: has 101 joints between base link 'link0' and tip link 'link101'; at most "
-        "100 of them may move");
-}
-
-/// A few bytes replaced, cut out or doubled.
-std::string mutate(std::string content, RandomStream& stream) {
-    const std::string bytes = "<>/=\"'&;! -.09exyz\n\t\x01\xff";
-    const auto below = [&](std::size_t count) {
-        return static_cast<std::size_t>(stream.uniform(0, static_cast<double>(count) - 1e-6));
-    };
-    for (std::size_t edits = 1 + below(3); edits > 0; --edits) {
-        const std::size_t position = below(content.size());
-        const std::size_t length = std::min(below(30), content.size() - position);
-        const double kind = stream.uniform(0, 3);
-        if (kind < 1) {
-            content[position] = bytes[below(bytes.size())];
-        } else if (kind < 2) {
-            content.erase(position, length);
-        } else {
-            content.insert(position, content.substr(below(content.size()), length));
-        }
-    }
-    return content;
-}
-
-TEST(HostileXml, OfAnyKindIsARobotThatCanBeExportedOrOneLine) {
-    RandomStream stream(31);
-    Index readable = 0;
-    const TemporaryFolder folder;
-    for (Index i = 0; i < sweep_count() / 4; ++i) {
-        const UrdfSource source{folder.write("robot.urdf", mutate(text, stream)), "base", "tool"};
-        try {
-            const Chain robot = complete_model(make_chain(read_urdf(source)));
-            const VectorXd errors = random_vector(stream, robot.parameter_count(), 0.1);
-            const CalibratedUrdf urdf = make_calibrated_urdf(source, robot, errors);
-            ++readable;
-            if (!urdf.not_expressed.empty()) continue;
-            const Chain again =
-                make_chain(read_urdf({folder.write("again.urdf", urdf.text), "base", "tool"}));
-            const VectorXd q = random_vector(stream, robot.joint_count(), 1);
-            EXPECT_TRUE(again.base_from_flange(q, VectorXd())
-                            .isApprox(robot.base_from_flange(q, errors), 1e-9))
-                << urdf.text;
-        } catch (const InputError& error) {
-            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-        }
-    }
-    EXPECT_GT(readable, sweep_count() / 120);
-    EXPECT_LT(readable, sweep_count() / 4);
 }
 
 }  // namespace
