@@ -76,7 +76,7 @@ void expect_best_found(const Shape& shape, std::uint64_t seed) {
     SelectOptions options;
     options.pose_count = pose_count;
     options.enumeration = 0;  // so that it is the search that finds
-    options.starts = 24;      // few poses: many local optima, and rounding decides which are met
+    options.starts = 12;      // few poses: many local optima, and rounding decides which are met
     const MatrixXd identity = MatrixXd::Identity(shape.parameters, shape.parameters);
     if (shape.has_prior) options.held = identity;
     const BestValues best =
