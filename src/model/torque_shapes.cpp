@@ -26,18 +26,18 @@ struct Probe {
 };
 
 std::vector<Probe> make_probes(const Chain& chain, double distance) {
-    std::vector<Probe> probes;
+    std::vector<Probe> probes, besides;
     for (Index link = 1; link <= chain.joint_count() + 1; ++link) {
         const std::string name =
             link <= chain.joint_count() ? chain.joint(link - 1).name : "flange";
         probes.push_back({name, {{link, 1, Vector3d::Zero()}}});
         for (Index axis = 0; axis < 3; ++axis) {
             const Vector3d center = distance * Vector3d::Unit(axis);
-            probes.push_back({name + '.' + "xyz" [axis], {
-                                  {link, 1, center}, { link, -1, Vector3d::Zero() }
-                              }});
+            const std::vector<Load> pair{{link, 1, center}, {link, -1, Vector3d::Zero()}};
+            besides.push_back({name + '.' + static_cast<char>('x' + axis), pair});
         }
     }
+    probes.insert(probes.end(), besides.begin(), besides.end());
     return probes;
 }
 
@@ -65,7 +65,8 @@ MatrixXd evaluate_moments(const std::shared_ptr<const GravityTorque::Arm>& arm, 
     return moments;
 }
 
-/// By Gram-Schmidt in the order of the probes, from the joint outwards.
+/// By Gram-Schmidt in the order of the probes: masses at the origins from the joint outwards, which
+/// do most, then those beside them.
 std::vector<Shape> find_shapes(const MatrixXd& moments, const std::vector<Probe>& probes,
                                double extent) {
     const double root = std::sqrt(static_cast<double>(moments.rows()));
@@ -87,10 +88,10 @@ std::vector<Shape> find_shapes(const MatrixXd& moments, const std::vector<Probe>
         if (norm <= negligible * largest) continue;
         Q.col(count) = residual / norm;
         combinations.col(count) = combination / norm;
-        Shape shape{probes[static_cast<std::size_t>(k)].name, {}, std::sqrt(2.0) / root};
+        Shape shape{probes[static_cast<std::size_t>(k)].name, {}, std::sqrt(2.0) * largest / root};
         for (Index p = 0; p < moments.cols(); ++p) {
             for (Load load : probes[static_cast<std::size_t>(p)].loads) {
-                load.mass *= combinations(p, count);
+                load.mass *= combination[p];
                 if (load.mass != 0) shape.loads.push_back(load);
             }
         }
