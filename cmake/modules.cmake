@@ -19,6 +19,8 @@ function(posewise_module name)
     PRIVATE posewise_warnings OpenMP::OpenMP_CXX yaml-cpp nlohmann_json::nlohmann_json fmt::fmt
       MatIO::MatIO)
   target_compile_definitions(posewise_${name} PRIVATE ${posewise_definitions})
+  set_target_properties(posewise_${name} PROPERTIES
+    UNITY_BUILD ${POSEWISE_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 6)
   if(BUILD_SHARED_LIBS)
     set_target_properties(posewise_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   endif()

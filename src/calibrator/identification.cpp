@@ -52,10 +52,10 @@ struct LevenbergMarquardt {
     void iterate() {
         if (deviations_open > 0) follow_deviation();
         const detail::Triangle triangle = triangularise(linearise(problem, estimate.parameters));
-        const double negligible =
+        const double converged_below =
             negligible_per_equation * static_cast<double>(problem.equation_count()) +
             options.relative_tolerance * cost;
-        if (triangle.c.squaredNorm() <= negligible) {  // what a full step could gain
+        if (triangle.c.squaredNorm() <= converged_below) {  // what a full step could gain
             if (deviations_open == 0) estimate.ending = Ending::Converged;
             return;
         }

@@ -24,6 +24,10 @@ double quantile(VectorXd values, double p, QuantileRule rule) {
     return std::isinf(next) ? next : *nth + part * (next - *nth);
 }
 
+double rms_spread(const RowMatrixXd& points) {
+    return std::sqrt((points.rowwise() - points.colwise().mean()).rowwise().squaredNorm().mean());
+}
+
 double student_quantile(double p, double degrees_of_freedom) {
     return boost::math::quantile(boost::math::students_t(degrees_of_freedom), p);
 }

@@ -14,6 +14,9 @@ enum class QuantileRule {
 /// The p-quantile (p from 0 to 1) of at least one number, in any order; infinite ones are allowed.
 double quantile(VectorXd values, double p, QuantileRule rule);
 
+/// RMS distance of points (n x 3) from their mean.
+double rms_spread(const RowMatrixXd& points);
+
 /// The p-quantile (0 < p < 1) of Student's t of so many degrees of freedom (above 0).
 double student_quantile(double p, double degrees_of_freedom);
 

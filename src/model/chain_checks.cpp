@@ -107,6 +107,12 @@ std::vector<Motion> find_motions(const std::vector<Joint>& joints,
     return motions;
 }
 
+void check_direction(const Vector3d& direction) {
+    if (!direction.allFinite() || direction.isZero(0)) {
+        throw InputError("direction of gravity must be finite and not zero");
+    }
+}
+
 void check_torques(const std::vector<MeasuredTorque>& torques, const std::vector<Joint>& joints) {
     const auto joint_count = static_cast<Index>(joints.size());
     std::set<Index> seen;

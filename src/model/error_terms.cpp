@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "chain_checks.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise {
@@ -45,12 +46,6 @@ void check_joints(const Chain& chain, const std::vector<Index>& joints) {
             throw InputError("joint index " + std::to_string(joint) + " must be below " +
                              std::to_string(chain.joint_count()));
         }
-    }
-}
-
-void check_direction(const Vector3d& direction) {
-    if (!direction.allFinite() || direction.isZero(0)) {
-        throw InputError("direction of gravity must be finite and not zero");
     }
 }
 
@@ -138,7 +133,7 @@ std::string describe_function(const JointFunction& function, const std::vector<J
 Chain with_gravity_terms(const Chain& chain, const Vector3d& direction,
                          const std::vector<Index>& joints) {
     check_joints(chain, joints);
-    check_direction(direction);
+    detail::check_direction(direction);
     const std::vector<Vector3d> axes = axes_at_zero(chain);
     const std::vector<std::size_t> run = find_level_run(axes, direction.stableNormalized());
     if (run.empty()) {
@@ -170,7 +165,7 @@ Chain with_gravity_terms(const Chain& chain, const Vector3d& direction,
 Chain with_compliance(const Chain& chain, const std::vector<Load>& loads, const Vector3d& direction,
                       const std::vector<Index>& joints) {
     check_joints(chain, joints);
-    check_direction(direction);
+    detail::check_direction(direction);
     if (loads.empty()) throw InputError("no load is stated, so there is no torque of gravity");
     constexpr double standard_gravity = 9.80665;  // m/s^2
     const Vector3d gravity = standard_gravity * direction.stableNormalized();

@@ -1,7 +1,7 @@
-#include <algorithm>
 #include <cmath>
 
-#include "posewise/core/errors.hpp"
+#include "../core/statistics.hpp"
+#include "chain_checks.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "sampling.hpp"
 
@@ -42,7 +42,7 @@ std::vector<Probe> make_probes(const Chain& chain, double distance) {
 }
 
 /// A combination of probes, and what its moment is divided by.
-struct Shape {
+struct TorqueShape {
     std::string name;
     std::vector<Load> loads;
     double size = 1;
@@ -67,11 +67,11 @@ MatrixXd evaluate_moments(const std::shared_ptr<const GravityTorque::Arm>& arm, 
 
 /// By Gram-Schmidt in the order of the probes: masses at the origins from the joint outwards, which
 /// do most, then those beside them.
-std::vector<Shape> find_shapes(const MatrixXd& moments, const std::vector<Probe>& probes,
-                               double extent) {
+std::vector<TorqueShape> find_shapes(const MatrixXd& moments, const std::vector<Probe>& probes,
+                                     double extent) {
     const double root = std::sqrt(static_cast<double>(moments.rows()));
     const double largest = moments.colwise().norm().maxCoeff();
-    std::vector<Shape> shapes;
+    std::vector<TorqueShape> shapes;
     if (largest <= rounding * extent * root) return shapes;
     MatrixXd Q(moments.rows(), moments.cols());
     MatrixXd combinations(moments.cols(), moments.cols());  // Q = moments * combinations
@@ -88,7 +88,8 @@ std::vector<Shape> find_shapes(const MatrixXd& moments, const std::vector<Probe>
         if (norm <= negligible * largest) continue;
         Q.col(count) = residual / norm;
         combinations.col(count) = combination / norm;
-        Shape shape{probes[static_cast<std::size_t>(k)].name, {}, std::sqrt(2.0) * largest / root};
+        TorqueShape shape{
+            probes[static_cast<std::size_t>(k)].name, {}, std::sqrt(2.0) * largest / root};
         for (Index p = 0; p < moments.cols(); ++p) {
             for (Load load : probes[static_cast<std::size_t>(p)].loads) {
                 load.mass *= combination[p];
@@ -113,13 +114,11 @@ double extent(const Chain& chain) {
                             .translation()
                             .transpose();
     }
-    return std::sqrt((flange.rowwise() - flange.colwise().mean()).rowwise().squaredNorm().mean());
+    return detail::rms_spread(flange);
 }
 
 Chain with_torque_shapes(const Chain& chain, const Vector3d& direction) {
-    if (!direction.allFinite() || direction.isZero(0)) {
-        throw InputError("direction of gravity must be finite and not zero");
-    }
+    detail::check_direction(direction);
     const Vector3d gravity = direction.stableNormalized();
     const auto arm = std::make_shared<const GravityTorque::Arm>(chain);
     const RowMatrixXd configurations =
@@ -134,7 +133,7 @@ Chain with_torque_shapes(const Chain& chain, const Vector3d& direction) {
         ++driven;
         if (owners[k] < 0 || elements[k].motion != Motion::Rotation) continue;
         const MatrixXd moments = evaluate_moments(arm, driven, gravity, probes, configurations);
-        for (const Shape& shape : find_shapes(moments, probes, size)) {
+        for (const TorqueShape& shape : find_shapes(moments, probes, size)) {
             elements[k].terms.push_back(
                 {chain.joint(owners[k]).name + ".torque(" + shape.name + ')',
                  {JointFunction::Shape::Torque,

@@ -71,8 +71,8 @@ std::string describe_looseness(double efficiency, Index starts_at_best, Index st
         starts_at_best, starts);
 }
 
-std::string format_error(double si_value, bool is_angle) {
-    return format_short(mm_per_m * si_value, 4) + ' ' + std::string(units_of(is_angle).error);
+std::string format_error(double value, bool is_angle) {
+    return format_short(mm_per_m * value, 4) + ' ' + std::string(units_of(is_angle).error);
 }
 
 }  // namespace posewise::detail

@@ -17,6 +17,6 @@ std::string describe_scaling(const Campaign& campaign, double repeats);
 std::string describe_looseness(double efficiency, Index starts_at_best, Index starts);
 
 /// "1 mm", "-0.5 mrad": a small error with its unit.
-std::string format_error(double si_value, bool is_angle);
+std::string format_error(double value, bool is_angle);
 
 }  // namespace posewise::detail

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "../core/format.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/report/reports.hpp"
@@ -65,11 +63,12 @@ std::string format(const Study& study) {
 std::string study_csv(const Study& study) {
     std::string text =
         "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,configurations\n";
-    const auto each = static_cast<std::size_t>(std::max<Index>(1, study.splits));
     for (const StudyRow& row : study.rows) {
-        for (std::size_t i = 0; i < row.optimal.size(); ++i) {
-            text += csv_line(row, row.optimal[i], criterion_name(study.criteria[i / each]),
-                             i % each, study.ids);
+        for (std::size_t c = 0; c < study.criteria.size(); ++c) {
+            const auto planned = planned_cases(row, c, study.criteria.size());
+            for (std::size_t i = 0; i < planned.size(); ++i) {
+                text += csv_line(row, planned[i], criterion_name(study.criteria[c]), i, study.ids);
+            }
         }
         for (std::size_t i = 0; i < row.random.size(); ++i) {
             text += csv_line(row, row.random[i], "random", i, study.ids);

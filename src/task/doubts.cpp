@@ -29,11 +29,6 @@ constexpr double gross_angle = 0.1;     // rad
 /// a turn.
 constexpr double doubtful_size = 20;
 
-/// RMS distance of points (n x 3) from their mean.
-double extent(const RowMatrixXd& points) {
-    return std::sqrt((points.rowwise() - points.colwise().mean()).rowwise().squaredNorm().mean());
-}
-
 /// How much farther the measured points of a target spread than the flange, by the joints, does.
 double measured_extent(const Campaign& campaign, const Measurements& measured) {
     const VectorXd no_errors = VectorXd::Zero(campaign.robot.parameter_count());
@@ -49,7 +44,7 @@ double measured_extent(const Campaign& campaign, const Measurements& measured) {
         if (!measured.is_seen(sample, 0)) continue;
         seen.row(count++) = measured.observation(sample, 0);
     }
-    return count > 0 ? extent(seen.topRows(count)) / extent(flange) : 1;
+    return count > 0 ? detail::rms_spread(seen.topRows(count)) / detail::rms_spread(flange) : 1;
 }
 
 /// Of residuals as mean_residuals() gives them, the median: some may be grossly wrong.

@@ -25,6 +25,7 @@ namespace {
 struct Split {
     std::vector<Index> pool;
     std::vector<Index> test;
+    Blocks blocks;  ///< of the pool, at the registered parameters
 };
 
 /// What every case of a study shares.
@@ -32,7 +33,6 @@ struct Setting {
     const Campaign& campaign;
     const Measurements& measurements;
     const StudyOptions& options;
-    Blocks blocks;              ///< of all configurations, at the registered parameters
     std::vector<Split> splits;  ///< one of all configurations if nothing is held out
 };
 
@@ -119,7 +119,7 @@ std::vector<Split> make_splits(Index all, Index count, const StudyOptions& optio
         split.pool = all_but(all, split.test);
         splits.push_back(std::move(split));
     }
-    if (splits.empty()) splits.push_back({all_but(all, {}), {}});
+    if (splits.empty()) splits.push_back({all_but(all, {}), {}, {}});
     return splits;
 }
 
@@ -131,14 +131,13 @@ std::vector<Index> choose_poses(const Setting& setting, const Job& job, const Sp
         const auto item = (static_cast<std::uint64_t>(job.pose_count) << 32) + job.number;
         return RandomStream(setting.options.seed, item).subset(all, job.pose_count);
     }
-    const Blocks blocks = split.test.empty() ? setting.blocks : take(setting.blocks, split.pool);
     SelectOptions options;
     options.criterion = setting.options.criteria[job.number];
     options.pose_count = job.pose_count;
     options.starts = setting.options.starts;
     if (setting.campaign.spread.is_prior) options.held = prior_information(setting.campaign);
     options.seed = setting.options.seed;
-    return select_poses(blocks, options).poses;
+    return select_poses(split.blocks, options).poses;
 }
 
 /// Leaves the case "not identified" if its poses cannot be found or do not identify the model:
@@ -241,9 +240,9 @@ Study study(const Campaign& campaign, const Measurements& measurements,
     study.undetermined = describe_undetermined(campaign, measurements, registration);
     if (!study.undetermined.empty()) return study;
     check_some_are_left(counts, measurements.configuration_count());
-    const Setting setting{campaign, measurements, options,
-                          detail::measured_blocks(campaign, registration.parameters, measurements),
-                          std::move(splits)};
+    const Blocks blocks = detail::measured_blocks(campaign, registration.parameters, measurements);
+    for (Split& split : splits) split.blocks = take(blocks, split.pool);
+    const Setting setting{campaign, measurements, options, std::move(splits)};
     study.rows = make_rows(counts, options, setting.splits.size());
     run_all(setting, study.rows);
     study.ending = options.stop.ending_or(Ending::Converged);

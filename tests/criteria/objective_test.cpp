@@ -14,7 +14,7 @@ namespace {
 
 using namespace detail;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double limit = std::numeric_limits<double>::infinity();
 
 /// The objective over M + sum_k x_k direction_k, checked against its gradient there.
 void expect_gradient(const Objective& objective, std::uint64_t seed) {
@@ -41,7 +41,7 @@ void expect_gradient(const Objective& objective, std::uint64_t seed) {
 TEST(Objective, GradientOfEveryCriterionAgreesWithDifferences) {
     const Blocks test_poses = test::random_blocks(5, 2, 6, 100);
     for (const Criterion criterion : all_criteria) {
-        for (const double sharpness : {infinity, 6.0, 30.0}) {
+        for (const double sharpness : {limit, 6.0, 30.0}) {
             for (const std::vector<Index>& nuisance : {std::vector<Index>{}, {1, 4}}) {
                 if (!nuisance.empty() && needs_test_poses(criterion)) continue;
                 Objective objective = make_objective(criterion, 7, &test_poses);
@@ -75,7 +75,7 @@ TEST(Objective, SmoothingApproachesTheCriterionItself) {
     for (const Criterion criterion : all_criteria) {
         Objective objective = make_objective(criterion, 7, &test_poses);
         const double exact = evaluate(objective, M);
-        double last = infinity;
+        double last = limit;
         for (const double sharpness : {4.0, 64.0, 1024.0}) {
             objective.sharpness = sharpness;
             const double error = std::abs(evaluate(objective, M) - exact);
@@ -113,7 +113,7 @@ TEST(Objective, OfInterestIsSingularWhereTheNuisanceExplainsAllButRounding) {
         const Blocks one_row = test::random_blocks(1, 1, 3, seed);
         Objective objective = make_objective(Criterion::D, 1);
         objective.nuisance = {1};
-        EXPECT_EQ(evaluate(objective, information(one_row, {0, 0})), -infinity);
+        EXPECT_EQ(evaluate(objective, information(one_row, {0, 0})), -limit);
     }
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using namespace detail;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double no_limit = std::numeric_limits<double>::infinity();
 
 /// Chebyshev times between random points in six dimensions.
 MatrixXd random_times(RandomStream& stream, Index poses) {
@@ -32,12 +32,12 @@ double exact_time(const MatrixXd& times) {
     const Index poses = times.rows() - 1;
     const std::size_t sets = std::size_t{1} << poses;
     // least(last, set): from the start through the poses of the set to `last`, one of them.
-    MatrixXd least = MatrixXd::Constant(poses, static_cast<Index>(sets), infinity);
+    MatrixXd least = MatrixXd::Constant(poses, static_cast<Index>(sets), no_limit);
     for (Index i = 0; i < poses; ++i) least(i, Index{1} << i) = times(0, i + 1);
     for (std::size_t set = 1; set < sets; ++set) {
         for (Index i = 0; i < poses; ++i) {
             const double here = least(i, static_cast<Index>(set));
-            if (here == infinity) continue;
+            if (here == no_limit) continue;
             for (Index j = 0; j < poses; ++j) {
                 const std::size_t larger = set | (std::size_t{1} << j);
                 if (larger == set) continue;
@@ -93,15 +93,15 @@ TEST(ShortestOrder, AvoidsImpossibleMovesIfItCan) {
     for (int k = 0; k < 18; ++k) {
         const Index i = stream.index(10);
         const Index j = stream.index(10);
-        if (i != j) times(i, j) = times(j, i) = infinity;
+        if (i != j) times(i, j) = times(j, i) = no_limit;
     }
     const VisitingOrder order = shortest_order(times);
     EXPECT_TRUE(std::isfinite(order.time));
     EXPECT_NEAR(order.time, exact_time(times), 1e-12);
-    times.row(4).setConstant(infinity);
-    times.col(4).setConstant(infinity);
+    times.row(4).setConstant(no_limit);
+    times.col(4).setConstant(no_limit);
     times(4, 4) = 0;
-    EXPECT_EQ(shortest_order(times).time, infinity);
+    EXPECT_EQ(shortest_order(times).time, no_limit);
     EXPECT_TRUE(is_permutation(shortest_order(times).poses, 9));
 }
 
