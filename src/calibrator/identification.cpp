@@ -7,6 +7,7 @@
 #include "../core/progress_counter.hpp"
 #include "../measurement/noise.hpp"
 #include "least_squares.hpp"
+#include "model_error.hpp"
 #include "posewise/core/errors.hpp"
 #include "robust.hpp"
 
@@ -78,6 +79,28 @@ struct LevenbergMarquardt {
     }
 };
 
+void search(detail::IdentificationProblem& problem, const LevenbergMarquardtOptions& options,
+            Estimate& estimate) {
+    LevenbergMarquardt steps{problem, options, estimate};
+    while (estimate.ending == Ending::NotRun) {
+        if (estimate.iterations >= options.iteration_limit) {
+            estimate.ending = Ending::IterationLimit;
+            break;
+        }
+        estimate.ending = options.stop.ending_or(Ending::NotRun);
+        if (estimate.ending == Ending::NotRun) steps.iterate();
+        if (estimate.ending == Ending::NotRun) ++estimate.iterations;
+    }
+}
+
+/// Whether their model errors are the same within 5 %: parameters and deviations depend on them far
+/// less.
+bool is_alike(const Campaign& a, const Campaign& b) {
+    const auto is_near = [](double x, double y) { return std::abs(x - y) <= 0.05 * x; };
+    return is_near(a.model_error, b.model_error) &&
+           is_near(a.model_error_orientation, b.model_error_orientation);
+}
+
 std::vector<Index> fold_members(Index count, Index folds, Index fold) {
     std::vector<Index> members;
     for (Index i = fold; i < count; i += folds) members.push_back(i);
@@ -88,19 +111,21 @@ std::vector<Index> fold_members(Index count, Index folds, Index fold) {
 
 Estimate identify(const Campaign& campaign, const Measurements& measurements,
                   const Parameters& start, const LevenbergMarquardtOptions& options) {
-    detail::IdentificationProblem problem = detail::make_problem(campaign, measurements);
+    Campaign found = campaign;
+    detail::IdentificationProblem problem = detail::make_problem(found, measurements);
     Estimate estimate = begin_estimate(problem, start);
     problem.loss = detail::complete_loss(options.loss, campaign);
     if (estimate.ending == Ending::NotIdentifiable) return estimate;
-    LevenbergMarquardt search{problem, options, estimate};
-    while (estimate.ending == Ending::NotRun) {
-        if (estimate.iterations >= options.iteration_limit) {
-            estimate.ending = Ending::IterationLimit;
-            break;
+    search(problem, options, estimate);
+    if (options.finds_model_error && detail::is_model_error_open(campaign)) {
+        bool stays = false;
+        for (int round = 0; round < 4 && !stays && estimate.ending == Ending::Converged; ++round) {
+            const Campaign better = find_model_error(problem, estimate.parameters, campaign);
+            stays = is_alike(found, better);
+            found = better;  // problem refers to it
+            estimate.ending = Ending::NotRun;
+            search(problem, options, estimate);
         }
-        estimate.ending = options.stop.ending_or(Ending::NotRun);
-        if (estimate.ending == Ending::NotRun) search.iterate();
-        if (estimate.ending == Ending::NotRun) ++estimate.iterations;
     }
     finish(problem, estimate);
     return estimate;

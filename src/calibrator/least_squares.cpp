@@ -227,6 +227,8 @@ void finish(const IdentificationProblem& problem, Estimate& estimate) {
     if (problem.prior_count() > 0) factor = 1;
     estimate.covariance = factor * inverse * inverse.transpose();
     estimate.names = parameter_names(problem.campaign);
+    estimate.model_error = problem.campaign.model_error;
+    estimate.model_error_orientation = problem.campaign.model_error_orientation;
     estimate.loss = problem.loss;
     if (is_robust) estimate.outliers = find_outliers(problem, estimate.parameters);
     const Index lengths = problem.campaign.sensor->lengths_per_target();

@@ -52,7 +52,6 @@ const std::map<std::string, StartSearch> start_searches{{"random", StartSearch::
                                                         {"cmaes", StartSearch::CmaEs}};
 const std::map<std::string, LossKind> losses{
     {"squares", LossKind::Squares}, {"huber", LossKind::Huber}, {"cauchy", LossKind::Cauchy}};
-
 const std::map<std::string, CalibrationMethod> methods{{"lm", CalibrationMethod::Joint},
                                                        {"two-step", CalibrationMethod::TwoStep},
                                                        {"global", CalibrationMethod::Global}};
@@ -69,6 +68,7 @@ struct Arguments {
     double angle_error_deg = 20;
     std::optional<Index> iteration_limit;
     std::optional<bool> prior;
+    bool has_all_parameters = false;
     CalibrationOptions options;  ///< with the numbers that are options as they are
 };
 
@@ -98,7 +98,7 @@ void check_folds(const CalibrationOptions& options, Index all) {
 
 /// Options of one method beside another would have no effect.
 void check_usage(const CLI::App& command, const Arguments& arguments) {
-    const auto require = [](bool is_right, const std::string& option, const std::string& rule) {
+    const auto require = [](bool is_right, const char* option, const std::string& rule) {
         if (!is_right) throw CLI::ValidationError(option, rule);
     };
     for (const char* const option :
@@ -122,8 +122,7 @@ void calibrate(const Arguments& arguments) {
     const InputPaths& paths = arguments.paths;
     check_outputs({paths.campaign, paths.measurements, arguments.plan, arguments.validate},
                   {arguments.out});
-    auto file = io::read_campaign(paths.campaign);
-    file.spread.is_prior = arguments.prior.value_or(file.spread.is_prior);
+    const io::CampaignFile file = read_with_prior(paths.campaign, arguments.prior);
     const Measurements measured = read_measured(paths.measurements, file);
     CalibrationOptions options = make_options(arguments, file.seed);
     if (!arguments.plan.empty()) options.used = find_planned(measured, arguments.plan);
@@ -140,7 +139,7 @@ void calibrate(const Arguments& arguments) {
     }
     if (!arguments.out.empty()) io::write_estimate(arguments.out, result, paths.measurements);
     std::ranges::for_each(describe_doubts(result, paths.measurements), print_warning);
-    print(format(result));
+    print(format(result, arguments.has_all_parameters));
 }
 
 void add_options(CLI::App& command, Arguments& arguments) {
@@ -197,6 +196,7 @@ void add_options(CLI::App& command, Arguments& arguments) {
     command.add_flag("--model-selection", options.model_selection,
                      "Compare nested parameter sets by their held-out error");
     add_prior_option(command, arguments.prior, ": fewer poses than parameters will do");
+    command.add_flag("--all-parameters", arguments.has_all_parameters, "List each, however many");
     command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
         ->check(file_name());
 }

@@ -6,6 +6,12 @@
 
 namespace posewise::cli {
 
+io::CampaignFile read_with_prior(const std::string& path, std::optional<bool> prior) {
+    io::CampaignFile file = io::read_campaign(path);
+    io::set_prior(file, prior.value_or(file.spread.is_prior));
+    return file;
+}
+
 Measurements read_measured(const std::string& path, const io::CampaignFile& file) {
     Measurements measured = io::read_measurements(path, file);
     if (const auto beyond = find_beyond_limits(file, measured)) {

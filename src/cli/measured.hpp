@@ -1,10 +1,14 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "posewise/io/measurements_file.hpp"
 
 namespace posewise::cli {
+
+/// The campaign of a file, its expected sizes priors or not as asked, else as it says.
+io::CampaignFile read_with_prior(const std::string& path, std::optional<bool> prior);
 
 /// io::read_measurements(). Configurations beyond the joint limits are taken, since they were
 /// measured; a warning on standard error says so.

@@ -90,7 +90,7 @@ void print_planning(const Planning& planning, const std::string& out) {
     print(format_planning(planning));
     print(plan.is_stopped_early()
               ? "\nPredicted position error by number of poses: left out, planning was stopped\n"
-              : format_other_counts(predict_other_counts(planning)));
+              : format_other_counts(predict_other_counts(planning), planning.campaign));
     print(format_deviations(plan));
     print(fmt::format("\n{}plan:        {}\n",
                       detail::describe_scaling(planning.campaign, plan.request.repeats), out));
@@ -117,10 +117,8 @@ void plan(const Arguments& arguments) {
     const InterruptFlag interrupted;
     const StopSignal stop{interrupted.get(), deadline_after(arguments.request.time_limit)};
     io::CampaignFile campaign = io::read_campaign(sources.campaign);
-    const bool has_focus = arguments.focus == "robot";
-    const PlanRequest request =
-        make_request(arguments, &campaign, has_focus ? Criterion::D : Criterion::V);
-    campaign.spread.is_prior = request.has_prior;
+    const PlanRequest request = make_request(arguments, &campaign, Criterion::V);
+    io::set_prior(campaign, request.has_prior);
     PlanningOptions options = read_planning_inputs(request, campaign);
     if (!sources.repaired.empty()) options.repaired = io::read_plan(sources.repaired);
     options.stop = stop;

@@ -38,7 +38,7 @@ void read_with_robot(ChoiceInputs& inputs, CandidateKind kind, Index count) {
     ChoiceOptions& options = inputs.options;
     const PlanSources& sources = options.sources;
     io::CampaignFile& campaign = *inputs.campaign;
-    campaign.spread.is_prior = options.has_prior;
+    io::set_prior(campaign, options.has_prior);
     if (kind != CandidateKind::Random) {
         inputs.candidates = read_candidates(sources.candidates, kind, campaign);
     }

@@ -34,13 +34,14 @@ void add_progress_flag(CLI::App& command, PlanArguments& arguments) {
 }
 
 PlanRequest make_request(const PlanArguments& arguments, const io::CampaignFile* campaign,
-                         Criterion default_criterion) {
+                         Criterion usual) {
     PlanRequest request = arguments.request;
-    request.criterion =
-        arguments.criterion.empty() ? default_criterion : parse_criterion(arguments.criterion);
+    const bool is_focused = arguments.focus == "robot";
+    if (is_focused && usual == Criterion::V) usual = Criterion::D;
+    request.criterion = arguments.criterion.empty() ? usual : parse_criterion(arguments.criterion);
     request.has_prior = arguments.prior.value_or(campaign != nullptr && campaign->spread.is_prior);
     request.seed = arguments.seed.value_or(campaign != nullptr ? campaign->seed : 1);
-    request.is_focused_on_robot = arguments.focus == "robot";
+    request.is_focused_on_robot = is_focused;
     return request;
 }
 

@@ -29,8 +29,9 @@ void add_search_options(CLI::App& command, PlanArguments& arguments, const std::
                         const std::string& default_out);
 void add_progress_flag(CLI::App& command, PlanArguments& arguments);
 
-/// What is asked for; prior and seed are as the campaign says where the command line does not.
+/// What is asked for; prior and seed are as the campaign says where the command line does not, the
+/// criterion the `usual` one, or D where that is V and base and targets do not count.
 PlanRequest make_request(const PlanArguments& arguments, const io::CampaignFile* campaign,
-                         Criterion default_criterion);
+                         Criterion usual);
 
 }  // namespace posewise::cli

@@ -70,8 +70,8 @@ void check_usage(const Arguments& arguments) {
                   "--variable", "goes with --blocks and a MATLAB file only");
     require_usage(!is_plain || request.repeats == 0, "--repeats", "needs a robot");
     require_usage(!is_plain || arguments.focus == "all", "--focus", "needs a robot");
-    require_usage(!is_plain || arguments.least_distance_deg == 0, "--least-distance-deg",
-                  "needs a robot");
+    const bool has_distance = arguments.least_distance_deg != 0;
+    require_usage(!is_plain || !has_distance, "--least-distance-deg", "needs a robot");
     require_usage(sources.groups.empty() == (request.group_limit == 0), "--groups",
                   "and --per-group need each other");
 }
@@ -85,8 +85,7 @@ CandidateKind kind_of(const Arguments& arguments) {
 PlanRequest complete_request(const Arguments& arguments, const io::CampaignFile* campaign) {
     PlanRequest request =
         make_request(arguments, campaign, campaign != nullptr ? campaign->criterion : Criterion::D);
-    request.sources.candidates =
-        arguments.measurements + arguments.candidates + arguments.blocks;  // one is given
+    request.sources.candidates = arguments.measurements + arguments.candidates + arguments.blocks;
     request.least_distance = to_radians(arguments.least_distance_deg);
     return request;
 }
@@ -166,8 +165,10 @@ void add_problem(CLI::App& command, Arguments& arguments) {
     command.add_option("-k,--poses", request.pose_count, "How many to choose")
         ->required()
         ->check(count);
-    add_criterion_option(command, arguments,
-                         "o1, o2, o3, o4, o5, a, d, e, g or v (default: the campaign's, else d)");
+    add_criterion_option(
+        command, arguments,
+        "o1, o2, o3, o4, o5, a, d, e, g or v (default: the campaign's, else v; with "
+        "--focus robot or --blocks d)");
     command
         .add_option("--test-poses", request.sources.test_poses,
                     "g and v: predict these (as --candidates; default: the candidates)")

@@ -89,7 +89,7 @@ Verification verify_choice(const Plan& plan) {
 
 Verification verify_continuous(const Plan& plan, const std::string& path) {
     io::CampaignFile campaign = io::read_campaign(plan.request.sources.campaign);
-    campaign.spread.is_prior = plan.request.has_prior;
+    io::set_prior(campaign, plan.request.has_prior);
     const PlanningOptions options = read_planning_inputs(plan.request, campaign);
     const std::string mismatch = describe_mismatch(plan, campaign);
     if (!mismatch.empty()) throw input_error_at({path}, mismatch);

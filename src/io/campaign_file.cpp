@@ -55,6 +55,12 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign) {
     return spread;
 }
 
+/// "auto" is the default: beside priors it is found from what is measured.
+void read_model_error(const YamlMap& map, std::string_view key, double& error) {
+    const auto measure = map.find_measure(key);
+    if (measure && measure->value.text() != "auto") error = read_positive(*measure, true);
+}
+
 double read_unit(const YamlMap& map, std::string_view key, Quantity quantity) {
     const auto value = map.find(key);
     if (!value) return 1;
@@ -114,6 +120,13 @@ std::string read_name(const YamlValue& value) {
 
 }  // namespace
 
+void set_prior(CampaignFile& campaign, bool is_prior) {
+    const bool is_dropped = campaign.spread.is_prior && !is_prior;
+    campaign.spread.is_prior = is_prior;
+    if (!is_dropped || campaign.error_model != ErrorModel::Full) return;
+    static_cast<Campaign&>(campaign) = with_robot(campaign, irreducible_model(campaign));
+}
+
 CampaignFile read_campaign(const std::string& path) {
     return parse_campaign(detail::read_file(path, 1 << 20), path);
 }
@@ -146,14 +159,10 @@ CampaignFile parse_campaign(const std::string& content, const std::string& path)
         campaign = with_robot(campaign, detail::full_model(robot.declared, robot.gravity));
         campaign.spread = population_spread(robot.declared);
     }
-    if (const auto error = map.find_measure("model_error")) {
-        campaign.model_error = read_positive(*error, true);
-    }
-    if (const auto error = map.find_measure("model_error_orientation")) {
-        campaign.model_error_orientation = read_positive(*error, true);
-    }
+    read_model_error(map, "model_error", campaign.model_error);
+    read_model_error(map, "model_error_orientation", campaign.model_error_orientation);
     if (const auto spread = map.find("spread")) campaign.spread = read_spread(*spread, campaign);
-    if (const auto prior = map.find("prior")) file.spread.is_prior = prior->boolean();
+    if (const auto prior = map.find("prior")) set_prior(file, prior->boolean());
     if (const auto criterion = map.find("criterion")) file.criterion = read_criterion(*criterion);
     if (const auto seed = map.find("seed")) file.seed = seed->natural_number();
     if (const auto measurements = map.find("measurements")) {

@@ -57,7 +57,7 @@ io::ErrorModel read_error_model(const YamlMap& robot, const std::vector<Element>
     }
     const auto is_stated = [](const Element& element) { return !element.parameter.empty(); };
     return std::any_of(elements.begin(), elements.end(), is_stated) ? io::ErrorModel::Stated
-                                                                    : io::ErrorModel::Complete;
+                                                                    : io::ErrorModel::Full;
 }
 
 }  // namespace

@@ -164,7 +164,10 @@ Chain irreducible_model(const Campaign& campaign) {
     return keep_parameters(complete.robot, kept);
 }
 
-Index least_pose_count(const Campaign& campaign) {
+Index least_pose_count(const Campaign& stated) {
+    // What has a prior needs no pose.
+    const Campaign campaign =
+        stated.spread.is_prior ? with_robot(stated, without_parameters(stated.robot)) : stated;
     const Identifiability all = find_identifiable(campaign);
     const auto rank = static_cast<Index>(all.kept.size());
     const Index rows = campaign.sensor->row_count();

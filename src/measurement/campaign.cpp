@@ -98,8 +98,8 @@ ParameterSpread population_spread(const Chain& robot) {
     spread.length = length_per_extent * extent(robot);
     spread.angle = 7e-4;
     spread.offset = 20e-3;
-    spread.gravity = 1e-3;
-    spread.harmonic = 3e-4;
+    spread.gravity = 7e-4;
+    spread.harmonic = 1.5e-4;
     spread.is_prior = true;
     return spread;
 }

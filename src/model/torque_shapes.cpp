@@ -11,33 +11,33 @@ namespace {
 constexpr Index samples = 256;
 constexpr std::uint64_t configuration_seed = 1;  // any: it only has to be the same every time
 
-/// A mass beside a link's origin is so far from it, of the robot's extent: where on the link it is
-/// makes no difference to the shape.
+/// A mass beside the flange is so far from it, of the robot's extent: how far makes no difference to
+/// the shape.
 constexpr double beside = 0.1;
 /// Shapes below this share of a joint's largest are dropped.
 constexpr double negligible = 0.03;
 /// Below this share of what the masses could do a moment is rounding.
 constexpr double rounding = 1e-9;
 
-/// Unit moments by link: a mass at its origin, or one beside it and its negative there.
+/// A mass at a link's origin, or one beside the flange and its negative there.
 struct Probe {
     std::string name;
     std::vector<Load> loads;
 };
 
 std::vector<Probe> make_probes(const Chain& chain, double distance) {
-    std::vector<Probe> probes, besides;
+    std::vector<Probe> probes;
     for (Index link = 1; link <= chain.joint_count() + 1; ++link) {
         const std::string name =
             link <= chain.joint_count() ? chain.joint(link - 1).name : "flange";
         probes.push_back({name, {{link, 1, Vector3d::Zero()}}});
-        for (Index axis = 0; axis < 3; ++axis) {
-            const Vector3d center = distance * Vector3d::Unit(axis);
-            const std::vector<Load> pair{{link, 1, center}, {link, -1, Vector3d::Zero()}};
-            besides.push_back({name + '.' + static_cast<char>('x' + axis), pair});
-        }
     }
-    probes.insert(probes.end(), besides.begin(), besides.end());
+    const Index flange = chain.joint_count() + 1;
+    for (Index axis = 0; axis < 3; ++axis) {
+        const Vector3d center = distance * Vector3d::Unit(axis);
+        probes.push_back({std::string("flange.") + static_cast<char>('x' + axis),
+                          {{flange, 1, center}, {flange, -1, Vector3d::Zero()}}});
+    }
     return probes;
 }
 
@@ -66,7 +66,7 @@ MatrixXd evaluate_moments(const std::shared_ptr<const GravityTorque::Arm>& arm, 
 }
 
 /// By Gram-Schmidt in the order of the probes: masses at the origins from the joint outwards, which
-/// do most, then those beside them.
+/// do most, then those beside the flange.
 std::vector<TorqueShape> find_shapes(const MatrixXd& moments, const std::vector<Probe>& probes,
                                      double extent) {
     const double root = std::sqrt(static_cast<double>(moments.rows()));

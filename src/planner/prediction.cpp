@@ -30,6 +30,25 @@ Blocks make_prediction_blocks(const Campaign& campaign, const Parameters& parame
     return one;
 }
 
+PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_error,
+                             std::uint64_t seed) {
+    constexpr Index draws = 4000;
+    constexpr double coordinates = 3;
+    const auto total = [&](double parameters, double model) {
+        return std::sqrt(parameters * accuracy.rms * accuracy.rms + coordinates * model * model);
+    };
+    RandomStream random(seed, 0);
+    VectorXd drawn(draws);
+    for (double& one : drawn) {
+        const double p = std::clamp(random.uniform(), 1e-12, 1 - 1e-12);
+        const double square = detail::chi_squared_quantile(p, accuracy.degrees_of_freedom) /
+                              accuracy.degrees_of_freedom;
+        one = total(square, model_error * std::pow(model_error_factor, random.normal()));
+    }
+    return {total(1, model_error), quantile(drawn, 0.05, detail::QuantileRule::Linear),
+            quantile(drawn, 0.95, detail::QuantileRule::Linear)};
+}
+
 PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
                                    std::uint64_t seed) {
     constexpr Index draws = 200;
@@ -58,6 +77,12 @@ PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
         }
     }
     accuracy.rms = std::sqrt(sum / static_cast<double>(positions));
+    // The square's mean over positions is z^T S S^T z / positions: trace and squared norm of that.
+    MatrixXd square = MatrixXd::Zero(M.rows(), M.rows());
+    square.selfadjointView<Eigen::Lower>().rankUpdate(spread);
+    square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
+    const double trace = square.trace();
+    if (trace > 0) accuracy.degrees_of_freedom = trace * trace / square.squaredNorm();
     accuracy.percentile95 = quantile(std::move(errors), 0.95, detail::QuantileRule::Upper);
     return accuracy;
 }

@@ -38,11 +38,15 @@ std::string describe_ending(const Calibration& calibration) {
     std::string text = fmt::format("{}: {} after {} iterations", method_name(calibration.method),
                                    ending_name(estimate.ending), estimate.iterations);
     if (estimate.ending != Ending::Converged) text += "; this is not the optimum";
-    return text + fmt::format(
-                      "\nvariance factor {} with {} degrees of freedom (1: noise and model "
-                      "error stated right)\n",
-                      detail::format_short(estimate.variance_factor, 4),
-                      estimate.degrees_of_freedom);
+    return text +
+           fmt::format(
+               "\n{}variance factor {} with {} degrees of freedom (1: noise and model "
+               "error stated right)\n",
+               calibration.campaign.spread.is_prior
+                   ? "model error found: " + detail::describe_model_error(calibration.campaign) +
+                         '\n'
+                   : "",
+               detail::format_short(estimate.variance_factor, 4), estimate.degrees_of_freedom);
 }
 
 /// What to do if the residuals are not as large as stated.
@@ -72,6 +76,27 @@ std::string describe_noise_floor(const Calibration& calibration) {
     return text + '\n';
 }
 
+std::string describe(const ExpectedError& expected, const char* where, bool is_angle) {
+    return fmt::format("expected {}: {} (parameters {}, left over {}, instrument {})\n", where,
+                       detail::format_error(expected.total(), is_angle),
+                       detail::format_error(expected.parameters, is_angle),
+                       detail::format_error(expected.model, is_angle),
+                       detail::format_error(expected.noise, is_angle));
+}
+
+/// What points not used will be off by, so far as the calibration can know.
+std::string describe_expected(const Calibration& calibration) {
+    const bool is_angle = !calibration.campaign.sensor->has_lengths();
+    std::string text = describe(calibration.expected, "at poses like these", is_angle);
+    if (calibration.expected_left_out) {
+        text += describe(*calibration.expected_left_out, "not in plan", is_angle);
+    }
+    if (calibration.expected_validation) {
+        text += describe(*calibration.expected_validation, "at the validation", is_angle);
+    }
+    return text;
+}
+
 std::string format_accuracy(const Calibration& calibration) {
     std::vector<std::pair<std::string, Metrics>> columns{{"nominal", calibration.nominal},
                                                          {"calibrated", calibration.estimate.fit},
@@ -87,7 +112,7 @@ std::string format_accuracy(const Calibration& calibration) {
         text += fmt::format("held out: {} folds, {} of them not identifiable\n",
                             calibration.held_out->folds, calibration.held_out->failures.size());
     }
-    return text + describe_noise_floor(calibration);
+    return text + describe_noise_floor(calibration) + describe_expected(calibration);
 }
 
 std::string count_outliers(Index count) {
@@ -130,11 +155,27 @@ std::string judge_compliances(const Calibration& calibration) {
            "motor's has the other sign), are weights, places and direction of gravity right?\n";
 }
 
-std::string format_parameters(const Calibration& calibration) {
+/// All parameters, or of many errors of the robot their classes beside base and sensor.
+std::string format_values(const Calibration& calibration, bool has_all) {
+    constexpr Index readable = 50;
     const Campaign& campaign = calibration.campaign;
-    std::string text = format_section(fmt::format("Parameters (errors of the robot, base, {})",
-                                                  campaign.sensor->words().unknowns),
-                                      detail::parameter_table(campaign, calibration.estimate));
+    const std::string unknowns = campaign.sensor->words().unknowns;
+    detail::Table values = detail::parameter_table(campaign, calibration.estimate);
+    const Index count = campaign.robot.parameter_count();
+    if (has_all || count <= readable) {
+        return format_section(fmt::format("Parameters (errors of the robot, base, {})", unknowns),
+                              values);
+    }
+    const auto begin = values.rows.begin() + base_parameter_count(campaign);
+    values.rows.erase(begin, begin + count);
+    return format_section("Errors of the robot by class (each one: --all-parameters, --out)",
+                          detail::class_table(campaign, calibration.estimate)) +
+           format_section(fmt::format("Parameters (base, {})", unknowns), values);
+}
+
+std::string format_parameters(const Calibration& calibration, bool has_all) {
+    const Campaign& campaign = calibration.campaign;
+    std::string text = format_values(calibration, has_all);
     const detail::Table compliance = detail::compliance_table(campaign, calibration.estimate);
     if (!compliance.rows.empty()) {
         text += format_section("Compliances", compliance) + judge_compliances(calibration);
@@ -186,13 +227,13 @@ std::string describe_sizes(const std::vector<SizeDoubt>& sizes) {
 
 }  // namespace
 
-std::string format(const Calibration& calibration) {
+std::string format(const Calibration& calibration, bool has_all_parameters) {
     const std::string models = calibration.selection ? format(*calibration.selection) : "";
     if (!calibration.is_identified()) return models + calibration.estimate.undetermined + '\n';
     return models + describe_starts(calibration) + describe_measured(calibration) +
            describe_ending(calibration) + judge_residuals(calibration) +
            format_accuracy(calibration) + format_outliers(calibration) +
-           format_parameters(calibration);
+           format_parameters(calibration, has_all_parameters);
 }
 
 std::string format(const ModelSelection& selection) {

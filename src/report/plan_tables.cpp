@@ -85,6 +85,27 @@ std::string describe_order(const Tour& tour) {
     return indent_lines(text);
 }
 
+/// What robots are found to be off by after calibration: not by their parameters alone.
+std::string describe_total(const Planning& planning) {
+    const PredictedTotal total =
+        predict_total(*planning.plan.predicted, planning.campaign.model_error);
+    return fmt::format(
+        "             {} mm with a model error of {} mm a coordinate; {} to {} mm (90 %), as that "
+        "differs\n             from robot to robot\n",
+        detail::format_mm(total.rms),
+        detail::format_short(mm_per_m * planning.campaign.model_error),
+        detail::format_mm(total.lower), detail::format_mm(total.upper));
+}
+
+std::string describe_made_up(const Campaign& campaign) {
+    const std::string targets =
+        campaign.has_nominal_targets
+            ? ""
+            : campaign.sensor->words().key + " made up (state it: the poses depend on it a little)";
+    if (campaign.has_nominal_base) return targets;
+    return "base not stated, nothing depends on it" + (targets.empty() ? "" : "; " + targets);
+}
+
 /// "q1_rad" taken apart.
 struct Column {
     std::string name;
@@ -170,6 +191,10 @@ std::string format_planning(const Planning& planning) {
         "predicted:   position error {} mm RMS, 95 % are below {} mm, over {} workspace poses\n",
         detail::format_mm(plan.predicted->rms), detail::format_mm(plan.predicted->percentile95),
         planning.workspace_count);
+    text += describe_total(planning);
+    if (!planning.campaign.has_nominal_base || !planning.campaign.has_nominal_targets) {
+        text += "places:      " + describe_made_up(planning.campaign) + '\n';
+    }
     text += fmt::format(
         "pool bound:  {}, proven: no choice from the pool has a larger value\n"
         "best choice: {} from the pool, efficiency {} proven\n",
@@ -184,14 +209,22 @@ std::string format_planning(const Planning& planning) {
     return text + format_section("Poses, in the order to visit them", pose_table(plan));
 }
 
-std::string format_other_counts(const std::vector<CountAccuracy>& counts) {
-    Table table{{"new poses", "how", "RMS/mm", "95 %/mm"}, {}};
+std::string format_other_counts(const std::vector<CountAccuracy>& counts,
+                                const Campaign& campaign) {
+    Table table{{"new poses", "how", "RMS/mm", "95 %/mm", "with model error/mm", "90 % interval"},
+                {}};
     for (const CountAccuracy& count : counts) {
         table.rows.push_back(
             {std::to_string(count.pose_count),
              count.is_planned ? "planned" : "chosen from the pool",
              count.accuracy ? detail::format_mm(count.accuracy->rms) : "-",
              count.accuracy ? detail::format_mm(count.accuracy->percentile95) : "-"});
+        const auto total = count.accuracy
+                               ? std::optional(predict_total(*count.accuracy, campaign.model_error))
+                               : std::nullopt;
+        table.rows.back().push_back(total ? detail::format_mm(total->rms) : "-");
+        table.rows.back().push_back(
+            total ? detail::format_mm(total->lower) + ".." + detail::format_mm(total->upper) : "-");
     }
     return format_section("Predicted position error by number of poses", table);
 }

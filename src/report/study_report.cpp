@@ -39,14 +39,16 @@ std::string describe_judgement(const Study& study) {
         "splits.\nPlanned and random: medians; their ratio: the geometric mean over the splits.\n",
         study.test_count, study.splits);
     for (std::size_t c = 0; c < study.criteria.size(); ++c) {
-        std::string lost;
+        std::string lost, unknown;
         for (const StudyRow& row : study.rows) {
             const auto advantage = planned_advantage(study, row, c);
-            if (!advantage || advantage->ratio <= 1) continue;
-            lost += (lost.empty() ? "" : ", ") + std::to_string(row.pose_count);
+            if (advantage && advantage->ratio <= 1) continue;
+            std::string& counts = advantage ? lost : unknown;
+            counts += (counts.empty() ? "" : ", ") + std::to_string(row.pose_count);
         }
-        text += fmt::format("{}: planned {}\n", criterion_name(study.criteria[c]),
-                            lost.empty() ? "never loses to random" : "loses to random at " + lost);
+        text += fmt::format("{}: planned {}{}\n", criterion_name(study.criteria[c]),
+                            lost.empty() ? "never loses to random" : "loses to random at " + lost,
+                            unknown.empty() ? "" : "; not known at " + unknown);
     }
     return text;
 }

@@ -3,11 +3,21 @@
 #include <algorithm>
 
 #include "../core/format.hpp"
+#include "../core/statistics.hpp"
 
 namespace posewise::detail {
 namespace {
 
 std::string cell(const std::optional<double>& metres) { return metres ? format_mm(*metres) : "-"; }
+
+std::optional<double> median_expected(std::vector<StudyCase> cases) {
+    std::erase_if(cases, [](const StudyCase& c) { return !c.identified; });
+    if (cases.empty()) return std::nullopt;
+    VectorXd expected(static_cast<Index>(cases.size()));
+    std::transform(cases.begin(), cases.end(), expected.begin(),
+                   [](const StudyCase& c) { return c.expected; });
+    return quantile(expected, 0.5, QuantileRule::Linear);
+}
 
 std::string unidentified_cell(const std::vector<StudyCase>& cases) {
     if (cases.empty()) return "-";
@@ -33,6 +43,7 @@ Table study_table(const Study& study) {
     for (const Criterion criterion : study.criteria) {
         table.header.push_back(std::string(criterion_name(criterion)) + "/mm");
         if (study.splits == 0) continue;
+        table.header.emplace_back("expected");
         table.header.push_back(std::string(criterion_name(criterion)) + "/random");
         table.header.emplace_back("95 %");
     }
@@ -44,6 +55,7 @@ Table study_table(const Study& study) {
         for (std::size_t c = 0; c < study.criteria.size(); ++c) {
             const auto planned = planned_cases(row, c, study.criteria.size());
             cells.push_back(cell(held_out_quantile(planned, 0.5)));
+            if (study.splits > 0) cells.push_back(cell(median_expected(planned)));
             if (study.splits > 0) add_advantage(planned_advantage(study, row, c), cells);
         }
         for (const double p : {0.1, 0.5, 0.9})

@@ -88,10 +88,13 @@ Metrics fit_nominal(const Work& work, Parameters registered) {
 }
 
 /// Nothing if it was stopped on the way.
-std::optional<CrossValidation> hold_out(Work& work, const Parameters& start) {
+std::optional<CrossValidation> hold_out(Work& work, const Campaign& found,
+                                        const Parameters& start) {
     if (work.folds == 0 || work.options.stop.is_set()) return std::nullopt;
-    auto held_out =
-        cross_validate(work.campaign, work.used, start, work.folds, work.beside(), work.step());
+    // One configuration more or less hardly changes the model error.
+    LevenbergMarquardtOptions options = work.beside();
+    options.finds_model_error = false;
+    auto held_out = cross_validate(found, work.used, start, work.folds, options, work.step());
     if (work.options.stop.is_set()) return std::nullopt;
     return held_out;
 }
@@ -139,7 +142,10 @@ void calibrate_with(Work& work, Calibration& result) {
     result.nominal = fit_nominal(work, registered);
     result.repeatability = repeatability(*work.campaign.sensor, work.used);
     const bool is_far = work.options.method == CalibrationMethod::Global;
-    result.held_out = hold_out(work, is_far ? result.estimate.parameters : registered);
+    result.campaign = with_model_error(work.campaign, result.estimate);
+    result.expected = expected_error(result.campaign, result.estimate, work.used);
+    result.held_out =
+        hold_out(work, result.campaign, is_far ? result.estimate.parameters : registered);
     result.without_outliers = judge_without_outliers(work, result);
     result.doubts = find_doubts(work.campaign, work.used, registered, result.nominal);
     add_doubts(work.campaign, result.estimate, result.doubts);
@@ -186,9 +192,15 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
     };
     const auto left_out = all_but(measurements.configuration_count(), options.used);
     if (!options.used.empty() && !left_out.empty()) {
-        result.left_out = judge_on(take(measurements, left_out));
+        const Measurements others = take(measurements, left_out);
+        result.left_out = judge_on(others);
+        result.expected_left_out = expected_error(result.campaign, result.estimate, others);
     }
-    if (options.validation != nullptr) result.validation = judge_on(*options.validation);
+    if (options.validation != nullptr) {
+        result.validation = judge_on(*options.validation);
+        result.expected_validation =
+            expected_error(result.campaign, result.estimate, *options.validation);
+    }
     return result;
 }
 

@@ -87,11 +87,11 @@ Parameters find_parameters(const Campaign& campaign, const Candidates& candidate
     }
     if (is_stated) return campaign.nominal;
     if (options.held) return register_measured(campaign, *options.held, held);
-    const std::string key = campaign.sensor->words().key;
-    throw InputError(campaign.name + ": the campaign file states no " +
-                     (campaign.has_nominal_base ? key : "base") +
-                     ", and nothing was measured to find them from; state base and " + key +
-                     " there, or use --measurements");
+    if (can_assume_places(campaign)) return campaign.nominal;
+    throw InputError(campaign.name +
+                     ": the campaign file states no base, on which what this sensor tells depends, "
+                     "and nothing was measured to find it from; state base there, or use "
+                     "--measurements");
 }
 
 void hold_measured(ChoiceProblem& problem, const Campaign& campaign, const Parameters& parameters,

@@ -28,6 +28,8 @@ constexpr double gross_angle = 0.1;     // rad
 /// Times the expected size: a joint with a wrong sign may converge as well, with an offset of half
 /// a turn.
 constexpr double doubtful_size = 20;
+/// A prior holds values back: beyond it, it is wrong or the model is.
+constexpr double doubtful_under_prior = 3;
 
 /// How much farther the measured points of a target spread than the flange, by the joints, does.
 double measured_extent(const Campaign& campaign, const Measurements& measured) {
@@ -110,7 +112,7 @@ std::vector<SizeDoubt> find_size_doubts(const Campaign& campaign, const Estimate
             .cwiseAbs();
     std::vector<SizeDoubt> doubts;
     for (Index k = 0; k < times.size(); ++k) {
-        if (times[k] <= doubtful_size) continue;
+        if (times[k] <= (campaign.spread.is_prior ? doubtful_under_prior : doubtful_size)) continue;
         doubts.push_back({estimate.names[static_cast<std::size_t>(robot_begin + k)], times[k]});
     }
     return doubts;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "../measurement/noise.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/task/choice.hpp"
@@ -23,6 +24,11 @@ Blocks measured_blocks(const Campaign& campaign, const Parameters& parameters,
                        const Measurements& measured) {
     return make_blocks(campaign, parameters, measured.configurations,
                        RowMatrixXd(mean_repeats(measured) * share_seen(measured)));
+}
+
+bool can_assume_places(const Campaign& campaign) {
+    return campaign.has_nominal_base ||
+           (campaign.sensor->lengths_per_target() == 3 && has_constant_noise(campaign));
 }
 
 Parameters register_measured(const Campaign& campaign, const Measurements& measured,

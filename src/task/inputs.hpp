@@ -31,6 +31,11 @@ std::vector<std::string> number_ids(Index count);
 Blocks measured_blocks(const Campaign& campaign, const Parameters& parameters,
                        const Measurements& measured);
 
+/// Whether poses can be judged by campaign.nominal: base and targets are stated, or made up where
+/// little depends on them. That is the base where every target's place is measured with the same
+/// noise everywhere.
+bool can_assume_places(const Campaign& campaign);
+
 /// Base and targets from what was measured. Throws InputError, which begins with the name of where
 /// that is from, for another robot's measurements, and if they do not determine them.
 Parameters register_measured(const Campaign& campaign, const Measurements& measured,

@@ -30,11 +30,12 @@ Campaign with_base(Campaign campaign, const PlanningOptions& options) {
         if (measured) check_measured(campaign, *measured, name);
         return campaign;
     }
+    if (!measured && can_assume_places(campaign)) return campaign;
     if (!measured) {
-        const std::string key = campaign.sensor->words().key;
-        throw InputError(campaign.name + ": the campaign file states no " +
-                         (campaign.has_nominal_base ? key : "base") + "; must state base and " +
-                         key + " to plan, or measured poses (--augment) must tell them");
+        throw InputError(campaign.name +
+                         ": the campaign file states no base, on which what this sensor tells "
+                         "depends; must state base to plan, or measured poses (--augment) must "
+                         "tell it");
     }
     campaign.nominal = register_measured(campaign, *measured, name);
     campaign.nominal.robot.setZero();

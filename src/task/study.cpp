@@ -57,8 +57,8 @@ void check_options(const StudyOptions& options) {
                          std::to_string(options.random_subsets) + " and " +
                          std::to_string(options.starts));
     }
-    if (options.splits < 0) {
-        throw InputError("splits are " + std::to_string(options.splits) + ", must be at least 0");
+    if (options.splits && *options.splits < 0) {
+        throw InputError("splits are " + std::to_string(*options.splits) + ", must be at least 0");
     }
     if (!(options.holdout > 0 && options.holdout < 1)) {
         throw InputError(
@@ -107,6 +107,18 @@ void check_some_are_left(const std::vector<Index>& counts, Index all) {
     if (*std::min_element(counts.begin(), counts.end()) < all) return;
     throw InputError("the pose count is " + std::to_string(all) +
                      ", all configurations; must be less, so that some are left to judge on");
+}
+
+/// Splits if nobody states how many.
+Index usual_splits(const Campaign& campaign, Index all, const StudyOptions& options) {
+    constexpr Index splits = 10;
+    if (all < 2) return 0;
+    const Index pool = all - test_count(all, options.holdout);
+    if (options.pose_counts.empty()) {
+        return usual_counts(pool, least_pose_count(campaign)).empty() ? 0 : splits;
+    }
+    const auto& counts = options.pose_counts;
+    return 3 * *std::max_element(counts.begin(), counts.end()) <= pool ? splits : 0;
 }
 
 std::vector<Split> make_splits(Index all, Index count, const StudyOptions& options) {
@@ -158,9 +170,11 @@ void run(const Setting& setting, const Job& job) {
     const auto judged =
         split.test.empty() ? all_but(measurements.configuration_count(), result.poses) : split.test;
     if (!judged.empty()) {
-        result.held_out = make_metrics(
-            mean_residuals(setting.campaign, estimate.parameters, take(measurements, judged)),
-            setting.campaign.sensor->lengths_per_target());
+        const Measurements others = take(measurements, judged);
+        result.held_out =
+            make_metrics(mean_residuals(setting.campaign, estimate.parameters, others),
+                         setting.campaign.sensor->lengths_per_target());
+        result.expected = expected_error(setting.campaign, estimate, others).total();
     }
     result.identified = true;
 }
@@ -222,7 +236,7 @@ Study study(const Campaign& campaign, const Measurements& measurements,
     check_is_of_robot(campaign, measurements, registration);
     check_options(options);
     const Index all = measurements.configuration_count();
-    const Index split_count = options.splits;
+    const Index split_count = options.splits.value_or(usual_splits(campaign, all, options));
     if (split_count > 0 && all < 2) {
         throw InputError("there is 1 configuration, splits need at least 2");
     }

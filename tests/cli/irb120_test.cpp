@@ -42,22 +42,24 @@ TEST_F(Irb120, CalibratesGeometricallyAsFarAsGeometryGoes) {
 
 TEST_F(Irb120, IsCalibratedByFewPlannedConfigurationsWithPriors) {
     write_text("c.yaml", planning_);
-    const std::string report = run_well("study c.yaml -k 8,12 --random 5 --starts 2" +
+    const std::string report = run_well("study c.yaml -k 12 --random 9 --starts 1 --splits 3" +
                                         measured_.substr(0, measured_.find(" --")));
-    EXPECT_LT(number_behind(report, "8 "), 0.18);
-    EXPECT_GT(number_behind(report, "8 ", 2), 0.25);  // random median
-    EXPECT_LT(number_behind(report, "12 "), 0.13);
-    EXPECT_GT(number_behind(report, "12 ", 2), 0.15);
+    EXPECT_LT(number_behind(report, "12 "), 0.17);
+    EXPECT_GT(number_behind(report, "12 ", 1), 0.4 * number_behind(report, "12 "));  // expected
+    EXPECT_LT(number_behind(report, "12 ", 1), 2 * number_behind(report, "12 "));
+    EXPECT_LT(number_behind(report, "12 ", 2), 0.9);          // of the random median
+    EXPECT_NE(report.find("v: planned never loses to random"), std::string::npos) << report;
 }
 
 TEST_F(Irb120, BendsUnderWhatTheFlangeCarries) {
     write_text("c.yaml", planning_);
-    const std::string report =
-        run_well("calibrate c.yaml" + measured_.substr(0, measured_.find(" --")) + " --folds 4");
-    EXPECT_LT(number_behind(report, "distance RMS", 3), 0.085);  // 0.136 without compliance
-    for (const std::string joint : {"q3", "q4", "q5", "q6"}) {
-        EXPECT_NEAR(number_behind(report, joint + ".compliance"), 1.7, 0.7) << joint;  // mrad
-    }
+    const auto outcome =
+        run("calibrate c.yaml" + measured_.substr(0, measured_.find(" --")) + " --folds 4");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;  // sizes beyond what is expected may be named
+    const std::string& report = outcome.out;
+    EXPECT_LT(number_behind(report, "distance RMS", 3), 0.085);  // 0.139 with gravity terms alone
+    EXPECT_NEAR(number_behind(report, "model error found:"), 0.044, 0.005);
+    EXPECT_NE(report.find("torque shapes"), std::string::npos) << report;
 }
 
 TEST_F(Irb120, ModelSelectionNeedsEveryStep) {

@@ -75,6 +75,10 @@ TEST_F(Select, NeedsToKnowWhereTheBaseIs) {
     std::string text = design;
     text.erase(text.find("base: {"), text.find('\n', text.find("base: {")) - text.find("base: {"));
     write_text("c.yaml", text);
+    run_well("select c.yaml --random 50 -k 8 --starts 1");  // nothing depends on it
+    const std::string sigma = "sigma_mm: 0.052 ";
+    text.replace(text.find(sigma), sigma.size(), "noise: {range_um: 10, angle_urad: 15} ");
+    write_text("c.yaml", text);
     expect_input_error("select c.yaml --random 50 -k 8", "states no base");
     run_well("select c.yaml --random 50 -k 8 --augment s.csv");  // registered from these
 }

@@ -10,6 +10,7 @@ namespace {
 
 const std::string arm = R"(name: arm
 robot:
+  errors: geometric
   joints:
     q1: {limits_deg: [-170, 170]}
     q2: {limits_deg: [-90, 90]}

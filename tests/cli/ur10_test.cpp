@@ -34,9 +34,9 @@ TEST_F(Ur10, IsThreeTimesAsAccurateWithJointMapsAndGravity) {
     write_text("c.yaml",
                read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/ur10/joint_maps.yaml"));
     const std::string report = run_well("calibrate c.yaml --folds 4 -m '" + csv_ + "'");
-    EXPECT_LT(number_behind(report, "distance RMS", 1), 0.134);
+    EXPECT_LT(number_behind(report, "distance RMS", 1), 0.135);
     EXPECT_LT(number_behind(report, "distance RMS", 3), 0.147);  // with ten folds 0.1447
-    EXPECT_NEAR(number_behind(report, "variance factor"), 0.81, 0.05);
+    EXPECT_NEAR(number_behind(report, "variance factor"), 0.87, 0.05);
 }
 
 TEST_F(Ur10, SaysThatTheOrderOfTheQuaternionIsWrong) {

@@ -114,6 +114,7 @@ TEST(ReadCampaign, ReducesGeometryBesideTerms) {
     for (const char* const name : {" [dq1]", " [Tx1]", " [dq2]", " [Ty2]"})
         text = replaced(text, name, "");
     text = replaced(text, ", parameters: {dq2: 0.5 mrad, Tx1: 4 mm}", "");
+    text = replaced(text, "robot:\n", "robot:\n  errors: geometric\n");
     const CampaignFile geometric = read(text);
     const CampaignFile file =
         read(replaced(text, "  elements:\n", "  harmonics: {orders: [2]}\n  elements:\n"));
@@ -160,7 +161,7 @@ TEST(ReadCampaign, NeedsOnlyNameRobotAndSensor) {
         campaign_text.substr(0, end), "position_mm: [[100, 0, 0], [0, 200, -10]]", "count: 3"));
     EXPECT_EQ(file.model_error, 1e-4);
     EXPECT_EQ(file.spread.length, 1e-3);
-    EXPECT_EQ(file.criterion, Criterion::D);
+    EXPECT_EQ(file.criterion, Criterion::V);
     EXPECT_EQ(file.seed, 1U);
     EXPECT_FALSE(file.has_nominal_base);
     EXPECT_FALSE(file.has_nominal_targets);
@@ -199,8 +200,8 @@ sensor: {kind: points, sigma_mm: 0.1, targets: {count: 3}}
     };
     EXPECT_EQ(size_of("dq2"), 20e-3);
     EXPECT_EQ(size_of("Rx2"), 0.7e-3);
-    EXPECT_EQ(size_of("q2.torque(q3)"), 1e-3);
-    EXPECT_EQ(size_of("q3.cos(2q3)"), 0.3e-3);
+    EXPECT_EQ(size_of("q2.torque(q3)"), 0.7e-3);
+    EXPECT_EQ(size_of("q3.cos(2q3)"), 0.15e-3);
     EXPECT_NEAR(size_of("Tx1"), 4e-4 * extent(file.declared_robot), 1e-15);
     EXPECT_EQ(size_of("q1.torque(q2)"), -1);
 
@@ -208,8 +209,15 @@ sensor: {kind: points, sigma_mm: 0.1, targets: {count: 3}}
         read(text + "spread: {offset_mrad: 2, gravity_mrad: 3}\nprior: false\n");
     EXPECT_EQ(*stated.spread.offset, 2e-3);
     EXPECT_EQ(stated.spread.gravity, 3e-3);
-    EXPECT_EQ(stated.spread.harmonic, 0.3e-3);
+    EXPECT_EQ(stated.spread.harmonic, 0.15e-3);
     EXPECT_FALSE(stated.spread.is_prior);
+    EXPECT_TRUE(find_identifiable(stated).dropped.empty());  // without priors it is reduced
+    EXPECT_LT(stated.robot.parameter_count(), file.robot.parameter_count());
+
+    const CampaignFile unsaid = read(replaced(text, "  errors: full\n", ""));
+    EXPECT_EQ(unsaid.error_model, ErrorModel::Full);
+    EXPECT_EQ(read(text + "model_error_mm: auto\n").model_error, unsaid.model_error);
+    EXPECT_EQ(unsaid.robot.parameter_names(), file.robot.parameter_names());
 
     const CampaignFile on_wall =
         read(replaced(text, "errors: full", "errors: full\n  gravity: {direction: [1, 0, 0]}"));
@@ -229,6 +237,7 @@ TEST(ReadCampaign, ReducesTheCompleteErrorsToAnIrreducibleSet) {
     const auto text =
         R"(name: pan-tilt
 robot:
+  errors: geometric
   joints: {q1: {limits_deg: [-90, 90]}, q2: {limits_deg: [-90, 90]}}
   elements: [Rz q1, Tx 1 m, Tz 0.1 m, Ry q2, Tx 0.8 m]
 sensor: {kind: points, sigma_mm: 0.1, targets: {count: 3}}

@@ -33,7 +33,7 @@ const std::string rows_of_a_rail =
 
 std::string campaign_of(const std::string& rows, const std::string& convention = "standard") {
     return "name: table\nrobot:\n  dh:\n    convention: " + convention + "\n    rows:\n" + rows +
-           "sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n";
+           "  errors: geometric\nsensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n";
 }
 
 CampaignFile read(const std::string& text) {
@@ -138,7 +138,7 @@ TEST(DhSection, TellsWhatIsWrongAndWhere) {
          "3:11: robot.joints is stated beside robot.dh; limits must stand in the rows of the "
          "table"},
         {rows_of_a_rail, "    []\n", "6:5: robot.dh.rows names no joint; a row must be of a joint"},
-        {"  dh:\n    convention: standard\n    rows:\n" + rows_of_a_rail, "  errors: stated\n",
+        {"  dh:\n    convention: standard\n    rows:\n" + rows_of_a_rail, "",
          "3:3: robot has no key elements, dh or urdf; one of them must be stated"},
     };
     const auto error = [](const std::string& text) { return input_error_of([&] { read(text); }); };

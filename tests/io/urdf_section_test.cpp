@@ -139,7 +139,7 @@ std::vector<RobotText> robots() {
 
 std::string dh_text(const RobotText& robot) {
     std::string text =
-        "name: table\nrobot:\n  dh:\n    convention: " + robot.convention + "\n    rows:\n";
+        "name: table\nrobot:\n  errors: geometric\n  dh:\n    convention: " + robot.convention + "\n    rows:\n";
     for (const auto& row : robot.rows) {
         const bool slides = row.joint.starts_with('p');
         std::string name = row.joint;
@@ -164,7 +164,7 @@ CampaignFile read_text(const std::string& campaign, const std::string& urdf = ""
 
 std::string campaign_of_urdf(const std::string& tip, const std::string& more = "") {
     return "name: urdf\nrobot:\n  urdf: robot.urdf\n  base_link: link0\n  tip_link: " + tip + '\n' +
-           more + sensor_text;
+           more + "  errors: geometric\n" + sensor_text;
 }
 
 CampaignFile read_robot_as_urdf(const std::vector<JointText>& joints) {

@@ -54,14 +54,16 @@ TEST(TorqueShapes, AreOrthogonalAndAtMostAsLargeAsASine) {
     EXPECT_EQ(shape_values(robot, "q1", q).cols(), 0);  // its axis is upright
 }
 
-TEST(TorqueShapes, ExplainTheTorqueOfAnyWeights) {
+TEST(TorqueShapes, ExplainTheTorqueOfWeightsAtTheJointsAndOfAnyTool) {
     RandomStream stream(5, 0);
     for (const Chain& robot : {fanuc(), ur_type(), seven_joint_arm()}) {
         const Chain shaped = with_torque_shapes(without_parameters(robot));
         const RowMatrixXd q = random_configurations(robot, 300, 8);
         std::vector<Load> loads;
         for (Index link = 1; link <= robot.joint_count() + 1; ++link) {
-            loads.push_back({link, stream.uniform(2, 20), random_vector(stream, 3, 0.1)});
+            const bool is_tool = link > robot.joint_count();
+            loads.push_back({link, stream.uniform(2, 20),
+                             is_tool ? Vector3d(random_vector(stream, 3, 0.1)) : Vector3d::Zero()});
         }
         const Chain bending = with_compliance(without_parameters(robot), loads);
         for (Index k = 0; k < bending.parameter_count(); ++k) {

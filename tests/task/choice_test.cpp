@@ -118,6 +118,8 @@ TEST_F(ChooseWithRobot, LetsAnExceptionOfTheCallbackThrough) {
 TEST_F(ChooseWithRobot, NeedsToKnowWhereTheBaseIs) {
     const Candidates candidates = random_candidates(campaign_, 50, 3);
     campaign_.has_nominal_base = false;
+    EXPECT_EQ(choose(campaign_, candidates, choice_of(10)).poses.size(), 10U);  // nothing depends
+    campaign_.joint_repeatability = VectorXd::Constant(campaign_.robot.joint_count(), 1e-5);
     EXPECT_THROW(choose(campaign_, candidates, choice_of(10)), InputError);
     ChoiceOptions options = choice_of(10);
     options.held = measured_;

@@ -79,6 +79,10 @@ struct Estimate {
     /// LevenbergMarquardtOptions.
     double variance_factor = 0;
     Index degrees_of_freedom = 0;
+    /// What the model cannot express, of a length (m) and an angle (rad): as the campaign states
+    /// it; where expected sizes are priors, what was found about that.
+    double model_error = 0;
+    double model_error_orientation = 0;
     Metrics fit;        ///< all samples
     Metrics fit_means;  ///< means of each configuration
     Loss loss;          ///< as used
@@ -86,6 +90,22 @@ struct Estimate {
     /// measurements' order.
     std::vector<Outlier> outliers;
 };
+
+/// The campaign with the model error that an estimate of it has found.
+Campaign with_model_error(const Campaign& campaign, const Estimate& estimate);
+
+/// What measured points that an estimate has not seen are expected to be off by, RMS of distances
+/// (m; of angles where no length is measured, rad).
+struct ExpectedError {
+    double parameters = 0;  ///< by the covariance of the parameters
+    double model = 0;       ///< what is left over: the model error
+    double noise = 0;       ///< of the instrument, after repeats, and the joints' repeatability
+    double total() const;
+};
+/// Of means measured at these configurations, of the targets seen: the mean over them of
+/// trace(J C J^T), model error and noise, of lengths if there are some.
+ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
+                             const Measurements& measured);
 
 /// Standard deviations: sqrt of the covariance's diagonal (m, rad).
 VectorXd standard_deviations(const Estimate& estimate);

@@ -24,7 +24,7 @@ struct MatMapping {
 enum class ErrorModel {
     Stated,    ///< those that the file names in brackets
     Complete,  ///< every geometric error of a rigid link, reduced to an irreducible set
-    Full,      ///< full_model(), with the sizes of errors that robots have as priors
+    Full,      ///< full_model(), with the sizes of errors that robots have as priors: the default
 };
 
 /// A campaign, what else its file says, and the defaults of the command line.
@@ -36,10 +36,14 @@ struct CampaignFile : Campaign {
     Chain declared_robot;
     ErrorModel error_model = ErrorModel::Stated;
     std::optional<UrdfSource> urdf;  ///< where the robot comes from, if from a URDF
-    Criterion criterion = Criterion::D;
+    Criterion criterion = Criterion::V;
     std::uint64_t seed = 1;
     MatMapping mat;
 };
+
+/// Says whether the expected sizes are priors, whatever the file says. Without them a full model is
+/// reduced to what poses can tell apart.
+void set_prior(CampaignFile& campaign, bool is_prior);
 
 /// Reads a campaign from YAML. Throws InputError with path:line:column for anything missing,
 /// misspelt or out of range.

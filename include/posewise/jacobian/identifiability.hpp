@@ -60,7 +60,8 @@ Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names)
 /// The irreducible form: with complete errors, then only those that are identifiable.
 Chain irreducible_model(const Campaign& campaign);
 
-/// Smallest number of generic configurations that identifies all that is identifiable.
+/// Smallest number of generic configurations that identifies all that is identifiable; where the
+/// robot's errors have priors, base and sensor.
 Index least_pose_count(const Campaign& campaign);
 
 /// A direction in parameter space, in units of each parameter's expected error (scaled), that the

@@ -33,6 +33,9 @@ struct ParameterSpread {
     std::optional<double> offset = {};  ///< of joints that turn; nothing: as other angles
 };
 
+/// Model errors differ so much from robot to robot that one standard deviation is this factor.
+inline constexpr double model_error_factor = 2.5;
+
 /// What errors robots of this size have, as a prior: for full_model().
 ParameterSpread population_spread(const Chain& robot);
 

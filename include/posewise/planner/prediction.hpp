@@ -13,7 +13,22 @@ struct PredictedAccuracy {
     double rms = 0;           ///< of the position error over workspace and targets
     double percentile95 = 0;  ///< 95 % of position errors are below
     double worst_rms = 0;     ///< of the worst configuration and target
+    /// Of the scaled chi-squared with the mean and variance that the mean square over the workspace
+    /// has [Satterthwaite 1946].
+    double degrees_of_freedom = 1;
 };
+
+/// The same with what the model cannot express, which no number of poses reduces: RMS over
+/// workspace and targets, m.
+struct PredictedTotal {
+    double rms = 0;    ///< with the model error as the campaign expects it
+    double lower = 0;  ///< ends of the 90 % interval: the parameters' errors are drawn, and the
+    double upper = 0;  ///< model error, log-normal about the expected, its deviation a factor 2.5
+};
+
+/// Of 4000 draws from stream (seed, 0).
+PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_error,
+                             std::uint64_t seed = 1);
 
 /// Derivative of target positions at workspace configurations by the scaled parameters, in m:
 /// blocks of 3 rows a target. As test poses they make V the inverse of the predicted mean square

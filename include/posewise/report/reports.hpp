@@ -24,8 +24,9 @@ std::string format(const Inspection& inspection);
 std::string describe_gap(const Inspection& inspection);
 
 /// What was identified, how accurate the robot is with it and how sure each parameter is, as text:
-/// all that `posewise calibrate` prints. Of a calibration that is not identified, why.
-std::string format(const Calibration& calibration);
+/// all that `posewise calibrate` prints. More than 50 errors of the robot are summed up by class,
+/// unless all shall be listed. Of a calibration that is not identified, why.
+std::string format(const Calibration& calibration, bool has_all_parameters = false);
 
 /// Parameter sets side by side, and which is recommended.
 std::string format(const ModelSelection& selection);
@@ -49,7 +50,7 @@ std::string format_choice(const Plan& plan);
 std::string format_planning(const Planning& planning);
 
 /// Predicted accuracy for other numbers of poses.
-std::string format_other_counts(const std::vector<CountAccuracy>& counts);
+std::string format_other_counts(const std::vector<CountAccuracy>& counts, const Campaign& campaign);
 
 /// Expected standard deviation of each parameter.
 std::string format_deviations(const Plan& plan);

@@ -59,7 +59,8 @@ struct WithoutOutliers {
 
 /// A calibration: parameters, how sure they are, how accurate the robot is with them.
 struct Calibration {
-    Campaign campaign;  ///< as calibrated: names, units and scales of what follows
+    /// As calibrated, with the model error found: names, units and scales of what follows.
+    Campaign campaign;
     CalibrationMethod method = CalibrationMethod::Joint;
     MeasuredCount measured;  ///< that was calibrated with
     /// Its ending says whether there is a calibration: where it is NotIdentifiable, nothing below
@@ -70,6 +71,10 @@ struct Calibration {
     Metrics nominal;                             ///< base and targets fitted only, all samples
     std::optional<Repeatability> repeatability;  ///< nothing: no configuration was repeated
     std::optional<CrossValidation> held_out;
+    /// At poses like those measured, at the configurations not used, and at the validation's.
+    ExpectedError expected;
+    std::optional<ExpectedError> expected_left_out;
+    std::optional<ExpectedError> expected_validation;
     std::optional<Metrics> left_out;                  ///< on the configurations not used
     std::optional<Metrics> validation;                ///< on CalibrationOptions::validation
     std::optional<WithoutOutliers> without_outliers;  ///< if there are some

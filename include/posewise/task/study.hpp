@@ -18,6 +18,7 @@ struct StudyCase {
     /// Means of the configurations held out of the split, else of all that were not chosen (so that
     /// repeat noise does not blur the comparison); no points if none is left.
     Metrics held_out;
+    double expected = 0;  ///< what the calibration says held_out.rms() will be, expected_error()
     Index split = 0;
 };
 
@@ -36,10 +37,11 @@ struct StudyOptions {
     Index random_subsets = 100;
     /// Splits of the configurations at random into those to choose from and those to judge all
     /// subsets on. 0: none, each subset is judged on all that it leaves, so that a plan that takes
-    /// the telling configurations is judged on easier ones than others are.
-    Index splits = 0;
+    /// the telling configurations is judged on easier ones than others are. Nothing: 10, if what a
+    /// split leaves to choose from is three times the largest pose count, else 0.
+    std::optional<Index> splits{};
     double holdout = 0.3;  ///< part of the configurations that a split judges on
-    Index starts = 20;     ///< of the exchange
+    Index starts = 4;      ///< of the exchange
     std::uint64_t seed = 1;
     StopSignal stop{};            ///< ends it with the pose counts that are complete
     ProgressCallback progress{};  ///< of the cases
