@@ -21,6 +21,9 @@
 namespace posewise {
 namespace {
 
+/// What more kicks would find is far below the scatter of what is found by calibrating.
+constexpr Index kicks = 2;
+
 /// Configurations to choose from, and those that all subsets are judged on (none: on the rest).
 struct Split {
     std::vector<Index> pool;
@@ -147,6 +150,7 @@ std::vector<Index> choose_poses(const Setting& setting, const Job& job, const Sp
     options.criterion = setting.options.criteria[job.number];
     options.pose_count = job.pose_count;
     options.starts = setting.options.starts;
+    options.kicks = kicks;
     if (setting.campaign.spread.is_prior) options.held = prior_information(setting.campaign);
     options.seed = setting.options.seed;
     return select_poses(split.blocks, options).poses;
