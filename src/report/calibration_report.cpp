@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "../core/format.hpp"
 #include "../core/text.hpp"
 #include "calibration_tables.hpp"
@@ -33,20 +35,33 @@ std::string describe_measured(const Calibration& calibration) {
     return text;
 }
 
+bool is_model_error_found(const Calibration& calibration) {
+    return calibration.campaign.spread.is_prior && calibration.method != CalibrationMethod::TwoStep;
+}
+
+/// The model error (mm) with which residuals would be as stated.
+double fitting_model_error(const Calibration& calibration) {
+    const ExpectedError& expected = calibration.expected;
+    const double of_noise = expected.noise * expected.noise;
+    const double excess = of_noise - of_noise / calibration.estimate.variance_factor;
+    const auto coordinates = static_cast<double>(calibration.campaign.sensor->lengths_per_target());
+    return mm_per_m * std::sqrt((expected.model * expected.model + excess) / coordinates);
+}
+
 std::string describe_ending(const Calibration& calibration) {
     const Estimate& estimate = calibration.estimate;
     std::string text = fmt::format("{}: {} after {} iterations", method_name(calibration.method),
                                    ending_name(estimate.ending), estimate.iterations);
     if (estimate.ending != Ending::Converged) text += "; this is not the optimum";
-    return text +
-           fmt::format(
-               "\n{}variance factor {} with {} degrees of freedom (1: noise and model "
-               "error stated right)\n",
-               calibration.campaign.spread.is_prior
-                   ? "model error found: " + detail::describe_model_error(calibration.campaign) +
-                         '\n'
-                   : "",
-               detail::format_short(estimate.variance_factor, 4), estimate.degrees_of_freedom);
+    text += '\n';
+    if (is_model_error_found(calibration)) {
+        text += "model error found: " + detail::describe_model_error(calibration.campaign) + '\n';
+    }
+    return text + fmt::format(
+                      "variance factor {} with {} degrees of freedom (1: noise and model error "
+                      "stated right)\n",
+                      detail::format_short(estimate.variance_factor, 4),
+                      estimate.degrees_of_freedom);
 }
 
 /// What to do if the residuals are not as large as stated.
@@ -57,11 +72,15 @@ std::string judge_residuals(const Calibration& calibration) {
         fmt::format("the residuals are {} times what sigma and model error say: ",
                     detail::format_short(*ratio, 2));
     if (*ratio < 1) return text + "a smaller model_error_mm or sigma would do\n";
-    return text +
+    const std::string larger =
+        calibration.campaign.sensor->has_lengths()
+            ? fmt::format("state a larger model_error_mm ({} would fit)",
+                          detail::format_short(fitting_model_error(calibration), 2))
+            : "state a larger model_error_orientation_mrad";
+    return text + larger +
            (calibration.estimate.loss.kind == LossKind::Squares
-                ? "state a larger model_error_mm, add error terms (gravity, harmonics) or look "
-                  "for outliers with --loss\n"
-                : "state a larger model_error_mm or add error terms (gravity, harmonics)\n");
+                ? ", add error terms (errors: full) or look for outliers with --loss\n"
+                : " or add error terms (errors: full)\n");
 }
 
 std::string describe_noise_floor(const Calibration& calibration) {
@@ -216,8 +235,14 @@ std::string describe_orientations(const OrientationDoubt& doubt) {
 std::string describe_sizes(const std::vector<SizeDoubt>& sizes) {
     std::string words;
     for (const SizeDoubt& size : sizes) {
-        words += fmt::format("{}{} ({} times)", words.empty() ? "" : ", ", size.parameter,
-                             detail::format_short(size.times, 3));
+        words += (words.empty() ? "" : ", ") + size.parameter + " (";
+        if (size.is_prior) words += detail::format_error(size.value, size.is_angle) + ", ";
+        words += detail::format_short(size.times, 3) + " times)";
+    }
+    if (sizes.front().is_prior) {
+        return "beyond three times the expected size, which holds them back: " + words +
+               "; are sign, unit and nominal value in the campaign right? If so, state a larger "
+               "size in spread";
     }
     return fmt::format(
         "far above the expected size: {}; are sign, unit and nominal value in the campaign right, "

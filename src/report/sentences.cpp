@@ -35,10 +35,10 @@ std::string describe_repeatability(const Campaign& campaign) {
 std::string describe_model_error(const Campaign& campaign) {
     const Sensor& sensor = *campaign.sensor;
     std::string text;
-    if (sensor.has_lengths()) text = format_short(mm_per_m * campaign.model_error) + " mm";
+    if (sensor.has_lengths()) text = format_short(mm_per_m * campaign.model_error, 4) + " mm";
     if (!sensor.has_angles()) return text;
     return text + (text.empty() ? "" : " and ") +
-           format_short(mrad_per_rad * campaign.model_error_orientation) + " mrad";
+           format_short(mrad_per_rad * campaign.model_error_orientation, 4) + " mrad";
 }
 
 std::string describe_scaling(const Campaign& campaign, double repeats) {

@@ -84,6 +84,9 @@ struct OrientationDoubt {
 struct SizeDoubt {
     std::string parameter;
     double times = 0;  ///< the expected size
+    double value = 0;  ///< m or rad
+    bool is_angle = false;
+    bool is_prior = false;  ///< whether its size holds it back
 };
 
 /// All doubts about a calibration.
