@@ -66,8 +66,8 @@ void check_options(const Campaign& campaign, const GlobalOptions& options) {
     }
     if (campaign.spread.is_prior) {
         throw InputError(
-            "the campaign's prior says that errors are small; a global search, for a robot that "
-            "is far from nominal, must be without it");
+            "expected sizes are priors, which say that errors are small; a global search, for a "
+            "robot that is far from nominal, must be without them (prior: false, --no-prior)");
     }
 }
 

@@ -1,6 +1,7 @@
 #include "model_error.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -11,6 +12,7 @@
 namespace posewise::detail {
 namespace {
 
+constexpr double most_times = 40;  // four standard deviations
 /// More configurations would not tell the two numbers any better.
 constexpr Index most_configurations = 400;
 /// A direction that one configuration alone determines has no prediction by the others.
@@ -203,6 +205,11 @@ double average(const Function& f, double x) {
     return x + 1 / std::max(curvature, least);
 }
 
+/// What is far beyond the population is no model error: the model or a measurement is wrong.
+double within_reach(double found, double expected) {
+    return std::clamp(found, expected / 10, expected * most_times);
+}
+
 }  // namespace
 
 bool is_model_error_open(const Campaign& campaign) {
@@ -230,8 +237,9 @@ Campaign find_model_error(const IdentificationProblem& problem, const Parameters
         }
     }
     Campaign found = expected;
-    found.model_error = std::exp(averages[0]);
-    found.model_error_orientation = std::exp(averages[1]);
+    found.model_error = within_reach(std::exp(averages[0]), expected.model_error);
+    found.model_error_orientation =
+        within_reach(std::exp(averages[1]), expected.model_error_orientation);
     return found;
 }
 

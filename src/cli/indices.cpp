@@ -38,29 +38,44 @@ struct Arguments {
     Index directions = 3;
 };
 
-double evaluate_blocks(Criterion criterion, const Blocks& blocks, const VectorXd& s) {
-    if (needs_test_poses(criterion)) {
-        return evaluate(criterion, information(blocks), blocks.count(), &blocks);
+/// Blocks, and below them what a prior tells: the identity's rows of parameters that have one.
+struct Rows {
+    const Blocks& blocks;
+    MatrixXd stacked;
+
+    Rows(const Blocks& of_poses, const MatrixXd& prior) : blocks(of_poses) {
+        std::vector<Index> known;
+        for (Index k = 0; k < prior.rows(); ++k) {
+            if (prior(k, k) > 0) known.push_back(k);
+        }
+        stacked.resize(blocks.matrix.rows() + static_cast<Index>(known.size()),
+                       blocks.parameter_count());
+        stacked << blocks.matrix, prior(known, Eigen::all);
     }
-    return evaluate(criterion, s, blocks.count());
-}
+    double evaluate(Criterion criterion) const {
+        if (needs_test_poses(criterion)) {
+            return posewise::evaluate(criterion, stacked.transpose() * stacked, blocks.count(),
+                                      &blocks);
+        }
+        return posewise::evaluate(criterion, singular_values(stacked), blocks.count());
+    }
+};
 
 double condition_number(const VectorXd& s) {
     const double least = s[s.size() - 1];
     return least > 0 ? s[0] / least : std::numeric_limits<double>::infinity();
 }
 
-detail::Table index_table(const Blocks& scaled, const Blocks& plain) {
-    const VectorXd s_scaled = singular_values(scaled.matrix);
-    const VectorXd s_plain = singular_values(plain.matrix);
+detail::Table index_table(const Rows& scaled, const Rows& plain) {
     detail::Table table{{"index", "whitened, scaled", "plain, mm and mrad"}, {}};
     for (const Criterion criterion : all_criteria) {
         table.rows.push_back({std::string(criterion_name(criterion)),
-                              detail::format_short(evaluate_blocks(criterion, scaled, s_scaled), 6),
-                              detail::format_short(evaluate_blocks(criterion, plain, s_plain), 6)});
+                              detail::format_short(scaled.evaluate(criterion), 6),
+                              detail::format_short(plain.evaluate(criterion), 6)});
     }
-    table.rows.push_back({"condition", detail::format_short(condition_number(s_scaled), 6),
-                          detail::format_short(condition_number(s_plain), 6)});
+    table.rows.push_back(
+        {"condition", detail::format_short(condition_number(singular_values(scaled.stacked)), 6),
+         detail::format_short(condition_number(singular_values(plain.stacked)), 6)});
     return table;
 }
 
@@ -102,10 +117,14 @@ void print_indices(const Arguments& arguments) {
         make_plain_blocks(campaign, registered, measurements.configurations, share);
     print(fmt::format("{} configurations, {} parameters\n{}", scaled.count(),
                       scaled.parameter_count(), detail::describe_scaling(campaign, repeats)));
+    const bool has_prior = campaign.spread.is_prior;
+    if (has_prior) print("prior:      the scale, as standard deviation; in the first column\n");
+    const MatrixXd prior = prior_information(campaign);
+    const Rows whitened(scaled, prior);
     print_section("Indices (-inf, condition inf: the parameters are not identifiable)",
-                  index_table(scaled, plain));
+                  index_table(whitened, Rows(plain, MatrixXd::Zero(prior.rows(), prior.cols()))));
     print("\nWeakest directions, known to\n\n");
-    for (const auto& direction : weakest_directions(scaled.matrix, arguments.directions)) {
+    for (const auto& direction : weakest_directions(whitened.stacked, arguments.directions)) {
         print("  " + describe_direction(campaign, direction) + '\n');
     }
 }

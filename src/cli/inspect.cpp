@@ -27,8 +27,9 @@ Prints the robot's elements from base to flange, the joints with their limits an
 parameter a calibration would identify (base, robot's errors, targets). One that no measurement can
 tell from the others is marked "no", with the errors that do exactly the same, for example
   Tx2  mm  1  no  1 mm Tx2 = 1 mm Tx1 - 0.7813 mrad dq2
-A campaign that states such a parameter is singular: drop it. A campaign that states no parameters
-has the complete model (every error a rigid link can have), less those marked "no". The last lines
+A campaign that states such a parameter and no prior is singular: drop it. With errors: geometric it
+has every error a rigid link can have, less those marked "no"; with errors: full, the default, all of
+them, torque shapes and harmonics, which priors keep apart. The last lines
 compare with the formula for what is identifiable; a stated set that spans less leaves errors of the
 real robot uncorrected. A warning tells where there is no clear gap between what is identifiable and
 what is not, as of harmonics of high order on a joint that turns little.

@@ -50,9 +50,8 @@ void for_each_index(Index count, const std::function<void(Index)>& body) {
 }
 
 void for_each_range(Index count, Index grain, const std::function<void(Index, Index)>& body) {
-    for_each_index((count + grain - 1) / grain, [&](Index range) {
-        body(range * grain, std::min(count, (range + 1) * grain));
-    });
+    for_each_index((count + grain - 1) / grain,
+                   [&](Index range) { body(range * grain, std::min(count, (range + 1) * grain)); });
 }
 
 }  // namespace posewise::detail

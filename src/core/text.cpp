@@ -96,7 +96,8 @@ std::string describe_combination(const VectorXd& coefficients,
         const double share = factor * coefficients[i];
         const char* const sign = share < 0 ? " - " : k > 0 ? " + " : "";
         text += fmt::format("{}{:.2g} ", sign, std::abs(share));
-        text += names.empty() ? fmt::format("column {}", i + 1) : names[static_cast<std::size_t>(i)];
+        text +=
+            names.empty() ? fmt::format("column {}", i + 1) : names[static_cast<std::size_t>(i)];
     }
     return text;
 }

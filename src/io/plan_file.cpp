@@ -92,7 +92,7 @@ void add_bounds(Json& document, const Plan& plan) {
 }
 
 void add_prediction(Json& document, const Plan& plan) {
-    if (!plan.predicted) return;
+    if (!plan.predicted || !plan.is_continuous()) return;
     Json& predicted = document["predicted"];
     predicted["position_error_rms_m"] = plan.predicted->rms;
     predicted["position_error_p95_m"] = plan.predicted->percentile95;

@@ -60,7 +60,9 @@ Vector3d read_direction(const YamlMap& map) {
     const auto stated = map.find("direction");
     if (!stated) return -Vector3d::UnitZ();
     const std::vector<double> numbers = stated->numbers(3);
-    return Eigen::Map<const Vector3d>(numbers.data());
+    const Vector3d direction = Eigen::Map<const Vector3d>(numbers.data());
+    if (direction.isZero(0)) throw stated->error("is zero; must point the way that weights pull");
+    return direction;
 }
 
 void add_gravity(const YamlValue& value, RobotSection& section) {
@@ -70,6 +72,12 @@ void add_gravity(const YamlValue& value, RobotSection& section) {
         const YamlMap map(value, {"direction", "joints"});
         section.gravity = read_direction(map);
         joints = read_joints(map, chain);
+        const auto listed = map.find("joints");
+        if (section.error_model == io::ErrorModel::Full && listed) {
+            throw listed->error(
+                "is stated, but errors: full has these errors on every joint; leave it out, or "
+                "state errors: geometric");
+        }
     } else if (!value.boolean()) {
         return;
     }

@@ -11,8 +11,8 @@ namespace {
 constexpr Index samples = 256;
 constexpr std::uint64_t configuration_seed = 1;  // any: it only has to be the same every time
 
-/// A mass beside the flange is so far from it, of the robot's extent: how far makes no difference to
-/// the shape.
+/// A mass beside the flange is so far from it, of the robot's extent: how far makes no difference
+/// to the shape.
 constexpr double beside = 0.1;
 /// Shapes below this share of a joint's largest are dropped.
 constexpr double negligible = 0.03;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../core/format.hpp"
@@ -42,10 +43,13 @@ bool is_model_error_found(const Calibration& calibration) {
 /// The model error (mm) with which residuals would be as stated.
 double fitting_model_error(const Calibration& calibration) {
     const ExpectedError& expected = calibration.expected;
-    const double of_noise = expected.noise * expected.noise;
-    const double excess = of_noise - of_noise / calibration.estimate.variance_factor;
+    const double factor = calibration.estimate.variance_factor;
+    // Without priors the expected errors are scaled by the factor already.
+    const bool is_scaled = !calibration.campaign.spread.is_prior;
+    const double noise = expected.noise * expected.noise / (is_scaled ? factor : 1);
+    const double model = expected.model * expected.model / (is_scaled ? factor : 1);
     const auto coordinates = static_cast<double>(calibration.campaign.sensor->lengths_per_target());
-    return mm_per_m * std::sqrt((expected.model * expected.model + excess) / coordinates);
+    return mm_per_m * std::sqrt(std::max(0.0, factor * (model + noise) - noise) / coordinates);
 }
 
 std::string describe_ending(const Calibration& calibration) {
@@ -250,6 +254,18 @@ std::string describe_sizes(const std::vector<SizeDoubt>& sizes) {
         words);
 }
 
+std::string describe_model_errors(const std::vector<ModelErrorDoubt>& errors) {
+    std::string words;
+    for (const ModelErrorDoubt& error : errors) {
+        words += fmt::format("{}{}, {} times what is expected", words.empty() ? "" : " and ",
+                             detail::format_error(error.value, error.is_angle),
+                             detail::format_short(error.times, 3));
+    }
+    return "the model error found is " + words +
+           ": error terms are missing (errors: full has most), the nominal robot is another, or "
+           "points are grossly wrong (try --loss cauchy)";
+}
+
 }  // namespace
 
 std::string format(const Calibration& calibration, bool has_all_parameters) {
@@ -295,6 +311,9 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     }
     if (doubts.orientations) sentences.push_back(at + describe_orientations(*doubts.orientations));
     if (!doubts.sizes.empty()) sentences.push_back(describe_sizes(doubts.sizes));
+    if (!doubts.model_errors.empty()) {
+        sentences.push_back(describe_model_errors(doubts.model_errors));
+    }
     return sentences;
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../core/format.hpp"
@@ -170,14 +171,30 @@ std::string describe(const Finding& finding) {
 
 }  // namespace
 
+/// Nothing of plain blocks.
+std::string describe_prediction(const Plan& plan) {
+    const auto& assumptions = plan.assumptions;
+    const auto model_error =
+        std::find_if(assumptions.begin(), assumptions.end(),
+                     [](const NamedNumber& one) { return one.name == "model_error_m"; });
+    if (!plan.predicted || model_error == assumptions.end()) return "";
+    const PredictedTotal total = predict_total(*plan.predicted, model_error->value);
+    return fmt::format(
+        "predicted:  {} mm RMS over the candidates by the parameters, {} with a model error of {} "
+        "mm;\n            {} to {} (90 %), as that differs from robot to robot\n",
+        detail::format_mm(plan.predicted->rms), detail::format_mm(total.rms),
+        detail::format_short(mm_per_m * model_error->value, 4), detail::format_mm(total.lower),
+        detail::format_mm(total.upper));
+}
+
 std::string format_choice(const Plan& plan) {
     return fmt::format(
         "chosen:     {}\ncriterion:  {}\nvalue:      {}\nbound:      {}\n"
-        "efficiency: {} proven\nstarts:     {} of {} ended here, {}\n{}",
+        "efficiency: {} proven\nstarts:     {} of {} ended here, {}\n{}{}",
         describe_ids(plan), criterion_name(plan.request.criterion),
         detail::format_short(plan.value, 8), detail::format_short(plan.bound, 8),
         detail::format_fixed(plan.efficiency, 4), plan.starts_at_best, plan.request.starts,
-        ending_name(plan.ending), describe_proof(plan));
+        ending_name(plan.ending), describe_proof(plan), describe_prediction(plan));
 }
 
 std::string format_planning(const Planning& planning) {

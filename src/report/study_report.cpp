@@ -40,11 +40,18 @@ std::string describe_judgement(const Study& study) {
         study.test_count, study.splits);
     for (std::size_t c = 0; c < study.criteria.size(); ++c) {
         std::string lost, unknown;
+        bool is_known = false;
         for (const StudyRow& row : study.rows) {
             const auto advantage = planned_advantage(study, row, c);
+            is_known = is_known || advantage;
             if (advantage && advantage->ratio <= 1) continue;
             std::string& counts = advantage ? lost : unknown;
             counts += (counts.empty() ? "" : ", ") + std::to_string(row.pose_count);
+        }
+        if (!is_known) {
+            text += fmt::format("{}: whether planned loses to random is not known\n",
+                                criterion_name(study.criteria[c]));
+            continue;
         }
         text += fmt::format("{}: planned {}{}\n", criterion_name(study.criteria[c]),
                             lost.empty() ? "never loses to random" : "loses to random at " + lost,

@@ -32,7 +32,10 @@ void add_advantage(const std::optional<Advantage>& advantage, std::vector<std::s
         return;
     }
     cells.push_back(format_fixed(advantage->ratio, 2));
-    cells.push_back(format_fixed(advantage->lower, 2) + ".." + format_fixed(advantage->upper, 2));
+    const bool is_single = advantage->lower == advantage->upper;  // of one split
+    cells.push_back(is_single ? "-"
+                              : format_fixed(advantage->lower, 2) + ".." +
+                                    format_fixed(advantage->upper, 2));
 }
 
 }  // namespace

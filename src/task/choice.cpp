@@ -1,5 +1,8 @@
 #include "posewise/task/choice.hpp"
 
+#include <Eigen/Cholesky>
+#include <algorithm>
+
 #include "../model/halton.hpp"
 #include "choice_problem.hpp"
 #include "inputs.hpp"
@@ -50,6 +53,30 @@ Plan solve(ChoiceProblem& problem, const ChoiceOptions& options) {
     return plan;
 }
 
+/// Over the candidates, evenly taken; nothing where base and targets are not determined.
+std::optional<PredictedAccuracy> predict(const Campaign& campaign, const ChoiceProblem& problem,
+                                         const std::vector<PlannedPose>& poses) {
+    constexpr Index most_configurations = 500;
+    const detail::CandidateIndex index(problem.ids);
+    std::vector<Index> chosen;
+    for (const PlannedPose& pose : poses) {
+        const Index candidate = index.find(pose.id, "pose");
+        chosen.insert(chosen.end(), static_cast<std::size_t>(pose.times), candidate);
+    }
+    MatrixXd M = information(problem.blocks, chosen);
+    if (problem.options.held.size() > 0) M += problem.options.held;
+    if (Eigen::LLT<MatrixXd>(M).info() != Eigen::Success) return std::nullopt;
+    const Index count = std::min(problem.configurations.rows(), most_configurations);
+    std::vector<Index> workspace;
+    for (Index k = 0; k < count; ++k) {
+        workspace.push_back(k * problem.configurations.rows() / count);
+    }
+    return predict_accuracy(
+        make_prediction_blocks(campaign, problem.parameters,
+                               RowMatrixXd(problem.configurations(workspace, Eigen::all))),
+        M);
+}
+
 }  // namespace
 
 double mean_repeats(const Measurements& measurements) {
@@ -82,6 +109,7 @@ Plan choose(const Campaign& campaign, const Candidates& candidates, const Choice
     plan.campaign = campaign.name;
     plan.columns = configuration_columns(campaign);
     plan.assumptions = assumptions_of(campaign);
+    plan.predicted = predict(campaign, problem, plan.poses);
     return plan;
 }
 

@@ -195,7 +195,8 @@ ChoiceProblem state_choice(const Campaign& campaign, const Candidates& candidate
     if (request.repeats == 0) {
         request.repeats = candidates.measured ? mean_repeats(*candidates.measured) : 1;
     }
-    const Parameters parameters = find_parameters(campaign, candidates, options);
+    const Parameters& parameters = problem.parameters =
+        find_parameters(campaign, candidates, options);
     if (candidates.kind == CandidateKind::Random) {
         make_random_blocks(problem, campaign, parameters, stop);
     } else {

@@ -18,6 +18,7 @@ struct ChoiceProblem {
     RowMatrixXd configurations;  ///< of the candidates; empty for plain blocks
     RowMatrixXd share;           ///< of samples that show each target; empty for plain blocks
     std::string checksum;        ///< of all of the candidates' numbers
+    Parameters parameters;       ///< that blocks are linearised at; nothing for plain blocks
     Blocks blocks;
     std::unique_ptr<Blocks> test_poses;  ///< null: the candidates
     SelectOptions options;               ///< the problem's part; refers to test_poses

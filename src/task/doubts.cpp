@@ -120,6 +120,18 @@ std::vector<SizeDoubt> find_size_doubts(const Campaign& campaign, const Estimate
     return doubts;
 }
 
+std::vector<ModelErrorDoubt> find_model_error_doubts(const Campaign& campaign,
+                                                     const Estimate& estimate) {
+    constexpr double doubtful = model_error_factor * model_error_factor;
+    std::vector<ModelErrorDoubt> doubts;
+    const auto add = [&](double found, double expected, bool is_angle) {
+        if (found > doubtful * expected) doubts.push_back({found / expected, found, is_angle});
+    };
+    add(estimate.model_error, campaign.model_error, false);
+    add(estimate.model_error_orientation, campaign.model_error_orientation, true);
+    return doubts;
+}
+
 std::vector<Index> find_negative_compliances(const Campaign& campaign, const Estimate& estimate) {
     constexpr double significant = 3;  // standard deviations
     const VectorXd sigmas = standard_deviations(estimate);
@@ -212,6 +224,7 @@ Doubts find_doubts(const Campaign& campaign, const Measurements& measured,
 
 void add_doubts(const Campaign& campaign, const Estimate& estimate, Doubts& doubts) {
     doubts.sizes = find_size_doubts(campaign, estimate);
+    doubts.model_errors = find_model_error_doubts(campaign, estimate);
     doubts.residual_ratio = find_residual_ratio(estimate);
     doubts.negative_compliances = find_negative_compliances(campaign, estimate);
 }

@@ -18,7 +18,7 @@ namespace posewise {
 struct LevenbergMarquardtOptions {
     Index iteration_limit = 100;
     double relative_tolerance =
-        1e-12;             ///< predicted relative fall of the sum of squares to stop at
+        1e-12;  ///< predicted relative fall of the sum of squares to stop at
     /// Where expected sizes are priors, finds the model error, too; else it is as stated.
     bool finds_model_error = true;
     Loss loss = {};        ///< width 0: 95 % of the efficiency of squares on normal errors
@@ -30,8 +30,8 @@ struct LevenbergMarquardtOptions {
 /// campaign's spread is a prior, the maximum a posteriori: each error of the robot counts as
 /// observed to be 0 with its scale as standard deviation, and the covariance is that of noise and
 /// prior (else it is multiplied by the variance factor). The model error, if it is not stated to be
-/// 0, is then found in turn with the parameters, of lengths and angles apart: its mean square by how
-/// well each configuration is predicted by all the others and a log-normal prior about what the
+/// 0, is then found in turn with the parameters, of lengths and angles apart: its mean square by
+/// how well each configuration is predicted by all the others and a log-normal prior about what the
 /// campaign states, one standard deviation a factor of 2.5.
 /// Ends NotIdentifiable where a target at an unknown place is seen in no sample, where there are
 /// fewer equations than parameters, or where these poses do not show a direction of parameter

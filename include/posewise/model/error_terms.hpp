@@ -41,12 +41,12 @@ Chain with_compliance(const Chain& chain, const std::vector<Load>& loads,
 /// on every joint that turns: it gives way by a sum of them. A shape is the moment about the
 /// joint's axis, with gravity in `direction` of the base frame, of a mass at the origin of a later
 /// joint or of the flange (`q2.torque(q3)`), then of one beside the flange along an axis of its
-/// frame, as far as a tenth of extent() (`q2.torque(flange.x)`), less what the shapes before it explain over
-/// the joints' ranges; what is left below 3 % of the joint's largest is dropped. All are divided so
-/// that the joint's largest moment, before anything is taken off, has the RMS of a sine: parameters
-/// in rad compare with those of harmonics, and a shape that can do little has little effect. A
-/// joint whose moments are always the same (upright axes) gets none. Throws InputError for a zero
-/// direction.
+/// frame, as far as a tenth of extent() (`q2.torque(flange.x)`), less what the shapes before it
+/// explain over the joints' ranges; what is left below 3 % of the joint's largest is dropped. All
+/// are divided so that the joint's largest moment, before anything is taken off, has the RMS of a
+/// sine: parameters in rad compare with those of harmonics, and a shape that can do little has
+/// little effect. A joint whose moments are always the same (upright axes) gets none. Throws
+/// InputError for a zero direction.
 Chain with_torque_shapes(const Chain& chain, const Vector3d& direction = -Vector3d::UnitZ());
 
 /// RMS distance (m) of the flange from its mean within the joint limits: how large the robot is.

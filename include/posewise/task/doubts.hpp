@@ -89,6 +89,13 @@ struct SizeDoubt {
     bool is_prior = false;  ///< whether its size holds it back
 };
 
+/// A model error found that is larger than two standard deviations of what is expected.
+struct ModelErrorDoubt {
+    double times = 0;  ///< the expected one
+    double value = 0;  ///< m or rad
+    bool is_angle = false;
+};
+
 /// All doubts about a calibration.
 struct Doubts {
     std::optional<Misfit> misfit;
@@ -97,6 +104,7 @@ struct Doubts {
     std::optional<double> gross_error;
     std::optional<OrientationDoubt> orientations;
     std::vector<SizeDoubt> sizes;
+    std::vector<ModelErrorDoubt> model_errors;  ///< of lengths, of angles
     /// Residuals in units of those stated, if clearly not as stated: more than 1.5 times larger or
     /// smaller, and by more than four standard deviations of the variance factor.
     std::optional<double> residual_ratio;

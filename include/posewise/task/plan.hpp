@@ -109,8 +109,11 @@ struct Plan {
     Index starts_at_best = 0;  ///< how many of the starts ended at this value
     Ending ending = Ending::NotRun;
 
-    // Of continuous plans: what calibration will achieve, and how long measuring takes.
+    /// What calibration will achieve: over the workspace, of choices over the candidates. Files
+    /// hold that of continuous plans.
     std::optional<PredictedAccuracy> predicted;
+
+    // Of continuous plans: deviations, and how long measuring takes.
     std::vector<NamedNumber> standard_deviations;  ///< expected, of each parameter, m or rad
     double visiting_time = 0;                      ///< s
 
