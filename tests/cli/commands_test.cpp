@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "program.hpp"
 
@@ -40,6 +41,20 @@ TEST_F(Commands, SimulateIsReproducibleFromItsComment) {
     EXPECT_EQ(text_of("t.csv"), first);
     run_well("simulate " + fanuc_design + " --truth 7 --seed 4 --poses 16 --repeats 3 -o t.csv");
     EXPECT_NE(text_of("t.csv"), first);
+}
+
+TEST_F(Commands, IndicesCountWhatThePriorTells) {
+    std::string campaign =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    campaign.insert(campaign.find("  elements:"), "  errors: full\n");
+    write_text("full.yaml", campaign);
+    const std::string text = run_well("indices full.yaml -m s.csv");
+    EXPECT_NE(text.find("prior:      the scale"), std::string::npos);
+    std::istringstream line(text.substr(text.find("\nv ")));
+    std::string name, with_prior, plain;
+    line >> name >> with_prior >> plain;
+    EXPECT_GT(std::stod(with_prior), 0);
+    EXPECT_EQ(plain, "-inf");
 }
 
 TEST_F(Commands, IndicesAgreeWithEachOther) {

@@ -182,7 +182,7 @@ TEST(BadCampaign, GravityAndHarmonicsThatCannotBe) {
          "7:12: robot.gravity is not possible: joint 'q2' does not turn about an axis that stays "
          "perpendicular to gravity"},
         {"", "gravity: {direction: [0, 0, 0]}",
-         "7:12: robot.gravity is not possible: direction of gravity must be finite and not zero"},
+         "7:24: robot.gravity.direction is zero; must point the way that weights pull"},
         {"", "gravity: {joints: [q4]}", "7:22: 'q4' is no joint of the robot[...]"},
         {"", "harmonics: {orders: [1, 0]}",
          "7:27: robot.harmonics.orders[2] is '0'; must be from 1e-3 to 1e4 a turn"},

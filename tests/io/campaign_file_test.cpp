@@ -15,6 +15,7 @@ namespace posewise::io {
 namespace {
 
 using testing::campaign_text;
+using testing::input_error_of;
 using testing::replaced;
 using testing::TemporaryFolder;
 constexpr double pi = std::numbers::pi;
@@ -221,6 +222,11 @@ sensor: {kind: points, sigma_mm: 0.1, targets: {count: 3}}
 
     const CampaignFile on_wall =
         read(replaced(text, "errors: full", "errors: full\n  gravity: {direction: [1, 0, 0]}"));
+    const std::string of_one = "errors: full\n  gravity: {joints: [q2]}";
+    EXPECT_NE(input_error_of([&] {
+                  read(replaced(text, "errors: full", of_one));
+              }).find("campaign.yaml:4:21: robot.gravity.joints is stated, but errors: full has"),
+              std::string::npos);
     const auto has_torque_of_q1 = on_wall.robot.parameter_names();
     EXPECT_TRUE(std::any_of(has_torque_of_q1.begin(), has_torque_of_q1.end(),
                             [](const auto& n) { return n.starts_with("q1.torque("); }));

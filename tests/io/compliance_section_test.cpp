@@ -84,7 +84,7 @@ TEST(ComplianceSection, SaysWhatIsWrong) {
         {"", "{torques_Nm: {q2: 3}, joints: [q2]}",
          "45: robot.compliance.joints is stated beside torques_Nm;[...]"},
         {"", "{links: {q2: {mass_kg: 1, center_mm: [0, 0, 1]}}, direction: [0, 0, 0]}",
-         "15: robot.compliance is not possible: direction of gravity must be[...]"},
+         "76: robot.compliance.direction is zero; must point the way that weights pull"},
         {"", "{links: {q2: {mass_kg: 1, center_mm: [0, 0, 1]}}, joints: [q2, q2]}",
          "78: robot.compliance.joints[2] lists 'q2' twice; keep one[...]"},
         {"", "true", "15: [...]"},

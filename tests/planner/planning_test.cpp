@@ -56,6 +56,21 @@ TEST(PlanPoses, PredictsTheFanucWithin33MicrometresOverItsWorkspace) {
     EXPECT_GT(plan.efficiency, 0.85);
 }
 
+TEST(PredictTotal, AddsTheModelErrorAndItsSpreadAmongRobots) {
+    PredictedAccuracy accuracy;
+    accuracy.rms = 3e-4;
+    accuracy.degrees_of_freedom = 8;
+    const PredictedTotal alone = predict_total(accuracy, 0);
+    EXPECT_NEAR(alone.rms, 3e-4, 1e-15);
+    EXPECT_NEAR(alone.lower, 3e-4 * std::sqrt(2.733 / 8), 1e-5);   // chi squared of 8, 5 %
+    EXPECT_NEAR(alone.upper, 3e-4 * std::sqrt(15.507 / 8), 1e-5);  // 95 %
+    accuracy.rms = 0;
+    const PredictedTotal model = predict_total(accuracy, 1e-4);
+    EXPECT_NEAR(model.rms, std::sqrt(3.0) * 1e-4, 1e-15);
+    EXPECT_NEAR(model.upper / model.rms, std::pow(2.5, 1.645), 0.35);
+    EXPECT_NEAR(model.rms / model.lower, std::pow(2.5, 1.645), 0.35);
+}
+
 TEST(PlanPoses, BeatsTheBestExchangePlanOfThePoolOnEveryCriterion) {
     const Scene scene(200, 12);
     for (const char* const name : {"o1", "o2", "o3", "o4", "o5", "a", "d", "e", "g", "v"}) {

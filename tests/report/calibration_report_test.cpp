@@ -60,6 +60,15 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
             "far above the expected size: dq2 (40 times), Tx1 (25.5 times); are sign, unit and "
             "nominal value in the campaign right, and do the poses tell them apart? If so, state "
             "their size in spread"}));
+    calibration.doubts = {};
+    calibration.doubts.sizes = {{"dq2", 3.5, 0.07, true, true}};
+    calibration.doubts.model_errors = {{9, 9e-4, false}};
+    const auto sentences = describe_doubts(calibration);
+    ASSERT_EQ(sentences.size(), 2U);
+    EXPECT_TRUE(sentences[0].starts_with(
+        "beyond three times the expected size, which holds them back: dq2 (70 mrad, 3.5 times);"));
+    EXPECT_TRUE(sentences[1].starts_with(
+        "the model error found is 0.9 mm, 9 times what is expected: error terms are missing"));
 }
 
 TEST(DescribeBeyondLimits, CountsThemAndNamesTheFirst) {
