@@ -12,7 +12,10 @@
 namespace posewise::detail {
 namespace {
 
-constexpr double most_times = 40;  // four standard deviations
+/// What is found is from this part of the expected to so many times it: beyond, the model or a
+/// measurement is wrong.
+constexpr double least_part = 0.1;
+constexpr double most_times = 40;
 /// More configurations would not tell the two numbers any better.
 constexpr Index most_configurations = 400;
 /// A direction that one configuration alone determines has no prediction by the others.
@@ -71,7 +74,8 @@ class PredictiveScore {
         const Sensor& sensor = *without.sensor;
         const Index count = problem.means.configuration_count();
         const Index taken = std::min(count, most_configurations);
-        const VectorXd lengths = residual_lengths(problem, parameters);
+        const bool is_robust = problem.loss.kind != LossKind::Squares;
+        const VectorXd lengths = is_robust ? residual_lengths(problem, parameters) : VectorXd();
         std::vector<Index> first_length{0};
         for (Index i = 0; i < count; ++i) {
             first_length.push_back(first_length.back() +
@@ -98,7 +102,7 @@ class PredictiveScore {
                 const std::size_t kind = sensor.is_angle(row) ? 1 : 0;
                 has_[kind] = std::isfinite(expected_[kind]);
             }
-            for (Index j = 0; j < rows.root_weights.size(); ++j) {
+            for (Index j = 0; is_robust && j < rows.root_weights.size(); ++j) {
                 const Index target =
                     first_length[static_cast<std::size_t>(i)] + j / sensor.rows_per_target();
                 rows.root_weights[j] =
@@ -205,9 +209,8 @@ double average(const Function& f, double x) {
     return x + 1 / std::max(curvature, least);
 }
 
-/// What is far beyond the population is no model error: the model or a measurement is wrong.
 double within_reach(double found, double expected) {
-    return std::clamp(found, expected / 10, expected * most_times);
+    return std::clamp(found, expected * least_part, expected * most_times);
 }
 
 }  // namespace
@@ -233,7 +236,7 @@ Campaign find_model_error(const IdentificationProblem& problem, const Parameters
                 return score(moved);
             };
             errors[kind] = climb(along, errors[kind]);
-            averages[kind] = average(along, errors[kind]);
+            if (sweep + 1 == sweeps) averages[kind] = average(along, errors[kind]);
         }
     }
     Campaign found = expected;

@@ -42,6 +42,7 @@ struct Arguments {
 struct Rows {
     const Blocks& blocks;
     MatrixXd stacked;
+    VectorXd s;  ///< its singular values, largest first
 
     Rows(const Blocks& of_poses, const MatrixXd& prior) : blocks(of_poses) {
         std::vector<Index> known;
@@ -51,13 +52,14 @@ struct Rows {
         stacked.resize(blocks.matrix.rows() + static_cast<Index>(known.size()),
                        blocks.parameter_count());
         stacked << blocks.matrix, prior(known, Eigen::all);
+        s = singular_values(stacked);
     }
     double evaluate(Criterion criterion) const {
         if (needs_test_poses(criterion)) {
             return posewise::evaluate(criterion, stacked.transpose() * stacked, blocks.count(),
                                       &blocks);
         }
-        return posewise::evaluate(criterion, singular_values(stacked), blocks.count());
+        return posewise::evaluate(criterion, s, blocks.count());
     }
 };
 
@@ -73,9 +75,8 @@ detail::Table index_table(const Rows& scaled, const Rows& plain) {
                               detail::format_short(scaled.evaluate(criterion), 6),
                               detail::format_short(plain.evaluate(criterion), 6)});
     }
-    table.rows.push_back(
-        {"condition", detail::format_short(condition_number(singular_values(scaled.stacked)), 6),
-         detail::format_short(condition_number(singular_values(plain.stacked)), 6)});
+    table.rows.push_back({"condition", detail::format_short(condition_number(scaled.s), 6),
+                          detail::format_short(condition_number(plain.s), 6)});
     return table;
 }
 

@@ -236,14 +236,15 @@ std::string describe_orientations(const OrientationDoubt& doubt) {
                               advise(doubt.sense));
 }
 
-std::string describe_sizes(const std::vector<SizeDoubt>& sizes) {
+/// A prior holds values back.
+std::string describe_sizes(const std::vector<SizeDoubt>& sizes, bool has_prior) {
     std::string words;
     for (const SizeDoubt& size : sizes) {
         words += (words.empty() ? "" : ", ") + size.parameter + " (";
-        if (size.is_prior) words += detail::format_error(size.value, size.is_angle) + ", ";
+        if (has_prior) words += detail::format_error(size.value, size.is_angle) + ", ";
         words += detail::format_short(size.times, 3) + " times)";
     }
-    if (sizes.front().is_prior) {
+    if (has_prior) {
         return "beyond three times the expected size, which holds them back: " + words +
                "; are sign, unit and nominal value in the campaign right? If so, state a larger "
                "size in spread";
@@ -310,7 +311,8 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
             detail::format_short(*doubts.gross_error, 3)));
     }
     if (doubts.orientations) sentences.push_back(at + describe_orientations(*doubts.orientations));
-    if (!doubts.sizes.empty()) sentences.push_back(describe_sizes(doubts.sizes));
+    if (!doubts.sizes.empty())
+        sentences.push_back(describe_sizes(doubts.sizes, calibration.campaign.spread.is_prior));
     if (!doubts.model_errors.empty()) {
         sentences.push_back(describe_model_errors(doubts.model_errors));
     }

@@ -83,8 +83,9 @@ std::vector<Index> usual_counts(Index pool, Index least) {
     return counts;
 }
 
-std::vector<Index> choose_pose_counts(const Campaign& campaign, const std::vector<Index>& asked,
-                                      Index all, bool is_split) {
+/// `least`: that identify the model, looked at where none are asked for.
+std::vector<Index> choose_pose_counts(const std::vector<Index>& asked, Index all, Index least,
+                                      bool is_split) {
     for (const Index count : asked) {
         if (count < 1 || count > all) {
             throw InputError("a pose count is " + std::to_string(count) +
@@ -93,7 +94,6 @@ std::vector<Index> choose_pose_counts(const Campaign& campaign, const std::vecto
         }
     }
     if (!asked.empty()) return asked;
-    const Index least = least_pose_count(campaign);
     std::vector<Index> counts = is_split ? usual_counts(all, least) : std::vector<Index>{};
     if (!counts.empty()) return counts;
     for (Index count = least; count < all; ++count) counts.push_back(count);
@@ -113,12 +113,12 @@ void check_some_are_left(const std::vector<Index>& counts, Index all) {
 }
 
 /// Splits if nobody states how many.
-Index usual_splits(const Campaign& campaign, Index all, const StudyOptions& options) {
+Index usual_splits(Index all, Index least, const StudyOptions& options) {
     constexpr Index splits = 10;
     if (all < 2) return 0;
     const Index pool = all - test_count(all, options.holdout);
     if (options.pose_counts.empty()) {
-        return usual_counts(pool, least_pose_count(campaign)).empty() ? 0 : splits;
+        return usual_counts(pool, least).empty() ? 0 : splits;
     }
     const auto& counts = options.pose_counts;
     return 3 * *std::max_element(counts.begin(), counts.end()) <= pool ? splits : 0;
@@ -240,14 +240,15 @@ Study study(const Campaign& campaign, const Measurements& measurements,
     check_is_of_robot(campaign, measurements, registration);
     check_options(options);
     const Index all = measurements.configuration_count();
-    const Index split_count = options.splits.value_or(usual_splits(campaign, all, options));
+    const Index least = options.pose_counts.empty() ? least_pose_count(campaign) : 0;
+    const Index split_count = options.splits.value_or(usual_splits(all, least, options));
     if (split_count > 0 && all < 2) {
         throw InputError("there is 1 configuration, splits need at least 2");
     }
     std::vector<Split> splits = make_splits(all, split_count, options);
     const auto counts =
-        choose_pose_counts(campaign, options.pose_counts,
-                           static_cast<Index>(splits.front().pool.size()), split_count > 0);
+        choose_pose_counts(options.pose_counts, static_cast<Index>(splits.front().pool.size()),
+                           least, split_count > 0);
     Study study;
     study.campaign = campaign.name;
     study.ids = measurements.ids;

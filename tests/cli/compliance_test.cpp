@@ -17,7 +17,8 @@ std::string arm(const std::string& compliance) {
             << limits[j] << "]}\n";
         rows += row.str();
     }
-    return "name: arm\nrobot:\n  errors: geometric\n  dh:\n    convention: standard\n    rows:\n" + rows + compliance +
+    return "name: arm\nrobot:\n  errors: geometric\n  dh:\n    convention: standard\n    rows:\n" +
+           rows + compliance +
            "sensor: {kind: points, sigma_mm: 0.02, targets: {position_mm: [[90, 0, 60], [-50, 80, "
            "60], [-40, -70, 90]]}}\nmodel_error_mm: 0.01\n"
            "base: {position_mm: [1500, 300, 0], rpy_deg: [0, 0, 60]}\n";

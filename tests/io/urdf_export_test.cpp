@@ -135,7 +135,8 @@ TEST(CalibratedUrdf, PredictsTheMeasuredPointsAsTheEstimateDoes) {
                                           {"revolute", "xyz=\"0.4 0 0.1\"" + rpy, "0.3 0 -1"},
                                           {"revolute", "xyz=\"0.1 0 0\"", "1 0 0"}}));
     const std::string text =
-        "name: rail\nrobot: {errors: geometric, urdf: robot.urdf, base_link: link0, tip_link: link6}\n"
+        "name: rail\nrobot: {errors: geometric, urdf: robot.urdf, base_link: link0, tip_link: "
+        "link6}\n"
         "base: {position_mm: [2000, 500, -300], rpy_deg: [10, 20, 130]}\n"
         "sensor: {kind: points, sigma_mm: 0.05, targets: {position_mm: [[100, 0, 50], [0, 100, "
         "50], "
@@ -151,8 +152,8 @@ TEST(CalibratedUrdf, PredictsTheMeasuredPointsAsTheEstimateDoes) {
     EXPECT_TRUE(urdf.not_expressed.empty());
 
     folder.write("calibrated.urdf", urdf.text);
-    const std::string plain =
-        replaced(text, "robot: {errors: geometric, urdf: robot", "robot: {errors: stated, urdf: calibrated");
+    const std::string plain = replaced(text, "robot: {errors: geometric, urdf: robot",
+                                       "robot: {errors: stated, urdf: calibrated");
     const Campaign calibrated = read_campaign(folder.write("again.yaml", plain));
     ASSERT_EQ(calibrated.robot.parameter_count(), 0);
     Parameters same = parameters;

@@ -139,7 +139,8 @@ std::vector<RobotText> robots() {
 
 std::string dh_text(const RobotText& robot) {
     std::string text =
-        "name: table\nrobot:\n  errors: geometric\n  dh:\n    convention: " + robot.convention + "\n    rows:\n";
+        "name: table\nrobot:\n  errors: geometric\n  dh:\n    convention: " + robot.convention +
+        "\n    rows:\n";
     for (const auto& row : robot.rows) {
         const bool slides = row.joint.starts_with('p');
         std::string name = row.joint;

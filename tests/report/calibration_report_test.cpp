@@ -61,7 +61,8 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
             "nominal value in the campaign right, and do the poses tell them apart? If so, state "
             "their size in spread"}));
     calibration.doubts = {};
-    calibration.doubts.sizes = {{"dq2", 3.5, 0.07, true, true}};
+    calibration.doubts.sizes = {{"dq2", 3.5, 0.07, true}};
+    calibration.campaign.spread.is_prior = true;
     calibration.doubts.model_errors = {{9, 9e-4, false}};
     const auto sentences = describe_doubts(calibration);
     ASSERT_EQ(sentences.size(), 2U);

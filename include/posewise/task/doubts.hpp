@@ -86,7 +86,6 @@ struct SizeDoubt {
     double times = 0;  ///< the expected size
     double value = 0;  ///< m or rad
     bool is_angle = false;
-    bool is_prior = false;  ///< whether its size holds it back
 };
 
 /// A model error found that is larger than two standard deviations of what is expected.
