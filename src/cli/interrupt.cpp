@@ -1,5 +1,6 @@
 #include "interrupt.hpp"
 
+#include <chrono>
 #include <csignal>
 
 namespace posewise::cli {
@@ -8,15 +9,28 @@ namespace {
 std::atomic<bool> is_interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
 
+/// timeout(1) sends its signal to the program and then to the program's group: one wish, two signals.
+constexpr std::chrono::milliseconds echo{500};
+std::atomic<std::chrono::steady_clock::rep> first_at{0};
+static_assert(decltype(first_at)::is_always_lock_free, "set in a signal handler");
+
 void note_interrupt(int /*signal*/) {
-    is_interrupted = true;
-    std::signal(SIGINT, SIG_DFL);
+    using std::chrono::steady_clock;
+    const steady_clock::rep now = steady_clock::now().time_since_epoch().count();
+    steady_clock::rep first = 0;
+    if (first_at.compare_exchange_strong(first, now)) {
+        is_interrupted = true;
+    } else if (steady_clock::duration(now - first) > echo) {
+        std::signal(SIGINT, SIG_DFL);
+        std::raise(SIGINT);
+    }
 }
 
 }  // namespace
 
 InterruptFlag::InterruptFlag() {
     is_interrupted = false;
+    first_at = 0;
     std::signal(SIGINT, note_interrupt);
 }
 
