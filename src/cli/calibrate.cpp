@@ -18,7 +18,7 @@
 namespace posewise::cli {
 namespace {
 
-constexpr const char* footer = R"(
+constexpr const char* calibrate_footer = R"(
 Example:
   posewise calibrate campaign.yaml -m measurements.csv --out estimate.json
 
@@ -56,7 +56,7 @@ const std::map<std::string, CalibrationMethod> methods{{"lm", CalibrationMethod:
                                                        {"two-step", CalibrationMethod::TwoStep},
                                                        {"global", CalibrationMethod::Global}};
 
-struct Arguments {
+struct CalibrateArguments {
     InputPaths paths;
     std::string plan;
     std::string validate;
@@ -72,7 +72,7 @@ struct Arguments {
     CalibrationOptions options;  ///< with the numbers that are options as they are
 };
 
-CalibrationOptions make_options(const Arguments& arguments, std::uint64_t seed) {
+CalibrationOptions make_options(const CalibrateArguments& arguments, std::uint64_t seed) {
     CalibrationOptions options = arguments.options;
     options.method = methods.at(arguments.method);
     options.joint.loss.kind = losses.at(arguments.loss);
@@ -97,7 +97,7 @@ void check_folds(const CalibrationOptions& options, Index all) {
 }
 
 /// Options of one method beside another would have no effect.
-void check_usage(const CLI::App& command, const Arguments& arguments) {
+void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& arguments) {
     const auto require = [](bool is_right, const char* option, const std::string& rule) {
         if (!is_right) throw CLI::ValidationError(option, rule);
     };
@@ -118,7 +118,7 @@ void check_usage(const CLI::App& command, const Arguments& arguments) {
     require(options.folds != 0, "--model-selection", "needs --folds of 2 or more");
 }
 
-void calibrate(const Arguments& arguments) {
+void calibrate(const CalibrateArguments& arguments) {
     const InputPaths& paths = arguments.paths;
     check_outputs({paths.campaign, paths.measurements, arguments.plan, arguments.validate},
                   {arguments.out});
@@ -142,7 +142,7 @@ void calibrate(const Arguments& arguments) {
     print(format(result, arguments.has_all_parameters));
 }
 
-void add_options(CLI::App& command, Arguments& arguments) {
+void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     CalibrationOptions& options = arguments.options;
     command.add_option("--plan", arguments.plan, "Use only the configurations of this plan file")
         ->check(file_name());
@@ -204,15 +204,15 @@ void add_options(CLI::App& command, Arguments& arguments) {
 }  // namespace
 
 void add_calibrate(CLI::App& program) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<CalibrateArguments>();
     CLI::App* command =
         program.add_subcommand("calibrate", "Identify the robot's errors from measurements");
     add_campaign_argument(*command, arguments->paths);
     add_measurements_option(*command, arguments->paths);
-    add_options(*command, *arguments);
-    command->footer(footer);
+    add_calibrate_options(*command, *arguments);
+    command->footer(calibrate_footer);
     command->callback([arguments, command] {
-        check_usage(*command, *arguments);
+        check_calibrate_usage(*command, *arguments);
         calibrate(*arguments);
     });
 }

@@ -16,7 +16,7 @@
 namespace posewise::cli {
 namespace {
 
-constexpr const char* footer = R"(
+constexpr const char* correct_footer = R"(
 Example:
   posewise correct campaign.yaml estimate.json --poses program.csv -o corrected.csv
 
@@ -35,7 +35,7 @@ With six joints or more position and orientation are both brought to zero, by th
 of joints if there are several ways. With fewer the sum of squares is least, in which 1 mrad counts as
 --mm-per-mrad; at 0 only the position of --tool-mm counts.)";
 
-struct Arguments {
+struct CorrectArguments {
     InputPaths paths;
     std::string estimate;
     std::string poses;
@@ -47,7 +47,7 @@ struct Arguments {
     double largest_change_mm = 50;
 };
 
-CorrectionOptions correction_options(const Arguments& arguments) {
+CorrectionOptions correction_options(const CorrectArguments& arguments) {
     CorrectionOptions options;
     options.tool = Vector3d(arguments.tool_mm[0], arguments.tool_mm[1], arguments.tool_mm[2]) / 1e3;
     options.length_per_angle = arguments.mm_per_mrad;
@@ -56,7 +56,7 @@ CorrectionOptions correction_options(const Arguments& arguments) {
     return options;
 }
 
-void correct(const Arguments& arguments) {
+void correct(const CorrectArguments& arguments) {
     check_outputs({arguments.paths.campaign, arguments.estimate, arguments.poses}, {arguments.out});
     const io::CampaignFile file = io::read_campaign(arguments.paths.campaign);
     const Parameters found = io::read_estimate(arguments.estimate, file);
@@ -79,7 +79,7 @@ void correct(const Arguments& arguments) {
     print(format(corrected));
 }
 
-void add_options(CLI::App& command, Arguments& arguments) {
+void add_correct_options(CLI::App& command, CorrectArguments& arguments) {
     command
         .add_option("--poses", arguments.poses,
                     "Nominal configurations (CSV), as plan --csv writes it")
@@ -117,15 +117,15 @@ void add_options(CLI::App& command, Arguments& arguments) {
 }  // namespace
 
 void add_correct(CLI::App& program) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<CorrectArguments>();
     CLI::App* command = program.add_subcommand(
         "correct", "Joint values that bring the calibrated robot to nominal poses");
     add_campaign_argument(*command, arguments->paths);
     command->add_option("ESTIMATE", arguments->estimate, "Estimate (JSON), from calibrate --out")
         ->required()
         ->check(file_name());
-    add_options(*command, *arguments);
-    command->footer(footer);
+    add_correct_options(*command, *arguments);
+    command->footer(correct_footer);
     command->callback([arguments] { correct(*arguments); });
 }
 

@@ -21,7 +21,7 @@
 namespace posewise::cli {
 namespace {
 
-constexpr const char* footer = R"(
+constexpr const char* export_footer = R"(
 Example:
   posewise export campaign.yaml estimate.json --urdf calibrated.urdf
   posewise export campaign.yaml estimate.json --dh calibrated.yaml
@@ -37,7 +37,7 @@ estimate does, again but for errors that depend on the configuration. Where two 
 parallel, their common normal lies far away and the row's d is large: such a table is right, but its
 numbers must not be rounded, nor compared with the nominal ones.)";
 
-struct Arguments {
+struct ExportArguments {
     std::string campaign;
     std::string estimate;
     std::string urdf;
@@ -71,7 +71,7 @@ void print_missing(const std::vector<std::string>& names, const char* reason, co
     print(reason);
 }
 
-void print_export(const Arguments& arguments, const io::CampaignFile& file,
+void print_export(const ExportArguments& arguments, const io::CampaignFile& file,
                   const Parameters& parameters, const io::CalibratedUrdf& urdf) {
     print(fmt::format("{}: {} with the origins of {} joints changed is in {}\n", file.name,
                       detail::escape_controls(file.urdf->path), urdf.changes.size(),
@@ -101,7 +101,7 @@ std::vector<std::string> terms_of(const Chain& robot, const VectorXd& parameters
     return terms;
 }
 
-void export_dh(const Arguments& arguments, const io::CampaignFile& file,
+void export_dh(const ExportArguments& arguments, const io::CampaignFile& file,
                const Parameters& parameters) {
     constexpr double far = 10;  // m
     const Chain& robot = file.robot;
@@ -126,7 +126,7 @@ void export_dh(const Arguments& arguments, const io::CampaignFile& file,
                   "table");
 }
 
-void check_urdf(const Arguments& arguments, const io::CampaignFile& file) {
+void check_urdf(const ExportArguments& arguments, const io::CampaignFile& file) {
     if (!file.urdf) {
         throw input_error_at({arguments.campaign},
                              "has a robot that does not come from a URDF; only such a one can go "
@@ -135,7 +135,7 @@ void check_urdf(const Arguments& arguments, const io::CampaignFile& file) {
     check_outputs({file.urdf->path}, {arguments.urdf});
 }
 
-void export_urdf(const Arguments& arguments, const io::CampaignFile& file,
+void export_urdf(const ExportArguments& arguments, const io::CampaignFile& file,
                  const Parameters& parameters) {
     const io::CalibratedUrdf urdf =
         io::make_calibrated_urdf(*file.urdf, file.robot, parameters.robot);
@@ -143,7 +143,7 @@ void export_urdf(const Arguments& arguments, const io::CampaignFile& file,
     print_export(arguments, file, parameters, urdf);
 }
 
-void export_estimate(const Arguments& arguments) {
+void export_estimate(const ExportArguments& arguments) {
     if (arguments.urdf.empty() && arguments.dh.empty()) {
         throw CLI::RequiredError("--urdf or --dh");
     }
@@ -158,7 +158,7 @@ void export_estimate(const Arguments& arguments) {
 }  // namespace
 
 void add_export(CLI::App& program) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<ExportArguments>();
     CLI::App* command =
         program.add_subcommand("export", "Write the calibrated robot in a form others read");
     command->add_option("CAMPAIGN", arguments->campaign, "Campaign file (YAML)")
@@ -171,7 +171,7 @@ void add_export(CLI::App& program) {
         ->check(file_name());
     command->add_option("--dh", arguments->dh, "Write it as a Denavit-Hartenberg table (YAML)")
         ->check(file_name());
-    command->footer(footer);
+    command->footer(export_footer);
     command->callback([arguments] { export_estimate(*arguments); });
 }
 

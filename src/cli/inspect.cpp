@@ -18,7 +18,7 @@
 namespace posewise::cli {
 namespace {
 
-constexpr const char* footer = R"(
+constexpr const char* inspect_footer = R"(
 Example:
   posewise inspect campaign.yaml
   posewise inspect robot.urdf --base base_link --tip tool0 --write-campaign campaign.yaml
@@ -41,7 +41,7 @@ what the robot's errors are, any other by far more.
 A robot can be inspected before there is a campaign, straight from its URDF; --write-campaign then
 makes a file to begin with, which says what is left to fill in.)";
 
-struct Arguments {
+struct InspectArguments {
     std::string file;  ///< campaign or URDF
     std::string base_link;
     std::string tip_link;
@@ -64,13 +64,13 @@ void print_campaign(const io::CampaignFile& file) {
     print(format(inspection));
 }
 
-bool is_urdf(const Arguments& arguments) {
+bool is_urdf(const InspectArguments& arguments) {
     return !arguments.base_link.empty() || !arguments.tip_link.empty() ||
            !arguments.written.empty() || arguments.file.ends_with(".urdf");
 }
 
 /// The campaign that --write-campaign would write.
-void inspect_urdf(const Arguments& arguments) {
+void inspect_urdf(const InspectArguments& arguments) {
     const std::string& urdf = arguments.file;
     if (!arguments.measurements.empty()) {
         throw input_error_at({urdf}, "is a robot alone; --measurements needs a campaign file");
@@ -98,7 +98,7 @@ std::string advise_reversal(const io::CampaignFile& file) {
     return "write each with the opposite sign (-q for q) wherever it stands in the campaign file";
 }
 
-void inspect(const Arguments& arguments) {
+void inspect(const InspectArguments& arguments) {
     if (is_urdf(arguments)) return inspect_urdf(arguments);
     const io::CampaignFile file = io::read_campaign(arguments.file);
     std::vector<detail::SignPattern> patterns;
@@ -117,7 +117,7 @@ void inspect(const Arguments& arguments) {
 }  // namespace
 
 void add_inspect(CLI::App& program) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<InspectArguments>();
     CLI::App* command =
         program.add_subcommand("inspect", "Show the robot, and which of its errors can be found");
     command
@@ -140,7 +140,7 @@ void add_inspect(CLI::App& program) {
         ->add_option("-m,--measurements", arguments->measurements,
                      "Measured configurations (CSV, or MATLAB .mat): check the joints' directions")
         ->check(file_name());
-    command->footer(footer);
+    command->footer(inspect_footer);
     command->callback([arguments] { inspect(*arguments); });
 }
 

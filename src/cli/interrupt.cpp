@@ -9,7 +9,8 @@ namespace {
 std::atomic<bool> is_interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
 
-/// timeout(1) sends its signal to the program and then to the program's group: one wish, two signals.
+/// timeout(1) sends its signal to the program and then to the program's group: one wish, two
+/// signals.
 constexpr std::chrono::milliseconds echo{500};
 std::atomic<std::chrono::steady_clock::rep> first_at{0};
 static_assert(decltype(first_at)::is_always_lock_free, "set in a signal handler");

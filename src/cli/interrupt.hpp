@@ -4,8 +4,8 @@
 
 namespace posewise::cli {
 
-/// While it lives, the first Ctrl-C (SIGINT) only sets the flag; another, half a second later or more,
-/// ends the program.
+/// While it lives, the first Ctrl-C (SIGINT) only sets the flag; another, half a second later or
+/// more, ends the program.
 class InterruptFlag {
   public:
     InterruptFlag();

@@ -19,7 +19,7 @@ constexpr int input_error = 1;
 constexpr int usage_error = 2;
 constexpr int internal_error = 70;  // EX_SOFTWARE of sysexits.h: a bug of ours
 
-constexpr const char* footer = R"(
+constexpr const char* program_footer = R"(
 Start with:
   posewise inspect campaign.yaml                       what can be identified at all
   posewise study campaign.yaml -m measurements.csv     how many poses are enough
@@ -72,7 +72,7 @@ void add_commands(CLI::App& program) {
     using namespace posewise::cli;
     program.require_subcommand(1);
     program.set_version_flag("--version", std::string("posewise ") + posewise::version);
-    program.footer(footer);
+    program.footer(program_footer);
     for (const auto add : {add_inspect, add_indices, add_select, add_plan, add_verify,
                            add_calibrate, add_export, add_correct, add_study, add_simulate}) {
         add(program);

@@ -21,7 +21,7 @@
 namespace posewise::cli {
 namespace {
 
-constexpr const char* footer = R"(
+constexpr const char* plan_footer = R"(
 Example:
   posewise plan campaign.yaml --poses 24 --out plan.json --csv poses.csv
   posewise plan campaign.yaml --poses 12 --augment measured.csv --criterion d
@@ -47,7 +47,7 @@ they are and finds new ones, at least 5 deg in some joint from those that could 
 Ctrl-C or --time end the search with the best plan so far, marked as interrupted; exit code 0.
 The same seed gives the same plan, on any number of threads, unless time ended it.)";
 
-struct Arguments : PlanArguments {
+struct PlanArguments : RequestArguments {
     std::string csv;
 };
 
@@ -72,7 +72,7 @@ class ProgressNote {
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-void check_usage(const Arguments& arguments) {
+void check_plan_usage(const PlanArguments& arguments) {
     const PlanRequest& request = arguments.request;
     if (!request.sources.repaired.empty()) return;
     if (!request.dropped.empty()) {
@@ -81,7 +81,7 @@ void check_usage(const Arguments& arguments) {
     if (request.pose_count == 0) throw CLI::RequiredError("--poses");
 }
 
-std::string default_out(const std::string& campaign) {
+std::string default_plan_out(const std::string& campaign) {
     return std::filesystem::path(campaign).stem().string() + ".poses.json";
 }
 
@@ -108,10 +108,11 @@ Planning plan_with_progress(const io::CampaignFile& campaign, PlanningOptions& o
     return make_plan(campaign, options);
 }
 
-void plan(const Arguments& arguments) {
-    check_usage(arguments);
+void plan(const PlanArguments& arguments) {
+    check_plan_usage(arguments);
     const PlanSources& sources = arguments.request.sources;
-    const std::string out = arguments.out.empty() ? default_out(sources.campaign) : arguments.out;
+    const std::string out =
+        arguments.out.empty() ? default_plan_out(sources.campaign) : arguments.out;
     check_outputs({sources.campaign, sources.augment, sources.repaired, sources.workspace},
                   {out, arguments.csv});
     const InterruptFlag interrupted;
@@ -132,7 +133,7 @@ void plan(const Arguments& arguments) {
 
 // ---- The command line ----
 
-void add_problem(CLI::App& command, Arguments& problem) {
+void add_plan_problem(CLI::App& command, PlanArguments& problem) {
     PlanRequest& request = problem.request;
     PlanSources& sources = request.sources;
     command.add_option("CAMPAIGN", sources.campaign, "Campaign file (YAML): robot, sensor, cell")
@@ -184,7 +185,7 @@ void add_workspace(CLI::App& command, PlanRequest& request) {
         ->capture_default_str();
 }
 
-void add_search(CLI::App& command, Arguments& arguments) {
+void add_plan_search(CLI::App& command, PlanArguments& arguments) {
     PlanRequest& request = arguments.request;
     command.add_option("--pool", request.pool_count, "Candidates to draw")
         ->check(whole_number(1, 10000000))
@@ -202,13 +203,13 @@ void add_search(CLI::App& command, Arguments& arguments) {
 }  // namespace
 
 void add_plan(CLI::App& program) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<PlanArguments>();
     CLI::App* command =
         program.add_subcommand("plan", "Propose configurations to measure, from nothing");
-    add_problem(*command, *arguments);
+    add_plan_problem(*command, *arguments);
     add_workspace(*command, arguments->request);
-    add_search(*command, *arguments);
-    command->footer(footer);
+    add_plan_search(*command, *arguments);
+    command->footer(plan_footer);
     command->callback([arguments] { plan(*arguments); });
 }
 

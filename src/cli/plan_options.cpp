@@ -5,11 +5,11 @@
 
 namespace posewise::cli {
 
-void add_criterion_option(CLI::App& command, PlanArguments& arguments, const std::string& help) {
+void add_criterion_option(CLI::App& command, RequestArguments& arguments, const std::string& help) {
     command.add_option("-c,--criterion", arguments.criterion, help)->check(criterion_check());
 }
 
-void add_focus_option(CLI::App& command, PlanArguments& arguments) {
+void add_focus_option(CLI::App& command, RequestArguments& arguments) {
     command
         .add_option("--focus", arguments.focus,
                     "all, or robot: base and targets are estimated along, but do not count")
@@ -17,8 +17,8 @@ void add_focus_option(CLI::App& command, PlanArguments& arguments) {
         ->capture_default_str();
 }
 
-void add_search_options(CLI::App& command, PlanArguments& arguments, const std::string& seed_help,
-                        const std::string& default_out) {
+void add_search_options(CLI::App& command, RequestArguments& arguments,
+                        const std::string& seed_help, const std::string& default_out) {
     command.add_option("--seed", arguments.seed, seed_help)->check(whole_number(0, largest_seed));
     command.add_option("--time", arguments.request.time_limit, "Seconds after which to stop")
         ->check(real_number(1e-3, 1e9));
@@ -28,12 +28,12 @@ void add_search_options(CLI::App& command, PlanArguments& arguments, const std::
         ->check(file_name());
 }
 
-void add_progress_flag(CLI::App& command, PlanArguments& arguments) {
+void add_progress_flag(CLI::App& command, RequestArguments& arguments) {
     command.add_flag("--progress", arguments.progress,
                      "Show progress on standard error even if it is no terminal");
 }
 
-PlanRequest make_request(const PlanArguments& arguments, const io::CampaignFile* campaign,
+PlanRequest make_request(const RequestArguments& arguments, const io::CampaignFile* campaign,
                          Criterion usual) {
     PlanRequest request = arguments.request;
     const bool is_focused = arguments.focus == "robot";

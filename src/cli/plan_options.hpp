@@ -11,7 +11,7 @@
 /// What the command lines of select and plan have in common.
 namespace posewise::cli {
 
-struct PlanArguments {
+struct RequestArguments {
     PlanRequest request;
     std::string criterion;
     std::optional<bool> prior;
@@ -22,16 +22,16 @@ struct PlanArguments {
 };
 
 /// -c, --criterion with that help.
-void add_criterion_option(CLI::App& command, PlanArguments& arguments, const std::string& help);
-void add_focus_option(CLI::App& command, PlanArguments& arguments);
+void add_criterion_option(CLI::App& command, RequestArguments& arguments, const std::string& help);
+void add_focus_option(CLI::App& command, RequestArguments& arguments);
 /// --seed with that help, --time, and -o, --out, by default named as `default_out` says.
-void add_search_options(CLI::App& command, PlanArguments& arguments, const std::string& seed_help,
-                        const std::string& default_out);
-void add_progress_flag(CLI::App& command, PlanArguments& arguments);
+void add_search_options(CLI::App& command, RequestArguments& arguments,
+                        const std::string& seed_help, const std::string& default_out);
+void add_progress_flag(CLI::App& command, RequestArguments& arguments);
 
 /// What is asked for; prior and seed are as the campaign says where the command line does not, the
 /// criterion the `usual` one, or D where that is V and base and targets do not count.
-PlanRequest make_request(const PlanArguments& arguments, const io::CampaignFile* campaign,
+PlanRequest make_request(const RequestArguments& arguments, const io::CampaignFile* campaign,
                          Criterion usual);
 
 }  // namespace posewise::cli

@@ -20,7 +20,7 @@
 namespace posewise::cli {
 namespace {
 
-constexpr const char* footer = R"(
+constexpr const char* select_footer = R"(
 Example:
   posewise select campaign.yaml -m measurements.csv -k 12 --criterion d
   posewise select campaign.yaml --random 2000 -k 20 --prior --least-distance-deg 10
@@ -45,7 +45,7 @@ A file of --groups has the columns config,group.
 Ctrl-C or --time end the search with the best plan so far, written with its bound; exit code 0.
 The same seed gives the same plan, on any number of threads, unless time ended it.)";
 
-struct Arguments : PlanArguments {
+struct SelectArguments : RequestArguments {
     std::string measurements;
     std::string candidates;
     std::string blocks;
@@ -57,7 +57,7 @@ void require_usage(bool is_right, const char* option, const std::string& rule) {
     if (!is_right) throw CLI::ValidationError(option, rule);
 }
 
-void check_usage(const Arguments& arguments) {
+void check_select_usage(const SelectArguments& arguments) {
     const std::string& blocks = arguments.blocks;
     const bool is_plain = !blocks.empty();
     const PlanRequest& request = arguments.request;
@@ -76,13 +76,13 @@ void check_usage(const Arguments& arguments) {
                   "and --per-group need each other");
 }
 
-CandidateKind kind_of(const Arguments& arguments) {
+CandidateKind kind_of(const SelectArguments& arguments) {
     if (arguments.random) return CandidateKind::Random;
     if (!arguments.candidates.empty()) return CandidateKind::Configurations;
     return arguments.blocks.empty() ? CandidateKind::Measurements : CandidateKind::Blocks;
 }
 
-PlanRequest complete_request(const Arguments& arguments, const io::CampaignFile* campaign) {
+PlanRequest complete_request(const SelectArguments& arguments, const io::CampaignFile* campaign) {
     PlanRequest request =
         make_request(arguments, campaign, campaign != nullptr ? campaign->criterion : Criterion::D);
     request.sources.candidates = arguments.measurements + arguments.candidates + arguments.blocks;
@@ -90,7 +90,7 @@ PlanRequest complete_request(const Arguments& arguments, const io::CampaignFile*
     return request;
 }
 
-std::string default_out(const PlanSources& sources) {
+std::string default_select_out(const PlanSources& sources) {
     const std::string& path = sources.candidates.empty() ? sources.campaign : sources.candidates;
     return std::filesystem::path(path).stem().string() + ".plan.json";
 }
@@ -98,15 +98,14 @@ std::string default_out(const PlanSources& sources) {
 void print_plan(const Plan& plan, const io::CampaignFile* campaign, const std::string& out) {
     print(format_choice(plan));
     if (campaign != nullptr) print(detail::describe_scaling(*campaign, plan.request.repeats));
-    if (plan.request.has_prior) print("prior:      the scale, as standard deviation\n");
     print("plan:       " + out + '\n');
     if (plan.ending == Ending::Interrupted) {
         std::fputs("posewise: interrupted; the plan is the best so far\n", stderr);
     }
 }
 
-void select(const Arguments& arguments) {
-    check_usage(arguments);
+void select(const SelectArguments& arguments) {
+    check_select_usage(arguments);
     const InterruptFlag interrupted;
     const StopSignal stop{interrupted.get(), deadline_after(arguments.request.time_limit)};
     std::optional<io::CampaignFile> file;
@@ -114,7 +113,7 @@ void select(const Arguments& arguments) {
     if (!path.empty()) file = io::read_campaign(path);
     const PlanRequest request = complete_request(arguments, file ? &*file : nullptr);
     const PlanSources& sources = request.sources;
-    const std::string out = arguments.out.empty() ? default_out(sources) : arguments.out;
+    const std::string out = arguments.out.empty() ? default_select_out(sources) : arguments.out;
     check_outputs(
         {sources.campaign, sources.candidates, sources.augment, sources.test_poses, sources.groups},
         {out});
@@ -134,7 +133,7 @@ void select(const Arguments& arguments) {
     print_plan(plan, inputs.campaign ? &*inputs.campaign : nullptr, out);
 }
 
-void add_sources(CLI::App& command, Arguments& arguments) {
+void add_sources(CLI::App& command, SelectArguments& arguments) {
     PlanSources& source = arguments.request.sources;
     command.add_option("CAMPAIGN", source.campaign,
                        "Campaign file (YAML): robot, sensor, spread; not with --blocks");
@@ -159,7 +158,7 @@ void add_sources(CLI::App& command, Arguments& arguments) {
         ->check(real_number(1, 1e9));
 }
 
-void add_problem(CLI::App& command, Arguments& arguments) {
+void add_select_problem(CLI::App& command, SelectArguments& arguments) {
     PlanRequest& request = arguments.request;
     const auto count = whole_number(1, 1000000);
     command.add_option("-k,--poses", request.pose_count, "How many to choose")
@@ -194,7 +193,7 @@ void add_problem(CLI::App& command, Arguments& arguments) {
         ->check(real_number(0, 1e4));
 }
 
-void add_search(CLI::App& command, Arguments& arguments) {
+void add_select_search(CLI::App& command, SelectArguments& arguments) {
     command.add_option("--starts", arguments.request.starts, "Independent searches")
         ->check(whole_number(1, 1000000))
         ->capture_default_str();
@@ -207,13 +206,13 @@ void add_search(CLI::App& command, Arguments& arguments) {
 }  // namespace
 
 void add_select(CLI::App& program) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<SelectArguments>();
     CLI::App* command = program.add_subcommand(
         "select", "Choose the most informative configurations, with a proven bound");
     add_sources(*command, *arguments);
-    add_problem(*command, *arguments);
-    add_search(*command, *arguments);
-    command->footer(footer);
+    add_select_problem(*command, *arguments);
+    add_select_search(*command, *arguments);
+    command->footer(select_footer);
     command->callback([arguments] { select(*arguments); });
 }
 

@@ -14,7 +14,7 @@
 namespace posewise::cli {
 namespace {
 
-constexpr const char* footer = R"(
+constexpr const char* simulate_footer = R"(
 Example:
   posewise simulate campaign.yaml --truth 7 --poses 24 --repeats 10 --out simulated.csv
   posewise simulate campaign.yaml --configurations poses.csv --out simulated.csv
@@ -28,7 +28,7 @@ calibrate prints those it finds:
   parameter    value
   Tx1        -0.8412  mm)";
 
-struct Arguments {
+struct SimulateArguments {
     InputPaths paths;
     std::string configurations;
     std::optional<std::uint64_t> seed;
@@ -36,7 +36,8 @@ struct Arguments {
     SimulateOptions options;
 };
 
-std::vector<std::string> make_comments(const Arguments& arguments, const Campaign& campaign) {
+std::vector<std::string> make_comments(const SimulateArguments& arguments,
+                                       const Campaign& campaign) {
     const SimulateOptions& options = arguments.options;
     return {fmt::format("{}: simulated, not measured, by posewise {}", campaign.name, version),
             fmt::format("posewise simulate {} --truth {} --seed {} {} --repeats {}",
@@ -48,7 +49,7 @@ std::vector<std::string> make_comments(const Arguments& arguments, const Campaig
 }
 
 /// At random configurations, or at those of a file.
-Simulation simulate_as_asked(const Arguments& arguments, const io::CampaignFile& file) {
+Simulation simulate_as_asked(const SimulateArguments& arguments, const io::CampaignFile& file) {
     if (arguments.configurations.empty()) return simulate(file, arguments.options);
     const auto asked = io::read_configurations(arguments.configurations, file);
     Simulation simulation = simulate(file, asked.joints, asked.is_seen, arguments.options);
@@ -56,7 +57,7 @@ Simulation simulate_as_asked(const Arguments& arguments, const io::CampaignFile&
     return simulation;
 }
 
-void run_simulation(Arguments arguments) {
+void run_simulation(SimulateArguments arguments) {
     check_outputs({arguments.paths.campaign, arguments.configurations}, {arguments.out});
     const auto file = io::read_campaign(arguments.paths.campaign);
     arguments.options.seed = arguments.seed.value_or(file.seed);
@@ -71,7 +72,7 @@ void run_simulation(Arguments arguments) {
                   detail::value_table(file, simulation.truth));
 }
 
-void add_options(CLI::App& command, Arguments& arguments) {
+void add_simulate_options(CLI::App& command, SimulateArguments& arguments) {
     const auto count = whole_number(1, 100000);
     command.add_option("--truth", arguments.options.truth_seed, "Seed of the true parameters")
         ->check(whole_number(0, largest_seed))
@@ -99,11 +100,11 @@ void add_options(CLI::App& command, Arguments& arguments) {
 }  // namespace
 
 void add_simulate(CLI::App& program) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<SimulateArguments>();
     CLI::App* command = program.add_subcommand("simulate", "Make a synthetic measurement file");
     add_campaign_argument(*command, arguments->paths);
-    add_options(*command, *arguments);
-    command->footer(footer);
+    add_simulate_options(*command, *arguments);
+    command->footer(simulate_footer);
     command->callback([arguments] { run_simulation(*arguments); });
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* footer = R"(
+constexpr const char* study_footer = R"(
 Example:
   posewise study campaign.yaml -m measurements.csv --criteria v,d --random 100 --plot study.svg
 
@@ -39,7 +39,7 @@ count as the worst ("-": no number). The pose count from which a column stays fl
 With few configurations there are no splits (--splits 0): each subset is judged on what it leaves,
 and one that takes the telling configurations is judged on easier ones than others are.)";
 
-struct Arguments {
+struct StudyArguments {
     std::optional<bool> prior;
     InputPaths paths;
     std::vector<Criterion> criteria;
@@ -139,7 +139,7 @@ void draw_plot(const std::string& image_path, const Study& study) {
     detail::write_file(image_path, detail::read_file(image));
 }
 
-void study(const Arguments& arguments) {
+void study(const StudyArguments& arguments) {
     const InputPaths& paths = arguments.paths;
     if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
     check_outputs({paths.campaign, paths.measurements}, {arguments.csv, arguments.plot});
@@ -162,7 +162,7 @@ void study(const Arguments& arguments) {
     if (!arguments.plot.empty()) draw_plot(arguments.plot, result);
 }
 
-void add_options(CLI::App& command, Arguments& arguments) {
+void add_study_options(CLI::App& command, StudyArguments& arguments) {
     command.add_option_function<std::string>(
         "-c,--criteria",
         [&arguments](const std::string& text) { arguments.criteria = parse_criteria(text); },
@@ -207,13 +207,13 @@ void add_options(CLI::App& command, Arguments& arguments) {
 }  // namespace
 
 void add_study(CLI::App& program) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<StudyArguments>();
     CLI::App* command =
         program.add_subcommand("study", "Accuracy against number of poses, optimal and random");
     add_campaign_argument(*command, arguments->paths);
     add_measurements_option(*command, arguments->paths);
-    add_options(*command, *arguments);
-    command->footer(footer);
+    add_study_options(*command, *arguments);
+    command->footer(study_footer);
     command->callback([arguments] { study(*arguments); });
 }
 

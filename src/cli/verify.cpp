@@ -15,7 +15,7 @@
 namespace posewise::cli {
 namespace {
 
-constexpr const char* footer = R"(
+constexpr const char* verify_footer = R"(
 Example:
   posewise verify measurements.plan.json
 
@@ -31,7 +31,7 @@ seen), the value, the predicted accuracy and each parameter's standard deviation
 visit is not checked, and its bounds are not proven by what the file holds.
 Exit code: 0 everything is as stated, 1 something is not.)";
 
-struct Arguments {
+struct VerifyArguments {
     std::string plan;
     std::string campaign;
     std::string candidates;
@@ -40,7 +40,7 @@ struct Arguments {
     std::string test_poses;
 };
 
-void redirect(PlanSources& sources, const Arguments& arguments) {
+void redirect(PlanSources& sources, const VerifyArguments& arguments) {
     const auto redirect_one = [](std::string& path, const std::string& other) {
         if (!other.empty()) path = other;
     };
@@ -52,7 +52,7 @@ void redirect(PlanSources& sources, const Arguments& arguments) {
 }
 
 /// Throws for files that a plan of this kind has none of.
-void check_usage(const Arguments& arguments, CandidateKind kind) {
+void check_verify_usage(const VerifyArguments& arguments, CandidateKind kind) {
     const std::string others = arguments.groups + arguments.test_poses;
     if (kind == CandidateKind::Pool && !(arguments.candidates + others).empty()) {
         throw CLI::ValidationError("PLAN", "is a pose plan, which takes --campaign and --augment");
@@ -96,11 +96,11 @@ Verification verify_continuous(const Plan& plan, const std::string& path) {
     return verify(plan, campaign, options);
 }
 
-void verify_file(const Arguments& arguments) {
+void verify_file(const VerifyArguments& arguments) {
     Plan plan = io::read_plan(arguments.plan);
     redirect(plan.request.sources, arguments);
     const std::string_view criterion = criterion_name(plan.request.criterion);
-    check_usage(arguments, plan.kind);
+    check_verify_usage(arguments, plan.kind);
     if (!plan.is_continuous()) {
         const Verification verification = verify_choice(plan);
         print(fmt::format("{}: {} of {} candidates by {}\n", arguments.plan,
@@ -115,7 +115,7 @@ void verify_file(const Arguments& arguments) {
 }  // namespace
 
 void add_verify(CLI::App& program) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<VerifyArguments>();
     CLI::App* command =
         program.add_subcommand("verify", "Check a plan's value, bound and efficiency");
     command->add_option("PLAN", arguments->plan, "Plan file, as select or plan writes it")
@@ -128,7 +128,7 @@ void add_verify(CLI::App& program) {
     command->add_option("--groups", arguments->groups, "As of select, if it is elsewhere now");
     command->add_option("--test-poses", arguments->test_poses,
                         "As of select, if it is elsewhere now");
-    command->footer(footer);
+    command->footer(verify_footer);
     command->callback([arguments] { verify_file(*arguments); });
 }
 

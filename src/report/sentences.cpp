@@ -60,7 +60,9 @@ std::string describe_scaling(const Campaign& campaign, double repeats) {
     add(TermKind::Gravity, "gravity", campaign.spread.gravity);
     add(TermKind::Harmonic, "harmonic", campaign.spread.harmonic);
     if (!campaign.spread.by_name.empty()) text += ", others by name in the campaign file";
-    return text + '\n';
+    text += '\n';
+    if (campaign.spread.is_prior) text += "prior: the scale, as standard deviation\n";
+    return text;
 }
 
 std::string describe_looseness(double efficiency, Index starts_at_best, Index starts) {

@@ -49,7 +49,7 @@ TEST_F(Commands, IndicesCountWhatThePriorTells) {
     campaign.insert(campaign.find("  elements:"), "  errors: full\n");
     write_text("full.yaml", campaign);
     const std::string text = run_well("indices full.yaml -m s.csv");
-    EXPECT_NE(text.find("prior:      the scale"), std::string::npos);
+    EXPECT_NE(text.find("with the prior"), std::string::npos);
     std::istringstream line(text.substr(text.find("\nv ")));
     std::string name, with_prior, plain;
     line >> name >> with_prior >> plain;

@@ -20,6 +20,10 @@ std::string format_robot(const Chain& robot);
 /// no measurement can tell it from others, the errors that do the same, as text.
 std::string format(const Inspection& inspection);
 
+/// Every index of measured configurations, and the directions they hardly tell, as text: all that
+/// `posewise indices` prints.
+std::string format(const Rating& rating, const Campaign& campaign);
+
 /// Says that there is no clear gap between what is identifiable and what is not, where that is so.
 std::string describe_gap(const Inspection& inspection);
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
+#include "posewise/criteria/criterion.hpp"
 #include "posewise/jacobian/identifiability.hpp"
-#include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/measurements.hpp"
 
 namespace posewise {
 
@@ -25,5 +27,26 @@ Inspection inspect(const Campaign& campaign, const Chain& declared, bool is_stat
 /// Why it is not clear what is identifiable: the parameters in the weakest direction kept. Empty if
 /// there is a clear gap, or a prior, which holds what the poses hardly tell.
 std::vector<std::string> find_doubtful_parameters(const Inspection& inspection);
+
+/// How much configurations tell about the parameters, by every index.
+struct Indices {
+    std::array<double, all_criteria.size()> values{};  ///< in the order of all_criteria
+    double condition = 0;  ///< largest singular value by the smallest; infinity if that is zero
+};
+
+/// What measured configurations tell before any calibration.
+struct Rating {
+    Index configurations = 0;
+    Index parameters = 0;
+    double repeats = 1;                  ///< samples per configuration, on average
+    Indices scaled;                      ///< whitened, per expected error, with what a prior tells
+    Indices plain;                       ///< in mm and mrad, without a prior
+    std::vector<WeakDirection> weakest;  ///< of the scaled, weakest first
+};
+
+/// Rates the measured configurations with base and targets registered from the measurements; G and
+/// V predict the configurations themselves. Names the `directions` weakest. Throws InputError if
+/// base or targets cannot be registered.
+Rating rate(const Campaign& campaign, const Measurements& measurements, Index directions = 3);
 
 }  // namespace posewise

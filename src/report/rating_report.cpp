@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include "../core/format.hpp"
+#include "posewise/report/reports.hpp"
+#include "sentences.hpp"
+#include "table.hpp"
+
+namespace posewise {
+namespace {
+
+detail::Table index_table(const Rating& rating, bool has_prior) {
+    detail::Table table{
+        {"index", has_prior ? "whitened, scaled, with the prior" : "whitened, scaled",
+         "plain, mm and mrad"},
+        {}};
+    for (std::size_t i = 0; i < all_criteria.size(); ++i) {
+        table.rows.push_back({std::string(criterion_name(all_criteria[i])),
+                              detail::format_short(rating.scaled.values[i], 6),
+                              detail::format_short(rating.plain.values[i], 6)});
+    }
+    table.rows.push_back({"condition", detail::format_short(rating.scaled.condition, 6),
+                          detail::format_short(rating.plain.condition, 6)});
+    return table;
+}
+
+/// The direction in words: errors in mm and mrad, and how well their sum is known.
+std::string describe_direction(const Campaign& campaign, const WeakDirection& direction) {
+    const auto names = parameter_names(campaign);
+    const auto is_angle = parameter_is_angle(campaign);
+    const VectorXd scale = parameter_scale(campaign);
+    std::string terms;
+    for (const ParameterTerm& term : direction.terms) {
+        const auto k = static_cast<std::size_t>(term.parameter);
+        terms += terms.empty() ? "" : ", ";
+        terms += detail::format_error(term.coefficient * scale[term.parameter], is_angle[k]) + ' ' +
+                 names[k];
+    }
+    if (!(direction.singular_value > 0)) return "not seen at all: " + terms;
+    return fmt::format("{} % of the expected size: {}",
+                       detail::format_short(100 / direction.singular_value, 3), terms);
+}
+
+}  // namespace
+
+std::string format(const Rating& rating, const Campaign& campaign) {
+    std::string text =
+        fmt::format("{} configurations, {} parameters\n{}", rating.configurations,
+                    rating.parameters, detail::describe_scaling(campaign, rating.repeats));
+    text += format_section("Indices (-inf, condition inf: the parameters are not identifiable)",
+                           index_table(rating, campaign.spread.is_prior));
+    text += "\nWeakest directions, known to\n\n";
+    for (const WeakDirection& direction : rating.weakest) {
+        text += "  " + describe_direction(campaign, direction) + '\n';
+    }
+    return text;
+}
+
+}  // namespace posewise
