@@ -194,9 +194,10 @@ void add_select_problem(CLI::App& command, SelectArguments& arguments) {
 }
 
 void add_select_search(CLI::App& command, SelectArguments& arguments) {
-    command.add_option("--starts", arguments.request.starts, "Independent searches")
-        ->check(whole_number(1, 1000000))
-        ->capture_default_str();
+    command
+        .add_option("--starts", arguments.request.starts,
+                    "Independent searches (default: 20, fewer where each takes seconds)")
+        ->check(whole_number(1, 1000000));
     add_search_options(command, arguments,
                        "Of the random starts and of --random (default: the campaign's, else 1)",
                        "<candidates>.plan.json");

@@ -3,6 +3,14 @@
 #include <algorithm>
 
 namespace posewise::detail {
+namespace {
+
+/// Digits that updates may lose: with this many of them in a row, each by a removal that leaves so
+/// small a part of the information, what is cached is right to nine digits.
+constexpr int most_updates = 32;
+constexpr double largest_growth = 1e6;
+
+}  // namespace
 
 Shortlist make_shortlist(const Blocks& candidates, std::vector<Index> members) {
     Shortlist shortlist{std::move(members), {}};
@@ -20,18 +28,21 @@ double Gains::sensitivity_of(const Eigen::Ref<const RowMatrixXd>& block) const {
     return (block * slope_).cwiseProduct(block).sum();
 }
 
-void Gains::move_to(const MatrixXd& M, const MatrixXd& C_root) {
+void Gains::factorise(const MatrixXd& M) {
     M_ = M;
     cholesky_.compute(M);
-    const MatrixXd identity = MatrixXd::Identity(M.rows(), M.cols());
-    const MatrixXd root = C_root.size() == 0 ? MatrixXd() : cholesky_.solve(C_root);
-    C_ = C_root * C_root.transpose();
-    slope_ = is_determinant() ? MatrixXd(cholesky_.solve(identity)) : root * root.transpose();
-    trace_ = is_determinant() ? 0 : root.cwiseProduct(C_root).sum();
+    if (is_determinant()) {
+        slope_ = cholesky_.solve(MatrixXd::Identity(M.rows(), M.cols()));
+        return;
+    }
+    root_ = cholesky_.solve(C_root_);
+    slope_ = root_ * root_.transpose();
+    trace_ = root_.cwiseProduct(C_root_).sum();
+}
+
+void Gains::find_sensitivities() {
     const auto count = static_cast<Index>(shortlist_.members.size());
     if (shortlist_.lanes.rows > 0) {
-        G_ = make_grams(shortlist_.lanes, cholesky_.matrixU().solve(identity));
-        if (!is_determinant()) H_ = make_grams(shortlist_.lanes, root);
         sensitivity_ = gram_traces(shortlist_.lanes, is_determinant() ? G_ : H_).head(count);
         return;
     }
@@ -42,13 +53,57 @@ void Gains::move_to(const MatrixXd& M, const MatrixXd& C_root) {
     }
 }
 
+void Gains::move_to(const MatrixXd& M, const MatrixXd& C_root) {
+    C_root_ = C_root;
+    C_ = C_root * C_root.transpose();
+    factorise(M);
+    updates_ = 0;
+    if (shortlist_.lanes.rows > 0) {
+        const MatrixXd identity = MatrixXd::Identity(M.rows(), M.cols());
+        G_ = make_grams(shortlist_.lanes, cholesky_.matrixU().solve(identity));
+        if (!is_determinant()) H_ = make_grams(shortlist_.lanes, root_);
+    }
+    find_sensitivities();
+}
+
+void Gains::exchange(const Eigen::Ref<const RowMatrixXd>& added, const MatrixXd& M) {
+    const bool has_lanes = shortlist_.lanes.rows > 0;
+    if (has_lanes && (!is_removal_accurate_ || ++updates_ > most_updates)) {
+        return move_to(M, C_root_);
+    }
+    if (has_lanes) {
+        // M'^-1 = W - T T^T and M'^-1 C M'^-1 = W C W - T S^T - S T^T.
+        const auto apply_W = [&](const MatrixXd& X) -> MatrixXd {
+            return cholesky_.solve(X) + P_ * (P_.transpose() * X);
+        };
+        const MatrixXd WA = apply_W(added.transpose());
+        const MatrixXd growth = MatrixXd::Identity(added.rows(), added.rows()) + added * WA;
+        const MatrixXd T = growth.llt().matrixL().solve(WA.transpose()).transpose();
+        MatrixXd S;
+        if (!is_determinant()) {
+            const MatrixXd CT = C_ * T;
+            S = apply_W(CT) - 0.5 * T * (T.transpose() * CT);
+        }
+        update_grams(shortlist_.lanes, P_, Q_, 1, G_, H_);
+        update_grams(shortlist_.lanes, T, S, -1, G_, H_);
+    }
+    factorise(M);
+    find_sensitivities();
+}
+
 bool Gains::remove(const Eigen::Ref<const RowMatrixXd>& block) {
     const Eigen::LLT<MatrixXd> remaining(M_ - block.transpose() * block);
     if (remaining.info() != Eigen::Success) return false;
     const MatrixXd WB = remaining.solve(block.transpose());
-    const MatrixXd growth = MatrixXd::Identity(block.rows(), block.rows()) + block * WB;
-    P_ = growth.llt().matrixL().solve(WB.transpose()).transpose();
-    if (!is_determinant()) remaining_trace_ = trace_ + (C_ * P_).cwiseProduct(P_).sum();
+    const Eigen::LLT<MatrixXd> growth(MatrixXd::Identity(block.rows(), block.rows()) + block * WB);
+    P_ = growth.matrixL().solve(WB.transpose()).transpose();
+    is_removal_accurate_ =
+        growth.matrixLLT().diagonal().array().square().maxCoeff() < largest_growth;
+    if (is_determinant()) return true;
+    // W C W - M^-1 C M^-1 = P Q^T + Q P^T with Q = M^-1 C P + P (P^T C P) / 2.
+    const MatrixXd CP = C_ * P_;
+    remaining_trace_ = trace_ + CP.cwiseProduct(P_).sum();
+    Q_ = cholesky_.solve(CP) + 0.5 * P_ * (P_.transpose() * CP);
     return true;
 }
 
@@ -77,10 +132,7 @@ VectorXd Gains::compute(const std::vector<Index>& positions) {
     if (is_determinant()) {
         lane_determinants(shortlist_.lanes, G_, P_, asked_, gains_);
     } else {
-        // W C W - M^-1 C M^-1 = P Q^T + Q P^T with Q = M^-1 C P + P (P^T C P) / 2.
-        const MatrixXd CP = C_ * P_;
-        const MatrixXd Q = cholesky_.solve(CP) + 0.5 * P_ * (P_.transpose() * CP);
-        lane_traces(shortlist_.lanes, G_, H_, P_, Q, asked_, gains_);
+        lane_traces(shortlist_.lanes, G_, H_, P_, Q_, asked_, gains_);
     }
     for (Index k = 0; k < result.size(); ++k) {
         const Index at = positions[static_cast<std::size_t>(k)];

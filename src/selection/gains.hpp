@@ -25,6 +25,10 @@ class Gains {
     /// From now on about M (positive definite) and C = C_root C_root^T; an empty C_root asks for
     /// determinants.
     void move_to(const MatrixXd& M, const MatrixXd& C_root);
+    /// The same about M, which differs by one exchange: `added` for the block that was removed
+    /// last. Updates what is cached by low rank, a fraction of move_to()'s work for many
+    /// parameters.
+    void exchange(const Eigen::Ref<const RowMatrixXd>& added, const MatrixXd& M);
 
     /// By M's slope, trace(B_i slope B_i^T): that of log det M, or of -trace(C M^-1).
     double sensitivity(Index position) const { return sensitivity_[position]; }
@@ -43,18 +47,25 @@ class Gains {
 
   private:
     bool is_determinant() const { return C_.size() == 0; }
+    void factorise(const MatrixXd& M);
+    void find_sensitivities();
     double compute_plainly(Index position, const MatrixXd& W, const MatrixXd& WCW) const;
 
     const Blocks& candidates_;
     const Shortlist& shortlist_;
+    MatrixXd C_root_;
     MatrixXd C_;
     Eigen::LLT<MatrixXd> cholesky_;  // of M
     MatrixXd M_;
+    MatrixXd root_;         // M^-1 C_root
     MatrixXd slope_;        // M^-1, or M^-1 C M^-1
     LaneGrams G_;           // B_i M^-1 B_i^T
     LaneGrams H_;           // B_i M^-1 C M^-1 B_i^T
     VectorXd sensitivity_;  // of the shortlist's members
     MatrixXd P_;
+    MatrixXd Q_;  // W C W - M^-1 C M^-1 = P Q^T + Q P^T
+    bool is_removal_accurate_ = false;
+    int updates_ = 0;   // since all was computed anew
     double trace_ = 0;  // of C M^-1
     double remaining_trace_ = 0;
     std::vector<char> asked_;  // groups of candidates

@@ -57,29 +57,48 @@ POSEWISE_INLINE void add_product(const V (&X)[R][R], const V (&Y)[R][R], V (&S)[
     }
 }
 
-/// G += X X^T.
+/// G += sign X X^T and, where there is an H, H += sign (X Y^T + Y X^T). P and Q are zero beyond
+/// their first `depth` rows.
 template <int R>
-struct AccumulateGrams {
+struct UpdateGrams {
     const LaneBlocks& blocks;
     const double* P;
+    const double* Q;
     Index depth;
+    double sign;
     LaneGrams& G;
+    LaneGrams* H;
 
     template <typename V>
     POSEWISE_INLINE void run() const {
-        constexpr int size = packed_size(R);
         for (Index g = 0; g < blocks.groups; ++g) {
-            const Lane* B = blocks.entries.data() + g * R * blocks.parameters;
-            Lane* gram = G.data() + g * size;
-            for (int part = 0; part < lane_width / simd::width<V>; ++part) {
-                V X[R][R];
-                V S[size];
-                multiply<R, V>(B, part, P, blocks.parameters, depth, X);
-                for (int k = 0; k < size; ++k) S[k] = at<V>(gram + k, part);
-                add_product<R, V>(X, X, S);
-                for (int k = 0; k < size; ++k) at<V>(gram + k, part) = S[k];
-            }
+            for (int part = 0; part < lane_width / simd::width<V>; ++part) run_part<V>(g, part);
         }
+    }
+
+    template <typename V>
+    POSEWISE_INLINE void run_part(Index g, int part) const {
+        constexpr int size = packed_size(R);
+        const Lane* B = blocks.entries.data() + g * R * blocks.parameters;
+        V X[R][R];
+        V signed_X[R][R];
+        V S[size];
+        multiply<R, V>(B, part, P, blocks.parameters, depth, X);
+        for (int a = 0; a < R; ++a) {
+            for (int c = 0; c < R; ++c) signed_X[a][c] = sign * X[a][c];
+        }
+        Lane* gram = G.data() + g * size;
+        for (int k = 0; k < size; ++k) S[k] = at<V>(gram + k, part);
+        add_product<R, V>(signed_X, X, S);
+        for (int k = 0; k < size; ++k) at<V>(gram + k, part) = S[k];
+        if (H == nullptr) return;
+        V Y[R][R];
+        multiply<R, V>(B, part, Q, blocks.parameters, depth, Y);
+        gram = H->data() + g * size;
+        for (int k = 0; k < size; ++k) S[k] = at<V>(gram + k, part);
+        add_product<R, V>(signed_X, Y, S);
+        add_product<R, V>(Y, signed_X, S);
+        for (int k = 0; k < size; ++k) at<V>(gram + k, part) = S[k];
     }
 };
 
@@ -253,10 +272,20 @@ LaneGrams make_grams(const LaneBlocks& blocks, const MatrixXd& F) {
             const RowMatrixXd P = column_tile(F, first, R);
             Index depth = P.rows();
             while (depth > 0 && P.row(depth - 1).isZero(0)) --depth;
-            simd::run(AccumulateGrams<R>{blocks, P.data(), depth, G});
+            simd::run(UpdateGrams<R>{blocks, P.data(), nullptr, depth, 1, G, nullptr});
         }
     });
     return G;
+}
+
+void update_grams(const LaneBlocks& blocks, const MatrixXd& P, const MatrixXd& Q, double sign,
+                  LaneGrams& G, LaneGrams& H) {
+    const RowMatrixXd tile = column_tile(P, 0, blocks.rows);
+    const RowMatrixXd other = column_tile(Q, 0, blocks.rows);
+    with_height(blocks.rows, [&](auto R) {
+        simd::run(UpdateGrams<R>{blocks, tile.data(), other.data(), P.rows(), sign, G,
+                                 H.empty() ? nullptr : &H});
+    });
 }
 
 VectorXd gram_traces(const LaneBlocks& blocks, const LaneGrams& G) {

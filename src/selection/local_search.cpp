@@ -79,9 +79,9 @@ class LocalSearch {
     }
 
     void settle() {
-        M_ = problem_.regularised_information(choice_.poses);
-        choice_.score = problem_.score(M_);
-        neighbourhood_.move_to(M_);
+        const MatrixXd M = problem_.regularised_information(choice_.poses);
+        choice_.score = problem_.score(M);
+        neighbourhood_.move_to(M);
     }
 
     bool exchange_at(std::size_t at) {
@@ -92,10 +92,12 @@ class LocalSearch {
         if (found >= 0) {
             const Index candidate = shortlist_.members[static_cast<std::size_t>(found)];
             choice_.poses[at] = candidate;
-            const Score score = problem_.score(problem_.regularised_information(choice_.poses));
+            const MatrixXd M = problem_.regularised_information(choice_.poses);
+            const Score score = problem_.score(M);
             if (is_better(score, choice_.score)) {
                 occupancy_.add(candidate);
-                settle();
+                choice_.score = score;
+                neighbourhood_.exchange(candidate, M);
                 return true;
             }
             choice_.poses[at] = removed;
@@ -109,7 +111,6 @@ class LocalSearch {
     Neighbourhood neighbourhood_;
     Occupancy occupancy_;
     ScoredPoses choice_;
-    MatrixXd M_;  // regularised
 };
 
 /// Kicks without success to give up after: ten times as many where few candidates make them cheap,

@@ -87,6 +87,12 @@ void Neighbourhood::move_to(const MatrixXd& M) {
     gains_.move_to(M, make_C_root(M));
 }
 
+void Neighbourhood::exchange(Index added, const MatrixXd& M) {
+    if (ranking_ != Ranking::Exact) return move_to(M);
+    M_ = M;
+    gains_.exchange(candidates_[added], M);
+}
+
 bool Neighbourhood::is_allowed(Index position, Index removed, const Occupancy& occupancy) const {
     const Index candidate = shortlist_.members[static_cast<std::size_t>(position)];
     return candidate != removed && occupancy.allows(candidate);

@@ -23,6 +23,8 @@ class Neighbourhood {
 
     /// The plan's information matrix is now M (positive definite).
     void move_to(const MatrixXd& M);
+    /// The same after the last pose asked about gave way to the `added` one.
+    void exchange(Index added, const MatrixXd& M);
 
     /// Position in the shortlist of the allowed candidate that makes the objective of (M -
     /// B^T B of `removed` + its own) largest; -1 if none is found that exceeds `value`, the

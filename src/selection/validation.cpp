@@ -98,7 +98,7 @@ void validate(const Blocks& candidates, const SelectOptions& options) {
                          " columns, must have " + std::to_string(candidates.parameter_count()) +
                          " as the candidates");
     }
-    require_at_least("starts", options.starts, 1);
+    require_at_least("starts", options.starts, 0);
     require_at_least("kicks", options.kicks, 0);
     require_at_least("shortlist", options.shortlist, 0);
     require_at_least("held pose count", options.held_pose_count, 0);

@@ -25,7 +25,21 @@ void WorkingSet::add(const std::vector<Index>& candidates) {
 
 MatrixXd WorkingSet::weighted_information(const VectorXd& weights) const {
     const Index L = candidates_->parameter_count();
-    const VectorXd sum = packed_.transpose() * weights;
+    // Most weights are zero after a few steps.
+    std::vector<Index> used;
+    for (Index m = 0; m < weights.size(); ++m) {
+        if (weights[m] != 0) used.push_back(m);
+    }
+    VectorXd sum = VectorXd::Zero(L * (L + 1) / 2);
+    constexpr std::size_t rows = 4;  // at a time
+    std::size_t at = 0;
+    const auto row = [&](std::size_t k) {
+        return weights[used[k]] * packed_.row(used[k]).transpose();
+    };
+    for (; at + rows <= used.size(); at += rows) {
+        sum += row(at) + row(at + 1) + row(at + 2) + row(at + 3);
+    }
+    for (; at < used.size(); ++at) sum += row(at);
     MatrixXd M(L, L);
     Index k = 0;
     for (Index i = 0; i < L; ++i) {
@@ -45,7 +59,11 @@ VectorXd WorkingSet::sensitivities(const MatrixXd& Z) const {
         packed[k] = Z(i, i);
         k += L - i;
     }
-    return packed_ * packed;
+    VectorXd d(size());
+    for_each_range(size(), 64, [&](Index begin, Index end) {
+        d.segment(begin, end - begin).noalias() = packed_.middleRows(begin, end - begin) * packed;
+    });
+    return d;
 }
 
 }  // namespace posewise::detail

@@ -224,14 +224,22 @@ TEST(SelectByExchange, PassesOnWhatTheProgressCallbackThrows) {
     EXPECT_THROW(select_poses(test::random_blocks(20, 1, 4, 5), options), std::domain_error);
 }
 
+TEST(SelectByExchange, TakesFewerStartsWhereEachTakesLong) {
+    SelectOptions options;
+    options.pose_count = 10;
+    options.kicks = 0;
+    EXPECT_EQ(select_poses(test::random_blocks(30, 3, 5, 1), options).starts, 20);
+    EXPECT_EQ(select_poses(test::random_blocks(300, 12, 90, 1), options).starts, 12);
+}
+
 TEST(SelectByExchange, RefusesUnusableInput) {
     const Blocks candidates = test::random_blocks(6, 1, 4, 1);
     expect_refusal(candidates, make_options(Criterion::D, 7), "pose count is 7");
     expect_refusal(candidates, make_options(Criterion::D, 0), "pose count is 0");
     expect_refusal(candidates, make_options(Criterion::D, 3), "more poses");
     SelectOptions options = make_options(Criterion::D, 5);
-    options.starts = 0;
-    expect_refusal(candidates, options, "starts is 0");
+    options.starts = -1;
+    expect_refusal(candidates, options, "starts is -1");
     options = make_options(Criterion::D, 5);
     options.excluded = {2, 4};
     expect_refusal(candidates, options, "from 1 to 4");

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "../../src/core/sensitivities.hpp"
+#include "../../src/selection/gains.hpp"
 #include "../../src/selection/projected_gradient.hpp"
 #include "support/designs.hpp"
 
@@ -50,6 +51,44 @@ TEST(Lanes, GainsMatchTheirDefinitionForEveryHeight) {
             EXPECT_NEAR(determinants[group].of[lane], determinant, 1e-9 * determinant);
             EXPECT_NEAR(traces[group].of[lane], trace, 1e-9 * (1 + std::abs(trace)));
             EXPECT_NEAR(gram_trace[i], (B * F).squaredNorm(), 1e-10 * gram_trace[i]);
+        }
+    }
+}
+
+/// What a removal of block 0 from M and each block's addition gain, and the sensitivities.
+VectorXd everything_known(Gains& gains, const Blocks& candidates) {
+    const Index count = candidates.count();
+    EXPECT_TRUE(gains.remove(candidates[0]));
+    VectorXd known(2 * count + 2);
+    known.head(count) = gains.compute(indices_below(count));
+    for (Index i = 0; i < count; ++i) known[count + i] = gains.sensitivity(i);
+    known.tail(2) << gains.trace(), gains.remaining_trace();
+    return known;
+}
+
+TEST(Gains, AreTheSameByUpdatesAsFromTheStart) {
+    for (const Index rows : {1, 3, 9, 13}) {  // 13: no kernel
+        constexpr Index L = 15;
+        const Blocks candidates = test::random_blocks(40, rows, L, 1);
+        const Shortlist shortlist = make_shortlist(candidates, indices_below(40));
+        const MatrixXd C_root = test::random_blocks(L, 1, L, 2).matrix;
+        for (const MatrixXd& root : {MatrixXd(), C_root}) {
+            std::vector<Index> poses = indices_below(20);
+            Gains updated(candidates, shortlist);
+            updated.move_to(information(candidates, poses), root);
+            for (Index i = 1; i < 20; ++i) {
+                ASSERT_TRUE(updated.remove(candidates[i]));
+                poses[static_cast<std::size_t>(i)] = i + 20;
+                updated.exchange(candidates[i + 20], information(candidates, poses));
+            }
+            Gains anew(candidates, shortlist);
+            anew.move_to(information(candidates, poses), root);
+            const VectorXd expected = everything_known(anew, candidates);
+            const VectorXd found = everything_known(updated, candidates);
+            for (Index k = 0; k < expected.size(); ++k) {
+                EXPECT_NEAR(found[k], expected[k], 1e-9 * std::abs(expected[k]))
+                    << rows << ' ' << k;
+            }
         }
     }
 }

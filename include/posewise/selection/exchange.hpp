@@ -28,7 +28,9 @@ struct SelectOptions {
     double least_distance = 0;    ///< Euclidean, between any two different poses chosen
     std::vector<std::string> column_names;  ///< for messages; empty: columns are numbered from 1
 
-    Index starts = 20;  ///< independent searches
+    /// Independent searches. 0: 20, fewer (2 at least) where blocks of many rows and parameters
+    /// make each take seconds.
+    Index starts = 0;
     /// Perturbations of each start's plan without success until it ends; ten times as many where
     /// the shortlist is at most 64 candidates.
     Index kicks = 20;

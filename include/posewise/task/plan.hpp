@@ -45,7 +45,7 @@ struct PlanRequest {
     bool has_prior = false;
     bool is_focused_on_robot = false;  ///< base and targets are estimated along, but do not count
     double repeats = 0;      ///< samples of each configuration; 0: as in measured candidates, or 1
-    Index starts = 20;       ///< independent searches
+    Index starts = 0;        ///< independent searches; 0: as many as the search takes by default
     std::uint64_t seed = 1;  ///< of all draws
     PlanSources sources;
 
