@@ -228,6 +228,7 @@ TEST(SelectByExchange, TakesFewerStartsWhereEachTakesLong) {
     SelectOptions options;
     options.pose_count = 10;
     options.kicks = 0;
+    options.enumeration = 0;
     EXPECT_EQ(select_poses(test::random_blocks(30, 3, 5, 1), options).starts, 20);
     EXPECT_EQ(select_poses(test::random_blocks(300, 12, 90, 1), options).starts, 12);
 }
