@@ -15,6 +15,8 @@ using detail::Quantity;
 using detail::YamlMap;
 using detail::YamlValue;
 
+constexpr std::size_t most_bytes = 1 << 20;  // of a file
+
 void read_base(const YamlValue& value, Campaign& campaign) {
     const YamlMap base(value, {"position_<length>", "rpy_<angle>", "known"});
     campaign.nominal.world_from_base = read_frame(base);
@@ -25,7 +27,9 @@ void read_base(const YamlValue& value, Campaign& campaign) {
     std::copy(marks.begin(), marks.end(), campaign.base_is_known.begin());
 }
 
-ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign) {
+/// `has_stated_errors`: the campaign has no other error parameters than the file says.
+ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
+                            bool has_stated_errors) {
     const YamlMap map(value, {"length_<length>", "angle_<angle>", "gravity_<angle>",
                               "harmonic_<angle>", "offset_<angle>", "parameters"});
     ParameterSpread spread = campaign.spread;
@@ -44,6 +48,7 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign) {
     for (const detail::YamlEntry& entry : parameters->entries()) {
         const auto found = std::find(names.begin(), names.end(), entry.key);
         if (found == names.end()) {
+            if (!has_stated_errors) continue;
             throw input_error_at(entry.key_location, detail::quote(entry.key) +
                                                          " is no parameter of this campaign; " +
                                                          detail::suggest(entry.key, names));
@@ -118,20 +123,9 @@ std::string read_name(const YamlValue& value) {
     return name;
 }
 
-}  // namespace
-
-void set_prior(CampaignFile& campaign, bool is_prior) {
-    const bool is_dropped = campaign.spread.is_prior && !is_prior;
-    campaign.spread.is_prior = is_prior;
-    if (!is_dropped || campaign.error_model != ErrorModel::Full) return;
-    static_cast<Campaign&>(campaign) = with_robot(campaign, irreducible_model(campaign));
-}
-
-CampaignFile read_campaign(const std::string& path) {
-    return parse_campaign(detail::read_file(path, 1 << 20), path);
-}
-
-CampaignFile parse_campaign(const std::string& content, const std::string& path) {
+/// With that error model, if one is asked for, else with the one that the file says.
+CampaignFile parse(const std::string& content, const std::string& path,
+                   std::optional<ErrorModel> errors) {
     const YamlMap map(
         detail::parse_yaml(content, path),
         {"name", "robot", "sensor", "model_error_<length>", "model_error_orientation_<angle>",
@@ -141,7 +135,7 @@ CampaignFile parse_campaign(const std::string& content, const std::string& path)
     Campaign& campaign = file;
     campaign.name = read_name(map.require("name"));
 
-    const detail::RobotSection robot = read_robot(map.require("robot"));
+    const detail::RobotSection robot = read_robot(map.require("robot"), errors);
     file.declared_robot = robot.declared;
     file.error_model = robot.error_model;
     file.urdf = robot.urdf;
@@ -161,7 +155,9 @@ CampaignFile parse_campaign(const std::string& content, const std::string& path)
     }
     read_model_error(map, "model_error", campaign.model_error);
     read_model_error(map, "model_error_orientation", campaign.model_error_orientation);
-    if (const auto spread = map.find("spread")) campaign.spread = read_spread(*spread, campaign);
+    if (const auto spread = map.find("spread")) {
+        campaign.spread = read_spread(*spread, campaign, !errors);
+    }
     if (const auto prior = map.find("prior")) set_prior(file, prior->boolean());
     if (const auto criterion = map.find("criterion")) file.criterion = read_criterion(*criterion);
     if (const auto seed = map.find("seed")) file.seed = seed->natural_number();
@@ -173,6 +169,47 @@ CampaignFile parse_campaign(const std::string& content, const std::string& path)
     }
     if (file.cell.speed.size() == 0) file.cell.speed = robot.speed;
     return file;
+}
+
+}  // namespace
+
+std::string_view error_model_name(ErrorModel model) {
+    if (model == ErrorModel::Stated) return "stated";
+    return model == ErrorModel::Complete ? "geometric" : "full";
+}
+
+ErrorModel parse_error_model(const std::string& name) {
+    if (name == "complete") return ErrorModel::Complete;
+    std::vector<std::string> names;
+    for (const auto model : {ErrorModel::Full, ErrorModel::Complete, ErrorModel::Stated}) {
+        names.emplace_back(error_model_name(model));
+        if (names.back() == name) return model;
+    }
+    throw InputError("is " + detail::quote(name) + "; " + detail::suggest(name, names));
+}
+
+void set_prior(CampaignFile& campaign, bool is_prior) {
+    const bool is_dropped = campaign.spread.is_prior && !is_prior;
+    campaign.spread.is_prior = is_prior;
+    if (!is_dropped || campaign.error_model != ErrorModel::Full) return;
+    static_cast<Campaign&>(campaign) = with_robot(campaign, irreducible_model(campaign));
+}
+
+CampaignFile read_campaign(const std::string& path) {
+    return parse_campaign(detail::read_file(path, most_bytes), path);
+}
+
+std::vector<CampaignFile> read_campaign(const std::string& path,
+                                        const std::vector<ErrorModel>& models) {
+    const std::string content = detail::read_file(path, most_bytes);
+    parse_campaign(content, path);  // what is wrong with it as it stands is said
+    std::vector<CampaignFile> files;
+    for (const ErrorModel model : models) files.push_back(parse(content, path, model));
+    return files;
+}
+
+CampaignFile parse_campaign(const std::string& content, const std::string& path) {
+    return parse(content, path, std::nullopt);
 }
 
 }  // namespace posewise::io

@@ -18,7 +18,8 @@ struct RobotSection {
     std::optional<io::UrdfSource> urdf;     ///< where the robot comes from
     VectorXd speed;                         ///< of the joints, rad/s or m/s; empty if not stated
 };
-RobotSection read_robot(const YamlValue& robot);
+/// `errors`: instead of those that it states.
+RobotSection read_robot(const YamlValue& robot, std::optional<io::ErrorModel> errors);
 
 struct SensorSection {
     std::shared_ptr<const Sensor> sensor;

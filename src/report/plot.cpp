@@ -1,6 +1,7 @@
 #include "plot.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -80,12 +81,15 @@ std::string format_plotted(const std::optional<double>& metres, const std::strin
     return metres ? format_short(mm_per_m * *metres, 9) : if_absent;
 }
 
-ErrorAxis find_error_axis(const std::vector<StudyRow>& rows, std::size_t criterion_count) {
+ErrorAxis find_error_axis(const std::vector<Study>& studies) {
     ErrorAxis axis;
-    for (const StudyRow& row : rows) {
-        for (const double p : band_quantiles) axis.include(held_out_quantile(row.random, p));
-        for (std::size_t c = 0; c < criterion_count; ++c) {
-            axis.include(held_out_quantile(planned_cases(row, c, criterion_count), 0.5));
+    for (const Study& study : studies) {
+        const std::size_t criterion_count = study.criteria.size();
+        for (const StudyRow& row : study.rows) {
+            for (const double p : band_quantiles) axis.include(held_out_quantile(row.random, p));
+            for (std::size_t c = 0; c < criterion_count; ++c) {
+                axis.include(held_out_quantile(planned_cases(row, c, criterion_count), 0.5));
+            }
         }
     }
     return axis;
@@ -123,33 +127,46 @@ struct Drawing {
     std::string data;
     std::string clauses;
 
-    /// `{0}` in the clause is the name of the data.
-    void add(const std::string& name, const std::string& lines, const std::string& clause) {
+    /// Each of `styles` is one way that the data are drawn.
+    void add(const std::string& name, const std::string& lines,
+             const std::vector<std::string>& styles) {
         if (lines.empty()) return;
         data += fmt::format("${} << EOD\n{}EOD\n", name, lines);
+        const std::string data_name = '$' + name + ' ';
         clauses += clauses.empty() ? "plot " : ", \\\n     ";
-        clauses += fmt::format(fmt::runtime(clause), '$' + name);
+        clauses += data_name + fmt::format("{}", fmt::join(styles, ", " + data_name));
     }
 };
 
-Drawing draw(const std::vector<Criterion>& criteria, const std::vector<StudyRow>& rows,
-             const ErrorAxis& axis) {
+/// The first study's random subsets are a band, those of others their median alone; `number` is the
+/// study's.
+void draw(const Study& study, std::size_t number, const ErrorAxis& axis, Drawing& drawing) {
     constexpr std::array colors{"#0b6fa4", "#c8401f", "#2f8f4e", "#8a4fb0", "#c98a00",
                                 "#d0418f", "#5b6b00", "#006d77", "#7f3b08", "#333333"};
-    Drawing drawing;
-    drawing.add("random", band_lines(rows, axis),
-                "{0} using 1:2:4 with filledcurves fc rgb '#c9cfd6' title 'random, 10-90 % (open "
-                "top: not identifiable)', "
-                "{0} using 1:3 with lines lw 2 dt (8,5) lc rgb '#5f6b77' title 'random, median'");
-    for (std::size_t i = 0; i < criteria.size(); ++i) {
-        std::string name(criterion_name(criteria[i]));
-        for (char& c : name) c = static_cast<char>(std::toupper(c));
-        drawing.add(fmt::format("optimal{}", i), criterion_lines(rows, i, criteria.size()),
-                    fmt::format("{{0}} using 1:2 with linespoints lw 2.5 pt 7 ps 0.6 lc rgb '{}' "
-                                "title 'optimal, {}'",
-                                colors[i % colors.size()], name));
+    const std::string of_model = study.model.empty() ? "" : ", " + study.model;
+    const std::size_t lines_before = number * study.criteria.size();
+    const auto color = [&](std::size_t line) {
+        return colors[(lines_before + line) % colors.size()];
+    };
+    std::vector<std::string> random{
+        fmt::format("using 1:3 with lines lw 2 dt (8,5) lc rgb '{}' title {}",
+                    number == 0 ? "#5f6b77" : color(0), quote("random, median" + of_model))};
+    if (number == 0) {
+        const std::string title = "random, 10-90 % (open top: not identifiable)" + of_model;
+        random.insert(random.begin(),
+                      "using 1:2:4 with filledcurves fc rgb '#c9cfd6' title " + quote(title));
     }
-    return drawing;
+    drawing.add(number == 0 ? "random" : fmt::format("random{}", number),
+                band_lines(study.rows, axis), random);
+    for (std::size_t i = 0; i < study.criteria.size(); ++i) {
+        std::string name(criterion_name(study.criteria[i]));
+        for (char& c : name) c = static_cast<char>(std::toupper(c));
+        drawing.add(
+            fmt::format("optimal{}", lines_before + i),
+            criterion_lines(study.rows, i, study.criteria.size()),
+            {fmt::format("using 1:2 with linespoints lw 2.5 pt 7 ps 0.6 lc rgb '{}' title {}",
+                         color(i), quote("optimal, " + name + of_model))});
+    }
 }
 
 }  // namespace
@@ -164,15 +181,17 @@ void check_image_path(const std::string& path) {
     }
 }
 
-std::string study_plot_script(const Study& study, const std::string& image_path) {
+std::string study_plot_script(const std::vector<Study>& studies, const std::string& image_path) {
     check_image_path(image_path);
-    const ErrorAxis axis = find_error_axis(study.rows, study.criteria.size());
+    const ErrorAxis axis = find_error_axis(studies);
     if (axis.is_empty()) {
         throw InputError(
             "the study has no held-out error to plot: no subset that left a "
             "configuration out identified the model");
     }
-    const Drawing drawing = draw(study.criteria, study.rows, axis);
+    Drawing drawing;
+    for (std::size_t i = 0; i < studies.size(); ++i) draw(studies[i], i, axis, drawing);
+    const Study& first = studies.front();
     return fmt::format(
         "set terminal {}\nset output {}\nset title {} noenhanced\n"
         "set xlabel 'poses used for calibration'\n"
@@ -182,7 +201,7 @@ std::string study_plot_script(const Study& study, const std::string& image_path)
         "set border 3 lc rgb '#5f6b77'\nset grid ytics lc rgb '#dfe3e8'\n"
         "set offsets graph 0.02, graph 0.02\nset key top right reverse Left\n"
         "{}{}\nset output\n",
-        terminal(image_path), quote(image_path), quote(study.campaign), count_axis(study.rows),
+        terminal(image_path), quote(image_path), quote(first.campaign), count_axis(first.rows),
         format_short(axis.lower), format_short(axis.upper), axis.format_ticks(), drawing.data,
         drawing.clauses);
 }

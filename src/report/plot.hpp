@@ -11,11 +11,12 @@ void check_image_path(const std::string& path);
 
 /// The gnuplot script that draws held-out error against pose count into `image_path` (ending
 /// `.svg` or `.png`): one line each criterion, the random subsets' median over their 10-90 % band,
-/// error in mm on a logarithmic axis. The band's upper side leaves the plot where the 90 % quantile
-/// falls among subsets that could not identify the model; the median has a gap there. Texts and
-/// paths are quoted, so nothing in them is executed.
-/// Throws InputError as check_image_path() does, or for a study without any held-out error.
-std::string study_plot_script(const Study& study, const std::string& image_path);
+/// error in mm on a logarithmic axis. Of several error models' studies (compare_models()) each has
+/// its lines, the first alone the band. The band's upper side leaves the plot where the 90 %
+/// quantile falls among subsets that could not identify the model; the median has a gap there.
+/// Texts and paths are quoted, so nothing in them is executed. Throws InputError as
+/// check_image_path() does, or for a study without any held-out error.
+std::string study_plot_script(const std::vector<Study>& studies, const std::string& image_path);
 
 /// Runs gnuplot on a script file, not through a shell. Throws InputError if gnuplot is absent or
 /// fails.

@@ -32,12 +32,17 @@ std::string csv_line(const StudyRow& row, const StudyCase& study_case, std::stri
                        study_case.identified ? "yes" : "no", rms, max, quote(poses));
 }
 
-/// On what all were judged, and whether to plan was worth it.
+/// On what all were judged.
 std::string describe_judgement(const Study& study) {
-    std::string text = fmt::format(
+    return fmt::format(
         "\nJudged on {} configurations held out, the same ones for all subsets of a split; {} "
         "splits.\nPlanned and random: medians; their ratio: the geometric mean over the splits.\n",
         study.test_count, study.splits);
+}
+
+/// Whether to plan was worth it, a line for each criterion.
+std::string describe_losses(const Study& study) {
+    std::string text;
     for (std::size_t c = 0; c < study.criteria.size(); ++c) {
         std::string lost, unknown;
         bool is_known = false;
@@ -48,41 +53,70 @@ std::string describe_judgement(const Study& study) {
             std::string& counts = advantage ? lost : unknown;
             counts += (counts.empty() ? "" : ", ") + std::to_string(row.pose_count);
         }
+        text += study.model + (study.model.empty() ? "" : ", ");
+        text += criterion_name(study.criteria[c]);
         if (!is_known) {
-            text += fmt::format("{}: whether planned loses to random is not known\n",
-                                criterion_name(study.criteria[c]));
+            text += ": whether planned loses to random is not known\n";
             continue;
         }
-        text += fmt::format("{}: planned {}{}\n", criterion_name(study.criteria[c]),
+        text += fmt::format(": planned {}{}\n",
                             lost.empty() ? "never loses to random" : "loses to random at " + lost,
                             unknown.empty() ? "" : "; not known at " + unknown);
     }
     return text;
 }
 
-}  // namespace
-
-std::string format(const Study& study) {
-    if (study.ending == Ending::NotIdentifiable) return study.undetermined + '\n';
-    const bool has_random = !study.rows.empty() && !study.rows.front().random.empty();
-    return format_table(detail::study_table(study)) +
-           (has_random && study.splits > 0 ? describe_judgement(study) : "");
+bool compares_with_random(const Study& study) {
+    return study.splits > 0 && !study.rows.empty() && !study.rows.front().random.empty();
 }
 
-std::string study_csv(const Study& study) {
-    std::string text =
-        "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,configurations\n";
+/// A line for each case, each begins with `prefix`.
+std::string csv_lines(const Study& study, const std::string& prefix) {
+    std::string text;
     for (const StudyRow& row : study.rows) {
         for (std::size_t c = 0; c < study.criteria.size(); ++c) {
             const auto planned = planned_cases(row, c, study.criteria.size());
             for (std::size_t i = 0; i < planned.size(); ++i) {
-                text += csv_line(row, planned[i], criterion_name(study.criteria[c]), i, study.ids);
+                text += prefix +
+                        csv_line(row, planned[i], criterion_name(study.criteria[c]), i, study.ids);
             }
         }
         for (std::size_t i = 0; i < row.random.size(); ++i) {
-            text += csv_line(row, row.random[i], "random", i, study.ids);
+            text += prefix + csv_line(row, row.random[i], "random", i, study.ids);
         }
     }
+    return text;
+}
+
+constexpr const char* csv_header =
+    "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,configurations\n";
+
+}  // namespace
+
+std::string format(const Study& study) {
+    if (study.ending == Ending::NotIdentifiable) return study.undetermined + '\n';
+    std::string text = format_table(detail::study_table(study));
+    if (compares_with_random(study)) text += describe_judgement(study) + describe_losses(study);
+    return text;
+}
+
+std::string format(const std::vector<Study>& studies) {
+    for (const Study& study : studies) {
+        if (study.ending != Ending::NotIdentifiable) continue;
+        return study.model + ": " + study.undetermined + '\n';
+    }
+    std::string text = format_table(detail::models_table(studies));
+    if (!compares_with_random(studies.front())) return text;
+    text += describe_judgement(studies.front());
+    for (const Study& study : studies) text += describe_losses(study);
+    return text;
+}
+
+std::string study_csv(const Study& study) { return csv_header + csv_lines(study, ""); }
+
+std::string study_csv(const std::vector<Study>& studies) {
+    std::string text = std::string("model,") + csv_header;
+    for (const Study& study : studies) text += csv_lines(study, study.model + ',');
     return text;
 }
 

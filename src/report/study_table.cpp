@@ -26,16 +26,34 @@ std::string unidentified_cell(const std::vector<StudyCase>& cases) {
                       [](const StudyCase& study_case) { return !study_case.identified; }));
 }
 
+std::string ratio_cell(const std::optional<Advantage>& advantage) {
+    return advantage ? format_fixed(advantage->ratio, 2) : "-";
+}
+
+std::string interval_cell(const std::optional<Advantage>& advantage) {
+    const bool is_single = advantage && advantage->lower == advantage->upper;  // of one split
+    if (!advantage || is_single) return "-";
+    return format_fixed(advantage->lower, 2) + ".." + format_fixed(advantage->upper, 2);
+}
+
 void add_advantage(const std::optional<Advantage>& advantage, std::vector<std::string>& cells) {
-    if (!advantage) {
-        cells.insert(cells.end(), {"-", "-"});
-        return;
+    cells.push_back(ratio_cell(advantage));
+    cells.push_back(interval_cell(advantage));
+}
+
+std::vector<std::string> model_cells(const Study& study, const StudyRow& row,
+                                     const StudyRow& first) {
+    std::vector<std::string> cells{std::to_string(row.pose_count), study.model,
+                                   cell(held_out_quantile(row.random, 0.5))};
+    for (std::size_t c = 0; c < study.criteria.size(); ++c) {
+        const auto planned = planned_cases(row, c, study.criteria.size());
+        cells.push_back(cell(held_out_quantile(planned, 0.5)));
+        if (study.splits == 0) continue;
+        add_advantage(planned_advantage(study, row, c), cells);
+        cells.push_back(ratio_cell(planned_advantage(study, row, c, first)));
     }
-    cells.push_back(format_fixed(advantage->ratio, 2));
-    const bool is_single = advantage->lower == advantage->upper;  // of one split
-    cells.push_back(is_single ? "-"
-                              : format_fixed(advantage->lower, 2) + ".." +
-                                    format_fixed(advantage->upper, 2));
+    cells.push_back(unidentified_cell(row.random));
+    return cells;
 }
 
 }  // namespace
@@ -66,6 +84,26 @@ Table study_table(const Study& study) {
         cells.push_back(std::to_string(row.random.size()));
         cells.push_back(unidentified_cell(row.random));
         table.rows.push_back(std::move(cells));
+    }
+    return table;
+}
+
+Table models_table(const std::vector<Study>& studies) {
+    const Study& first = studies.front();
+    Table table;
+    table.header = {"poses", "model", "random/mm"};
+    for (const Criterion criterion : first.criteria) {
+        const std::string name(criterion_name(criterion));
+        table.header.push_back(name + "/mm");
+        if (first.splits == 0) continue;
+        table.header.insert(table.header.end(),
+                            {name + "/random", "95 %", name + "/random " + first.model});
+    }
+    table.header.emplace_back("unidentified");
+    for (std::size_t i = 0; i < first.rows.size(); ++i) {
+        for (const Study& study : studies) {
+            table.rows.push_back(model_cells(study, study.rows[i], first.rows[i]));
+        }
     }
     return table;
 }

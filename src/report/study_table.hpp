@@ -10,4 +10,9 @@ namespace posewise::detail {
 /// there is no number.
 Table study_table(const Study& study);
 
+/// Studies of several error models side by side: by pose count and model the median of the random
+/// subsets and of each criterion's, with splits also the latter against random ones of that model,
+/// with the 95 % interval, and of the first model.
+Table models_table(const std::vector<Study>& studies);
+
 }  // namespace posewise::detail

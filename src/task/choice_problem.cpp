@@ -109,15 +109,6 @@ void hold_measured(ChoiceProblem& problem, const Campaign& campaign, const Param
     }
 }
 
-/// Angles of the joints that turn: what distances between poses are taken of.
-RowMatrixXd turning_joints(const Chain& robot, const RowMatrixXd& configurations) {
-    std::vector<Index> turning;
-    for (Index j = 0; j < robot.joint_count(); ++j) {
-        if (robot.joint(j).motion == Motion::Rotation) turning.push_back(j);
-    }
-    return configurations(Eigen::all, turning);
-}
-
 void state_limits(ChoiceProblem& problem, const std::vector<Index>& groups) {
     const PlanRequest& request = problem.request;
     SelectOptions& options = problem.options;

@@ -26,6 +26,14 @@ Blocks measured_blocks(const Campaign& campaign, const Parameters& parameters,
                        RowMatrixXd(mean_repeats(measured) * share_seen(measured)));
 }
 
+RowMatrixXd turning_joints(const Chain& robot, const RowMatrixXd& configurations) {
+    std::vector<Index> turning;
+    for (Index j = 0; j < robot.joint_count(); ++j) {
+        if (robot.joint(j).motion == Motion::Rotation) turning.push_back(j);
+    }
+    return configurations(Eigen::all, turning);
+}
+
 bool can_assume_places(const Campaign& campaign) {
     return campaign.has_nominal_base ||
            (campaign.sensor->lengths_per_target() == 3 && has_constant_noise(campaign));

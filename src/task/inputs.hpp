@@ -31,6 +31,10 @@ std::vector<std::string> number_ids(Index count);
 Blocks measured_blocks(const Campaign& campaign, const Parameters& parameters,
                        const Measurements& measured);
 
+/// Angles of the joints that turn (rad), a row a configuration: what distances between poses are
+/// taken of.
+RowMatrixXd turning_joints(const Chain& robot, const RowMatrixXd& configurations);
+
 /// Whether poses can be judged by campaign.nominal: base and targets are stated, or made up where
 /// little depends on them. That is the base where every target's place is measured with the same
 /// noise everywhere.

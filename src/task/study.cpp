@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "../core/parallel.hpp"
@@ -28,7 +29,8 @@ constexpr Index kicks = 2;
 struct Split {
     std::vector<Index> pool;
     std::vector<Index> test;
-    Blocks blocks;  ///< of the pool, at the registered parameters
+    Blocks blocks;          ///< of the pool, at the registered parameters
+    RowMatrixXd positions;  ///< of the pool, for distances; empty if none must be kept
 };
 
 /// What every case of a study shares.
@@ -134,7 +136,7 @@ std::vector<Split> make_splits(Index all, Index count, const StudyOptions& optio
         split.pool = all_but(all, split.test);
         splits.push_back(std::move(split));
     }
-    if (splits.empty()) splits.push_back({all_but(all, {}), {}, {}});
+    if (splits.empty()) splits.push_back({all_but(all, {}), {}, {}, {}});
     return splits;
 }
 
@@ -152,6 +154,8 @@ std::vector<Index> choose_poses(const Setting& setting, const Job& job, const Sp
     options.starts = setting.options.starts;
     options.kicks = kicks;
     if (setting.campaign.spread.is_prior) options.held = prior_information(setting.campaign);
+    options.positions = split.positions;
+    options.least_distance = setting.options.least_distance;
     options.seed = setting.options.seed;
     return select_poses(split.blocks, options).poses;
 }
@@ -232,15 +236,23 @@ void run_all(const Setting& setting, std::vector<StudyRow>& rows) {
     std::erase_if(rows, [&](const StudyRow& row) { return open.contains(row.pose_count); });
 }
 
-}  // namespace
+/// The least pose count that the defaults begin at; 0 if pose counts are asked for.
+Index largest_least_count(const std::vector<RobotModel>& models, const StudyOptions& options) {
+    Index least = 0;
+    if (!options.pose_counts.empty()) return least;
+    for (const RobotModel& model : models) {
+        least = std::max(least, least_pose_count(model.campaign));
+    }
+    return least;
+}
 
-Study study(const Campaign& campaign, const Measurements& measurements,
-            const StudyOptions& options) {
+/// With pose counts from `least` if none are asked for.
+Study study_from(Index least, const Campaign& campaign, const Measurements& measurements,
+                 const StudyOptions& options) {
     const Registration registration = register_base_and_targets(campaign, measurements);
     check_is_of_robot(campaign, measurements, registration);
     check_options(options);
     const Index all = measurements.configuration_count();
-    const Index least = options.pose_counts.empty() ? least_pose_count(campaign) : 0;
     const Index split_count = options.splits.value_or(usual_splits(all, least, options));
     if (split_count > 0 && all < 2) {
         throw InputError("there is 1 configuration, splits need at least 2");
@@ -260,12 +272,56 @@ Study study(const Campaign& campaign, const Measurements& measurements,
     if (!study.undetermined.empty()) return study;
     check_some_are_left(counts, measurements.configuration_count());
     const Blocks blocks = detail::measured_blocks(campaign, registration.parameters, measurements);
-    for (Split& split : splits) split.blocks = take(blocks, split.pool);
+    const RowMatrixXd positions =
+        detail::turning_joints(campaign.robot, measurements.configurations);
+    for (Split& split : splits) {
+        split.blocks = take(blocks, split.pool);
+        if (options.least_distance != 0) split.positions = positions(split.pool, Eigen::all);
+    }
     const Setting setting{campaign, measurements, options, std::move(splits)};
     study.rows = make_rows(counts, options, setting.splits.size());
     run_all(setting, study.rows);
     study.ending = options.stop.ending_or(Ending::Converged);
     return study;
+}
+
+/// Of studies that were stopped, those rows stay that are complete in all.
+void keep_common_rows(std::vector<Study>& studies) {
+    std::map<Index, std::set<const Study*>> having;
+    for (const Study& study : studies) {
+        for (const StudyRow& row : study.rows) having[row.pose_count].insert(&study);
+    }
+    for (Study& study : studies) {
+        std::erase_if(study.rows, [&](const StudyRow& row) {
+            return having[row.pose_count].size() < studies.size();
+        });
+    }
+}
+
+}  // namespace
+
+Study study(const Campaign& campaign, const Measurements& measurements,
+            const StudyOptions& options) {
+    return compare_models({{"", campaign}}, measurements, options).front();
+}
+
+std::vector<Study> compare_models(const std::vector<RobotModel>& models,
+                                  const Measurements& measurements, const StudyOptions& options) {
+    const Index least = largest_least_count(models, options);
+    const auto count = static_cast<Index>(models.size());
+    std::vector<Study> studies;
+    for (Index before = 0; before < count; ++before) {
+        const RobotModel& model = models[static_cast<std::size_t>(before)];
+        StudyOptions of_model = options;
+        of_model.progress = [&](const Progress& progress) {
+            if (!options.progress) return;
+            options.progress({before * progress.total + progress.done, count * progress.total});
+        };
+        studies.push_back(study_from(least, model.campaign, measurements, of_model));
+        studies.back().model = model.name;
+    }
+    if (options.stop.is_set()) keep_common_rows(studies);
+    return studies;
 }
 
 std::vector<StudyCase> planned_cases(const StudyRow& row, std::size_t criterion,
@@ -277,11 +333,16 @@ std::vector<StudyCase> planned_cases(const StudyRow& row, std::size_t criterion,
 
 std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
                                            std::size_t criterion) {
+    return planned_advantage(study, row, criterion, row);
+}
+
+std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
+                                           std::size_t criterion, const StudyRow& other_row) {
     if (study.splits == 0) return std::nullopt;
     std::vector<double> logarithms;
     for (const StudyCase& planned : planned_cases(row, criterion, study.criteria.size())) {
         std::vector<StudyCase> random;
-        for (const StudyCase& other : row.random) {
+        for (const StudyCase& other : other_row.random) {
             if (other.split == planned.split) random.push_back(other);
         }
         const auto median = held_out_quantile(random, 0.5);

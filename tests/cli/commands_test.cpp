@@ -132,6 +132,37 @@ TEST_F(Commands, StudyWritesTableCsvAndPlot) {
     EXPECT_FALSE(has_file("a plot.svg.gnuplot"));
 }
 
+TEST_F(Commands, StudyComparesErrorModelsOnTheSameSubsets) {
+    const std::string options = "--splits 2 --random 4 --poses 6 --csv ";
+    const std::string text =
+        run_well("study " + input_ + "--models stated,full " + options + "both.csv");
+    EXPECT_NE(text.find("d/random stated"), std::string::npos) << text;
+    run_well("study " + input_ + options + "stated.csv");
+    std::string campaign =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    campaign.insert(campaign.find("  elements:"), "  errors: full\n");
+    write_text("full.yaml", campaign);
+    run_well("study full.yaml -m s.csv " + options + "full.csv");
+    std::string expected;
+    for (const std::string model : {"stated", "full"}) {
+        std::istringstream lines(text_of(model + ".csv"));
+        std::string line;
+        std::getline(lines, line);
+        if (expected.empty()) expected = "model," + line + '\n';
+        while (std::getline(lines, line)) expected += model + ',' + line + '\n';
+    }
+    EXPECT_EQ(text_of("both.csv"), expected);
+}
+
+TEST_F(Commands, StudyPlansOnlyWhatIsFarEnoughApart) {
+    const std::string study = "study " + input_ + "--random 0 --poses 6 --csv r.csv ";
+    run_well(study);
+    const std::string free = text_of("r.csv");
+    run_well(study + "--least-distance-deg 200");
+    EXPECT_NE(text_of("r.csv"), free);
+    expect_input_error(study + "--least-distance-deg 2000", "only 1 pose was found that ");
+}
+
 TEST_F(Commands, StudyWithoutGnuplotLeavesTheScript) {
     const Outcome outcome =
         run("study " + input_ + "--random 5 --poses 8 --plot p.svg", "PATH=/nowhere");

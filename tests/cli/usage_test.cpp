@@ -121,6 +121,8 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
      "--folds: is ''; must be a whole number from 0 to 1000000"},
     {"study a.yaml -m b.csv -c ,", "--criteria: '' is no criterion; must be one of o1, "},
     {"select a.yaml -m b.csv -k 8 -c o6", "--criterion: 'o6' is no criterion; must be one of o1, "},
+    {"study a.yaml -m b.csv --models full,rigid",
+     "--models: is 'rigid'; must be full, geometric or stated"},
     {"study a.yaml -m b.csv -k 8:6", "--poses: is '8:6'; the first must not be above the last"},
 };
 

@@ -123,6 +123,31 @@ TEST(ReadCampaign, ReducesGeometryBesideTerms) {
     EXPECT_EQ(file.robot.parameter_count(), geometric.robot.parameter_count() + 4);
 }
 
+TEST(ReadCampaign, TakesOtherErrorModelsThanTheFileStates) {
+    const TemporaryFolder folder;
+    const auto read_models = [&](const std::string& text) {
+        return read_campaign(folder.write("c.yaml", text),
+                             {ErrorModel::Full, ErrorModel::Complete, ErrorModel::Stated});
+    };
+    const auto files = read_models(campaign_text);
+    ASSERT_EQ(files.size(), 3u);
+    const std::string unsized =
+        replaced(campaign_text, ", parameters: {dq2: 0.5 mrad, Tx1: 4 mm}", "");
+    for (const CampaignFile& file : files) {
+        const std::string name(error_model_name(file.error_model));
+        EXPECT_EQ(parse_error_model(name), file.error_model);
+        const auto alone = read(replaced(unsized, "robot:\n", "robot:\n  errors: " + name + '\n'));
+        EXPECT_EQ(parameter_names(file), parameter_names(alone)) << name;
+        EXPECT_EQ(file.spread.is_prior, alone.spread.is_prior) << name;
+    }
+    EXPECT_EQ(files[2].spread.by_name.size(), 2u);
+    EXPECT_NE(input_error_of([&] {
+                  read_models(replaced(campaign_text, "{dq2:", "{dq7:"));
+              }).find("'dq7' is no parameter of this campaign"),
+              std::string::npos);
+    EXPECT_THROW(parse_error_model("geometry"), InputError);
+}
+
 TEST(ReadCampaign, TakesSensorBaseSpreadAndDefaults) {
     const CampaignFile file = read(campaign_text);
     const Campaign& campaign = file;

@@ -72,8 +72,56 @@ TEST(StudyCsv, HoldsEveryCase) {
               "3,random,0,yes,0.4,0.8,\"a b,c d\"\n");
 }
 
+/// Of two models, the second twice as accurate.
+std::vector<Study> two_models() {
+    std::vector<Study> studies;
+    for (const double scale : {1.0, 0.5}) {
+        Study study = study_of({{2,
+                                 {identified({0, 1}, scale * 3e-4, scale * 9e-4)},
+                                 {identified({1, 2}, scale * 1e-3, scale * 2e-3)}}});
+        study.splits = 1;
+        study.test_count = 1;
+        study.model = scale == 1 ? "geometric" : "full";
+        studies.push_back(std::move(study));
+    }
+    return studies;
+}
+
+TEST(ModelsTable, ShowsEachModelAgainstItsRandomSubsetsAndThoseOfTheFirst) {
+    const Table table = models_table(two_models());
+    EXPECT_EQ(table.header,
+              (std::vector<std::string>{"poses", "model", "random/mm", "d/mm", "d/random", "95 %",
+                                        "d/random geometric", "unidentified"}));
+    ASSERT_EQ(table.rows.size(), 2u);
+    EXPECT_EQ(table.rows[0], (std::vector<std::string>{"2", "geometric", "1.0000", "0.3000", "0.30",
+                                                       "-", "0.30", "0"}));
+    EXPECT_EQ(table.rows[1], (std::vector<std::string>{"2", "full", "0.5000", "0.1500", "0.30", "-",
+                                                       "0.15", "0"}));
+    EXPECT_NE(format(two_models()).find("\nfull, d: planned never loses to random\n"),
+              std::string::npos);
+}
+
+TEST(ModelsCsv, BeginsWithTheModel) {
+    EXPECT_EQ(study_csv(two_models()),
+              "model,poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,"
+              "configurations\n"
+              "geometric,2,d,0,yes,0.3,0.9,\"a b,c\"\n"
+              "geometric,2,random,0,yes,1,2,\"b,c d\"\n"
+              "full,2,d,0,yes,0.15,0.45,\"a b,c\"\n"
+              "full,2,random,0,yes,0.5,1,\"b,c d\"\n");
+}
+
+TEST(StudyPlotScript, DrawsTheLinesOfEachModel) {
+    const auto script = study_plot_script(two_models(), "out.svg");
+    for (const char* const title : {"'random, median, geometric'", "'random, median, full'",
+                                    "'optimal, D, geometric'", "'optimal, D, full'"}) {
+        EXPECT_NE(script.find(title), std::string::npos) << script;
+    }
+    EXPECT_NE(script.find("$optimal1 << EOD\n2 0.15\nEOD\n"), std::string::npos);
+}
+
 TEST(StudyPlotScript, DrawsBandMedianAndCriterion) {
-    const auto script = study_plot_script(example_study(), "out.svg");
+    const auto script = study_plot_script({example_study()}, "out.svg");
     EXPECT_NE(script.find("$random << EOD\n2 2 2 3\n3 0.4 0.4 0.4\nEOD\n"), std::string::npos);
     EXPECT_NE(script.find("$optimal0 << EOD\n2 0.3\n3 0.2\nEOD\n"), std::string::npos);
     EXPECT_NE(script.find("set logscale y"), std::string::npos);
@@ -81,16 +129,16 @@ TEST(StudyPlotScript, DrawsBandMedianAndCriterion) {
 }
 
 TEST(StudyPlotScript, QuotesTextsSoThatNothingIsExecuted) {
-    const auto script = study_plot_script(named("it's\n`touch x`"), "o'ut`.png");
+    const auto script = study_plot_script({named("it's\n`touch x`")}, "o'ut`.png");
     EXPECT_NE(script.find("set title 'it''s `touch x`' noenhanced\n"), std::string::npos);
     EXPECT_NE(script.find("set output 'o''ut`.png'\n"), std::string::npos);
 }
 
 TEST(StudyPlotScript, RefusesOtherImagesAndEmptyStudies) {
-    EXPECT_THROW(study_plot_script(example_study(), "out.pdf"), InputError);
-    EXPECT_THROW(study_plot_script(example_study(), "a\nb.svg"), InputError);
-    EXPECT_THROW(study_plot_script(example_study(), ".svg"), InputError);
-    EXPECT_THROW(study_plot_script(study_of({{2, {StudyCase{}}, {}}}), "out.svg"), InputError);
+    EXPECT_THROW(study_plot_script({example_study()}, "out.pdf"), InputError);
+    EXPECT_THROW(study_plot_script({example_study()}, "a\nb.svg"), InputError);
+    EXPECT_THROW(study_plot_script({example_study()}, ".svg"), InputError);
+    EXPECT_THROW(study_plot_script({study_of({{2, {StudyCase{}}, {}}})}, "out.svg"), InputError);
 }
 
 class RunGnuplot : public ::testing::Test {
@@ -114,14 +162,14 @@ TEST_F(RunGnuplot, DrawsIntoFilesWithAwkwardNames) {
     if (std::system("gnuplot --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no gnuplot here";
     for (const std::string name : {"plain.svg", "it's `a` $(name) \"with\" \\ signs.png"}) {
         const auto image = (folder_ / name).string();
-        const auto script = study_plot_script(named(name), image);
+        const auto script = study_plot_script({named(name)}, image);
         run_gnuplot(write_script("script with blank.gnuplot", script));
         EXPECT_GT(std::filesystem::file_size(image), 1000u) << name;
     }
 }
 
 TEST(StudyPlotScript, GivesASinglePoseCountARange) {
-    const auto script = study_plot_script(study_of({example_study().rows[0]}), "out.svg");
+    const auto script = study_plot_script({study_of({example_study().rows[0]})}, "out.svg");
     EXPECT_NE(script.find("set xrange [1:3]\n"), std::string::npos) << script;
 }
 

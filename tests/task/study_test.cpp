@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <atomic>
 #include <set>
 
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/selection/exchange.hpp"
@@ -249,6 +251,89 @@ TEST(StudyPoseCounts, WithSplitsGoesUpToAThirdOfWhatThereIsToChooseFrom) {
     EXPECT_THROW(study(example.campaign, example.measurements, options), InputError);
 }
 
+TEST(StudyPoseCounts, PlansOnlyWhatKeepsTheLeastDistance) {
+    const Example example(30);
+    StudyOptions options = small_options();
+    options.splits = 2;
+    const auto free = study(example.campaign, example.measurements, options).rows;
+    const auto nearest = [&](const std::vector<StudyRow>& rows) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const StudyRow& row : rows) {
+            for (const StudyCase& planned : row.optimal) {
+                const RowMatrixXd taken =
+                    example.measurements.configurations(planned.poses, Eigen::all);
+                for (Index i = 1; i < taken.rows(); ++i) {
+                    least = std::min(
+                        least,
+                        (taken.topRows(i).rowwise() - taken.row(i)).rowwise().norm().minCoeff());
+                }
+            }
+        }
+        return least;
+    };
+    options.least_distance = nearest(free) + 0.5;  // rad
+    const auto apart = study(example.campaign, example.measurements, options).rows;
+    EXPECT_GE(nearest(apart), options.least_distance);
+    for (std::size_t i = 0; i < apart.size(); ++i) {
+        for (std::size_t k = 0; k < apart[i].random.size(); ++k) {
+            EXPECT_EQ(apart[i].random[k].poses, free[i].random[k].poses);
+        }
+    }
+    options.least_distance = 100;  // no two are that far apart
+    EXPECT_THROW(study(example.campaign, example.measurements, options), InputError);
+}
+
+TEST(CompareModels, GivesEachTheSameSplitsCountsAndRandomSubsets) {
+    const Example example(30);
+    StudyOptions options = small_options();
+    options.pose_counts.clear();
+    options.random_subsets = 6;
+    options.splits = 2;
+    options.holdout = 0.7;  // 9 to choose from
+    Progress last;
+    options.progress = [&](const Progress& progress) {
+        EXPECT_EQ(progress.done, last.done + 1);
+        last = progress;
+    };
+    Campaign prior = example.campaign;
+    prior.spread.is_prior = true;
+    ASSERT_LT(least_pose_count(prior), 5);
+    const auto studies = compare_models({{"prior", prior}, {"stated", example.campaign}},
+                                        example.measurements, options);
+    EXPECT_EQ(last.done, last.total);
+    ASSERT_EQ(studies.size(), 2u);
+    EXPECT_EQ(studies[0].model, "prior");
+    EXPECT_EQ(studies[1].model, "stated");
+    options.progress = nullptr;
+    const auto alone = study(example.campaign, example.measurements, options).rows;
+    ASSERT_EQ(studies[0].rows.size(), alone.size());
+    ASSERT_EQ(studies[1].rows.size(), alone.size());
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+        EXPECT_EQ(studies[0].rows[i].pose_count, alone[i].pose_count);  // from 5, not from fewer
+        for (std::size_t k = 0; k < 6; ++k) {
+            const StudyCase& random = studies[1].rows[i].random[k];
+            EXPECT_EQ(studies[0].rows[i].random[k].poses, random.poses);
+            EXPECT_EQ(studies[0].rows[i].random[k].split, random.split);
+            EXPECT_EQ(alone[i].random[k].held_out.distance_rms, random.held_out.distance_rms);
+            EXPECT_NE(studies[0].rows[i].random[k].held_out.distance_rms,
+                      random.held_out.distance_rms);
+        }
+        EXPECT_EQ(alone[i].optimal[0].poses, studies[1].rows[i].optimal[0].poses);
+    }
+}
+
+TEST(CompareModels, KeepsThePoseCountsThatAreCompleteInAll) {
+    const Example example;
+    std::atomic<bool> stop = false;
+    StudyOptions options = small_options();
+    options.stop.interrupted = &stop;
+    options.progress = [&](const Progress& progress) { stop = 2 * progress.done > progress.total; };
+    for (const Study& study : compare_models({{"a", example.campaign}, {"b", example.campaign}},
+                                             example.measurements, options)) {
+        EXPECT_TRUE(study.rows.empty());  // the first is complete, the second has just begun
+    }
+}
+
 TEST(PlannedAdvantage, IsTheGeometricMeanOverSplits) {
     Study study;
     study.criteria = {Criterion::V};
@@ -264,6 +349,9 @@ TEST(PlannedAdvantage, IsTheGeometricMeanOverSplits) {
     // Logarithms -ln 2 and ln 2: their mean has the deviation ln 2, Student's t is 12.706.
     EXPECT_NEAR(std::log(advantage->upper), 12.7062047 * std::log(2.0), 1e-6);
     EXPECT_NEAR(std::log(advantage->lower), -std::log(advantage->upper), 1e-12);
+    StudyRow other = row;  // of another model, half as accurate
+    for (StudyCase& random : other.random) random.held_out.distance_rms = 4;
+    EXPECT_NEAR(planned_advantage(study, row, 0, other)->ratio, 0.5, 1e-15);
     row.random[1].identified = false;
     EXPECT_FALSE(planned_advantage(study, row, 0));
     study.splits = 0;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "posewise/criteria/criterion.hpp"
@@ -26,6 +27,11 @@ enum class ErrorModel {
     Complete,  ///< every geometric error of a rigid link, reduced to an irreducible set
     Full,      ///< full_model(), with the sizes of errors that robots have as priors: the default
 };
+
+/// "stated", "geometric" or "full", as files state it under `errors`.
+std::string_view error_model_name(ErrorModel model);
+/// The model of that name ("complete" is geometric, too). Throws InputError for any other.
+ErrorModel parse_error_model(const std::string& name);
 
 /// A campaign, what else its file says, and the defaults of the command line.
 struct CampaignFile : Campaign {
@@ -86,5 +92,10 @@ CampaignFile read_campaign(const std::string& path);
 
 /// The same from a text that is not in its file (yet). Paths in it are from the folder of `path`.
 CampaignFile parse_campaign(const std::string& content, const std::string& path);
+
+/// The campaign of a file with each of these error models in turn, whatever it states under
+/// `errors`; expected sizes of single parameters that a model does not have are left out.
+std::vector<CampaignFile> read_campaign(const std::string& path,
+                                        const std::vector<ErrorModel>& models);
 
 }  // namespace posewise::io

@@ -65,9 +65,15 @@ std::string format_findings(const std::vector<Finding>& findings);
 /// The table as text, or why there is nothing to study.
 std::string format(const Study& study);
 
+/// The studies of several error models (compare_models()) in one table, or why one of them cannot
+/// be studied.
+std::string format(const std::vector<Study>& studies);
+
 /// Every case of a study as CSV text: pose count, who chose (criterion or "random"), number of the
 /// subset (planned: of its split), whether it identified the model, held-out distance RMS and
 /// maximum in mm (9 digits), and the configurations by id, separated by blanks.
 std::string study_csv(const Study& study);
+/// The same of several error models, with the model as first column.
+std::string study_csv(const std::vector<Study>& studies);
 
 }  // namespace posewise

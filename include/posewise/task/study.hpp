@@ -8,6 +8,7 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/progress.hpp"
 #include "posewise/criteria/criterion.hpp"
+#include "posewise/measurement/campaign.hpp"
 
 namespace posewise {
 
@@ -40,8 +41,9 @@ struct StudyOptions {
     /// the telling configurations is judged on easier ones than others are. Nothing: 10, if what a
     /// split leaves to choose from is three times the largest pose count, else 0.
     std::optional<Index> splits{};
-    double holdout = 0.3;  ///< part of the configurations that a split judges on
-    Index starts = 4;      ///< of the exchange
+    double holdout = 0.3;       ///< part of the configurations that a split judges on
+    double least_distance = 0;  ///< rad, of any two in a planned subset, as PlanRequest has it
+    Index starts = 4;           ///< of the exchange
     std::uint64_t seed = 1;
     StopSignal stop{};            ///< ends it with the pose counts that are complete
     ProgressCallback progress{};  ///< of the cases
@@ -58,15 +60,30 @@ struct Study {
     std::string undetermined;
     Index splits = 0;      ///< 0: each subset was judged on what it leaves
     Index test_count = 0;  ///< configurations that each split judges on
+    std::string model{};   ///< which of several error models (compare_models())
 };
 
 /// Chooses k of the measured configurations by each criterion and at random, calibrates with them
 /// from registration on, and judges on configurations held out: the same ones for all subsets of a
 /// split. The same result for any number of threads.
 /// Throws InputError for measurements of another robot (check_is_of_robot()), for a pose count that
-/// is not in [1, configurations], and for other options out of range.
+/// is not in [1, configurations], for a least distance that as many configurations do not keep, and
+/// for other options out of range.
 Study study(const Campaign& campaign, const Measurements& measurements,
             const StudyOptions& options = {});
+
+/// A robot with one of the error models to compare.
+struct RobotModel {
+    std::string name;
+    Campaign campaign;
+};
+/// The same study with each error model of one robot: the same splits and random subsets, and the
+/// same pose counts (by default from the largest of the models' least ones). One study each, in
+/// that order; if it is stopped, with the pose counts that are complete in all. Throws as study()
+/// does.
+std::vector<Study> compare_models(const std::vector<RobotModel>& models,
+                                  const Measurements& measurements,
+                                  const StudyOptions& options = {});
 
 /// The planned subsets against random ones.
 struct Advantage {
@@ -78,6 +95,10 @@ struct Advantage {
 /// subset or half of the random ones of a split do not identify the model.
 std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
                                            std::size_t criterion);
+
+/// The same against the random subsets of another row: that of another error model.
+std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
+                                           std::size_t criterion, const StudyRow& other_row);
 
 /// The planned cases of one of so many criteria in a row.
 std::vector<StudyCase> planned_cases(const StudyRow& row, std::size_t criterion,

@@ -1,0 +1,113 @@
+#include "study_options.hpp"
+
+#include <charconv>
+
+#include "../core/text.hpp"
+#include "options.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise::cli {
+namespace {
+
+Index parse_count(std::string_view text) {
+    Index count = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+    if (error != std::errc() || end != text.data() + text.size() || count < 1 || count > 1000000) {
+        throw CLI::ValidationError(
+            "--poses", detail::quote(text) + " is not a pose count; must be like 5:24 or 6,9,12");
+    }
+    return count;
+}
+
+/// "5:24" and "6,9,12", and both mixed.
+std::vector<Index> parse_counts(const std::string& text) {
+    std::vector<Index> counts;
+    for (const std::string& part : CLI::detail::split(text, ',')) {
+        const auto colon = part.find(':');
+        const Index first = parse_count(part.substr(0, colon));
+        const Index last = colon == std::string::npos ? first : parse_count(part.substr(colon + 1));
+        if (first > last) {
+            throw CLI::ValidationError(
+                "--poses", "is " + detail::quote(part) + "; the first must not be above the last");
+        }
+        for (Index count = first; count <= last; ++count) counts.push_back(count);
+    }
+    if (counts.empty()) throw CLI::ValidationError("--poses", "'" + text + "' holds no pose count");
+    return counts;
+}
+
+/// Names separated by commas; what is wrong with one is said of the option.
+template <class Parse>
+auto parse_names(const std::string& text, const char* option, const char* example, Parse&& parse) {
+    std::vector<decltype(parse(text))> values;
+    try {
+        for (const std::string& name : CLI::detail::split(text, ',')) values.push_back(parse(name));
+    } catch (const InputError& error) {
+        throw CLI::ValidationError(option, error.what());
+    }
+    if (values.empty()) {
+        throw CLI::ValidationError(option, std::string("is empty; must be like ") + example);
+    }
+    return values;
+}
+
+}  // namespace
+
+void add_study_options(CLI::App& command, StudyArguments& arguments) {
+    command.add_option_function<std::string>(
+        "-c,--criteria",
+        [&arguments](const std::string& text) {
+            arguments.criteria = parse_names(text, "--criteria", "d,a", parse_criterion);
+        },
+        "Criteria to choose by, such as v,d,o1 (default: the campaign's, else v)");
+    command
+        .add_option("--random", arguments.options.random_subsets, "Random subsets per pose count")
+        ->check(whole_number(0, 1000000))
+        ->capture_default_str();
+    command
+        .add_option(
+            "--splits", arguments.options.splits,
+            "Splits into configurations to choose from and to judge all subsets on; 0: "
+            "each is judged on what it leaves, planned ones then on easier poses (default: "
+            "10, or 0 where no pose count is up to a third of what there is to choose from)")
+        ->check(whole_number(0, 1000));
+    command
+        .add_option("--holdout", arguments.options.holdout,
+                    "Part of the configurations that a split judges on")
+        ->check(real_number(0.01, 0.99))
+        ->capture_default_str();
+    command.add_option_function<std::string>(
+        "-k,--poses",
+        [&arguments](const std::string& text) {
+            arguments.options.pose_counts = parse_counts(text);
+        },
+        "Pose counts, 5:24 or 6,9,12 (default: 8,12,16,20,30,50 up to a third of what there is to "
+        "choose from; without splits from the least that identifies to all but one)");
+    add_prior_option(command, arguments.prior, ": of choice and calibration alike");
+    command.add_option_function<std::string>(
+        "--models",
+        [&arguments](const std::string& text) {
+            arguments.models =
+                parse_names(text, "--models", "geometric,full", io::parse_error_model);
+        },
+        "Error models of the robot to compare on the same splits and random subsets, of full, "
+        "geometric and stated (default: the campaign's alone)");
+    command
+        .add_option("--least-distance-deg", arguments.least_distance_deg,
+                    "Least distance in joint space (Euclidean) of any two planned; random subsets "
+                    "are drawn without it")
+        ->check(real_number(0, 1e4));
+    command.add_option("--starts", arguments.options.starts, "Starts of each exchange")
+        ->check(whole_number(1, 1000000))
+        ->capture_default_str();
+    command.add_option("--seed", arguments.seed, "Of all random choices (default: the campaign's)")
+        ->check(whole_number(0, largest_seed));
+    command.add_option("--csv", arguments.csv, "Write every subset's result to this file")
+        ->check(file_name());
+    command.add_option("--plot", arguments.plot, "Draw error against pose count: .svg or .png")
+        ->check(file_name());
+    command.add_flag("--progress", arguments.progress,
+                     "Show progress on standard error even if it is no terminal");
+}
+
+}  // namespace posewise::cli

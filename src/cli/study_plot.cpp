@@ -1,0 +1,65 @@
+#include "study_plot.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "../io/atomic_file.hpp"
+#include "../report/plot.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of its own among the temporary ones, gone with all it holds at the end.
+class ScratchFolder {
+  public:
+    ScratchFolder() {
+        std::error_code error;
+        std::string pattern = (fs::temp_directory_path(error) / "posewise.XXXXXX").string();
+        if (error || ::mkdtemp(pattern.data()) == nullptr) {
+            throw InputError("no temporary folder can be made; TMPDIR must name one");
+        }
+        path_ = pattern;
+    }
+    ~ScratchFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+    std::string path_of(const std::string& name) const { return (path_ / name).string(); }
+
+  private:
+    fs::path path_;
+};
+
+/// Leaves the script for the user, unless a file has its name already. What to do with it.
+std::string leave_script(const std::string& script, const std::string& image_path) {
+    const std::string path = image_path + ".gnuplot";
+    if (fs::exists(fs::symlink_status(path))) return "";
+    detail::write_file(path, script);
+    return "; its script is left, try: gnuplot " + path;
+}
+
+}  // namespace
+
+void draw_plot(const std::string& image_path, const std::vector<Study>& studies) {
+    const ScratchFolder folder;
+    const std::string image = folder.path_of("image" + fs::path(image_path).extension().string());
+    const std::string script = folder.path_of("script.gnuplot");
+    detail::write_file(script, detail::study_plot_script(studies, image));
+    try {
+        detail::run_gnuplot(script);
+    } catch (const InputError& error) {
+        throw input_error_at(
+            {image_path},
+            std::string("the plot was not drawn, ") + error.what() +
+                leave_script(detail::study_plot_script(studies, image_path), image_path));
+    }
+    detail::write_file(image_path, detail::read_file(image));
+}
+
+}  // namespace posewise::cli
