@@ -184,9 +184,14 @@ std::string describe_undetermined(const IdentificationProblem& problem,
     if (R.cols() == 0) return "";  // a registration where base and sensor are known
     const VectorXd norms = R.colwise().norm().transpose().cwiseMax(1e-300);
     R.array().rowwise() /= norms.transpose().array();
+    // Unit columns: s1 <= sqrt(L). And sL >= 1 / |R^-1|, mostly enough, without singular values.
+    const double least = 1e-9 * std::sqrt(static_cast<double>(R.cols()));
+    const double inverse_norm = R.triangularView<Eigen::Upper>()
+                                    .solve(MatrixXd::Identity(R.cols(), R.cols()))
+                                    .norm();
+    if (inverse_norm * least < 1) return "";
     const WeakDirection weakest = weakest_directions(R, 1).front();
-    const double largest = std::sqrt(static_cast<double>(R.cols()));  // unit columns: s1 <= sqrt(L)
-    if (weakest.singular_value > 1e-9 * largest) return "";
+    if (weakest.singular_value > least) return "";
 
     const auto names = parameter_names(problem.campaign);
     std::string words;
