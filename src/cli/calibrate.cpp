@@ -196,6 +196,8 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     command.add_flag("--model-selection", options.model_selection,
                      "Compare nested parameter sets by their held-out error");
     add_prior_option(command, arguments.prior, ": fewer poses than parameters will do");
+    command.add_flag("--learn-sizes", options.learns_sizes,
+                     "Learn how large the errors of each class are, instead of the expected sizes");
     command.add_flag("--all-parameters", arguments.has_all_parameters, "List each, however many");
     command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
         ->check(file_name());

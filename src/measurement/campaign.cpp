@@ -62,24 +62,28 @@ std::vector<bool> parameter_is_angle(const Campaign& campaign) {
     return is_angle;
 }
 
+double& size_of(ParameterSpread& spread, const Chain& robot, Index parameter) {
+    const Element& element = robot.parameter_element(parameter);
+    const bool turns = element.motion == Motion::Rotation;
+    const ErrorTerm* const term = robot.parameter_term(parameter);
+    if (term != nullptr && term->kind == TermKind::Harmonic) return spread.harmonic;
+    if (term != nullptr && term->kind != TermKind::Free) return spread.gravity;
+    const bool is_offset = term == nullptr && turns && !element.joints.empty();
+    if (is_offset && spread.offset) return *spread.offset;
+    return turns ? spread.angle : spread.length;
+}
+
 VectorXd parameter_scale(const Campaign& campaign) {
     const auto names = parameter_names(campaign);
     const auto is_angle = parameter_is_angle(campaign);
     const Index robot_begin = base_parameter_count(campaign);
+    ParameterSpread spread = campaign.spread;
     VectorXd scale(static_cast<Index>(names.size()));
     for (std::size_t k = 0; k < names.size(); ++k) {
         scale[static_cast<Index>(k)] = is_angle[k] ? campaign.spread.angle : campaign.spread.length;
     }
     for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
-        const ErrorTerm* const term = campaign.robot.parameter_term(k);
-        const Element& element = campaign.robot.parameter_element(k);
-        const bool turns = element.motion == Motion::Rotation;
-        if (term == nullptr && turns && !element.joints.empty() && campaign.spread.offset) {
-            scale[robot_begin + k] = *campaign.spread.offset;
-        }
-        if (term == nullptr || term->kind == TermKind::Free) continue;
-        const bool is_harmonic = term->kind == TermKind::Harmonic;
-        scale[robot_begin + k] = is_harmonic ? campaign.spread.harmonic : campaign.spread.gravity;
+        scale[robot_begin + k] = size_of(spread, campaign.robot, k);
     }
     for (const auto& [name, size] : campaign.spread.by_name) {
         const auto found = std::find(names.begin(), names.end(), name);

@@ -178,7 +178,8 @@ std::string judge_compliances(const Calibration& calibration) {
            "motor's has the other sign), are weights, places and direction of gravity right?\n";
 }
 
-/// All parameters, or of many errors of the robot their classes beside base and sensor.
+/// All parameters, or of many errors of the robot their classes beside base and sensor. The
+/// classes, too, where their sizes were learned.
 std::string format_values(const Calibration& calibration, bool has_all) {
     constexpr Index readable = 50;
     const Campaign& campaign = calibration.campaign;
@@ -186,13 +187,16 @@ std::string format_values(const Calibration& calibration, bool has_all) {
     detail::Table values = detail::parameter_table(campaign, calibration.estimate);
     const Index count = campaign.robot.parameter_count();
     if (has_all || count <= readable) {
-        return format_section(fmt::format("Parameters (errors of the robot, base, {})", unknowns),
+        return (calibration.stated_spread ? format_section("Errors of the robot by class",
+                                                           detail::class_table(calibration))
+                                          : "") +
+               format_section(fmt::format("Parameters (errors of the robot, base, {})", unknowns),
                               values);
     }
     const auto begin = values.rows.begin() + base_parameter_count(campaign);
     values.rows.erase(begin, begin + count);
     return format_section("Errors of the robot by class (each one: --all-parameters, --out)",
-                          detail::class_table(campaign, calibration.estimate)) +
+                          detail::class_table(calibration)) +
            format_section(fmt::format("Parameters (base, {})", unknowns), values);
 }
 

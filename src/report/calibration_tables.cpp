@@ -141,30 +141,39 @@ Table parameter_table(const Campaign& campaign, const Estimate& estimate) {
     return table;
 }
 
-Table class_table(const Campaign& campaign, const Estimate& estimate) {
-    const VectorXd& errors = estimate.parameters.robot;
-    const Index robot_begin = base_parameter_count(campaign);
-    const VectorXd sizes = parameter_scale(campaign).segment(robot_begin, errors.size());
+Table class_table(const Calibration& calibration) {
+    const Campaign& campaign = calibration.campaign;
+    const VectorXd& errors = calibration.estimate.parameters.robot;
+    const auto sizes_by = [&](const ParameterSpread& spread) -> VectorXd {
+        Campaign by = campaign;
+        by.spread = spread;
+        return parameter_scale(by).segment(base_parameter_count(campaign), errors.size());
+    };
+    const bool has_learned = calibration.stated_spread.has_value();
+    const VectorXd sizes = sizes_by(campaign.spread);
+    const VectorXd expected = has_learned ? sizes_by(*calibration.stated_spread) : sizes;
     const auto names = campaign.robot.parameter_names();
     std::map<ErrorClass, std::vector<Index>> members;
     for (Index k = 0; k < errors.size(); ++k) members[class_of(campaign.robot, k)].push_back(k);
-    Table table{{"class", "count", "expected", "RMS", "largest", "", "which"}, {}};
+    Table table{{"class", "count", "expected"}, {}};
+    if (has_learned) table.header.emplace_back("learned");
+    table.header.insert(table.header.end(), {"RMS", "largest", "", "which"});
     for (const auto& [of_class, indices] : members) {
+        const auto rms = [&indices = indices](const VectorXd& of_all) {
+            return mm_per_m * of_all(indices).norm() / std::sqrt(indices.size());
+        };
         const VectorXd values = errors(indices);
         Index largest = 0;
         values.cwiseAbs().maxCoeff(&largest);
         const bool is_length = of_class == ErrorClass::Length || of_class == ErrorClass::Slide;
-        const VectorXd expected = sizes(indices);
-        table.rows.push_back(
-            {class_name(of_class), std::to_string(indices.size()),
-             format_short(
-                 mm_per_m * std::sqrt(expected.squaredNorm() / static_cast<double>(indices.size())),
-                 3),
-             format_fixed(
-                 mm_per_m * std::sqrt(values.squaredNorm() / static_cast<double>(indices.size())),
-                 4),
-             format_fixed(mm_per_m * values[largest], 4), is_length ? "mm" : "mrad",
-             names[static_cast<std::size_t>(indices[static_cast<std::size_t>(largest)])]});
+        std::vector<std::string> row{class_name(of_class), std::to_string(indices.size()),
+                                     format_short(rms(expected), 3)};
+        if (has_learned) row.push_back(format_short(rms(sizes), 3));
+        row.insert(row.end(),
+                   {format_fixed(rms(errors), 4), format_fixed(mm_per_m * values[largest], 4),
+                    is_length ? "mm" : "mrad",
+                    names[static_cast<std::size_t>(indices[static_cast<std::size_t>(largest)])]});
+        table.rows.push_back(std::move(row));
     }
     return table;
 }

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "posewise/calibrator/model_selection.hpp"
+#include "posewise/task/calibration.hpp"
 #include "table.hpp"
 
 namespace posewise::detail {
@@ -21,7 +21,7 @@ Table parameter_table(const Campaign& campaign, const Estimate& estimate);
 
 /// The robot's errors by class (lengths, angles of axes, joint offsets, ...): how many, their
 /// expected size, what they are (RMS, the largest and which that is), mm or mrad.
-Table class_table(const Campaign& campaign, const Estimate& estimate);
+Table class_table(const Calibration& calibration);
 
 /// The compliance of each joint that has one, in urad/(N m) (um/N), with its standard deviation and
 /// the largest torque, at which the parameter is what gives way. No rows if there is none.

@@ -11,7 +11,7 @@ namespace {
 
 /// What is calibrated, with what, and how far it is.
 struct Work {
-    const Campaign& campaign;
+    Campaign campaign;
     const Measurements& used;
     const CalibrationOptions& options;
     Index folds;
@@ -39,6 +39,9 @@ void check_options(const CalibrationOptions& options) {
     }
     if (options.model_selection && (!is_joint || options.folds == 0)) {
         throw InputError("model selection needs the method lm, and groups to hold out");
+    }
+    if (options.learns_sizes && !is_joint) {
+        throw InputError("learning the sizes of errors needs the method lm");
     }
 }
 
@@ -135,6 +138,12 @@ void calibrate_with(Work& work, Calibration& result) {
         return;
     }
     const Parameters& registered = registration.parameters;
+    if (work.options.learns_sizes) {
+        LevenbergMarquardtOptions options = work.options.joint;
+        options.stop = work.options.stop;
+        result.stated_spread = work.campaign.spread;
+        work.campaign.spread = learn_sizes(work.campaign, work.used, registered, options);
+    }
     compare_models(work, registered, result);
     identify_by_method(work, registered, result);
     work.counter.count();

@@ -37,6 +37,18 @@ TEST(FormatCalibration, SaysWhatWasFoundAndHowAccurateItIs) {
     EXPECT_TRUE(describe_doubts(calibration).empty());
 }
 
+TEST(FormatCalibration, ShowsLearnedSizesBesideTheExpected) {
+    Example example(16);
+    example.campaign.spread.is_prior = true;
+    CalibrationOptions options;
+    options.folds = 0;
+    EXPECT_FALSE(
+        holds(format(calibrate(example.campaign, example.measurements, options)), "class"));
+    options.learns_sizes = true;
+    const std::string text = format(calibrate(example.campaign, example.measurements, options));
+    EXPECT_TRUE(holds(text, "class           count  expected  learned     RMS")) << text;
+}
+
 TEST(FormatCalibration, OfOneThatIsNotIdentifiedSaysWhy) {
     const Example example(3);
     EXPECT_EQ(format(calibrate(example.campaign, example.measurements)),

@@ -40,6 +40,15 @@ struct LevenbergMarquardtOptions {
 Estimate identify(const Campaign& campaign, const Measurements& measurements,
                   const Parameters& start, const LevenbergMarquardtOptions& options = {});
 
+/// The campaign's spread with the sizes that this robot's errors have, of lengths, angles, joint
+/// offsets, gravity (torque) terms and harmonics: where the spread is a prior, the sizes under
+/// which the measurements are most probable, by expectation and maximisation [Dempster, Laird &
+/// Rubin 1977]: a size's square is the mean of its errors' squares, (estimate)^2 + variance, and of
+/// the square stated, which counts as one error more. Sizes stated by parameter's name stay. Throws
+/// InputError where the spread is no prior, and as identify() does.
+ParameterSpread learn_sizes(const Campaign& campaign, const Measurements& measurements,
+                            const Parameters& start, const LevenbergMarquardtOptions& options = {});
+
 struct TwoStepOptions {
     Index iteration_limit = 200;
     double alpha = 1;                  ///< part of each robot step taken, in (0, 1]

@@ -36,6 +36,9 @@ struct ParameterSpread {
 /// Model errors differ so much from robot to robot that one standard deviation is this factor.
 inline constexpr double model_error_factor = 2.5;
 
+/// The size of this error of the robot by its kind; `by_name` may state another.
+double& size_of(ParameterSpread& spread, const Chain& robot, Index parameter);
+
 /// What errors robots of this size have, as a prior: for full_model().
 ParameterSpread population_spread(const Chain& robot);
 

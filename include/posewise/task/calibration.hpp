@@ -35,6 +35,9 @@ struct CalibrationOptions {
     /// Groups of configurations to hold out in turn; 0: none. Nothing: default_folds().
     std::optional<Index> folds{};
     bool model_selection = false;  ///< compare nested parameter sets, too; needs folds and Joint
+    /// Replaces the expected sizes of the robot's errors by those they have, learn_sizes(); the
+    /// groups held out are predicted with the same sizes. Needs Joint and a spread that is a prior.
+    bool learns_sizes = false;
     /// Ends the identification with the best so far; figures that are not complete are left out.
     StopSignal stop{};
     ProgressCallback progress{};  ///< of the identification, the groups held out and the sets
@@ -59,8 +62,10 @@ struct WithoutOutliers {
 
 /// A calibration: parameters, how sure they are, how accurate the robot is with them.
 struct Calibration {
-    /// As calibrated, with the model error found: names, units and scales of what follows.
+    /// As calibrated, with the model error found and sizes learned: names, units and scales of what
+    /// follows.
     Campaign campaign;
+    std::optional<ParameterSpread> stated_spread;  ///< where others were learned
     CalibrationMethod method = CalibrationMethod::Joint;
     MeasuredCount measured;  ///< that was calibrated with
     /// Its ending says whether there is a calibration: where it is NotIdentifiable, nothing below
