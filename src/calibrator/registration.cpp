@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include "../core/text.hpp"
+#include "../model/sampling.hpp"
 #include "least_squares.hpp"
 #include "linear_registration.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/measurement/simulation.hpp"
 #include "posewise/model/transforms.hpp"
 
 namespace posewise {
@@ -138,6 +141,25 @@ Registration register_base_and_targets(const Campaign& campaign, const Measureme
     }
     registered.parameters.robot = VectorXd::Zero(campaign.robot.parameter_count());
     return registered;
+}
+
+Index least_calibration_count(const Campaign& campaign) {
+    const Index least = least_pose_count(campaign);
+    const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
+    const std::optional<ObservedPoints> observed = registered_points(nominal);
+    if (!observed) return least;
+    constexpr std::uint64_t seed = 20152;  // any: it only has to be the same every time
+    const auto are_enough = [&](Index count) {
+        const auto drawn = detail::random_configurations(nominal.robot, count, seed);
+        const auto measured = simulate_measurements(nominal, nominal.nominal, drawn, 1, seed);
+        return register_roughly(nominal, measured).is_determined();
+    };
+    // More than as many as there are unknowns do not help: what is open then is open always.
+    const Index most = least + 12 + observed->points.unknown_count();
+    for (Index count = least; count < most; ++count) {
+        if (are_enough(count)) return count;
+    }
+    return least;
 }
 
 Parameters determined(Registration registration) {

@@ -14,7 +14,6 @@
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
-#include "posewise/jacobian/identifiability.hpp"
 #include "posewise/selection/exchange.hpp"
 #include "posewise/task/doubts.hpp"
 
@@ -98,9 +97,9 @@ std::vector<Index> choose_pose_counts(const std::vector<Index>& asked, Index all
     if (!counts.empty()) return counts;
     for (Index count = least; count < all; ++count) counts.push_back(count);
     if (counts.empty()) {
-        throw InputError("there are " + std::to_string(all) + " configurations, a study needs " +
-                         std::to_string(least + 1) +
-                         ": as many as identify the model and one to judge on");
+        throw InputError("a study needs " + std::to_string(least + 1) +
+                         " configurations, as many as identify the model and one to judge on; " +
+                         "there " + (all == 1 ? "is " : "are ") + std::to_string(all));
     }
     return counts;
 }
@@ -240,7 +239,7 @@ Study study(const Campaign& campaign, const Measurements& measurements,
     check_is_of_robot(campaign, measurements, registration);
     check_options(options);
     const Index all = measurements.configuration_count();
-    const Index least = options.pose_counts.empty() ? least_pose_count(campaign) : 0;
+    const Index least = options.pose_counts.empty() ? least_calibration_count(campaign) : 0;
     const Index split_count = options.splits.value_or(usual_splits(all, least, options));
     if (split_count > 0 && all < 2) {
         throw InputError("there is 1 configuration, splits need at least 2");

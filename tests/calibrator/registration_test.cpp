@@ -5,6 +5,7 @@
 #include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "support/campaigns.hpp"
 #include "support/sweep.hpp"
@@ -169,6 +170,48 @@ TEST(Registration, AsksForTheHeightThatNoPoseOfAPlanarArmTells) {
                   std::string::npos)
             << message;
     }
+}
+
+// ---- How many poses a calibration can do with ----
+
+/// Whether simulated campaigns of so many poses are calibrated.
+bool is_calibrated_by(const Campaign& campaign, Index count) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const SimulateOptions options{.pose_count = count, .truth_seed = seed, .seed = seed};
+        const Measurements measured = simulate(campaign, options).measurements;
+        const Registration found = register_base_and_targets(campaign, measured);
+        if (!found.is_determined()) return false;
+        if (identify(campaign, measured, found.parameters).ending != Ending::Converged)
+            return false;
+    }
+    return true;
+}
+
+TEST(LeastCalibrationCount, IsEnoughAndNotOneTooMany) {
+    Campaign poses = tracked_campaign(testing::fanuc());
+    poses.sensor = std::make_shared<PoseSensor>(std::nullopt, IsotropicNoise{5e-5}, 1e-4);
+    poses.nominal.sensor = tool_unknowns(Isometry3d(Eigen::Translation3d(0.28, 0.05, -0.11)));
+    const std::vector<std::pair<Campaign, Index>> with_priors{
+        {with_targets(testing::fanuc(), 1, false), 5},
+        {with_targets(testing::fanuc(), 3, false), 3},
+        {with_targets(two_joint_arm(Axis::Z, 0, 0.5, 0.4), 1, true), 5},
+        {poses, 3}};
+    for (const auto& [stated, least] : with_priors) {
+        Campaign campaign = stated;
+        campaign.spread = population_spread(campaign.robot);
+        EXPECT_EQ(least_calibration_count(campaign), least);
+        EXPECT_TRUE(is_calibrated_by(campaign, least)) << least;
+        EXPECT_FALSE(is_calibrated_by(campaign, least - 1)) << least;
+    }
+    const Campaign without = with_targets(testing::fanuc(), 1, false);
+    EXPECT_EQ(least_calibration_count(without), least_pose_count(without));
+}
+
+TEST(LeastCalibrationCount, NeedsNoNominalValues) {
+    Campaign campaign = with_targets(testing::fanuc(), 3, false);
+    campaign.base_is_known[2] = true;
+    campaign.has_nominal_base = campaign.has_nominal_targets = false;
+    EXPECT_EQ(least_calibration_count(campaign), least_pose_count(campaign));
 }
 
 }  // namespace

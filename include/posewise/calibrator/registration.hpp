@@ -29,6 +29,11 @@ Registration register_base_and_targets(const Campaign& campaign, const Measureme
 /// The same without the polish.
 Registration register_roughly(const Campaign& campaign, const Measurements& measurements);
 
+/// Smallest number of generic configurations that a calibration can do with: they identify what can
+/// be identified (least_pose_count()) and, where no nominal values are needed for it, determine
+/// base and targets.
+Index least_calibration_count(const Campaign& campaign);
+
 /// The parameters, for those to whom measurements that do not determine them are no input: throws
 /// InputError with the reason.
 Parameters determined(Registration registration);
