@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "../core/format.hpp"
+#include "../core/text.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/report/reports.hpp"
 #include "study_table.hpp"
@@ -35,9 +36,10 @@ std::string csv_line(const StudyRow& row, const StudyCase& study_case, std::stri
 /// On what all were judged, and whether to plan was worth it.
 std::string describe_judgement(const Study& study) {
     std::string text = fmt::format(
-        "\nJudged on {} configurations held out, the same ones for all subsets of a split; {} "
-        "splits.\nPlanned and random: medians; their ratio: the geometric mean over the splits.\n",
-        study.test_count, study.splits);
+        "\nJudged on {} held out, the same ones for all subsets of a split; {}.\nPlanned and "
+        "random: medians; their ratio: the geometric mean over the splits.\n",
+        detail::count_of(study.test_count, "configuration"),
+        detail::count_of(study.splits, "split"));
     for (std::size_t c = 0; c < study.criteria.size(); ++c) {
         std::string lost, unknown;
         bool is_known = false;
