@@ -10,7 +10,6 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/simulation.hpp"
-#include "posewise/model/transforms.hpp"
 
 namespace posewise {
 namespace {

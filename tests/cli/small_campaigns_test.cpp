@@ -77,7 +77,8 @@ TEST_F(SmallCampaign, OfTwoJointsIsCalibrated) {
     const std::string upright = "Rz q1, Tz 300 mm, Ry q2, Tx 400 mm";
     const double noise = 0.13;  // mm: of sensor and model, in three coordinates
     for (const std::string& campaign :
-         {two_joint_campaign(upright), two_joint_campaign(planar, ", known: [z]")}) {
+         {two_joint_campaign(upright), two_joint_campaign(planar, ", known: [z]"),
+          two_joint_campaign("Rz q1, Ry q2")}) {
         prepare(campaign, 60);
         EXPECT_LT(calibrated(), noise) << campaign;
         prepare(replaced(campaign, "geometric", "full"), 60);
@@ -110,6 +111,8 @@ TEST_F(SmallCampaign, SaysWhichKeyStatesWhatNoPoseTells) {
     prepare(planes, 40);
     expect_input_error("calibrate c.yaml -m s.csv",
                        "known: base.known, sensor.targets.known or sensor.known_planes");
+    write_text("c.yaml", replaced(planes, "position_mm: [[0, 0, 150]]", "count: 1"));
+    expect_input_error("calibrate c.yaml -m s.csv", "keys base and sensor.targets.position_mm");
     prepare(anchor, 40);
     expect_input_error("calibrate c.yaml -m s.csv",
                        "known: base.known, sensor.targets.known or sensor.anchors.known");
