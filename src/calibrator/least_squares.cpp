@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
+#include "../core/text.hpp"
 #include "../measurement/noise.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identifiability.hpp"
@@ -76,9 +78,9 @@ std::string describe_unseen_target(const Campaign& campaign, const Measurements&
         const auto of_target = measurements.is_seen.middleCols(seen_of_each * j, seen_of_each);
         if (targets.is_known(j) || of_target.any()) continue;
         return fmt::format(
-            "target {} is seen in no sample of these {} configurations, so its position cannot be "
-            "found; measure it, or leave it out of the campaign's targets",
-            j + 1, measurements.configuration_count());
+            "target {} is seen in no sample of {}, so its position cannot be found; measure it, or "
+            "leave it out of the campaign's targets",
+            j + 1, these(measurements.configuration_count(), "configuration"));
     }
     return "";
 }
@@ -93,9 +95,10 @@ IdentificationProblem make_problem(const Campaign& campaign, const Measurements&
 std::string describe_missing_equations(const IdentificationProblem& problem) {
     std::string unseen = describe_unseen_target(problem.campaign, problem.measurements);
     if (!unseen.empty() || problem.equation_count() >= problem.scale.size()) return unseen;
-    return fmt::format("{} configurations give {} equations, {} parameters need at least as many",
-                       problem.means.configuration_count(), problem.equation_count(),
-                       problem.scale.size());
+    const Index count = problem.means.configuration_count();
+    return fmt::format("{} {} {}, {} parameters need at least as many",
+                       count_of(count, "configuration"), count == 1 ? "gives" : "give",
+                       count_of(problem.equation_count(), "equation"), problem.scale.size());
 }
 
 LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters) {
@@ -174,35 +177,57 @@ Triangle triangularise(const LinearisedSystem& system) {
             augmented.col(size).head(size)};
 }
 
-std::string describe_undetermined(const IdentificationProblem& problem,
-                                  const Parameters& parameters) {
-    std::string missing = describe_missing_equations(problem);
-    if (!missing.empty()) return missing;
+std::vector<Index> confused_parameters(const IdentificationProblem& problem,
+                                       const Parameters& parameters) {
     Parameters nominal = parameters;
     nominal.robot.setZero();
     MatrixXd R = triangularise(linearise(problem, nominal)).R;
-    if (R.cols() == 0) return "";  // a registration where base and sensor are known
+    if (R.cols() == 0) return {};  // a registration where base and sensor are known
     const VectorXd norms = R.colwise().norm().transpose().cwiseMax(1e-300);
     R.array().rowwise() /= norms.transpose().array();
     // Unit columns: s1 <= sqrt(L). And sL >= 1 / |R^-1|, mostly enough, without singular values.
     const double least = 1e-9 * std::sqrt(static_cast<double>(R.cols()));
-    const double inverse_norm = R.triangularView<Eigen::Upper>()
-                                    .solve(MatrixXd::Identity(R.cols(), R.cols()))
-                                    .norm();
-    if (inverse_norm * least < 1) return "";
+    const double inverse_norm =
+        R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(R.cols(), R.cols())).norm();
+    if (inverse_norm * least < 1) return {};
     const WeakDirection weakest = weakest_directions(R, 1).front();
-    if (weakest.singular_value > least) return "";
-
-    const auto names = parameter_names(problem.campaign);
-    std::string words;
+    std::vector<Index> confused;
+    if (weakest.singular_value > least) return confused;
     for (const ParameterTerm& term : weakest.terms) {
-        if (std::abs(term.coefficient) < 1e-6) continue;
-        words += (words.empty() ? "" : ", ") + names[static_cast<std::size_t>(term.parameter)];
+        if (std::abs(term.coefficient) >= 1e-6) confused.push_back(term.parameter);
     }
-    return fmt::format(
-        "these {} configurations cannot tell apart the effects of: {}; measure more or more "
-        "different configurations, or leave one of these parameters out",
-        problem.means.configuration_count(), words);
+    return confused;
+}
+
+std::string name_parameters(const Campaign& campaign, const std::vector<Index>& parameters) {
+    const auto names = parameter_names(campaign);
+    std::string words;
+    for (const Index k : parameters) {
+        words += (words.empty() ? "" : ", ") + names[static_cast<std::size_t>(k)];
+    }
+    return words;
+}
+
+std::string describe_undetermined(const IdentificationProblem& problem,
+                                  const Parameters& parameters) {
+    std::string missing = describe_missing_equations(problem);
+    if (!missing.empty()) return missing;
+    const std::vector<Index> confused = confused_parameters(problem, parameters);
+    if (confused.empty()) return "";
+    const Campaign& campaign = problem.campaign;
+    const Index robot_begin = base_parameter_count(campaign);
+    const auto of_robot = std::count_if(confused.begin(), confused.end(), [&](Index k) {
+        return k >= robot_begin && k < robot_begin + campaign.robot.parameter_count();
+    });
+    std::vector<std::string> advice{"measure more or more different configurations"};
+    if (of_robot > 0) advice.emplace_back("leave one of these parameters out");
+    if (of_robot < std::ssize(confused)) {
+        advice.push_back("state which of them are known: " +
+                         list_words(campaign.sensor->words().known));
+    }
+    return fmt::format("{} cannot tell apart the effects of: {}; {}",
+                       these(problem.means.configuration_count(), "configuration"),
+                       name_parameters(campaign, confused), list_words(advice));
 }
 
 Estimate begin_estimate(const IdentificationProblem& problem, const Parameters& start) {

@@ -67,10 +67,17 @@ struct Triangle {
 };
 Triangle triangularise(const LinearisedSystem& system);
 
-/// What keeps all parameters from being identified, as a sentence: equations that are missing, or a
-/// direction of parameter space that these configurations do not see (a singular value of the
-/// column-normalised Jacobian below 1e-9 of the largest, with the robot at nominal, where a lost
-/// rank is exactly lost), by the parameters in it. Empty: all are identifiable.
+/// The largest parameters in a direction of parameter space that these configurations do not see (a
+/// singular value of the column-normalised Jacobian below 1e-9 of the largest, with the robot at
+/// nominal, where a lost rank is exactly lost). Empty: there is none.
+std::vector<Index> confused_parameters(const IdentificationProblem& problem,
+                                       const Parameters& parameters);
+
+/// "base.z, target1.z".
+std::string name_parameters(const Campaign& campaign, const std::vector<Index>& parameters);
+
+/// What keeps all parameters from being identified, as a sentence: equations that are missing, or
+/// the confused parameters and what to do about them. Empty: all are identifiable.
 std::string describe_undetermined(const IdentificationProblem& problem,
                                   const Parameters& parameters);
 

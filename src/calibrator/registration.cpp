@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
-
+#include "../core/text.hpp"
+#include "../model/sampling.hpp"
 #include "least_squares.hpp"
+#include "linear_registration.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/measurement/simulation.hpp"
 
 namespace posewise {
 namespace {
@@ -28,17 +30,11 @@ Measurements as_points(const Measurements& means, const ObservedPoints& observed
     return points;
 }
 
-/// Least squares for (rows of X, c, unknown points) of X p_ij + c - R_i t_j = p_i.
-struct LinearEquations {
-    MatrixXd A;
-    VectorXd b;
-};
-
-LinearEquations state_equations(const Campaign& campaign, const Targets& points,
-                                const Measurements& means) {
+detail::RegistrationEquations state_equations(const Campaign& campaign, const Targets& points,
+                                              const Measurements& means) {
     const Index unknowns = points.unknown_count();
     const Index rows = 3 * means.is_seen.count();
-    LinearEquations equations{MatrixXd::Zero(rows, 12 + unknowns), VectorXd(rows)};
+    detail::RegistrationEquations equations{MatrixXd::Zero(rows, 12 + unknowns), VectorXd(rows)};
     auto& [A, b] = equations;
     Index row = 0;
     for (Index i = 0; i < means.configuration_count(); ++i) {
@@ -61,37 +57,51 @@ LinearEquations state_equations(const Campaign& campaign, const Targets& points,
     return equations;
 }
 
-std::string describe_shortage(const Sensor& sensor, const Measurements& means) {
+/// `confused`: parameters that look alike, if it is known.
+std::string describe_shortage(const Campaign& campaign, const Measurements& means,
+                              const std::vector<Index>& confused = {}) {
+    const Sensor& sensor = *campaign.sensor;
     const std::string place = sensor.words().place;
-    const std::string what = sensor.has_orientation() ? "poses"
-                                                      : fmt::format("configurations with {} points",
-                                                                    means.is_seen.count());
+    const Index count = means.configuration_count();
+    const std::string what = sensor.has_orientation()
+                                 ? detail::these(count, "pose")
+                                 : detail::these(count, "configuration") + " with " +
+                                       detail::count_of(means.is_seen.count(), "point");
+    const std::string alike = confused.empty()
+                                  ? ""
+                                  : fmt::format(" (the effects of {} cannot be told apart)",
+                                                detail::name_parameters(campaign, confused));
     return fmt::format(
-        "these {} {} do not determine base and {}; more configurations that turn the tool in "
-        "different ways are needed or, where all axes are parallel (SCARA), base or {} known along "
-        "them, like known: [z]",
-        means.configuration_count(), what, place, place);
+        "{} {} not determine base and {}{}; more configurations that turn the tool in different "
+        "ways are needed or, where all axes are parallel (SCARA), base or {} known along them, "
+        "like known: [z], keys {}",
+        what, count == 1 ? "does" : "do", place, alike, place,
+        detail::list_words(sensor.words().known));
 }
 
-/// Base and sensor's unknowns that solve the linear equations, X projected on the rotations.
+/// Base and sensor's unknowns that solve the linear equations, the base a rotation.
 Registration solve_linear(const Campaign& campaign, const ObservedPoints& observed,
                           const Measurements& means) {
-    const auto [A, b] = state_equations(campaign, observed.points, as_points(means, observed));
-    Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
-    qr.setThreshold(1e-9);
-    if (A.rows() < A.cols() || qr.rank() < A.cols()) {
-        return {campaign.nominal, describe_shortage(*campaign.sensor, means)};
+    const auto equations = state_equations(campaign, observed.points, as_points(means, observed));
+    if (equations.A.rows() < equations.A.cols()) {
+        return {campaign.nominal, describe_shortage(campaign, means)};
     }
-    const VectorXd solution = qr.solve(b);
+    const auto free = detail::solve_freely(equations);
+    const auto solution = free ? *free : detail::solve_for_rotation(equations);
     Parameters found = campaign.nominal;
-    const Matrix3d R =
-        nearest_rotation(
-            Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(solution.data()))
-            .transpose();
+    const Matrix3d R = solution.X.transpose();
     found.world_from_base.linear() = R;
-    found.world_from_base.translation() = -R * solution.segment<3>(9);
-    found.sensor = observed.unknowns(solution.tail(observed.points.unknown_count()));
-    return {found, {}};
+    found.world_from_base.translation() = -R * solution.c;
+    found.sensor = observed.unknowns(solution.t);
+    if (free) return {found, {}};
+    const auto confused = confused_parameters(detail::make_problem(campaign, means), found);
+    return {found, confused.empty() ? "" : describe_shortage(campaign, means, confused)};
+}
+
+/// The points that base and targets are registered from; nothing if it begins at nominal values.
+std::optional<ObservedPoints> registered_points(const Campaign& campaign) {
+    if (base_parameter_count(campaign) < 6) return std::nullopt;
+    return campaign.sensor->observed_points();
 }
 
 /// Where the polish begins; the robot has no parameters.
@@ -99,15 +109,15 @@ Registration find_start(const Campaign& campaign, const Measurements& measuremen
     const Sensor& sensor = *campaign.sensor;
     std::string unseen = detail::describe_unseen_target(campaign, measurements);
     if (!unseen.empty()) return {campaign.nominal, std::move(unseen)};
-    const std::optional<ObservedPoints> observed = sensor.observed_points();
-    if (observed && base_parameter_count(campaign) == 6) {
+    if (const auto observed = registered_points(campaign)) {
         return solve_linear(campaign, *observed, mean_measurements(sensor, measurements));
     }
     if (!campaign.has_nominal_base || !campaign.has_nominal_targets) {
         throw InputError(fmt::format(
             "base and targets cannot be found from nothing by {} alone or beside a base that is "
-            "partly known; the campaign must state base and targets, if only roughly",
-            observed ? "lengths" : sensor.words().readings));
+            "partly known; the campaign must state base and targets, if only roughly (keys base "
+            "and {})",
+            sensor.observed_points() ? "lengths" : sensor.words().readings, sensor.words().key));
     }
     return {campaign.nominal, {}};
 }
@@ -130,6 +140,25 @@ Registration register_base_and_targets(const Campaign& campaign, const Measureme
     }
     registered.parameters.robot = VectorXd::Zero(campaign.robot.parameter_count());
     return registered;
+}
+
+Index least_calibration_count(const Campaign& campaign) {
+    const Index least = least_pose_count(campaign);
+    const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
+    const std::optional<ObservedPoints> observed = registered_points(nominal);
+    if (!observed) return least;
+    constexpr std::uint64_t seed = 20152;  // any: it only has to be the same every time
+    const auto are_enough = [&](Index count) {
+        const auto drawn = detail::random_configurations(nominal.robot, count, seed);
+        const auto measured = simulate_measurements(nominal, nominal.nominal, drawn, 1, seed);
+        return register_roughly(nominal, measured).is_determined();
+    };
+    // More than as many as there are unknowns do not help: what is open then is open always.
+    const Index most = least + 12 + observed->points.unknown_count();
+    for (Index count = least; count < most; ++count) {
+        if (are_enough(count)) return count;
+    }
+    return least;
 }
 
 Parameters determined(Registration registration) {

@@ -74,7 +74,8 @@ void correct(const CorrectArguments& arguments) {
     if (!arguments.out.empty()) {
         io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections);
     }
-    print(fmt::format("{}: {} configurations corrected{}\n", file.name, poses.ids.size(),
+    print(fmt::format("{}: {} corrected{}\n", file.name,
+                      detail::count_of(std::ssize(poses.ids), "configuration"),
                       arguments.out.empty() ? "" : ": " + detail::escape_controls(arguments.out)));
     print(format(corrected));
 }

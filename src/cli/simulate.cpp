@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "../core/text.hpp"
 #include "../report/calibration_tables.hpp"
 #include "commands.hpp"
 #include "common.hpp"
@@ -64,9 +65,10 @@ void run_simulation(SimulateArguments arguments) {
     const Simulation simulation = simulate_as_asked(arguments, file);
     io::write_measurements_csv(arguments.out, file, simulation.measurements,
                                make_comments(arguments, file));
-    print(fmt::format("{} configurations, {} samples: {}\n",
-                      simulation.measurements.configuration_count(),
-                      simulation.measurements.observations.rows(), arguments.out));
+    print(fmt::format(
+        "{}, {}: {}\n",
+        detail::count_of(simulation.measurements.configuration_count(), "configuration"),
+        detail::count_of(simulation.measurements.observations.rows(), "sample"), arguments.out));
     print_section(fmt::format("True parameters (errors of the robot, base, {})",
                               file.sensor->words().unknowns),
                   detail::value_table(file, simulation.truth));

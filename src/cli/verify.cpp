@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "../core/text.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "options.hpp"
@@ -103,12 +104,13 @@ void verify_file(const VerifyArguments& arguments) {
     check_verify_usage(arguments, plan.kind);
     if (!plan.is_continuous()) {
         const Verification verification = verify_choice(plan);
-        print(fmt::format("{}: {} of {} candidates by {}\n", arguments.plan,
-                          plan.request.pose_count, verification.candidate_count, criterion));
+        print(fmt::format("{}: {} of {} by {}\n", arguments.plan, plan.request.pose_count,
+                          detail::count_of(verification.candidate_count, "candidate"), criterion));
         return conclude(arguments.plan, verification);
     }
     const Verification verification = verify_continuous(plan, arguments.plan);
-    print(fmt::format("{}: {} poses by {}\n", arguments.plan, plan.poses.size(), criterion));
+    print(fmt::format("{}: {} by {}\n", arguments.plan,
+                      detail::count_of(std::ssize(plan.poses), "pose"), criterion));
     conclude(arguments.plan, verification);
 }
 

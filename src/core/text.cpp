@@ -67,6 +67,14 @@ std::size_t character_length(std::string_view text) {
                : 1;
 }
 
+std::string count_of(Index count, const std::string& noun) {
+    return std::to_string(count) + ' ' + noun + (count == 1 ? "" : "s");
+}
+
+std::string these(Index count, const std::string& noun) {
+    return count == 1 ? "this " + noun : "these " + count_of(count, noun);
+}
+
 std::string list_words(const std::vector<std::string>& words) {
     constexpr std::size_t most = 30;
     const std::size_t shown = std::min(words.size(), most);

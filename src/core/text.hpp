@@ -20,6 +20,11 @@ std::string quote(std::string_view text);
 /// is not UTF-8.
 std::size_t character_length(std::string_view text);
 
+/// "1 pose", "2 poses"; the plural is the noun with an s.
+std::string count_of(Index count, const std::string& noun);
+/// "this pose", "these 2 poses".
+std::string these(Index count, const std::string& noun);
+
 /// "a, b or c".
 std::string list_words(const std::vector<std::string>& words);
 

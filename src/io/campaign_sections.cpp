@@ -1,5 +1,7 @@
 #include "campaign_sections.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "posewise/model/transforms.hpp"
@@ -8,9 +10,16 @@
 namespace posewise::detail {
 namespace {
 
-constexpr const char* plausible_amount = "from 1e-12 to 1000 (m or rad)";
+constexpr double least_amount = 1e-12;  // m or rad
+constexpr double largest_amount = 1e3;
 
-bool is_plausible_amount(double si) { return si >= 1e-12 && si <= 1e3; }
+bool is_plausible_amount(double si) { return si >= least_amount && si <= largest_amount; }
+
+/// That rule in words and in this unit, "from 1e-09 to 1e+06 mm".
+std::string plausible_amount(const Unit& unit) {
+    return fmt::format("from {:g} to {:g} {}", unit.from_si(least_amount),
+                       unit.from_si(largest_amount), unit.name);
+}
 
 }  // namespace
 
@@ -44,7 +53,7 @@ double read_positive(const YamlMeasure& measure, bool zero_allowed) {
                                   (zero_allowed ? "zero or positive" : "positive"));
     }
     if (value != 0 && !is_plausible_amount(value)) {
-        throw measure.value.error(stated + "; must be " + plausible_amount);
+        throw measure.value.error(stated + "; must be " + plausible_amount(*measure.unit));
     }
     return value;
 }
@@ -62,10 +71,10 @@ double read_amount(const YamlValue& value, Quantity quantity, Sign sign) {
     }
     const double si = unit->to_si(number.value);
     if (sign == Sign::Positive && !is_plausible_amount(si)) {
-        throw value.error("is " + quote(text) + "; must be " + plausible_amount);
+        throw value.error("is " + quote(text) + "; must be " + plausible_amount(*unit));
     }
     if (!is_plausible(si, quantity)) {
-        throw value.error("is " + quote(text) + "; must be " + plausible(quantity));
+        throw value.error("is " + quote(text) + "; must be " + plausible(*unit));
     }
     return si;
 }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "../model/halton.hpp"
@@ -134,8 +136,10 @@ void read_tracker(const YamlValue& value, Sight& sight) {
         sight.elevation = read_interval(*elevation);
         constexpr double upright = std::numbers::pi / 2 * (1 + 1e-12);
         if (sight.elevation.lower < -upright || sight.elevation.upper > upright) {
+            const double up = elevation->unit->from_si(std::numbers::pi / 2);
             throw elevation->value.error(
-                "must lie from -90 to 90 deg: straight down to straight up");
+                fmt::format("must lie from {:g} to {:g} {}: straight down to straight up", -up, up,
+                            elevation->unit->name));
         }
     }
     if (const auto line = map.find("line_of_sight")) sight.is_line_required = line->boolean();

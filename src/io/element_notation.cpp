@@ -222,7 +222,7 @@ void ElementParser::add_nominal(Cursor& cursor, double number, std::size_t start
     }
     sum.value += unit->to_si(number);
     if (!is_plausible(sum.value, quantity)) {
-        throw cursor.error(start, "the amount is too large; must be " + plausible(quantity));
+        throw cursor.error(start, "the amount is too large; must be " + plausible(*unit));
     }
 }
 

@@ -29,7 +29,8 @@ std::vector<double> read_numbers(const JsonValue& value, std::size_t count) {
 /// m or rad, of a size that occurs.
 double check_size(double si, Quantity quantity, const JsonValue& value) {
     if (is_plausible(si, quantity)) return si;
-    throw value.error(fmt::format("is {:g}; must be {}", si, plausible(quantity)));
+    const detail::Unit* const unit = detail::find_unit(quantity == Quantity::Length ? "m" : "rad");
+    throw value.error(fmt::format("is {:g}; must be {}", si, plausible(*unit)));
 }
 
 Vector3d read_position(const JsonValue& value) {

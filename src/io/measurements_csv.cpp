@@ -118,7 +118,7 @@ class RowReader {
         if (!is_plausible(si, unit.quantity)) {
             throw input_error_at(csv_.locate(field),
                                  fmt::format("{} is out of any cell; must be {}",
-                                             detail::quote(text), plausible(unit.quantity)));
+                                             detail::quote(text), plausible(unit)));
         }
         return si;
     }

@@ -54,11 +54,9 @@ bool is_plausible(double si, Quantity quantity) {
     return std::abs(si) <= largest_plausible(quantity);
 }
 
-std::string plausible(Quantity quantity) {
-    return fmt::format("at most {:g} {} in magnitude", largest_plausible(quantity),
-                       quantity == Quantity::Length  ? "m"
-                       : quantity == Quantity::Angle ? "rad"
-                                                     : "N m");
+std::string plausible(const Unit& unit) {
+    return fmt::format("at most {:g} {} in magnitude",
+                       unit.from_si(largest_plausible(unit.quantity)), unit.name);
 }
 
 NameWithUnit split_unit(std::string_view name) {

@@ -37,8 +37,8 @@ std::vector<std::string> unit_names(Quantity quantity);
 /// Whether m, rad or N m are of a size that occurs: a larger one is a slip, and would overflow
 /// later.
 bool is_plausible(double si, Quantity quantity);
-/// That rule in words, "at most 1e+06 m in magnitude".
-std::string plausible(Quantity quantity);
+/// That rule in words and in this unit, "at most 1e+09 mm in magnitude".
+std::string plausible(const Unit& unit);
 
 /// A name that carries its unit as a suffix: `q1_rad`, `p1_x_mm`.
 struct NameWithUnit {

@@ -157,7 +157,7 @@ std::vector<YamlEntry> YamlValue::entries() const {
 double YamlMeasure::to_si() const {
     const double si = unit->to_si(value.number());
     if (!is_plausible(si, unit->quantity)) {
-        throw value.error("is " + quote(value.text()) + "; must be " + plausible(unit->quantity));
+        throw value.error("is " + quote(value.text()) + "; must be " + plausible(*unit));
     }
     return si;
 }

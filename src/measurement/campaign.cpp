@@ -98,8 +98,9 @@ VectorXd parameter_scale(const Campaign& campaign) {
 
 ParameterSpread population_spread(const Chain& robot) {
     constexpr double length_per_extent = 4e-4;
+    constexpr double least_length = 1e-5;  // m: of axes that cross, without a length between them
     ParameterSpread spread;
-    spread.length = length_per_extent * extent(robot);
+    spread.length = std::max(length_per_extent * extent(robot), least_length);
     spread.angle = 7e-4;
     spread.offset = 20e-3;
     spread.gravity = 7e-4;

@@ -157,7 +157,11 @@ std::vector<NoiseNumber> PoseSensor::noise_numbers() const {
 }
 
 SensorWords PoseSensor::words() const {
-    return {"poses", "tool", "tool in the flange frame", "sensor.tool",
+    return {"poses",
+            "tool",
+            "tool in the flange frame",
+            "sensor.tool",
+            {"base.known", "sensor.tool.known"},
             fmt::format("poses of a tool ({}), {} and {} mrad in orientation",
                         known_tool_ ? "known" : "to be identified", detail::describe(noise_),
                         detail::format_short(mrad_per_rad * sigma_orientation_))};

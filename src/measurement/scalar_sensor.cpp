@@ -95,6 +95,7 @@ SensorWords ScalarSensor::words() const {
     SensorWords words;
     words.readings = "lengths";
     words.unknowns += ", " + features();
+    if (!are_known_) words.known.push_back(known_key());
     words.sentence = fmt::format("{} lengths a pose at {}, sigma {} mm", row_count(),
                                  describe(targets_), detail::format_short(mm_per_m * sigma_));
     return words;

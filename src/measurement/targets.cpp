@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise {
@@ -143,8 +144,8 @@ void Targets::differentiate_along(const Isometry3d& world_from_flange, const Twi
 std::string describe(const Targets& targets) {
     Index known = 0;
     for (Index j = 0; j < targets.count(); ++j) known += targets.is_known(j) ? 1 : 0;
-    return fmt::format("{} {} ({} known, {} to be identified)", targets.count(),
-                       targets.count() == 1 ? "target" : "targets", known, targets.count() - known);
+    return fmt::format("{} ({} known, {} to be identified)",
+                       detail::count_of(targets.count(), "target"), known, targets.count() - known);
 }
 
 }  // namespace posewise

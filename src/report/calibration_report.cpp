@@ -6,6 +6,7 @@
 #include "../core/format.hpp"
 #include "../core/text.hpp"
 #include "calibration_tables.hpp"
+#include "error_classes.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/report/reports.hpp"
 #include "sentences.hpp"
@@ -18,16 +19,18 @@ constexpr Index outliers_shown = 20;
 
 std::string describe_starts(const Calibration& calibration) {
     if (calibration.method != CalibrationMethod::Global) return "";
-    return fmt::format("{} starts, {} of them ended at the best{}\n", calibration.starts,
-                       calibration.starts_at_best,
+    return fmt::format("{}, {} of them ended at the best{}\n",
+                       detail::count_of(calibration.starts, "start"), calibration.starts_at_best,
                        calibration.starts_at_best > 1 ? "" : "; there may be a better one");
 }
 
 std::string describe_measured(const Calibration& calibration) {
     const MeasuredCount& measured = calibration.measured;
-    std::string text = fmt::format("{}: {} configurations, {} samples, {} parameters\n",
-                                   calibration.campaign.name, measured.configurations,
-                                   measured.samples, parameter_count(calibration.campaign));
+    std::string text =
+        fmt::format("{}: {}, {}, {}\n", calibration.campaign.name,
+                    detail::count_of(measured.configurations, "configuration"),
+                    detail::count_of(measured.samples, "sample"),
+                    detail::count_of(parameter_count(calibration.campaign), "parameter"));
     if (measured.readings_seen < measured.readings) {
         text += fmt::format("{} of {} {} are missing: targets that were not seen\n",
                             measured.readings - measured.readings_seen, measured.readings,
@@ -138,9 +141,7 @@ std::string format_accuracy(const Calibration& calibration) {
     return text + describe_noise_floor(calibration) + describe_expected(calibration);
 }
 
-std::string count_outliers(Index count) {
-    return fmt::format("{} outlier{}", count, count == 1 ? "" : "s");
-}
+std::string count_outliers(Index count) { return detail::count_of(count, "outlier"); }
 
 std::string format_without_outliers(const WithoutOutliers& others) {
     std::string text = fmt::format("without them: means {} mm", detail::format_mm(others.fit_rms));

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 
 #include "../core/format.hpp"
 #include "posewise/core/units.hpp"
@@ -36,49 +35,6 @@ std::vector<MetricRow> list_metric_rows(const Metrics& example) {
         rows.push_back({"turn max/mrad", [](const Metrics& m) { return m.orientation_max; }});
     }
     return rows;
-}
-
-enum class ErrorClass { Length, Slide, Angle, Offset, Gravity, Torque, Harmonic, Other };
-
-const char* class_name(ErrorClass error_class) {
-    switch (error_class) {
-        case ErrorClass::Length:
-            return "lengths";
-        case ErrorClass::Slide:
-            return "offsets of joints that slide";
-        case ErrorClass::Angle:
-            return "angles of axes";
-        case ErrorClass::Offset:
-            return "joint offsets";
-        case ErrorClass::Gravity:
-            return "gravity, compliance";
-        case ErrorClass::Torque:
-            return "torque shapes";
-        case ErrorClass::Harmonic:
-            return "harmonics";
-        case ErrorClass::Other:
-            break;
-    }
-    return "other terms";
-}
-
-ErrorClass class_of(const Chain& robot, Index parameter) {
-    if (const ErrorTerm* const term = robot.parameter_term(parameter)) {
-        switch (term->kind) {
-            case TermKind::Gravity:
-                return ErrorClass::Gravity;
-            case TermKind::Torque:
-                return ErrorClass::Torque;
-            case TermKind::Harmonic:
-                return ErrorClass::Harmonic;
-            case TermKind::Free:
-                return ErrorClass::Other;
-        }
-    }
-    const Element& element = robot.parameter_element(parameter);
-    const bool turns = element.motion == Motion::Rotation;
-    if (element.joints.empty()) return turns ? ErrorClass::Angle : ErrorClass::Length;
-    return turns ? ErrorClass::Offset : ErrorClass::Slide;
 }
 
 /// The numbers parameter_names() names, in SI units; the base's turn as a rotation vector.
@@ -137,43 +93,6 @@ Table parameter_table(const Campaign& campaign, const Estimate& estimate) {
         const double deviation = deviations[static_cast<Index>(k)];
         table.rows[k].push_back(format_fixed(mm_per_m * deviation, 4));
         table.rows[k].emplace_back(units_of(is_angle[k]).error);
-    }
-    return table;
-}
-
-Table class_table(const Calibration& calibration) {
-    const Campaign& campaign = calibration.campaign;
-    const VectorXd& errors = calibration.estimate.parameters.robot;
-    const auto sizes_by = [&](const ParameterSpread& spread) -> VectorXd {
-        Campaign by = campaign;
-        by.spread = spread;
-        return parameter_scale(by).segment(base_parameter_count(campaign), errors.size());
-    };
-    const bool has_learned = calibration.stated_spread.has_value();
-    const VectorXd sizes = sizes_by(campaign.spread);
-    const VectorXd expected = has_learned ? sizes_by(*calibration.stated_spread) : sizes;
-    const auto names = campaign.robot.parameter_names();
-    std::map<ErrorClass, std::vector<Index>> members;
-    for (Index k = 0; k < errors.size(); ++k) members[class_of(campaign.robot, k)].push_back(k);
-    Table table{{"class", "count", "expected"}, {}};
-    if (has_learned) table.header.emplace_back("learned");
-    table.header.insert(table.header.end(), {"RMS", "largest", "", "which"});
-    for (const auto& [of_class, indices] : members) {
-        const auto rms = [&indices = indices](const VectorXd& of_all) {
-            return mm_per_m * of_all(indices).norm() / std::sqrt(indices.size());
-        };
-        const VectorXd values = errors(indices);
-        Index largest = 0;
-        values.cwiseAbs().maxCoeff(&largest);
-        const bool is_length = of_class == ErrorClass::Length || of_class == ErrorClass::Slide;
-        std::vector<std::string> row{class_name(of_class), std::to_string(indices.size()),
-                                     format_short(rms(expected), 3)};
-        if (has_learned) row.push_back(format_short(rms(sizes), 3));
-        row.insert(row.end(),
-                   {format_fixed(rms(errors), 4), format_fixed(mm_per_m * values[largest], 4),
-                    is_length ? "mm" : "mrad",
-                    names[static_cast<std::size_t>(indices[static_cast<std::size_t>(largest)])]});
-        table.rows.push_back(std::move(row));
     }
     return table;
 }

@@ -19,10 +19,6 @@ Table value_table(const Campaign& campaign, const Parameters& parameters);
 /// The same of an estimate, with standard deviations.
 Table parameter_table(const Campaign& campaign, const Estimate& estimate);
 
-/// The robot's errors by class (lengths, angles of axes, joint offsets, ...): how many, their
-/// expected size, what they are (RMS, the largest and which that is), mm or mrad.
-Table class_table(const Calibration& calibration);
-
 /// The compliance of each joint that has one, in urad/(N m) (um/N), with its standard deviation and
 /// the largest torque, at which the parameter is what gives way. No rows if there is none.
 Table compliance_table(const Campaign& campaign, const Estimate& estimate);

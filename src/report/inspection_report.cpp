@@ -5,6 +5,8 @@
 #include <map>
 
 #include "../core/format.hpp"
+#include "../core/text.hpp"
+#include "error_classes.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/report/reports.hpp"
@@ -127,6 +129,42 @@ std::string format_reduced(const Inspection& inspection) {
                detail::format_short(found.largest_dropped_residual, 2));
 }
 
+/// All errors of the robot, where priors let a calibration find more than poses tell apart.
+std::string format_calibrated(const Campaign& campaign) {
+    const Index count = campaign.robot.parameter_count();
+    if (!campaign.spread.is_prior || count == 0) return "";
+    return format_section("Errors of the robot that are calibrated, by class",
+                          detail::expected_class_table(campaign)) +
+           fmt::format(
+               "\ncalibrated: {} of the robot, {} with base and sensor; their priors keep "
+               "apart what poses cannot\n",
+               detail::count_of(count, "error"),
+               detail::count_of(parameter_count(campaign), "parameter"));
+}
+
+/// Of the parameters stated, or of the complete model.
+const Identifiability& identifiability_of(const Inspection& inspection) {
+    return inspection.stated ? *inspection.stated : inspection.of_complete;
+}
+
+/// Says which of base and sensor no number of poses tells; nothing can be calibrated beside them.
+std::string describe_unknowable(const Inspection& inspection) {
+    const Campaign& campaign = inspection.stated ? inspection.campaign : inspection.complete;
+    const Identifiability& found = identifiability_of(inspection);
+    const auto names = parameter_names(campaign);
+    const Index robot_begin = base_parameter_count(campaign);
+    const Index robot_end = robot_begin + campaign.robot.parameter_count();
+    std::vector<std::string> unknowable;
+    for (const DroppedParameter& dropped : found.dropped) {
+        if (dropped.parameter >= robot_begin && dropped.parameter < robot_end) continue;
+        unknowable.push_back(names[static_cast<std::size_t>(dropped.parameter)]);
+    }
+    if (unknowable.empty()) return "";
+    return fmt::format("No number of poses tells {}; calibrate needs what is known stated: {}\n",
+                       detail::list_words(unknowable),
+                       detail::list_words(campaign.sensor->words().known));
+}
+
 }  // namespace
 
 std::string format_robot(const Chain& robot) {
@@ -139,16 +177,17 @@ std::string format_robot(const Chain& robot) {
 std::string format(const Inspection& inspection) {
     const Chain& robot = inspection.campaign.robot;
     return format_robot(robot) +
-           (inspection.stated ? format_stated(inspection, *inspection.stated)
-                              : format_reduced(inspection)) +
-           describe_compliances(robot) +
+           (inspection.stated
+                ? format_stated(inspection, *inspection.stated)
+                : format_reduced(inspection) + format_calibrated(inspection.campaign)) +
+           describe_compliances(robot) + describe_unknowable(inspection) +
            fmt::format("least number of poses: {}\n", inspection.least_pose_count);
 }
 
 std::string describe_gap(const Inspection& inspection) {
     const std::vector<std::string> weakest = find_doubtful_parameters(inspection);
     if (weakest.empty()) return "";
-    const Identifiability& found = inspection.stated ? *inspection.stated : inspection.of_complete;
+    const Identifiability& found = identifiability_of(inspection);
     return fmt::format(
         "no gap between what is identifiable and what is not: of columns of norm 1 those before "
         "leave {} of one that is kept and {} of one that is dropped; the weakest direction kept is "

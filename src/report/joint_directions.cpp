@@ -49,11 +49,13 @@ std::string describe_joint_directions(const Campaign& campaign,
                                    : fmt::format(" ({} choices fit alike, by the robot's symmetry)",
                                                  alike_end - patterns.begin());
     if (&best == &stated) {
+        const std::string otherwise =
+            alike_end == patterns.end()
+                ? ""
+                : fmt::format(", otherwise by {} mm at least", format_mm(alike_end->distance_rms));
         return fmt::format(
-            "joint directions: as stated{}; the registered robot misses the {} by {} mm (RMS), "
-            "otherwise by {} mm at least\n",
-            others, campaign.sensor->words().readings, format_mm(stated.distance_rms),
-            alike_end == patterns.end() ? "-" : format_mm(alike_end->distance_rms));
+            "joint directions: as stated{}; the registered robot misses the {} by {} mm (RMS){}\n",
+            others, campaign.sensor->words().readings, format_mm(stated.distance_rms), otherwise);
     }
     Table table{{"reversed joints", "RMS/mm"}, {}};
     for (std::size_t k = 0; k < std::min(shown, patterns.size()); ++k) {

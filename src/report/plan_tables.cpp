@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "../core/format.hpp"
+#include "../core/text.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/report/reports.hpp"
 #include "sentences.hpp"
@@ -44,8 +45,8 @@ std::string format_value(Criterion criterion, double value) {
 }
 
 std::string describe_pool(const Pool& pool) {
-    std::string text = fmt::format("{} of {} candidates are feasible", pool.configurations.rows(),
-                                   pool.candidate_count);
+    std::string text = fmt::format("{} of {} are feasible", pool.configurations.rows(),
+                                   detail::count_of(pool.candidate_count, "candidate"));
     const std::string rejections = describe_rejections(pool);
     if (!rejections.empty()) text += "; the others violate\n" + rejections;
     return indent_lines(text);
@@ -81,7 +82,9 @@ std::string describe_order(const Tour& tour) {
                     detail::format_fixed(tour.planning_order_time, 1),
                     detail::format_fixed(tour.nearest_neighbour_time, 1));
     if (tour.blocked_count > 0) {
-        text += fmt::format("\n{} moves are blocked: find a way by hand", tour.blocked_count);
+        text += fmt::format("\n{} {} blocked: find a way by hand",
+                            detail::count_of(tour.blocked_count, "move"),
+                            tour.blocked_count == 1 ? "is" : "are");
     }
     return indent_lines(text);
 }
@@ -204,10 +207,10 @@ std::string format_planning(const Planning& planning) {
         fmt::format("pool:        {}\nposes:       {}\ncriterion:   {}\nvalue:       {}\n",
                     describe_pool(planning.pool), describe_counts(planning),
                     criterion_name(criterion), format_value(criterion, plan.value));
-    text += fmt::format(
-        "predicted:   position error {} mm RMS, 95 % are below {} mm, over {} workspace poses\n",
-        detail::format_mm(plan.predicted->rms), detail::format_mm(plan.predicted->percentile95),
-        planning.workspace_count);
+    text += fmt::format("predicted:   position error {} mm RMS, 95 % are below {} mm, over {}\n",
+                        detail::format_mm(plan.predicted->rms),
+                        detail::format_mm(plan.predicted->percentile95),
+                        detail::count_of(planning.workspace_count, "workspace pose"));
     text += describe_total(planning);
     if (!planning.campaign.has_nominal_base || !planning.campaign.has_nominal_targets) {
         text += "places:      " + describe_made_up(planning.campaign) + '\n';

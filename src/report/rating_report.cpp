@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "../core/format.hpp"
+#include "../core/text.hpp"
 #include "posewise/report/reports.hpp"
 #include "sentences.hpp"
 #include "table.hpp"
@@ -44,8 +45,9 @@ std::string describe_direction(const Campaign& campaign, const WeakDirection& di
 
 std::string format(const Rating& rating, const Campaign& campaign) {
     std::string text =
-        fmt::format("{} configurations, {} parameters\n{}", rating.configurations,
-                    rating.parameters, detail::describe_scaling(campaign, rating.repeats));
+        fmt::format("{}, {}\n{}", detail::count_of(rating.configurations, "configuration"),
+                    detail::count_of(rating.parameters, "parameter"),
+                    detail::describe_scaling(campaign, rating.repeats));
     text += format_section("Indices (-inf, condition inf: the parameters are not identifiable)",
                            index_table(rating, campaign.spread.is_prior));
     text += "\nWeakest directions, known to\n\n";

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "../core/format.hpp"
+#include "../core/text.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/report/reports.hpp"
 #include "study_table.hpp"
@@ -35,9 +36,10 @@ std::string csv_line(const StudyRow& row, const StudyCase& study_case, std::stri
 /// On what all were judged.
 std::string describe_judgement(const Study& study) {
     return fmt::format(
-        "\nJudged on {} configurations held out, the same ones for all subsets of a split; {} "
-        "splits.\nPlanned and random: medians; their ratio: the geometric mean over the splits.\n",
-        study.test_count, study.splits);
+        "\nJudged on {} held out, the same ones for all subsets of a split; {}.\nPlanned and "
+        "random: medians; their ratio: the geometric mean over the splits.\n",
+        detail::count_of(study.test_count, "configuration"),
+        detail::count_of(study.splits, "split"));
 }
 
 /// Whether to plan was worth it, a line for each criterion.
@@ -115,7 +117,8 @@ std::string format(const std::vector<Study>& studies) {
 std::string study_csv(const Study& study) { return csv_header + csv_lines(study, ""); }
 
 std::string study_csv(const std::vector<Study>& studies) {
-    std::string text = std::string("model,") + csv_header;
+    std::string text = "model,";
+    text += csv_header;
     for (const Study& study : studies) text += csv_lines(study, study.model + ',');
     return text;
 }

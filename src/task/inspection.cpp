@@ -1,6 +1,7 @@
 #include "posewise/task/inspection.hpp"
 
 #include "../model/complete_model.hpp"
+#include "posewise/calibrator/registration.hpp"
 
 namespace posewise {
 
@@ -10,7 +11,7 @@ Inspection inspect(const Campaign& campaign, const Chain& declared, bool is_stat
     inspection.complete = with_robot(campaign, detail::complete_model(declared));
     if (is_stated) inspection.stated = find_identifiable(campaign);
     inspection.of_complete = find_identifiable(inspection.complete);
-    inspection.least_pose_count = least_pose_count(campaign);
+    inspection.least_pose_count = least_calibration_count(campaign);
     return inspection;
 }
 

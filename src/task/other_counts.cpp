@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "posewise/calibrator/registration.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/task/planning.hpp"
 
@@ -46,10 +47,12 @@ std::vector<CountAccuracy> predict_other_counts(const Planning& planning) {
                     times_seen(pool.is_seen.topRows(part), planning.plan.request.repeats));
     SelectOptions options = quick_options(planning);
     const Index count = planning.search.pose_count;
+    const Index least = least_calibration_count(planning.campaign) - options.held_pose_count;
     std::vector<CountAccuracy> rows;
     for (const Index k : std::set<Index>{std::max<Index>(1, count / 2), count, 2 * count}) {
         options.pose_count = k;
-        rows.push_back({k, false, predict_choice(planning.prediction, blocks, options)});
+        rows.push_back({k, false, std::nullopt});
+        if (k >= least) rows.back().accuracy = predict_choice(planning.prediction, blocks, options);
         if (k == count) rows.push_back({k, true, planning.plan.predicted});
     }
     return rows;

@@ -41,8 +41,8 @@ std::string describe_columns(const Plan& plan, const std::vector<std::string>& w
     if (plan.columns.size() == wanted.size()) {
         return "poses[0].joints: are in another order than those of the campaign's robot";
     }
-    return fmt::format("poses[0].joints: has {} joints, the campaign's robot has {}",
-                       plan.columns.size(), wanted.size());
+    return fmt::format("poses[0].joints: has {}, the campaign's robot has {}",
+                       detail::count_of(std::ssize(plan.columns), "joint"), wanted.size());
 }
 
 }  // namespace
@@ -103,8 +103,8 @@ std::string describe_mismatch(const Plan& plan, const Campaign& campaign) {
         const std::vector<Index>& seen = plan.poses[i].targets;
         for (std::size_t k = 0; k < seen.size(); ++k) {
             if (seen[k] < targets) continue;
-            return fmt::format("poses[{}].visible_targets[{}]: is {}, the campaign has {} targets",
-                               i, k, seen[k] + 1, targets);
+            return fmt::format("poses[{}].visible_targets[{}]: is {}, the campaign has {}", i, k,
+                               seen[k] + 1, detail::count_of(targets, "target"));
         }
     }
     return "";

@@ -8,9 +8,9 @@
 #include "../core/text.hpp"
 #include "../model/joint_limits.hpp"
 #include "inputs.hpp"
+#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
-#include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 
 namespace posewise::detail {
@@ -162,14 +162,18 @@ void count_new_poses(PlanningProblem& problem) {
                                      count, kept, problem.request.sources.repaired));
     }
     problem.search.pose_count = count - kept;
-    if (problem.search.held.information.size() > 0) return;  // selection says if it is too few
-    const Index least = least_pose_count(problem.campaign);
-    if (count < least) {
-        throw InputError(
-            fmt::format("--poses is {}, must be at least {}: fewer do not identify {} "
-                        "parameters; or let --prior tell the rest",
-                        count, least, parameter_count(problem.campaign)));
-    }
+    const Index least = least_calibration_count(problem.campaign);
+    if (count + problem.measured_count >= least) return;  // selection says if it is too few
+    throw InputError(
+        problem.campaign.spread.is_prior
+            ? fmt::format("--poses is {}, must be at least {}: fewer do not determine base and {}, "
+                          "which have no prior",
+                          count, least - problem.measured_count,
+                          problem.campaign.sensor->words().place)
+            : fmt::format("--poses is {}, must be at least {}: fewer do not identify {} "
+                          "parameters; or let --prior tell the rest",
+                          count, least - problem.measured_count,
+                          parameter_count(problem.campaign)));
 }
 
 void draw_workspace(PlanningProblem& problem, const PlanningOptions& options) {

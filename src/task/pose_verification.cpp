@@ -77,7 +77,8 @@ void check_deviations(const Plan& plan, const PlanningProblem& problem, const Ma
     if (stated.size() != deviations.size()) {
         findings.note(
             "deviations", false,
-            fmt::format("stated of {} parameters, there are {}", stated.size(), deviations.size()));
+            fmt::format("stated of {}, the campaign has {}",
+                        detail::count_of(std::ssize(stated), "parameter"), deviations.size()));
     }
     bool is_right = stated.size() == deviations.size();
     for (const NamedNumber& one : deviations) {

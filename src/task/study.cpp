@@ -15,7 +15,6 @@
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
-#include "posewise/jacobian/identifiability.hpp"
 #include "posewise/selection/exchange.hpp"
 #include "posewise/task/doubts.hpp"
 
@@ -100,9 +99,9 @@ std::vector<Index> choose_pose_counts(const std::vector<Index>& asked, Index all
     if (!counts.empty()) return counts;
     for (Index count = least; count < all; ++count) counts.push_back(count);
     if (counts.empty()) {
-        throw InputError("there are " + std::to_string(all) + " configurations, a study needs " +
-                         std::to_string(least + 1) +
-                         ": as many as identify the model and one to judge on");
+        throw InputError("a study needs " + std::to_string(least + 1) +
+                         " configurations, as many as identify the model and one to judge on; " +
+                         "there " + (all == 1 ? "is " : "are ") + std::to_string(all));
     }
     return counts;
 }
@@ -241,7 +240,7 @@ Index largest_least_count(const std::vector<RobotModel>& models, const StudyOpti
     Index least = 0;
     if (!options.pose_counts.empty()) return least;
     for (const RobotModel& model : models) {
-        least = std::max(least, least_pose_count(model.campaign));
+        least = std::max(least, least_calibration_count(model.campaign));
     }
     return least;
 }

@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "../../src/model/sampling.hpp"
-#include "posewise/calibrator/estimate.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "support/campaigns.hpp"
 #include "support/sweep.hpp"
@@ -96,6 +97,121 @@ TEST(Registration, IsNotDeterminedByConfigurationsThatDoNotTurnTheTool) {
     const Registration registered = register_base_and_targets(campaign, measurements);
     EXPECT_EQ(registered.undetermined.find("these 8 configurations with 24 points do not"), 0U);
     EXPECT_THROW(determined(registered), InputError);
+}
+
+// ---- Robots of which the linear equations leave a part of the base's rotation open ----
+
+/// Two joints; the second turns about z (all points move in planes) or about y.
+Chain two_joint_arm(Axis second, double height, double upper_arm, double forearm) {
+    const auto R = Motion::Rotation;
+    return Chain({{"q1", -2, 2}, {"q2", -2, 2}},
+                 {testing::driven(R, Axis::Z, 0), testing::translation(Axis::Z, height),
+                  testing::translation(Axis::X, upper_arm), testing::driven(R, second, 1),
+                  testing::translation(Axis::X, forearm)});
+}
+
+/// `count` targets, of which z is known or nothing.
+Campaign with_targets(Chain robot, Index count, bool is_z_known) {
+    Campaign campaign = tracked_campaign(std::move(robot));
+    const VectorXd nominal = campaign.nominal.sensor;
+    std::vector<Vector3d> positions;
+    for (Index j = 0; j < count; ++j) positions.emplace_back(nominal.segment<3>(3 * j));
+    const Targets targets(
+        positions, std::vector<std::array<bool, 3>>(positions.size(), {false, false, is_z_known}));
+    campaign.sensor = std::make_shared<PointSensor>(targets, IsotropicNoise{5e-5});
+    campaign.nominal.sensor.resize(targets.unknown_count());
+    for (Index j = 0; j < count; ++j) {
+        for (Index axis = 0; axis < 3; ++axis) {
+            const Index k = targets.unknown_index(j, axis);
+            if (k >= 0) campaign.nominal.sensor[k] = nominal[3 * j + axis];
+        }
+    }
+    return campaign;
+}
+
+TEST(Registration, FindsAnyBaseOfTwoJoints) {
+    const std::vector<Campaign> campaigns{
+        with_targets(two_joint_arm(Axis::Z, 0, 0.5, 0.4), 1, true),
+        with_targets(two_joint_arm(Axis::Z, 0, 0.5, 0.4), 3, true),
+        with_targets(two_joint_arm(Axis::Y, 0.3, 0, 0.4), 1, false),
+        with_targets(two_joint_arm(Axis::Y, 0.3, 0, 0.4), 3, false),
+        with_targets(two_joint_arm(Axis::Y, 0, 0, 0), 1, false),
+        with_targets(testing::scara(), 1, true)};
+    for (std::size_t k = 0; k < campaigns.size(); ++k) {
+        for (Index i = 0; i < testing::sweep_count() / 20; ++i) {
+            RandomStream stream(57 + k, static_cast<std::uint64_t>(i));
+            Campaign blind = campaigns[k];
+            Parameters truth = blind.nominal;
+            truth.world_from_base = testing::random_pose(stream);
+            blind.nominal.world_from_base.setIdentity();
+            blind.nominal.sensor.setZero();
+            blind.has_nominal_base = blind.has_nominal_targets = false;
+            const auto seed = static_cast<std::uint64_t>(i);
+            const auto measured = simulate_measurements(
+                blind, truth, random_configurations(blind.robot, 20, seed), 1, seed);
+            const Registration found = register_base_and_targets(blind, measured);
+            ASSERT_TRUE(found.is_determined()) << k << ' ' << i << ' ' << found.undetermined;
+            const Isometry3d base = found.parameters.world_from_base;
+            const Isometry3d miss = truth.world_from_base.inverse() * base;
+            EXPECT_LT((miss.matrix() - Isometry3d::Identity().matrix()).norm(), 2e-3)
+                << k << ' ' << i;
+            EXPECT_LT((found.parameters.sensor - truth.sensor).norm(), 2e-3) << k << ' ' << i;
+        }
+    }
+}
+
+TEST(Registration, AsksForTheHeightThatNoPoseOfAPlanarArmTells) {
+    for (const Index targets : {1, 3}) {
+        const Campaign campaign = with_targets(two_joint_arm(Axis::Z, 0, 0.5, 0.4), targets, false);
+        const auto measured = simulate(campaign, {.pose_count = 20}).measurements;
+        const std::string message = register_base_and_targets(campaign, measured).undetermined;
+        EXPECT_NE(message.find("target1.z"), std::string::npos) << message;
+        EXPECT_NE(message.find("like known: [z], keys base.known or sensor.targets.known"),
+                  std::string::npos)
+            << message;
+    }
+}
+
+// ---- How many poses a calibration can do with ----
+
+/// Whether simulated campaigns of so many poses are calibrated.
+bool is_calibrated_by(const Campaign& campaign, Index count) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const SimulateOptions options{.pose_count = count, .truth_seed = seed, .seed = seed};
+        const Measurements measured = simulate(campaign, options).measurements;
+        const Registration found = register_base_and_targets(campaign, measured);
+        if (!found.is_determined()) return false;
+        if (identify(campaign, measured, found.parameters).ending != Ending::Converged)
+            return false;
+    }
+    return true;
+}
+
+TEST(LeastCalibrationCount, IsEnoughAndNotOneTooMany) {
+    Campaign poses = tracked_campaign(testing::fanuc());
+    poses.sensor = std::make_shared<PoseSensor>(std::nullopt, IsotropicNoise{5e-5}, 1e-4);
+    poses.nominal.sensor = tool_unknowns(Isometry3d(Eigen::Translation3d(0.28, 0.05, -0.11)));
+    const std::vector<std::pair<Campaign, Index>> with_priors{
+        {with_targets(testing::fanuc(), 1, false), 5},
+        {with_targets(testing::fanuc(), 3, false), 3},
+        {with_targets(two_joint_arm(Axis::Z, 0, 0.5, 0.4), 1, true), 5},
+        {poses, 3}};
+    for (const auto& [stated, least] : with_priors) {
+        Campaign campaign = stated;
+        campaign.spread = population_spread(campaign.robot);
+        EXPECT_EQ(least_calibration_count(campaign), least);
+        EXPECT_TRUE(is_calibrated_by(campaign, least)) << least;
+        EXPECT_FALSE(is_calibrated_by(campaign, least - 1)) << least;
+    }
+    const Campaign without = with_targets(testing::fanuc(), 1, false);
+    EXPECT_EQ(least_calibration_count(without), least_pose_count(without));
+}
+
+TEST(LeastCalibrationCount, NeedsNoNominalValues) {
+    Campaign campaign = with_targets(testing::fanuc(), 3, false);
+    campaign.base_is_known[2] = true;
+    campaign.has_nominal_base = campaign.has_nominal_targets = false;
+    EXPECT_EQ(least_calibration_count(campaign), least_pose_count(campaign));
 }
 
 }  // namespace

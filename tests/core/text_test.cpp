@@ -38,6 +38,14 @@ TEST(DescribeCombination, NamesTheLargestTermsFirstAndPositive) {
               "0.2 column 1 + 0.2 column 2 + 0.2 column 3 + 0.2 column 4");
 }
 
+TEST(CountOf, IsSingularOfOneOnly) {
+    EXPECT_EQ(count_of(0, "pose"), "0 poses");
+    EXPECT_EQ(count_of(1, "pose"), "1 pose");
+    EXPECT_EQ(count_of(2, "pose"), "2 poses");
+    EXPECT_EQ(these(1, "pose"), "this pose");
+    EXPECT_EQ(these(2, "pose"), "these 2 poses");
+}
+
 TEST(Suggest, NamesTheNearestOrAll) {
     EXPECT_EQ(suggest("calibrated", {"calibrate", "study"}), "did you mean 'calibrate'?");
     EXPECT_EQ(suggest("xyz", {"calibrate", "study"}), "must be calibrate or study");

@@ -101,7 +101,7 @@ TEST(BadCampaign, Robots) {
 
 TEST(BadCampaign, Numbers) {
     const std::string rule = "; must be a finite number without unit";
-    const std::string range = "; must be from 1e-12 to 1000 (m or rad)";
+    const std::string range = "; must be from 1e-09 to 1e+06 mm";
     expect_messages_of({
         {"[-90, 90]", "[-90, .inf]",
          "4:28: robot.joints.q1.limits_deg[2] is '.inf', which is not a number" + rule},
@@ -124,15 +124,20 @@ TEST(BadCampaign, Numbers) {
         {"0.5*q1", "1e-300*q1",
          "11:16: a joint's coefficient must be from 1e-6 to 1e6 in magnitude"},
         {"90 deg", "1e9 deg",
-         "11:25: the amount is too large; must be at most 10000 rad in magnitude"},
+         "11:25: the amount is too large; must be at most 572958 deg in magnitude"},
         {"[0, 500]", "[0, 1e300]",
-         "6:27: robot.joints.lift.limits_mm[2] is '1e300'; must be at most 1e+06 m in magnitude"},
+         "6:27: robot.joints.lift.limits_mm[2] is '1e300'; must be at most 1e+09 mm in magnitude"},
         {"[100, 0, 0]", "[1e99, 0, 0]",
-         "17:28: sensor.targets.position_mm[1][1] is '1e99'; must be at most 1e+06 m in magnitude"},
+         "17:28: sensor.targets.position_mm[1][1] is '1e99'; must be at most 1e+09 mm in "
+         "magnitude"},
         {"sigma_mm: 0.05", "sigma_mm: 1e-300", "16:13: sensor.sigma_mm is '1e-300'" + range},
         {"model_error_mm: 0.2", "model_error_mm: 2e6", "18:17: model_error_mm is '2e6'" + range},
+        {"length_mm: 2", "length_mm: 2, offset_mrad: 2e6",
+         "20:37: spread.offset_mrad is '2e6'; must be from 1e-09 to 1e+06 mrad"},
+        {"length_mm: 2", "length_mm: 2, offset_deg: -0.1",
+         "20:36: spread.offset_deg is '-0.1'; must be positive"},
         {"dq2: 0.5 mrad", "dq2: 1e-200 rad",
-         "20:57: spread.parameters.dq2 is '1e-200 rad'" + range},
+         "20:57: spread.parameters.dq2 is '1e-200 rad'; must be from 1e-12 to 1000 rad"},
     });
     EXPECT_EQ(error_of(replaced(campaign_text, "model_error_mm: 0.2", "model_error_mm: 0")),
               "no error");

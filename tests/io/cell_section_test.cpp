@@ -131,6 +131,8 @@ TEST(ReadCell, TellsWhatIsWrongAndWhere) {
                  "from -90 to 90 deg");
     expect_error("elevation_deg: [-10, 40]", "elevation_deg: [-91, 40]", "27:70",
                  "from -90 to 90 deg");
+    expect_error("elevation_deg: [-10, 40]", "elevation_mrad: [-10, 2000]", "27:71",
+                 "from -1570.8 to 1570.8 mrad");
     expect_error("[90, 180]", "[90, 0]", "30:20", "must be positive for every joint");
 }
 

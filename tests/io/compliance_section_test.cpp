@@ -140,8 +140,7 @@ TEST(MeasuredTorques, ThatAreMissingAreAskedFor) {
         {",100,", ",-700,",
          "2:19: the torque of q2 is -700 N m, over twice the largest that the campaign states, "
          "300; correct compliance.torques_Nm or the unit here"},
-        {",100,", ",1e7,",
-         "2:19: '1e7' is out of any cell; must be at most 1e+06 N m in magnitude"},
+        {",100,", ",1e7,", "2:19: '1e7' is out of any cell; must be at most 1e+06 Nm in magnitude"},
         {measured, "config,q1_rad,q2_rad,lift_m,p1_x_m,p1_y_m,p1_z_m,p2_x_m,p2_y_m,p2_z_m\n",
          "[...]missing columns tau_q2_Nm, tau_q1_Nm;[...]"},
     };

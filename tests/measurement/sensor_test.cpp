@@ -135,6 +135,7 @@ TEST(EverySensor, SaysWhatItsNoiseIsAndWhatMessagesCallIt) {
              {words.readings, words.place, words.unknowns, words.key, words.sentence}) {
             EXPECT_FALSE(word.empty());
         }
+        EXPECT_EQ(words.known.front(), "base.known");
         EXPECT_EQ(sensor.observes_targets(), words.readings == "points");
     }
 }

@@ -18,15 +18,21 @@ struct Registration {
 
 /// Base pose and the sensor's unknowns with no initial guess, the robot at nominal. For points,
 /// with X = R_base^T and c = -R_base^T p_base, the equations X p_ij + c - R_i t_j = p_i are linear
-/// in (X, c, t): least squares, X projected on SO(3), then polished on the true residuals. A pose
-/// is four points. Lengths, and a base that is partly known, are polished from the campaign's
-/// nominal values instead. Not determined where a target with unknown position is seen in no
-/// sample, or by configurations that are too few or too much alike. Throws InputError if nominal
-/// values are needed and not stated, or for measurements that do not fit the campaign.
+/// in (X, c, t): least squares, X projected on SO(3), then polished on the true residuals. Where
+/// they leave a part of X open (points that lie in planes, axes that cross) X is searched among the
+/// rotations. A pose is four points. Lengths, and a base that is partly known, are polished from
+/// the campaign's nominal values instead. Not determined where a target with unknown position is
+/// seen in no sample, or by configurations that are too few or too much alike. Throws InputError if
+/// nominal values are needed and not stated, or for measurements that do not fit the campaign.
 Registration register_base_and_targets(const Campaign& campaign, const Measurements& measurements);
 
 /// The same without the polish.
 Registration register_roughly(const Campaign& campaign, const Measurements& measurements);
+
+/// Smallest number of generic configurations that a calibration can do with: they identify what can
+/// be identified (least_pose_count()) and, where no nominal values are needed for it, determine
+/// base and targets.
+Index least_calibration_count(const Campaign& campaign);
 
 /// The parameters, for those to whom measurements that do not determine them are no input: throws
 /// InputError with the reason.

@@ -24,6 +24,8 @@ struct SensorWords {
     std::string place = "targets";  ///< what is registered with the base
     std::string unknowns = "targets in the flange frame";
     std::string key = "sensor.targets.position_mm";  ///< of the campaign file, places `place`
+    /// Keys that say what is known of the base and of the sensor's unknowns.
+    std::vector<std::string> known{"base.known", "sensor.targets.known"};
     std::string sentence;  ///< "points of 3 targets (0 known, 3 to be identified), sigma 0.05 mm"
 };
 

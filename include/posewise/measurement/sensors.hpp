@@ -145,6 +145,8 @@ class ScalarSensor : public Sensor {
                  double sigma);
     /// "anchors", "planes".
     virtual std::string features() const = 0;
+    /// The key of the campaign file that says that they are known.
+    virtual std::string known_key() const = 0;
     virtual Length measure(const Vector3d& x, Index feature, const VectorXd& unknowns) const = 0;
 
     Index feature_count() const { return feature_count_; }
@@ -173,6 +175,7 @@ class DistanceSensor final : public ScalarSensor {
 
   protected:
     std::string features() const override { return "anchors"; }
+    std::string known_key() const override { return "sensor.anchors.known"; }
     Length measure(const Vector3d& x, Index anchor, const VectorXd& unknowns) const override;
 
   private:
@@ -201,6 +204,7 @@ class PlaneSensor final : public ScalarSensor {
 
   protected:
     std::string features() const override { return "planes"; }
+    std::string known_key() const override { return "sensor.known_planes"; }
     Length measure(const Vector3d& x, Index plane, const VectorXd& unknowns) const override;
 
   private:

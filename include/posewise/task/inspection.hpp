@@ -17,7 +17,7 @@ struct Inspection {
     /// irreducible form of its complete model.
     std::optional<Identifiability> stated;
     Identifiability of_complete;
-    Index least_pose_count = 0;  ///< that identifies all of the campaign that is identifiable
+    Index least_pose_count = 0;  ///< that a calibration can do with
 };
 
 /// `declared` is the robot as stated, from which the complete model is made; `is_stated`: its error

@@ -1,0 +1,108 @@
+#include "linear_registration.hpp"
+
+#include <Eigen/QR>
+#include <limits>
+
+#include "posewise/model/transforms.hpp"
+
+namespace posewise::detail {
+namespace {
+
+constexpr Index of_rotation = 9;  // columns of A
+
+using RowsOfRotation = Eigen::Matrix<double, of_rotation, 1>;
+
+RowsOfRotation rows_of(const Matrix3d& X) { return X.transpose().reshaped(); }
+
+/// |S rows_of(X) - d| is what remains of the equations with the best c and t for X.
+struct RotationMisfit {
+    MatrixXd S;
+    VectorXd d;
+
+    VectorXd residual(const Matrix3d& X) const { return S * rows_of(X) - d; }
+    double operator()(const Matrix3d& X) const { return residual(X).squaredNorm(); }
+};
+
+RotationMisfit eliminate_the_rest(const RegistrationEquations& equations) {
+    const auto& [A, b] = equations;
+    Eigen::ColPivHouseholderQR<MatrixXd> rest(A.rightCols(A.cols() - of_rotation));
+    rest.setThreshold(1e-9);
+    MatrixXd of_both(A.rows(), of_rotation + 1);
+    of_both << A.leftCols(of_rotation), b;
+    of_both.applyOnTheLeft(rest.householderQ().adjoint());
+    const MatrixXd left = of_both.bottomRows(A.rows() - rest.rank());
+    return {left.leftCols(of_rotation), left.col(of_rotation)};
+}
+
+/// The 24 rotations of a cube into itself: any rotation is within 63 deg of one.
+std::vector<Matrix3d> rotations_of_a_cube() {
+    std::vector<Matrix3d> rotations;
+    const auto direction = [](int i) { return Vector3d((i < 3 ? 1 : -1) * Vector3d::Unit(i % 3)); };
+    for (int i = 0; i < 6; ++i) {
+        for (int j = 0; j < 6; ++j) {
+            if (i % 3 == j % 3) continue;
+            Matrix3d R;
+            R << direction(i), direction(j), direction(i).cross(direction(j));
+            rotations.push_back(R);
+        }
+    }
+    return rotations;
+}
+
+/// From X down to the nearest minimum, by steps X exp([phi]x) [Marquardt 1963].
+Matrix3d descend(const RotationMisfit& misfit, Matrix3d X) {
+    constexpr int most_steps = 100;
+    double damping = 1e-3;
+    double value = misfit(X);
+    for (int step = 0; step < most_steps && damping < 1e9; ++step) {
+        MatrixXd J(misfit.S.rows(), 3);
+        for (Index axis = 0; axis < 3; ++axis) {
+            J.col(axis) = misfit.S * rows_of(X * cross_matrix(Vector3d::Unit(axis)));
+        }
+        Matrix3d N = J.transpose() * J;
+        N += damping * N.trace() * Matrix3d::Identity();
+        const Vector3d phi = -N.ldlt().solve(J.transpose() * misfit.residual(X));
+        const Matrix3d moved = X * rotation_from_vector(phi);
+        const double moved_value = misfit(moved);
+        const bool is_better = moved_value < value;
+        damping *= is_better ? 0.1 : 10;
+        if (!is_better) continue;
+        X = moved;
+        value = moved_value;
+        if (phi.norm() < 1e-12) break;
+    }
+    return nearest_rotation(X);
+}
+
+}  // namespace
+
+std::optional<RegistrationSolution> solve_freely(const RegistrationEquations& equations) {
+    const auto& [A, b] = equations;
+    Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
+    // Below it a millimetre in metres, as of noise and of errors of the robot, is not told from 0.
+    qr.setThreshold(1e-3);
+    if (qr.rank() < A.cols()) return std::nullopt;
+    const VectorXd solution = qr.solve(b);
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> X(solution.data());
+    return RegistrationSolution{nearest_rotation(X), solution.segment<3>(of_rotation),
+                                solution.tail(A.cols() - of_rotation - 3)};
+}
+
+RegistrationSolution solve_for_rotation(const RegistrationEquations& equations) {
+    const auto& [A, b] = equations;
+    const RotationMisfit misfit = eliminate_the_rest(equations);
+    Matrix3d best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Matrix3d& start : rotations_of_a_cube()) {
+        const Matrix3d X = descend(misfit, start);
+        if (misfit(X) >= least) continue;
+        best = X;
+        least = misfit(X);
+    }
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> rest(A.rightCols(A.cols() - of_rotation));
+    rest.setThreshold(1e-9);
+    const VectorXd solution = rest.solve(b - A.leftCols(of_rotation) * rows_of(best));
+    return {best, solution.head<3>(), solution.tail(solution.size() - 3)};
+}
+
+}  // namespace posewise::detail

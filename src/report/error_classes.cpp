@@ -1,0 +1,111 @@
+#include "error_classes.hpp"
+
+#include <cmath>
+#include <map>
+
+#include "../core/format.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/model/error_terms.hpp"
+
+namespace posewise::detail {
+namespace {
+
+enum class ErrorClass { Length, Slide, Angle, Offset, Gravity, Torque, Harmonic, Other };
+
+const char* class_name(ErrorClass error_class) {
+    switch (error_class) {
+        case ErrorClass::Length:
+            return "lengths";
+        case ErrorClass::Slide:
+            return "offsets of joints that slide";
+        case ErrorClass::Angle:
+            return "angles of axes";
+        case ErrorClass::Offset:
+            return "joint offsets";
+        case ErrorClass::Gravity:
+            return "gravity, compliance";
+        case ErrorClass::Torque:
+            return "torque shapes";
+        case ErrorClass::Harmonic:
+            return "harmonics";
+        case ErrorClass::Other:
+            break;
+    }
+    return "other terms";
+}
+
+ErrorClass class_of(const Chain& robot, Index parameter) {
+    if (const ErrorTerm* const term = robot.parameter_term(parameter)) {
+        switch (term->kind) {
+            case TermKind::Gravity:
+                return ErrorClass::Gravity;
+            case TermKind::Torque:
+                return ErrorClass::Torque;
+            case TermKind::Harmonic:
+                return ErrorClass::Harmonic;
+            case TermKind::Free:
+                return ErrorClass::Other;
+        }
+    }
+    const Element& element = robot.parameter_element(parameter);
+    const bool turns = element.motion == Motion::Rotation;
+    if (element.joints.empty()) return turns ? ErrorClass::Angle : ErrorClass::Length;
+    return turns ? ErrorClass::Offset : ErrorClass::Slide;
+}
+
+/// The robot's errors, those of a class together.
+std::map<ErrorClass, std::vector<Index>> members_by_class(const Chain& robot) {
+    std::map<ErrorClass, std::vector<Index>> members;
+    for (Index k = 0; k < robot.parameter_count(); ++k) members[class_of(robot, k)].push_back(k);
+    return members;
+}
+
+/// In mm or mrad.
+double root_mean_square(const VectorXd& values) {
+    return mm_per_m * std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
+
+}  // namespace
+
+Table expected_class_table(const Campaign& campaign) {
+    const VectorXd sizes = parameter_scale(campaign).segment(base_parameter_count(campaign),
+                                                             campaign.robot.parameter_count());
+    Table table{{"class", "count", "expected", ""}, {}};
+    for (const auto& [of_class, members] : members_by_class(campaign.robot)) {
+        const bool is_length = of_class == ErrorClass::Length || of_class == ErrorClass::Slide;
+        table.rows.push_back({class_name(of_class), std::to_string(members.size()),
+                              format_short(root_mean_square(sizes(members)), 3),
+                              is_length ? "mm" : "mrad"});
+    }
+    return table;
+}
+
+Table class_table(const Calibration& calibration) {
+    const Campaign& campaign = calibration.campaign;
+    const auto names = campaign.robot.parameter_names();
+    Table table = expected_class_table(campaign);
+    table.header = {"class", "count", "expected", "RMS", "largest", "", "which"};
+    auto row = table.rows.begin();
+    for (const auto& [of_class, members] : members_by_class(campaign.robot)) {
+        const VectorXd values = calibration.estimate.parameters.robot(members);
+        Index largest = 0;
+        values.cwiseAbs().maxCoeff(&largest);
+        row->insert(row->end() - 1, {format_fixed(root_mean_square(values), 4),
+                                     format_fixed(mm_per_m * values[largest], 4)});
+        const Index which = members[static_cast<std::size_t>(largest)];
+        row->push_back(names[static_cast<std::size_t>(which)]);
+        ++row;
+    }
+    if (!calibration.stated_spread) return table;
+    Campaign stated = campaign;
+    stated.spread = *calibration.stated_spread;
+    const Table expected = expected_class_table(stated);
+    constexpr std::ptrdiff_t at = 2;
+    table.header.insert(table.header.begin() + at + 1, "learned");
+    for (std::size_t k = 0; k < table.rows.size(); ++k) {
+        table.rows[k].insert(table.rows[k].begin() + at, expected.rows[k][at]);
+    }
+    return table;
+}
+
+}  // namespace posewise::detail
