@@ -12,6 +12,15 @@ io::CampaignFile read_with_prior(const std::string& path, std::optional<bool> pr
     return file;
 }
 
+std::string describe_planned(const io::CampaignFile& campaign, double repeats) {
+    std::string text = detail::describe_scaling(campaign, repeats);
+    if (campaign.planned_model) {
+        text += "errors: " + std::string(io::error_model_name(*campaign.planned_model)) +
+                ", as planning.errors says; calibrate fits those of robot.errors\n";
+    }
+    return text;
+}
+
 Measurements read_measured(const std::string& path, const io::CampaignFile& file) {
     Measurements measured = io::read_measurements(path, file);
     if (const auto beyond = find_beyond_limits(file, measured)) {

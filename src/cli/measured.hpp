@@ -10,6 +10,9 @@ namespace posewise::cli {
 /// The campaign of a file, its expected sizes priors or not as asked, else as it says.
 io::CampaignFile read_with_prior(const std::string& path, std::optional<bool> prior);
 
+/// Noise, scales and errors that poses are planned with, a line each.
+std::string describe_planned(const io::CampaignFile& campaign, double repeats);
+
 /// io::read_measurements(). Configurations beyond the joint limits are taken, since they were
 /// measured; a warning on standard error says so.
 Measurements read_measured(const std::string& path, const io::CampaignFile& file);

@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "../core/format.hpp"
-#include "../report/sentences.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "interrupt.hpp"
+#include "measured.hpp"
 #include "options.hpp"
 #include "plan_inputs.hpp"
 #include "plan_options.hpp"
@@ -85,15 +85,16 @@ std::string default_plan_out(const std::string& campaign) {
     return std::filesystem::path(campaign).stem().string() + ".poses.json";
 }
 
-void print_planning(const Planning& planning, const std::string& out) {
+void print_planning(const Planning& planning, const io::CampaignFile& campaign,
+                    const std::string& out) {
     const Plan& plan = planning.plan;
     print(format_planning(planning));
     print(plan.is_stopped_early()
               ? "\nPredicted position error by number of poses: left out, planning was stopped\n"
               : format_other_counts(predict_other_counts(planning), planning.campaign));
     print(format_deviations(plan));
-    print(fmt::format("\n{}plan:        {}\n",
-                      detail::describe_scaling(planning.campaign, plan.request.repeats), out));
+    print(fmt::format("\n{}plan:        {}\n", describe_planned(campaign, plan.request.repeats),
+                      out));
     if (plan.is_stopped_early()) {
         std::fputs("posewise: stopped early; the plan is the best so far\n", stderr);
     }
@@ -117,7 +118,7 @@ void plan(const PlanArguments& arguments) {
                   {out, arguments.csv});
     const InterruptFlag interrupted;
     const StopSignal stop{interrupted.get(), deadline_after(arguments.request.time_limit)};
-    io::CampaignFile campaign = io::read_campaign(sources.campaign);
+    io::CampaignFile campaign = io::read_planned_campaign(sources.campaign);
     const PlanRequest request = make_request(arguments, &campaign, Criterion::V);
     io::set_prior(campaign, request.has_prior);
     PlanningOptions options = read_planning_inputs(request, campaign);
@@ -128,7 +129,7 @@ void plan(const PlanArguments& arguments) {
     if (!arguments.csv.empty()) {
         io::write_configurations_csv(arguments.csv, planning.campaign, planning.plan.poses);
     }
-    print_planning(planning, out);
+    print_planning(planning, campaign, out);
 }
 
 // ---- The command line ----

@@ -5,11 +5,11 @@
 #include <memory>
 #include <optional>
 
-#include "../report/sentences.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "interrupt.hpp"
+#include "measured.hpp"
 #include "options.hpp"
 #include "plan_inputs.hpp"
 #include "plan_options.hpp"
@@ -97,7 +97,7 @@ std::string default_select_out(const PlanSources& sources) {
 
 void print_plan(const Plan& plan, const io::CampaignFile* campaign, const std::string& out) {
     print(format_choice(plan));
-    if (campaign != nullptr) print(detail::describe_scaling(*campaign, plan.request.repeats));
+    if (campaign != nullptr) print(describe_planned(*campaign, plan.request.repeats));
     print("plan:       " + out + '\n');
     if (plan.ending == Ending::Interrupted) {
         std::fputs("posewise: interrupted; the plan is the best so far\n", stderr);
@@ -110,7 +110,7 @@ void select(const SelectArguments& arguments) {
     const StopSignal stop{interrupted.get(), deadline_after(arguments.request.time_limit)};
     std::optional<io::CampaignFile> file;
     const std::string& path = arguments.request.sources.campaign;
-    if (!path.empty()) file = io::read_campaign(path);
+    if (!path.empty()) file = io::read_planned_campaign(path);
     const PlanRequest request = complete_request(arguments, file ? &*file : nullptr);
     const PlanSources& sources = request.sources;
     const std::string out = arguments.out.empty() ? default_select_out(sources) : arguments.out;

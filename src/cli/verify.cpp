@@ -80,7 +80,7 @@ void conclude(const std::string& path, const Verification& verification) {
 Verification verify_choice(const Plan& plan) {
     std::optional<io::CampaignFile> campaign;
     if (plan.kind != CandidateKind::Blocks) {
-        campaign = io::read_campaign(plan.request.sources.campaign);
+        campaign = io::read_planned_campaign(plan.request.sources.campaign);
     }
     const ChoiceInputs inputs =
         read_choice_inputs(plan.request, plan.kind, plan.candidate_count, std::move(campaign));
@@ -89,7 +89,7 @@ Verification verify_choice(const Plan& plan) {
 }
 
 Verification verify_continuous(const Plan& plan, const std::string& path) {
-    io::CampaignFile campaign = io::read_campaign(plan.request.sources.campaign);
+    io::CampaignFile campaign = io::read_planned_campaign(plan.request.sources.campaign);
     io::set_prior(campaign, plan.request.has_prior);
     const PlanningOptions options = read_planning_inputs(plan.request, campaign);
     const std::string mismatch = describe_mismatch(plan, campaign);

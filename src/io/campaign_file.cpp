@@ -1,5 +1,7 @@
 #include "posewise/io/campaign_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "../model/complete_model.hpp"
@@ -123,13 +125,23 @@ std::string read_name(const YamlValue& value) {
     return name;
 }
 
+/// The model to plan with. Poses chosen for a poorer one than is fitted may not identify it.
+ErrorModel read_planned_model(const YamlValue& value, ErrorModel fitted) {
+    const YamlMap planning(value, {"errors"});
+    const YamlValue errors = planning.require("errors");
+    const ErrorModel planned = detail::read_error_model(errors);
+    if (planned >= fitted) return planned;
+    throw errors.error(fmt::format("is {}, poorer than robot.errors; must be {} or left out",
+                                   error_model_name(planned), error_model_name(fitted)));
+}
+
 /// With that error model, if one is asked for, else with the one that the file says.
 CampaignFile parse(const std::string& content, const std::string& path,
                    std::optional<ErrorModel> errors) {
     const YamlMap map(
         detail::parse_yaml(content, path),
         {"name", "robot", "sensor", "model_error_<length>", "model_error_orientation_<angle>",
-         "base", "spread", "prior", "criterion", "seed", "measurements", "cell"});
+         "base", "spread", "prior", "planning", "criterion", "seed", "measurements", "cell"});
     CampaignFile file;
     file.path = path;
     Campaign& campaign = file;
@@ -159,6 +171,10 @@ CampaignFile parse(const std::string& content, const std::string& path,
         campaign.spread = read_spread(*spread, campaign, !errors);
     }
     if (const auto prior = map.find("prior")) set_prior(file, prior->boolean());
+    if (const auto planning = map.find("planning")) {
+        file.planned_model =
+            read_planned_model(*planning, errors ? ErrorModel::Stated : file.error_model);
+    }
     if (const auto criterion = map.find("criterion")) file.criterion = read_criterion(*criterion);
     if (const auto seed = map.find("seed")) file.seed = seed->natural_number();
     if (const auto measurements = map.find("measurements")) {
@@ -206,6 +222,12 @@ std::vector<CampaignFile> read_campaign(const std::string& path,
     std::vector<CampaignFile> files;
     for (const ErrorModel model : models) files.push_back(parse(content, path, model));
     return files;
+}
+
+CampaignFile read_planned_campaign(const std::string& path) {
+    const std::string content = detail::read_file(path, most_bytes);
+    CampaignFile file = parse_campaign(content, path);
+    return file.planned_model ? parse(content, path, file.planned_model) : file;
 }
 
 CampaignFile parse_campaign(const std::string& content, const std::string& path) {

@@ -18,6 +18,9 @@ struct RobotSection {
     std::optional<io::UrdfSource> urdf;     ///< where the robot comes from
     VectorXd speed;                         ///< of the joints, rad/s or m/s; empty if not stated
 };
+/// "stated", "geometric" or "full".
+io::ErrorModel read_error_model(const YamlValue& errors);
+
 /// `errors`: instead of those that it states.
 RobotSection read_robot(const YamlValue& robot, std::optional<io::ErrorModel> errors);
 

@@ -46,15 +46,8 @@ Joint to_joint(const YamlMeasure& limits, const std::string& name, Motion motion
     return {name, values[0], values[1]};
 }
 
-io::ErrorModel read_error_model(const YamlMap& robot, const std::vector<Element>& elements) {
-    if (const auto errors = robot.find("errors")) {
-        const std::string name = errors->text();
-        try {
-            return io::parse_error_model(name);
-        } catch (const InputError& problem) {
-            throw errors->error(problem.what());
-        }
-    }
+io::ErrorModel find_error_model(const YamlMap& robot, const std::vector<Element>& elements) {
+    if (const auto errors = robot.find("errors")) return read_error_model(*errors);
     const auto is_stated = [](const Element& element) { return !element.parameter.empty(); };
     return std::any_of(elements.begin(), elements.end(), is_stated) ? io::ErrorModel::Stated
                                                                     : io::ErrorModel::Full;
@@ -150,11 +143,20 @@ RobotSection read_described(const YamlMap& robot, const YamlValue& description) 
 
 }  // namespace
 
+io::ErrorModel read_error_model(const YamlValue& errors) {
+    const std::string name = errors.text();
+    try {
+        return io::parse_error_model(name);
+    } catch (const InputError& problem) {
+        throw errors.error(problem.what());
+    }
+}
+
 RobotSection read_robot(const YamlValue& value, std::optional<io::ErrorModel> errors) {
     const YamlMap robot(value, {"joints", "elements", "dh", "urdf", "base_link", "tip_link",
                                 "errors", "gravity", "harmonics", "compliance"});
     RobotSection section = read_described(robot, find_description(value, robot));
-    section.error_model = errors ? *errors : read_error_model(robot, section.declared.elements());
+    section.error_model = errors ? *errors : find_error_model(robot, section.declared.elements());
     add_stated_terms(robot, section);
     if (section.joint_repeatability.isZero(0)) section.joint_repeatability.resize(0);
     return section;

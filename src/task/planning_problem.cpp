@@ -140,6 +140,7 @@ PlanningProblem state_planning(const Campaign& given, const PlanningOptions& opt
     if (problem.request.repeats == 0) problem.request.repeats = 1;
     problem.search.criterion = options.criterion;
     if (options.starts > 0) problem.search.starts = options.starts;
+    problem.request.starts = problem.search.starts;
     problem.search.seed = options.seed;
     if (options.is_focused_on_robot) problem.search.nuisance = nuisance_of_robot(campaign);
     if (campaign.spread.is_prior) hold(problem, prior_information(campaign), {});

@@ -34,6 +34,7 @@ class PlanFileTest : public ::testing::Test {
         plan_.request.pose_count = 3;
         plan_.request.excluded = {"first"};
         plan_.request.repeat_limit = 2;
+        plan_.request.starts = 20;
         plan_.request.seed = 18446744073709551615U;
         plan_.candidate_count = 3;
         plan_.checksum = "fnv1a64:0123456789abcdef";

@@ -41,6 +41,8 @@ struct CampaignFile : Campaign {
     /// same.
     Chain declared_robot;
     ErrorModel error_model = ErrorModel::Stated;
+    /// What select and plan reckon with instead, as the file says under `planning`.
+    std::optional<ErrorModel> planned_model;
     std::optional<UrdfSource> urdf;  ///< where the robot comes from, if from a URDF
     Criterion criterion = Criterion::V;
     std::uint64_t seed = 1;
@@ -92,6 +94,10 @@ CampaignFile read_campaign(const std::string& path);
 
 /// The same from a text that is not in its file (yet). Paths in it are from the folder of `path`.
 CampaignFile parse_campaign(const std::string& content, const std::string& path);
+
+/// The campaign of a file as poses are planned for it: with the error model that it states under
+/// `planning`, if it does.
+CampaignFile read_planned_campaign(const std::string& path);
 
 /// The campaign of a file with each of these error models in turn, whatever it states under
 /// `errors`; expected sizes of single parameters that a model does not have are left out.
