@@ -14,4 +14,7 @@ io::CampaignFile read_with_prior(const std::string& path, std::optional<bool> pr
 /// measured; a warning on standard error says so.
 Measurements read_measured(const std::string& path, const io::CampaignFile& file);
 
+/// io::read_any_configurations(), with the same warning.
+io::Configurations read_unlimited(const std::string& path, const io::CampaignFile& file);
+
 }  // namespace posewise::cli
