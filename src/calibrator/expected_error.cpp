@@ -1,10 +1,89 @@
 #include <cmath>
+#include <span>
 
+#include "../core/statistics.hpp"
 #include "../measurement/noise.hpp"
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/jacobian/identification.hpp"
 
 namespace posewise {
+namespace {
+
+/// Mean squares (m^2, rad^2) of what one target at one configuration is off by.
+struct PointError {
+    Index configuration = 0;
+    double parameters = 0;
+    double model = 0;
+    double noise = 0;
+    /// Of the chi squared with the mean and variance of the whole square.
+    double degrees_of_freedom = 1;
+
+    double total() const { return parameters + model + noise; }
+};
+
+/// Of the lengths of each target, or of its angles, in the configurations' order; a target of
+/// which there are no `repeats` (m x targets) is left out.
+std::vector<PointError> point_errors(const Campaign& campaign, const Estimate& estimate,
+                                     const RowMatrixXd& configurations, const RowMatrixXd& repeats,
+                                     bool is_angle) {
+    Campaign without = campaign;
+    without.model_error = without.model_error_orientation = 0;
+    const Sensor& sensor = *campaign.sensor;
+    const Index width = sensor.rows_per_target();
+    const Index begin = is_angle ? sensor.lengths_per_target() : 0;  // lengths come first
+    const Index count = is_angle ? width - begin : sensor.lengths_per_target();
+    const double model = is_angle ? estimate.model_error_orientation : estimate.model_error;
+    // Without priors the noise is that stated times the variance factor, as in the covariance.
+    const double factor = campaign.spread.is_prior ? 1 : estimate.variance_factor;
+    const MatrixXd left_over = factor * model * model * MatrixXd::Identity(count, count);
+    FlangeMotion motion;
+    RowMatrixXd J(sensor.row_count(), parameter_count(campaign));
+    std::vector<PointError> points;
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        const VectorXd q = configurations.row(i).transpose();
+        const VectorXd times = repeats.row(i).transpose();
+        differentiate_pose(campaign, estimate.parameters, q, motion, J);
+        const MatrixXd noise =
+            factor * detail::mean_covariance(without, motion, estimate.parameters.sensor, times);
+        const RowMatrixXd seen = J(seen_rows(times.array() > 0, width), Eigen::all);
+        const RowMatrixXd spread = seen * estimate.covariance;
+        for (Index row = begin; row < seen.rows(); row += width) {
+            const MatrixXd parameters =
+                spread.middleRows(row, count) * seen.middleRows(row, count).transpose();
+            const MatrixXd of_noise = noise.block(row, row, count, count);
+            PointError point{i, parameters.trace(), left_over.trace(), of_noise.trace(), 1};
+            const double squares = (parameters + left_over + of_noise).squaredNorm();
+            if (squares > 0) point.degrees_of_freedom = point.total() * point.total() / squares;
+            points.push_back(point);
+        }
+    }
+    return points;
+}
+
+ExpectedError average(std::span<const PointError> points) {
+    if (points.empty()) return {};
+    ExpectedError sum;
+    for (const PointError& point : points) {
+        sum.parameters += point.parameters;
+        sum.model += point.model;
+        sum.noise += point.noise;
+    }
+    const auto count = static_cast<double>(points.size());
+    return {std::sqrt(sum.parameters / count), std::sqrt(sum.model / count),
+            std::sqrt(sum.noise / count)};
+}
+
+/// `degrees_of_freedom` of the variance that the errors are stated by; 0: it is known.
+PredictedError summarise(std::span<const PointError> points, double degrees_of_freedom) {
+    std::vector<detail::ScaledChiSquared> squares;
+    for (const PointError& point : points) {
+        squares.push_back({point.total(), point.degrees_of_freedom});
+    }
+    return {average(points),
+            std::sqrt(detail::mixture_quantile(0.95, squares, degrees_of_freedom))};
+}
+
+}  // namespace
 
 double ExpectedError::total() const {
     return std::sqrt(parameters * parameters + model * model + noise * noise);
@@ -19,41 +98,33 @@ Campaign with_model_error(const Campaign& campaign, const Estimate& estimate) {
 
 ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
                              const Measurements& measured) {
-    Campaign without = campaign;
-    without.model_error = without.model_error_orientation = 0;
-    const Sensor& sensor = *campaign.sensor;
-    const Index width = sensor.rows_per_target();
     // Angles count only where no length is measured, as in distances.
-    const Index counted = sensor.lengths_per_target() > 0 ? sensor.lengths_per_target() : width;
-    const double model_error =
-        sensor.lengths_per_target() > 0 ? estimate.model_error : estimate.model_error_orientation;
-    const RowMatrixXd repeats = times_seen(measured);
-    FlangeMotion motion;
-    RowMatrixXd J(sensor.row_count(), parameter_count(campaign));
-    Index points = 0;
-    double of_parameters = 0;
-    double of_noise = 0;
-    for (Index i = 0; i < measured.configuration_count(); ++i) {
-        const VectorXd q = measured.configurations.row(i).transpose();
-        const VectorXd times = repeats.row(i).transpose();
-        differentiate_pose(campaign, estimate.parameters, q, motion, J);
-        const MatrixXd noise =
-            detail::mean_covariance(without, motion, estimate.parameters.sensor, times);
-        const RowMatrixXd seen = J(seen_rows(times.array() > 0, width), Eigen::all);
-        const VectorXd variances = (seen * estimate.covariance).cwiseProduct(seen).rowwise().sum();
-        for (Index row = 0; row < seen.rows(); row += width) {
-            of_parameters += variances.segment(row, counted).sum();
-            of_noise += noise.diagonal().segment(row, counted).sum();
-            ++points;
+    return average(point_errors(campaign, estimate, measured.configurations, times_seen(measured),
+                                !campaign.sensor->has_lengths()));
+}
+
+std::vector<ErrorPrediction> predict_errors(const Campaign& campaign, const Estimate& estimate,
+                                            const RowMatrixXd& configurations) {
+    const Sensor& sensor = *campaign.sensor;
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        campaign.robot.check_configuration(configurations.row(i).transpose());
+    }
+    const RowMatrixXd once = RowMatrixXd::Ones(configurations.rows(), sensor.target_count());
+    const double freedom =
+        campaign.spread.is_prior ? 0 : static_cast<double>(estimate.degrees_of_freedom);
+    std::vector<ErrorPrediction> predictions;
+    for (const bool is_angle : {false, true}) {
+        if (!(is_angle ? sensor.has_angles() : sensor.has_lengths())) continue;
+        const auto points = point_errors(campaign, estimate, configurations, once, is_angle);
+        ErrorPrediction& prediction = predictions.emplace_back();
+        prediction.is_angle = is_angle;
+        prediction.overall = summarise(points, freedom);
+        const auto width = static_cast<std::size_t>(sensor.target_count());
+        for (std::size_t i = 0; i < points.size(); i += width) {
+            prediction.each.push_back(summarise(std::span(points).subspan(i, width), freedom));
         }
     }
-    if (points == 0) return {};
-    // Without priors the noise is that stated times the variance factor, as in the covariance.
-    const double factor = campaign.spread.is_prior ? 1 : estimate.variance_factor;
-    const auto count = static_cast<double>(points);
-    return {std::sqrt(of_parameters / count),
-            std::sqrt(factor * static_cast<double>(counted)) * model_error,
-            std::sqrt(factor * of_noise / count)};
+    return predictions;
 }
 
 }  // namespace posewise

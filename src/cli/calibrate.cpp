@@ -5,11 +5,10 @@
 #include <memory>
 #include <optional>
 
+#include "calibrate_options.hpp"
 #include "commands.hpp"
-#include "common.hpp"
 #include "files.hpp"
 #include "measured.hpp"
-#include "options.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/io/estimate_file.hpp"
@@ -30,6 +29,9 @@ Finds base and targets from nothing, then identifies all parameters together, an
   - every parameter with its standard deviation, the base as position and rotation vector;
   - the strongest correlations: what these poses can hardly tell apart.
 With --plan the calibration sees only the plan's configurations and is judged on the others too.
+With --predict it says what to expect at configurations that need not be measured, as one reading
+there would find it: RMS, 95 %, and each one's in --predict-out (config,parameters_mm,left_over_mm,
+noise_mm,total_mm,p95_mm; orientations likewise in mrad).
 With --loss huber or cauchy a target seen wrongly counts less (cauchy: hardly at all) and is listed:
 if its mean is farther off than 4.95 robust standard deviations (three coordinates), which come from
 the residuals' median, whatever sigma is stated. sqrt(variance factor) is their ratio to the stated.
@@ -55,22 +57,6 @@ const std::map<std::string, LossKind> losses{
 const std::map<std::string, CalibrationMethod> methods{{"lm", CalibrationMethod::Joint},
                                                        {"two-step", CalibrationMethod::TwoStep},
                                                        {"global", CalibrationMethod::Global}};
-
-struct CalibrateArguments {
-    InputPaths paths;
-    std::string plan;
-    std::string validate;
-    std::string out;
-    std::string method = "lm";
-    std::string search = "random";
-    std::string loss = "squares";
-    double length_error_percent = 30;
-    double angle_error_deg = 20;
-    std::optional<Index> iteration_limit;
-    std::optional<bool> prior;
-    bool has_all_parameters = false;
-    CalibrationOptions options;  ///< with the numbers that are options as they are
-};
 
 CalibrationOptions make_options(const CalibrateArguments& arguments, std::uint64_t seed) {
     CalibrationOptions options = arguments.options;
@@ -120,8 +106,9 @@ void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& ar
 
 void calibrate(const CalibrateArguments& arguments) {
     const InputPaths& paths = arguments.paths;
-    check_outputs({paths.campaign, paths.measurements, arguments.plan, arguments.validate},
-                  {arguments.out});
+    check_outputs(
+        {paths.campaign, paths.measurements, arguments.plan, arguments.validate, arguments.predict},
+        {arguments.out, arguments.predict_out});
     const io::CampaignFile file = read_with_prior(paths.campaign, arguments.prior);
     const Measurements measured = read_measured(paths.measurements, file);
     CalibrationOptions options = make_options(arguments, file.seed);
@@ -129,6 +116,9 @@ void calibrate(const CalibrateArguments& arguments) {
     std::optional<Measurements> validation;
     if (!arguments.validate.empty()) validation = read_measured(arguments.validate, file);
     options.validation = validation ? &*validation : nullptr;
+    io::Configurations predicted;
+    if (!arguments.predict.empty()) predicted = read_unlimited(arguments.predict, file);
+    options.predicted = predicted.joints;
     const Calibration result = compute_from(paths.measurements, [&] {
         check_folds(options, measured.configuration_count());
         return posewise::calibrate(file, measured, options);
@@ -138,69 +128,11 @@ void calibrate(const CalibrateArguments& arguments) {
         throw input_error_at({paths.measurements}, result.estimate.undetermined);
     }
     if (!arguments.out.empty()) io::write_estimate(arguments.out, result, paths.measurements);
+    if (!arguments.predict_out.empty()) {
+        io::write_predictions_csv(arguments.predict_out, predicted.ids, result.predicted);
+    }
     std::ranges::for_each(describe_doubts(result, paths.measurements), print_warning);
     print(format(result, arguments.has_all_parameters));
-}
-
-void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
-    CalibrationOptions& options = arguments.options;
-    command.add_option("--plan", arguments.plan, "Use only the configurations of this plan file")
-        ->check(file_name());
-    command.add_option("--method", arguments.method, "lm, two-step or global")
-        ->check(CLI::IsMember({"lm", "two-step", "global"}))
-        ->capture_default_str();
-    command
-        .add_option("--alpha", options.two_step.alpha, "two-step: part of each robot step taken")
-        ->check(real_number(1e-6, 1.0))
-        ->capture_default_str();
-    command
-        .add_option("--max-iterations", arguments.iteration_limit,
-                    "Most iterations (default: lm and each start of global 100, two-step 200)")
-        ->check(whole_number(1, 1000000));
-    command
-        .add_option("--length-error-percent", arguments.length_error_percent,
-                    "global: by how much a length may be off (50 mm at least)")
-        ->check(real_number(0, 100))
-        ->capture_default_str();
-    command
-        .add_option("--angle-error-deg", arguments.angle_error_deg,
-                    "global: by how much an angle may be off")
-        ->check(real_number(0, 180))
-        ->capture_default_str();
-    command
-        .add_option("--search", arguments.search,
-                    "global: starts are random, or the best of a population search: crs2, esch, "
-                    "isres or cmaes")
-        ->check(CLI::IsMember({"random", "crs2", "esch", "isres", "cmaes"}))
-        ->capture_default_str();
-    command.add_option("--starts", options.global.start_limit, "global: most starts")
-        ->check(whole_number(1, 1000000))
-        ->capture_default_str();
-    command
-        .add_option("--validate", arguments.validate,
-                    "Second measurement file, to judge the result on")
-        ->check(file_name());
-    command
-        .add_option("--folds", options.folds,
-                    "Groups to hold out in turn; 0: none (default: every configuration by "
-                    "itself up to 100 of them, else 10)")
-        ->check(whole_number(0, 1000000));
-    command.add_option("--loss", arguments.loss, "squares, huber or cauchy: robust to outliers")
-        ->check(CLI::IsMember({"squares", "huber", "cauchy"}))
-        ->capture_default_str();
-    command
-        .add_option("--loss-width", options.joint.loss.width,
-                    "Where the loss leaves squares, in robust standard deviations (default: 95 % "
-                    "efficiency; three coordinates a target: huber 1.63, cauchy 2.67)")
-        ->check(real_number(0.1, 1e6));
-    command.add_flag("--model-selection", options.model_selection,
-                     "Compare nested parameter sets by their held-out error");
-    add_prior_option(command, arguments.prior, ": fewer poses than parameters will do");
-    command.add_flag("--learn-sizes", options.learns_sizes,
-                     "Learn how large the errors of each class are, instead of the expected sizes");
-    command.add_flag("--all-parameters", arguments.has_all_parameters, "List each, however many");
-    command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
-        ->check(file_name());
 }
 
 }  // namespace

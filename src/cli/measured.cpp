@@ -6,6 +6,17 @@
 
 namespace posewise::cli {
 
+namespace {
+
+void warn_beyond_limits(const std::string& path, const io::CampaignFile& file,
+                        const RowMatrixXd& configurations, const std::vector<std::string>& ids) {
+    if (const auto beyond = find_beyond_limits(file, configurations)) {
+        print_warning(path + ": " + describe(*beyond, ids));
+    }
+}
+
+}  // namespace
+
 io::CampaignFile read_with_prior(const std::string& path, std::optional<bool> prior) {
     io::CampaignFile file = io::read_campaign(path);
     io::set_prior(file, prior.value_or(file.spread.is_prior));
@@ -23,10 +34,14 @@ std::string describe_planned(const io::CampaignFile& campaign, double repeats) {
 
 Measurements read_measured(const std::string& path, const io::CampaignFile& file) {
     Measurements measured = io::read_measurements(path, file);
-    if (const auto beyond = find_beyond_limits(file, measured)) {
-        print_warning(path + ": " + describe(*beyond, measured));
-    }
+    warn_beyond_limits(path, file, measured.configurations, measured.ids);
     return measured;
+}
+
+io::Configurations read_unlimited(const std::string& path, const io::CampaignFile& file) {
+    io::Configurations read = io::read_any_configurations(path, file);
+    warn_beyond_limits(path, file, read.joints, read.ids);
+    return read;
 }
 
 }  // namespace posewise::cli

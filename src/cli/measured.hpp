@@ -17,4 +17,7 @@ std::string describe_planned(const io::CampaignFile& campaign, double repeats);
 /// measured; a warning on standard error says so.
 Measurements read_measured(const std::string& path, const io::CampaignFile& file);
 
+/// io::read_any_configurations(), with the same warning.
+io::Configurations read_unlimited(const std::string& path, const io::CampaignFile& file);
+
 }  // namespace posewise::cli

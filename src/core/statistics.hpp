@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "posewise/core/types.hpp"
 
 namespace posewise::detail {
@@ -22,5 +24,16 @@ double student_quantile(double p, double degrees_of_freedom);
 
 /// That of chi squared.
 double chi_squared_quantile(double p, double degrees_of_freedom);
+
+/// A number that is never negative: so much on average, distributed as chi squared.
+struct ScaledChiSquared {
+    double mean = 0;
+    double degrees_of_freedom = 1;
+};
+/// What such a number is below with probability p (0 < p < 1) if it is any of these (at least one),
+/// each as likely. Where their means rest on a variance of so many degrees of freedom (0: known)
+/// they are scaled F.
+double mixture_quantile(double p, const std::vector<ScaledChiSquared>& parts,
+                        double degrees_of_freedom = 0);
 
 }  // namespace posewise::detail

@@ -1,7 +1,11 @@
 #include "posewise/io/estimate_file.hpp"
 
+#include <fmt/format.h>
+
 #include <numbers>
 
+#include "atomic_file.hpp"
+#include "csv_reader.hpp"
 #include "json.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/model/transforms.hpp"
@@ -115,6 +119,29 @@ Json held_out_to_json(const CrossValidation& held_out) {
             {"failures", held_out.failures}};
 }
 
+/// Numbers of an expected error, RMS and 95 %, by name without unit: for JSON and CSV.
+std::vector<std::pair<std::string, double>> list_numbers(const PredictedError& error) {
+    return {{"parameters", error.parameters},
+            {"left_over", error.model},
+            {"noise", error.noise},
+            {"total", error.total()},
+            {"p95", error.percentile95}};
+}
+
+const char* unit_suffix(const ErrorPrediction& prediction) {
+    return prediction.is_angle ? "_mrad" : "_mm";
+}
+
+Json predictions_to_json(const std::vector<ErrorPrediction>& predictions) {
+    Json json = {{"configuration_count", predictions.front().each.size()}};
+    for (const ErrorPrediction& prediction : predictions) {
+        for (const auto& [name, value] : list_numbers(prediction.overall)) {
+            json[name + unit_suffix(prediction)] = 1e3 * value;
+        }
+    }
+    return json;
+}
+
 Json accuracy_to_json(const Calibration& calibration) {
     Json accuracy = {{"nominal", metrics_to_json(calibration.nominal)},
                      {"fit", metrics_to_json(calibration.estimate.fit)},
@@ -128,6 +155,9 @@ Json accuracy_to_json(const Calibration& calibration) {
     if (calibration.held_out) accuracy["held_out"] = held_out_to_json(*calibration.held_out);
     if (calibration.left_out) accuracy["left_out"] = metrics_to_json(*calibration.left_out);
     if (calibration.validation) accuracy["validation"] = metrics_to_json(*calibration.validation);
+    if (!calibration.predicted.empty()) {
+        accuracy["predicted"] = predictions_to_json(calibration.predicted);
+    }
     if (const auto& others = calibration.without_outliers) {
         accuracy["without_outliers"] = {{"fit_means_rms_mm", mm * others->fit_rms}};
         if (others->held_out_rms) {
@@ -212,6 +242,25 @@ void write_estimate(const std::string& path, const Calibration& calibration,
         document["model_selection"] = selection_to_json(*calibration.selection);
     document["assumes"] = detail::numbers_to_json(assumptions_of(campaign));
     detail::write_json(path, document);
+}
+
+void write_predictions_csv(const std::string& path, const std::vector<std::string>& ids,
+                           const std::vector<ErrorPrediction>& predictions) {
+    std::string text = "config";
+    for (const ErrorPrediction& prediction : predictions) {
+        for (const auto& [name, value] : list_numbers(prediction.overall)) {
+            text += ',' + name + unit_suffix(prediction);
+        }
+    }
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        text += '\n' + detail::csv_field(ids[i]);
+        for (const ErrorPrediction& prediction : predictions) {
+            for (const auto& [name, value] : list_numbers(prediction.each[i])) {
+                text += fmt::format(",{:.6f}", 1e3 * value);
+            }
+        }
+    }
+    detail::write_file(path, text + '\n');
 }
 
 }  // namespace posewise::io

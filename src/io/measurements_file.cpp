@@ -9,14 +9,6 @@ namespace {
 
 bool is_matlab(const std::string& path) { return path.ends_with(".mat") || path.ends_with(".MAT"); }
 
-Configurations read_any(const std::string& path, const CampaignFile& file) {
-    if (!is_matlab(path)) return read_configurations_csv(path, file);
-    Measurements read = read_measurements_mat(path, file, file.mat);
-    const Index count = read.configuration_count();
-    return {std::move(read.ids), std::move(read.configurations),
-            all_seen(count, file.sensor->target_count())};
-}
-
 }  // namespace
 
 Measurements read_measurements(const std::string& path, const CampaignFile& file) {
@@ -24,8 +16,16 @@ Measurements read_measurements(const std::string& path, const CampaignFile& file
                            : read_measurements_csv(path, file);
 }
 
+Configurations read_any_configurations(const std::string& path, const CampaignFile& file) {
+    if (!is_matlab(path)) return read_configurations_csv(path, file);
+    Measurements read = read_measurements_mat(path, file, file.mat);
+    const Index count = read.configuration_count();
+    return {std::move(read.ids), std::move(read.configurations),
+            all_seen(count, file.sensor->target_count())};
+}
+
 Configurations read_configurations(const std::string& path, const CampaignFile& file) {
-    Configurations read = read_any(path, file);
+    Configurations read = read_any_configurations(path, file);
     for (Index i = 0; i < read.joints.rows(); ++i) {
         const std::string violation =
             detail::describe_limit_violation(file.robot, read.joints.row(i).transpose());

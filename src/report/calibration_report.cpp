@@ -102,8 +102,8 @@ std::string describe_noise_floor(const Calibration& calibration) {
     return text + '\n';
 }
 
-std::string describe(const ExpectedError& expected, const char* where, bool is_angle) {
-    return fmt::format("expected {}: {} (parameters {}, left over {}, instrument {})\n", where,
+std::string describe(const ExpectedError& expected, const std::string& where, bool is_angle) {
+    return fmt::format("expected {}: {} (parameters {}, left over {}, instrument {})", where,
                        detail::format_error(expected.total(), is_angle),
                        detail::format_error(expected.parameters, is_angle),
                        detail::format_error(expected.model, is_angle),
@@ -113,12 +113,17 @@ std::string describe(const ExpectedError& expected, const char* where, bool is_a
 /// What points not used will be off by, so far as the calibration can know.
 std::string describe_expected(const Calibration& calibration) {
     const bool is_angle = !calibration.campaign.sensor->has_lengths();
-    std::string text = describe(calibration.expected, "at poses like these", is_angle);
+    std::string text = describe(calibration.expected, "at poses like these", is_angle) + '\n';
     if (calibration.expected_left_out) {
-        text += describe(*calibration.expected_left_out, "not in plan", is_angle);
+        text += describe(*calibration.expected_left_out, "not in plan", is_angle) + '\n';
     }
     if (calibration.expected_validation) {
-        text += describe(*calibration.expected_validation, "at the validation", is_angle);
+        text += describe(*calibration.expected_validation, "at the validation", is_angle) + '\n';
+    }
+    for (const ErrorPrediction& prediction : calibration.predicted) {
+        const auto where = fmt::format("at the {} poses to predict", prediction.each.size());
+        text += describe(prediction.overall, where, prediction.is_angle) + ", 95 % are below " +
+                detail::format_error(prediction.overall.percentile95, prediction.is_angle) + '\n';
     }
     return text;
 }
@@ -324,12 +329,11 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     return sentences;
 }
 
-std::string describe(const BeyondLimits& beyond, const Measurements& measurements) {
+std::string describe(const BeyondLimits& beyond, const std::vector<std::string>& ids) {
     return fmt::format(
-        "{} of {} measured configurations are beyond the campaign's joint limits, the first is {}: "
-        "{}",
-        beyond.count, measurements.configuration_count(),
-        detail::quote(measurements.ids[static_cast<std::size_t>(beyond.first)]), beyond.violation);
+        "{} of {} configurations are beyond the campaign's joint limits, the first is {}: {}",
+        beyond.count, ids.size(), detail::quote(ids[static_cast<std::size_t>(beyond.first)]),
+        beyond.violation);
 }
 
 }  // namespace posewise

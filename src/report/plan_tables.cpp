@@ -39,9 +39,20 @@ std::string indent_lines(const std::string& text) {
     return indented.substr(0, indented.find_last_not_of(" \n") + 1);
 }
 
-/// A criterion's value; V and G are inverse mean and worst squares of position errors.
-std::string format_value(Criterion criterion, double value) {
-    return detail::format_short(value, 8) + (needs_test_poses(criterion) ? " /m^2" : "");
+/// A value of the plan's criterion. Of continuous plans V and G are inverse mean and worst squares
+/// of position errors, of choices they are those of whitened ones, which have no unit.
+std::string format_value(const Plan& plan, double value) {
+    const bool is_of_positions = plan.is_continuous() && needs_test_poses(plan.request.criterion);
+    return detail::format_short(value, 8) + (is_of_positions ? " /m^2" : "");
+}
+
+/// The plan's value, and what it says in mm where it does.
+std::string describe_value(const Plan& plan) {
+    const std::string value = format_value(plan, plan.value);
+    if (!plan.value_rms) return value;
+    return fmt::format("{} (predicted {} mm RMS{} by the parameters)", value,
+                       detail::format_mm(*plan.value_rms),
+                       plan.request.criterion == Criterion::G ? " at the worst pose" : "");
 }
 
 std::string describe_pool(const Pool& pool) {
@@ -70,7 +81,7 @@ std::string describe_searched_bound(const Plan& plan) {
                                        : "not searched, there is no such bound for this criterion";
     }
     return fmt::format("{}, efficiency {}: by a search, not a proof",
-                       format_value(plan.request.criterion, plan.searched_bound),
+                       format_value(plan, plan.searched_bound),
                        detail::format_fixed(plan.searched_efficiency, 4));
 }
 
@@ -194,19 +205,18 @@ std::string format_choice(const Plan& plan) {
     return fmt::format(
         "chosen:     {}\ncriterion:  {}\nvalue:      {}\nbound:      {}\n"
         "efficiency: {} proven\nstarts:     {} of {} ended here, {}\n{}{}",
-        describe_ids(plan), criterion_name(plan.request.criterion),
-        detail::format_short(plan.value, 8), detail::format_short(plan.bound, 8),
-        detail::format_fixed(plan.efficiency, 4), plan.starts_at_best, plan.request.starts,
-        ending_name(plan.ending), describe_proof(plan), describe_prediction(plan));
+        describe_ids(plan), criterion_name(plan.request.criterion), describe_value(plan),
+        format_value(plan, plan.bound), detail::format_fixed(plan.efficiency, 4),
+        plan.starts_at_best, plan.request.starts, ending_name(plan.ending), describe_proof(plan),
+        describe_prediction(plan));
 }
 
 std::string format_planning(const Planning& planning) {
     const Plan& plan = planning.plan;
-    const Criterion criterion = plan.request.criterion;
     std::string text =
         fmt::format("pool:        {}\nposes:       {}\ncriterion:   {}\nvalue:       {}\n",
                     describe_pool(planning.pool), describe_counts(planning),
-                    criterion_name(criterion), format_value(criterion, plan.value));
+                    criterion_name(plan.request.criterion), describe_value(plan));
     text += fmt::format("predicted:   position error {} mm RMS, 95 % are below {} mm, over {}\n",
                         detail::format_mm(plan.predicted->rms),
                         detail::format_mm(plan.predicted->percentile95),
@@ -218,7 +228,7 @@ std::string format_planning(const Planning& planning) {
     text += fmt::format(
         "pool bound:  {}, proven: no choice from the pool has a larger value\n"
         "best choice: {} from the pool, efficiency {} proven\n",
-        format_value(criterion, plan.bound), format_value(criterion, plan.choice_value),
+        format_value(plan, plan.bound), format_value(plan, plan.choice_value),
         detail::format_fixed(plan.efficiency, 4));
     const std::string looseness = describe_bound(plan);
     if (!looseness.empty()) text += "note:        " + looseness + '\n';

@@ -210,6 +210,9 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
         result.expected_validation =
             expected_error(result.campaign, result.estimate, *options.validation);
     }
+    if (options.predicted.rows() > 0) {
+        result.predicted = predict_errors(result.campaign, result.estimate, options.predicted);
+    }
     return result;
 }
 

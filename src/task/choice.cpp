@@ -2,7 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
+#include "../measurement/noise.hpp"
 #include "../model/halton.hpp"
 #include "choice_problem.hpp"
 #include "inputs.hpp"
@@ -77,6 +79,26 @@ std::optional<PredictedAccuracy> predict(const Campaign& campaign, const ChoiceP
         M);
 }
 
+/// Plan::value_rms. Where whitening divided every coordinate of every target at every test pose by
+/// the same length, the value is a mean square of positions in units of that.
+std::optional<double> value_rms(const Campaign& campaign, const ChoiceProblem& problem,
+                                const RowMatrixXd& test_poses, double value) {
+    constexpr double rounding = 1e-9;
+    const bool are_candidates = problem.test_poses == nullptr;
+    if (!needs_test_poses(problem.request.criterion) || !detail::has_constant_noise(campaign) ||
+        (are_candidates && (problem.share.array() != 1).any())) {
+        return std::nullopt;
+    }
+    const RowMatrixXd first = (are_candidates ? problem.configurations : test_poses).topRows(1);
+    const RowMatrixXd positions =
+        make_prediction_blocks(campaign, problem.parameters, first).matrix;
+    const RowMatrixXd whitened = (are_candidates ? problem.blocks : *problem.test_poses)[0];
+    if (whitened.rows() != positions.rows()) return std::nullopt;
+    const double unit = positions.norm() / whitened.norm();
+    if ((positions - unit * whitened).norm() > rounding * positions.norm()) return std::nullopt;
+    return unit / std::sqrt(value * static_cast<double>(campaign.sensor->target_count()));
+}
+
 }  // namespace
 
 double mean_repeats(const Measurements& measurements) {
@@ -110,6 +132,7 @@ Plan choose(const Campaign& campaign, const Candidates& candidates, const Choice
     plan.columns = configuration_columns(campaign);
     plan.assumptions = assumptions_of(campaign);
     plan.predicted = predict(campaign, problem, plan.poses);
+    plan.value_rms = value_rms(campaign, problem, options.test_poses, plan.value);
     return plan;
 }
 

@@ -148,11 +148,11 @@ std::vector<Index> find_negative_compliances(const Campaign& campaign, const Est
 }  // namespace
 
 std::optional<BeyondLimits> find_beyond_limits(const Campaign& campaign,
-                                               const Measurements& measured) {
+                                               const RowMatrixXd& configurations) {
     BeyondLimits beyond;
-    for (Index i = 0; i < measured.configuration_count(); ++i) {
-        std::string violation = detail::describe_limit_violation(
-            campaign.robot, measured.configurations.row(i).transpose());
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        std::string violation =
+            detail::describe_limit_violation(campaign.robot, configurations.row(i).transpose());
         if (violation.empty()) continue;
         if (++beyond.count > 1) continue;
         beyond.first = i;

@@ -1,5 +1,6 @@
 #include "posewise/task/planning.hpp"
 
+#include <cmath>
 #include <set>
 
 #include "../planner/tour.hpp"
@@ -89,6 +90,10 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.starts_at_best = planned.starts_at_best;
     plan.ending = Ending::Converged;
     plan.predicted = predict_accuracy(problem.prediction, planned.information);
+    if (needs_test_poses(plan.request.criterion)) {
+        const auto positions = static_cast<double>(problem.prediction[0].rows()) / 3;
+        plan.value_rms = 1 / std::sqrt(plan.value * positions);
+    }
     plan.standard_deviations = detail::standard_deviations(campaign, planned.information);
     plan.visiting_time = tour.time;
     plan.assumptions = assumptions_of(campaign);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -117,6 +118,48 @@ TEST_F(Calibrate, RecommendsAParameterSet) {
     EXPECT_EQ(number_behind(text, "+ other geometric", 1), number_behind(text, "distance RMS", 2));
     EXPECT_EQ(number_behind(text, "+ other geometric", 2), number_behind(text, "distance RMS", 4));
     EXPECT_NE(text.find("recommended, best"), std::string::npos) << text;
+}
+
+TEST_F(Calibrate, PredictsPosesThatNeedNotBeMeasured) {
+    const std::string header = "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n";
+    write_text("q.csv", header + "a,10,20,-30,40,50,60\n\"b,c\",-20,5,10,80,-60,10\n");
+    const std::string predict = "--folds 0 --predict q.csv --predict-out p.csv -o e.json";
+    const std::string text = run_well(clean_ + predict);
+    const double total = number_behind(text, "expected at the 2 poses to predict:");
+    std::istringstream lines(text_of("p.csv"));
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line, "config,parameters_mm,left_over_mm,noise_mm,total_mm,p95_mm");
+    double squares = 0;
+    for (const std::string id : {"a", "\"b,c\""}) {
+        std::getline(lines, line);
+        ASSERT_EQ(line.rfind(id + ',', 0), 0U) << line;
+        std::istringstream cells(line.substr(id.size() + 1));
+        std::vector<double> mm;
+        for (std::string cell; std::getline(cells, cell, ',');) mm.push_back(std::stod(cell));
+        ASSERT_EQ(mm.size(), 5U);
+        EXPECT_NEAR(std::hypot(mm[0], mm[1], mm[2]), mm[3], 2e-6);
+        EXPECT_GT(mm[4], mm[3]);
+        squares += mm[3] * mm[3];
+    }
+    EXPECT_FALSE(std::getline(lines, line));
+    EXPECT_NEAR(std::sqrt(squares / 2), total, 1e-4 * total);
+    const Json predicted = Json::parse(text_of("e.json")).at("accuracy").at("predicted");
+    EXPECT_EQ(predicted.at("configuration_count"), 2);
+    EXPECT_NEAR(predicted.at("total_mm"), total, 1e-4 * total);
+
+    write_text("q.csv", header + "a,10,20,-30,40,50,60\nfar,-20,5,10,80,-60,2000\n");
+    const Outcome beyond = run(clean_ + predict);
+    EXPECT_EQ(beyond.code, 0);
+    EXPECT_EQ(beyond.err.rfind("posewise: warning: q.csv: 1 of 2 configurations are beyond the "
+                               "campaign's joint limits, the first is 'far': q6 is 2000 deg",
+                               0),
+              0U)
+        << beyond.err;
+    write_text("q.csv", "config,q1_deg,q2_deg\na,10,20\n");
+    expect_input_error(clean_ + predict, "q.csv:1:");
+    expect_input_error(clean_ + "--predict q.csv --predict-out q.csv", "must be another file");
+    EXPECT_EQ(run(clean_ + "--predict-out p.csv").code, 2);
 }
 
 TEST_F(Calibrate, ComparesSetsEvenIfTheWholeCannotBeIdentified) {

@@ -56,5 +56,14 @@ TEST(DistributionQuantile, IsThatOfTables) {
     EXPECT_NEAR(chi_squared_quantile(0.05, 2.5), 0.2101, 2e-3);
 }
 
+TEST(MixtureQuantile, IsThatOfItsPartsTogether) {
+    EXPECT_NEAR(mixture_quantile(0.95, {{6, 3}}), 6 * 7.8147279033 / 3, 1e-8);
+    EXPECT_NEAR(mixture_quantile(0.95, {{6, 3}}, 10), 6 * 3.7082648190, 1e-8);
+    // Of a small and a large one alike, that of the large alone at 90 %; of nothing and one at all.
+    EXPECT_NEAR(mixture_quantile(0.95, {{1e-6, 3}, {6, 3}}), 6 * 6.2513886311 / 3, 1e-8);
+    EXPECT_NEAR(mixture_quantile(0.95, {{0, 1}, {6, 3}}), 6 * 6.2513886311 / 3, 1e-8);
+    EXPECT_EQ(mixture_quantile(0.95, {{0, 1}}), 0);
+}
+
 }  // namespace
 }  // namespace posewise

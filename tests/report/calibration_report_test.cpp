@@ -49,6 +49,21 @@ TEST(FormatCalibration, ShowsLearnedSizesBesideTheExpected) {
     EXPECT_TRUE(holds(text, "class           count  expected  learned     RMS")) << text;
 }
 
+TEST(FormatCalibration, SaysWhatToExpectAtPosesToPredict) {
+    const Example example(16);
+    Calibration calibration = calibrate(example.campaign, example.measurements, {.folds = 0});
+    EXPECT_FALSE(holds(format(calibration), "to predict"));
+    const PredictedError error{{3e-4, 4e-4, 0}, 9e-4};
+    calibration.predicted = {{false, error, {error, error}}, {true, error, {error, error}}};
+    for (const std::string unit : {"mm", "mrad"}) {
+        EXPECT_TRUE(holds(format(calibration), "\nexpected at the 2 poses to predict: 0.5 " + unit +
+                                                   " (parameters 0.3 " + unit + ", left over 0.4 " +
+                                                   unit + ", instrument 0 " + unit +
+                                                   "), 95 % are below 0.9 " + unit + "\n"))
+            << format(calibration);
+    }
+}
+
 TEST(FormatCalibration, OfOneThatIsNotIdentifiedSaysWhy) {
     const Example example(3);
     EXPECT_EQ(format(calibrate(example.campaign, example.measurements)),
@@ -87,8 +102,8 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
 TEST(DescribeBeyondLimits, CountsThemAndNamesTheFirst) {
     const Example example(3);
     EXPECT_EQ(describe(BeyondLimits{2, 1, "q2 is 61 deg, must be from -50 to 60 deg"},
-                       example.measurements),
-              "2 of 3 measured configurations are beyond the campaign's joint limits, the first is "
+                       example.measurements.ids),
+              "2 of 3 configurations are beyond the campaign's joint limits, the first is "
               "'" +
                   example.measurements.ids[1] + "': q2 is 61 deg, must be from -50 to 60 deg");
 }

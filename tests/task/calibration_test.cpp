@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <stdexcept>
 
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "support/campaigns.hpp"
+#include "support/sensors.hpp"
 
 namespace posewise {
 
@@ -98,6 +101,89 @@ TEST(Calibrate, IsJudgedOnWhatItDidNotUse) {
     EXPECT_EQ(result.left_out->point_count, 6 * 2 * 3);
     EXPECT_EQ(result.validation->point_count, 10 * 2 * 3);
     EXPECT_GT(result.left_out->distance_rms, result.estimate.fit.distance_rms);
+}
+
+TEST(Calibrate, PredictsWhatASingleReadingElsewhereWouldFind) {
+    const Example example;
+    const Measurements fresh =
+        simulate(example.campaign, {.pose_count = 30, .seed = 9}).measurements;
+    CalibrationOptions options;
+    options.folds = 0;
+    options.predicted = fresh.configurations;
+    options.validation = &fresh;
+    const Calibration result = calibrate(example.campaign, example.measurements, options);
+    ASSERT_EQ(result.predicted.size(), 1U);
+    const ErrorPrediction& prediction = result.predicted.front();
+    EXPECT_FALSE(prediction.is_angle);
+    EXPECT_EQ(prediction.overall.total(), result.expected_validation->total());
+    ASSERT_EQ(prediction.each.size(), 30U);
+    double squares = 0;
+    double most = 0;
+    double least = 1;
+    for (const PredictedError& each : prediction.each) {
+        squares += each.total() * each.total() / 30;
+        most = std::max(most, each.parameters);
+        least = std::min(least, each.parameters);
+        EXPECT_GT(each.percentile95, 1.4 * each.total());  // three equal coordinates: 1.61
+        EXPECT_LT(each.percentile95, 2 * each.total());    // a single one: 1.96
+    }
+    EXPECT_NEAR(std::sqrt(squares), prediction.overall.total(), 1e-12);
+    EXPECT_GT(most, 1.5 * least);
+    options.predicted = RowMatrixXd::Zero(1, 5);
+    EXPECT_THROW(calibrate(example.campaign, example.measurements, options), InputError);
+}
+
+TEST(Calibrate, PredictsLengthsAndAnglesOfFullPoses) {
+    for (const auto& [name, campaign] : testing::campaigns_of_every_sensor(testing::ur_type())) {
+        SCOPED_TRACE(name);
+        const Sensor& sensor = *campaign.sensor;
+        Estimate estimate;
+        estimate.parameters = campaign.nominal;
+        const Index size = parameter_count(campaign);
+        estimate.covariance = MatrixXd::Zero(size, size);
+        estimate.variance_factor = 4;
+        estimate.model_error = 3e-3;
+        estimate.model_error_orientation = 5e-3;
+        const RowMatrixXd poses = simulate(campaign, {.pose_count = 2}).measurements.configurations;
+        const auto predictions = predict_errors(campaign, estimate, poses);
+        for (const ErrorPrediction& one : predictions) {
+            const auto coordinates = static_cast<double>(
+                one.is_angle ? sensor.rows_per_target() - sensor.lengths_per_target()
+                             : sensor.lengths_per_target());
+            EXPECT_EQ(one.overall.parameters, 0);
+            EXPECT_NEAR(one.overall.model,
+                        2 * std::sqrt(coordinates) * (one.is_angle ? 5e-3 : 3e-3), 1e-12);
+        }
+        EXPECT_EQ(predictions.size(), sensor.has_lengths() && sensor.has_angles() ? 2U : 1U);
+    }
+}
+
+TEST(Calibrate, PredictsWhat95PercentAreBelow) {
+    const Campaign campaign = testing::tracked_campaign(testing::fanuc());
+    // Of 39 degrees of freedom: with chi squared instead of F it is 92 %.
+    Index below = 0;
+    Index count = 0;
+    for (std::uint64_t run = 1; run <= 200; ++run) {
+        const Simulation simulated =
+            simulate(campaign, {.pose_count = 8, .truth_seed = run, .seed = run});
+        const Measurements fresh =
+            simulate(campaign, {.pose_count = 10, .truth_seed = run, .seed = 100 + run})
+                .measurements;
+        CalibrationOptions options;
+        options.folds = 0;
+        options.predicted = fresh.configurations;
+        const Calibration result = calibrate(campaign, simulated.measurements, options);
+        const RowMatrixXd squares = squared_distances(campaign, result.estimate.parameters, fresh);
+        for (Index i = 0; i < squares.rows(); ++i) {
+            const double limit =
+                result.predicted.front().each[static_cast<std::size_t>(i)].percentile95;
+            below += (squares.row(i).array() < limit * limit).count();
+            count += squares.cols();
+        }
+    }
+    const double share = static_cast<double>(below) / static_cast<double>(count);
+    EXPECT_GT(share, 0.935);
+    EXPECT_LT(share, 0.965);
 }
 
 TEST(Calibrate, SaysWhatIsNotIdentifiable) {

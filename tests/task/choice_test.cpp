@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "posewise/calibrator/registration.hpp"
@@ -91,6 +92,34 @@ TEST_F(ChooseWithRobot, SaysWhatItChoseAndWhatItRestsOn) {
     }
     EXPECT_EQ(plan.assumptions.front().name, "sigma_m");
     EXPECT_EQ(plan.assumptions.front().value, 5e-5);
+}
+
+TEST_F(ChooseWithRobot, SaysWhatTheValueOfVMeansInMetresWhereThatIsExact) {
+    const Candidates candidates = measured_candidates(measured_);
+    ChoiceOptions options = choice_of(10);
+    EXPECT_FALSE(choose(campaign_, candidates, options).value_rms);
+    options.criterion = Criterion::V;
+    const Plan plan = choose(campaign_, candidates, options);
+    ASSERT_TRUE(plan.value_rms);
+    EXPECT_NEAR(*plan.value_rms, plan.predicted->rms, 1e-9 * plan.predicted->rms);
+    // At other poses than the candidates it is another number.
+    options.test_poses = measured_.configurations.topRows(1);
+    for (const Criterion criterion : {Criterion::V, Criterion::G}) {
+        options.criterion = criterion;
+        const Plan at_one = choose(campaign_, candidates, options);
+        const double noise = std::hypot(5e-5, campaign_.model_error);
+        EXPECT_NEAR(at_one.value_rms.value(), noise / std::sqrt(3 * at_one.value), 1e-9);
+        EXPECT_NE(*at_one.value_rms, at_one.predicted->rms);
+    }
+    // Targets that some candidates do not show, and noise that is not alike.
+    options.test_poses.resize(0, 0);
+    Candidates hidden = candidates;
+    hidden.measured.reset();
+    hidden.share(3, 1) = 0;
+    EXPECT_FALSE(choose(campaign_, hidden, options).value_rms);
+    campaign_.sensor = std::make_shared<PointSensor>(
+        std::vector<std::optional<Vector3d>>(3, std::nullopt), PerAxisNoise{{5e-5, 5e-5, 1e-4}});
+    EXPECT_FALSE(choose(campaign_, candidates, options).value_rms);
 }
 
 TEST_F(ChooseWithRobot, IsVerifiedWithoutAnyFile) {

@@ -58,9 +58,9 @@ TEST(CheckIsOfRobot, CannotTellWithTooFewMeasurements) {
 TEST(FindBeyondLimits, CountsConfigurationsAndNamesTheFirst) {
     const Campaign campaign = tracked_fanuc();
     Measurements measurements = measure(campaign);
-    EXPECT_FALSE(find_beyond_limits(campaign, measurements));
+    EXPECT_FALSE(find_beyond_limits(campaign, measurements.configurations));
     measurements.configurations(3, 1) = measurements.configurations(7, 0) = 10;
-    const auto beyond = find_beyond_limits(campaign, measurements);
+    const auto beyond = find_beyond_limits(campaign, measurements.configurations);
     EXPECT_EQ(beyond->count, 2);
     EXPECT_EQ(beyond->first, 3);
     EXPECT_EQ(beyond->violation.find(campaign.robot.joint(1).name), 0U) << beyond->violation;

@@ -35,6 +35,7 @@ TEST_F(MakePlan, IsVerifiedWithoutAnyFile) {
     EXPECT_EQ(plan.standard_deviations.size(),
               static_cast<std::size_t>(parameter_count(campaign_)));
     EXPECT_TRUE(verify(plan, campaign_, options_).is_right());
+    EXPECT_NEAR(plan.value_rms.value(), plan.predicted->rms, 1e-9 * plan.predicted->rms);
     Plan edited = plan;
     edited.poses[2].configuration[1] = 50;
     edited.predicted->rms *= 1.01;

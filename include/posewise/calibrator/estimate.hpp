@@ -107,6 +107,24 @@ struct ExpectedError {
 ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
                              const Measurements& measured);
 
+/// The same, and what 95 % of the points are off by less than.
+struct PredictedError : ExpectedError {
+    double percentile95 = 0;
+};
+/// What to expect at configurations that nobody has measured: of distances (m), or of angles (rad).
+struct ErrorPrediction {
+    bool is_angle = false;
+    PredictedError overall;            ///< over the points of all configurations
+    std::vector<PredictedError> each;  ///< of each configuration
+};
+/// Of configurations (m x joints, and measured torques), as one reading of all targets there would
+/// find it: of distances, then of angles, as far as the sensor measures them. A point's squared
+/// error is taken as scaled chi squared of the same mean and variance [Satterthwaite 1946]; without
+/// priors as F, since the estimate's degrees of freedom are all that its variance factor rests on.
+/// Throws InputError for configurations that are not the robot's.
+std::vector<ErrorPrediction> predict_errors(const Campaign& campaign, const Estimate& estimate,
+                                            const RowMatrixXd& configurations);
+
 /// Standard deviations: sqrt of the covariance's diagonal (m, rad).
 VectorXd standard_deviations(const Estimate& estimate);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "posewise/task/calibration.hpp"
 
@@ -11,6 +12,12 @@ namespace posewise::io {
 /// they came from, a path. Same input, same bytes. The calibration must be identified.
 void write_estimate(const std::string& path, const Calibration& calibration,
                     const std::string& measurements);
+
+/// Writes CSV, a row a configuration: config, then parameters, left_over, noise, total (RMS) and
+/// p95 (95 % of points are off by less), each with _mm, of orientations with _mrad. `ids` are those
+/// of the configurations predicted.
+void write_predictions_csv(const std::string& path, const std::vector<std::string>& ids,
+                           const std::vector<ErrorPrediction>& predictions);
 
 /// The identified parameters that such a file holds, exactly as they were. Throws InputError with
 /// the place if it is none, or not one of this campaign's parameters.

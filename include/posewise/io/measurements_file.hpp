@@ -28,7 +28,8 @@ struct Configurations {
 /// targets each shows ("1 3"), as plans do; else all are visible. What is beyond the joint limits
 /// is refused: nobody measured there.
 Configurations read_configurations(const std::string& path, const CampaignFile& file);
-/// The same without a look at the limits.
+/// The same without a look at the limits, and of CSV alone.
+Configurations read_any_configurations(const std::string& path, const CampaignFile& file);
 Configurations read_configurations_csv(const std::string& path, const Campaign& campaign);
 
 /// CSV with a header that carries the units: config, <joint>_rad or _deg (_m or _mm if it slides),

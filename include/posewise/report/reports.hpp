@@ -40,8 +40,8 @@ std::string format(const ModelSelection& selection);
 std::vector<std::string> describe_doubts(const Calibration& calibration,
                                          const std::string& measurements = "");
 
-/// "2 of 24 measured configurations are beyond ..."
-std::string describe(const BeyondLimits& beyond, const Measurements& measurements);
+/// "2 of 24 configurations are beyond ..."; `ids` are those of all.
+std::string describe(const BeyondLimits& beyond, const std::vector<std::string>& ids);
 
 /// The pose error with and without correction (mm, mrad), by how much joints change, and the first
 /// twenty poses whose correction is not complete, with the reason, as text.

@@ -32,6 +32,9 @@ struct CalibrationOptions {
     std::vector<Index> used{};
     /// More measurements, to judge on only; the caller keeps them alive. Null: none.
     const Measurements* validation = nullptr;
+    /// Configurations that need not be measured, to say what to expect there (m x joints, and
+    /// measured torques; rad, m, N m). Empty: none.
+    RowMatrixXd predicted{};
     /// Groups of configurations to hold out in turn; 0: none. Nothing: default_folds().
     std::optional<Index> folds{};
     bool model_selection = false;  ///< compare nested parameter sets, too; needs folds and Joint
@@ -80,6 +83,8 @@ struct Calibration {
     ExpectedError expected;
     std::optional<ExpectedError> expected_left_out;
     std::optional<ExpectedError> expected_validation;
+    /// At CalibrationOptions::predicted: of distances, of angles.
+    std::vector<ErrorPrediction> predicted;
     std::optional<Metrics> left_out;                  ///< on the configurations not used
     std::optional<Metrics> validation;                ///< on CalibrationOptions::validation
     std::optional<WithoutOutliers> without_outliers;  ///< if there are some

@@ -12,14 +12,15 @@
 /// is what to look at first.
 namespace posewise {
 
-/// Configurations beyond the campaign's joint limits; they are taken, since they were measured.
+/// Configurations beyond the campaign's joint limits; they are taken all the same: measured ones
+/// were there.
 struct BeyondLimits {
     Index count = 0;
     Index first = 0;        ///< the first of them
     std::string violation;  ///< its first joint: "q2 is 61 deg, must be from -50 to 60 deg"
 };
 std::optional<BeyondLimits> find_beyond_limits(const Campaign& campaign,
-                                               const Measurements& measurements);
+                                               const RowMatrixXd& configurations);
 
 /// A plane whose normal is measured reversed or, where planes are known, whose offset is measured
 /// with the other sign: of planes fitted to base and robot as stated.

@@ -90,6 +90,9 @@ struct Plan {
     std::vector<PlannedPose> poses;    ///< of continuous ones: in the order to visit them
     PlanRequest request;               ///< complete: what was left open is filled in
     double value = -std::numeric_limits<double>::infinity();  ///< of the criterion
+    /// What the value says, where it is that of V or G and nothing else but positions is predicted:
+    /// RMS position error by the parameters over the test poses (G: at the worst), m. Not in files.
+    std::optional<double> value_rms;
 
     // What the poses were taken from, and what is proven about it.
     CandidateKind kind = CandidateKind::Configurations;

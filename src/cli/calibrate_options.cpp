@@ -1,0 +1,78 @@
+#include "calibrate_options.hpp"
+
+#include "options.hpp"
+
+namespace posewise::cli {
+
+void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
+    CalibrationOptions& options = arguments.options;
+    command.add_option("--plan", arguments.plan, "Use only the configurations of this plan file")
+        ->check(file_name());
+    command.add_option("--method", arguments.method, "lm, two-step or global")
+        ->check(CLI::IsMember({"lm", "two-step", "global"}))
+        ->capture_default_str();
+    command
+        .add_option("--alpha", options.two_step.alpha, "two-step: part of each robot step taken")
+        ->check(real_number(1e-6, 1.0))
+        ->capture_default_str();
+    command
+        .add_option("--max-iterations", arguments.iteration_limit,
+                    "Most iterations (default: lm and each start of global 100, two-step 200)")
+        ->check(whole_number(1, 1000000));
+    command
+        .add_option("--length-error-percent", arguments.length_error_percent,
+                    "global: by how much a length may be off (50 mm at least)")
+        ->check(real_number(0, 100))
+        ->capture_default_str();
+    command
+        .add_option("--angle-error-deg", arguments.angle_error_deg,
+                    "global: by how much an angle may be off")
+        ->check(real_number(0, 180))
+        ->capture_default_str();
+    command
+        .add_option("--search", arguments.search,
+                    "global: starts are random, or the best of a population search: crs2, esch, "
+                    "isres or cmaes")
+        ->check(CLI::IsMember({"random", "crs2", "esch", "isres", "cmaes"}))
+        ->capture_default_str();
+    command.add_option("--starts", options.global.start_limit, "global: most starts")
+        ->check(whole_number(1, 1000000))
+        ->capture_default_str();
+    command
+        .add_option("--validate", arguments.validate,
+                    "Second measurement file, to judge the result on")
+        ->check(file_name());
+    CLI::Option* const predict =
+        command
+            .add_option("--predict", arguments.predict,
+                        "Configurations that need not be measured (CSV): what to expect there")
+            ->check(file_name());
+    command
+        .add_option("--predict-out", arguments.predict_out,
+                    "Write what to expect at each of them (CSV)")
+        ->needs(predict)
+        ->check(file_name());
+    command
+        .add_option("--folds", options.folds,
+                    "Groups to hold out in turn; 0: none (default: every configuration by "
+                    "itself up to 100 of them, else 10)")
+        ->check(whole_number(0, 1000000));
+    command.add_option("--loss", arguments.loss, "squares, huber or cauchy: robust to outliers")
+        ->check(CLI::IsMember({"squares", "huber", "cauchy"}))
+        ->capture_default_str();
+    command
+        .add_option("--loss-width", options.joint.loss.width,
+                    "Where the loss leaves squares, in robust standard deviations (default: 95 % "
+                    "efficiency; three coordinates a target: huber 1.63, cauchy 2.67)")
+        ->check(real_number(0.1, 1e6));
+    command.add_flag("--model-selection", options.model_selection,
+                     "Compare nested parameter sets by their held-out error");
+    add_prior_option(command, arguments.prior, ": fewer poses than parameters will do");
+    command.add_flag("--learn-sizes", options.learns_sizes,
+                     "Learn how large the errors of each class are, instead of the expected sizes");
+    command.add_flag("--all-parameters", arguments.has_all_parameters, "List each, however many");
+    command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
+        ->check(file_name());
+}
+
+}  // namespace posewise::cli

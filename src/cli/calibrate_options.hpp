@@ -1,0 +1,34 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "common.hpp"
+#include "posewise/task/calibration.hpp"
+
+namespace posewise::cli {
+
+/// The command line of calibrate.
+struct CalibrateArguments {
+    InputPaths paths;
+    std::string plan;
+    std::string validate;
+    std::string predict;
+    std::string predict_out;
+    std::string out;
+    std::string method = "lm";
+    std::string search = "random";
+    std::string loss = "squares";
+    double length_error_percent = 30;
+    double angle_error_deg = 20;
+    std::optional<Index> iteration_limit;
+    std::optional<bool> prior;
+    bool has_all_parameters = false;
+    CalibrationOptions options;  ///< with the numbers that are options as they are
+};
+
+/// Every option but --measurements.
+void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments);
+
+}  // namespace posewise::cli
