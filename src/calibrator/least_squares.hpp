@@ -67,6 +67,9 @@ struct Triangle {
 };
 Triangle triangularise(const LinearisedSystem& system);
 
+/// Inverse of an upper triangle.
+MatrixXd invert_triangle(const MatrixXd& R);
+
 /// What keeps all parameters from being identified, as a sentence: equations that are missing, or a
 /// direction of parameter space that these configurations do not see (a singular value of the
 /// column-normalised Jacobian below 1e-9 of the largest, with the robot at nominal, where a lost

@@ -11,10 +11,12 @@ namespace posewise {
 /// Under a robust loss each target of a configuration's mean counts as loss(u), u the length of its
 /// whitened residual in robust standard deviations: those stated times s, s = median length /
 /// normal errors' * sqrt(equations / degrees of freedom), so that noise stated wrong does not make
-/// outliers. s is found together with the parameters; s^2 is the estimate's variance factor. The
-/// weighted least squares J^T W J of the optimum give the covariance f (J^T W J)^-1,
-/// f = sum |w r|^2 / dof * mean(w) / mean(((w u)' + (p - 1) w) / p)^2 for p rows a target
-/// [Huber & Ronchetti 2009, sec. 7.6, for vectors]; with a prior f = 1.
+/// outliers. s is found together with the parameters; s^2 is the estimate's variance factor.
+/// (Degrees of freedom, with a prior: observations less what trace(J^T J M^-1) of the parameters
+/// they determine.) The covariance is H^-1 V H^-1, with P the prior's information, 0 without one,
+/// H = a J^T W J + P, V = b J^T W J + P, a = mean(((w u)' + (p - 1) w) / p) / mean(w) for p rows a
+/// target, b = K^2 sum |w r|^2 / dof / mean(w), K = 1 + (1 - dof / n) var / mean^2 of what a is the
+/// mean of, n observations [Huber & Ronchetti 2009, sec. 7.6, for vectors].
 struct LevenbergMarquardtOptions {
     Index iteration_limit = 100;
     double relative_tolerance =
