@@ -38,12 +38,13 @@ struct LevenbergMarquardt {
     double damping = 1e-6;
     bool has_constant_noise = detail::has_constant_noise(problem.campaign);
     Index deviations_open = problem.loss.kind == LossKind::Squares ? 0 : 50;
+    double used = deviations_open > 0 ? parameters_used(problem, estimate.parameters) : 0;
 
     /// The unit of the loss follows the residuals until it stays; from then on all steps lower one
     /// function.
     void follow_deviation() {
         const double before = problem.deviation;
-        problem.deviation = robust_deviation(problem, estimate.parameters);
+        problem.deviation = robust_deviation(problem, estimate.parameters, used);
         const bool stays = std::abs(problem.deviation - before) <= 1e-6 * before;
         deviations_open = stays ? 0 : deviations_open - 1;
         cost = total_loss(problem, estimate.parameters);

@@ -177,6 +177,10 @@ Triangle triangularise(const LinearisedSystem& system) {
             augmented.col(size).head(size)};
 }
 
+MatrixXd invert_triangle(const MatrixXd& R) {
+    return R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(R.cols(), R.cols()));
+}
+
 std::vector<Index> confused_parameters(const IdentificationProblem& problem,
                                        const Parameters& parameters) {
     Parameters nominal = parameters;
@@ -187,9 +191,7 @@ std::vector<Index> confused_parameters(const IdentificationProblem& problem,
     R.array().rowwise() /= norms.transpose().array();
     // Unit columns: s1 <= sqrt(L). And sL >= 1 / |R^-1|, mostly enough, without singular values.
     const double least = 1e-9 * std::sqrt(static_cast<double>(R.cols()));
-    const double inverse_norm =
-        R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(R.cols(), R.cols())).norm();
-    if (inverse_norm * least < 1) return {};
+    if (invert_triangle(R).norm() * least < 1) return {};
     const WeakDirection weakest = weakest_directions(R, 1).front();
     std::vector<Index> confused;
     if (weakest.singular_value > least) return confused;
@@ -242,8 +244,6 @@ void finish(const IdentificationProblem& problem, Estimate& estimate) {
     const LinearisedSystem system = linearise(problem, estimate.parameters);
     const Index size = system.J.cols();
     const MatrixXd R = triangularise(system).R;
-    const MatrixXd inverse = problem.scale.asDiagonal() *
-                             R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(size, size));
     estimate.degrees_of_freedom = system.r.size() - size;
     const bool is_robust = problem.loss.kind != LossKind::Squares;
     estimate.variance_factor =
@@ -251,11 +251,15 @@ void finish(const IdentificationProblem& problem, Estimate& estimate) {
         : estimate.degrees_of_freedom > 0
             ? system.r.squaredNorm() / static_cast<double>(estimate.degrees_of_freedom)
             : 1.0;
-    double factor = estimate.variance_factor;
-    if (is_robust) factor = robust_covariance_factor(problem, estimate);
-    // A prior states the noise, too: residuals that are larger or smaller do not change it.
-    if (problem.prior_count() > 0) factor = 1;
-    estimate.covariance = factor * inverse * inverse.transpose();
+    if (is_robust) {
+        estimate.covariance = robust_covariance(problem, estimate.parameters, R);
+    } else {
+        // A prior states the noise, too: residuals that are larger or smaller do not change it.
+        const double factor = problem.prior_count() > 0 ? 1 : estimate.variance_factor;
+        const MatrixXd root = invert_triangle(R);
+        estimate.covariance = factor * root * root.transpose();
+    }
+    estimate.covariance.array() *= (problem.scale * problem.scale.transpose()).array();
     estimate.names = parameter_names(problem.campaign);
     estimate.model_error = problem.campaign.model_error;
     estimate.model_error_orientation = problem.campaign.model_error_orientation;

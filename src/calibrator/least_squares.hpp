@@ -67,6 +67,9 @@ struct Triangle {
 };
 Triangle triangularise(const LinearisedSystem& system);
 
+/// Inverse of an upper triangle.
+MatrixXd invert_triangle(const MatrixXd& R);
+
 /// The largest parameters in a direction of parameter space that these configurations do not see (a
 /// singular value of the column-normalised Jacobian below 1e-9 of the largest, with the robot at
 /// nominal, where a lost rank is exactly lost). Empty: there is none.

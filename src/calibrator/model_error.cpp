@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "../measurement/noise.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "robust.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -22,13 +24,14 @@ constexpr Index most_configurations = 400;
 constexpr double undetermined = 1e-10;
 
 /// What one configuration tells, not whitened: covariance but for the model error, Jacobian by
-/// scaled parameters and residual beside it, each row times the root of its weight.
+/// scaled parameters and residual beside it.
 struct Rows {
     MatrixXd covariance;
     RowMatrixXd augmented;
     std::vector<bool> is_angle;
-    VectorXd root_weights;
 };
+
+const double log_factor = std::log(model_error_factor);
 
 /// log of the model errors of lengths and angles.
 using LogErrors = std::array<double, 2>;
@@ -43,43 +46,37 @@ class PredictiveScore {
           prior_errors_(parameters.robot.cwiseQuotient(
               problem.scale.segment(prior_begin_, parameters.robot.size()))) {
         collect(problem, parameters);
+        count_freedom({std::log(problem.campaign.model_error),
+                       std::log(problem.campaign.model_error_orientation)});
     }
 
     bool has(std::size_t kind) const { return has_[kind]; }
 
-    double operator()(const LogErrors& errors) const {
-        const std::array<double, 2> squares{std::exp(2 * errors[0]), std::exp(2 * errors[1])};
-        RowMatrixXd stacked(row_count_, size_ + 1);
-        double score = 0;
-        Index row = 0;
-        for (const Rows& of_pose : rows_) {
-            RowMatrixXd whitened = of_pose.augmented;
-            MatrixXd covariance = of_pose.covariance;
-            for (Index k = 0; k < covariance.rows(); ++k) {
-                covariance(k, k) += squares[of_pose.is_angle[static_cast<std::size_t>(k)] ? 1 : 0];
-            }
-            const MatrixXd L = cholesky_factor(covariance);
-            score -= L.diagonal().array().log().sum();
-            L.triangularView<Eigen::Lower>().solveInPlace(whitened);
-            stacked.middleRows(row, whitened.rows()) = of_pose.root_weights.asDiagonal() * whitened;
-            row += whitened.rows();
-        }
-        return score + predict(stacked) + population(errors);
+    double operator()(const LogErrors& errors, std::size_t kind) const {
+        const System system = whiten(errors);
+        return freedom_[kind] * (predict(system) - system.log_deviations) + population(errors);
     }
 
   private:
+    /// All configurations under one pair of model errors.
+    struct System {
+        RowMatrixXd augmented;
+        double log_deviations = 0;  ///< of the observations, summed up
+        Eigen::LLT<MatrixXd> information{};
+        MatrixXd V{};  ///< B M^-1 B^T = V^T V
+    };
+
     void collect(const IdentificationProblem& problem, const Parameters& parameters) {
         Campaign without = problem.campaign;
         without.model_error = without.model_error_orientation = 0;
         const Sensor& sensor = *without.sensor;
         const Index count = problem.means.configuration_count();
         const Index taken = std::min(count, most_configurations);
-        const bool is_robust = problem.loss.kind != LossKind::Squares;
-        const VectorXd lengths = is_robust ? residual_lengths(problem, parameters) : VectorXd();
-        std::vector<Index> first_length{0};
-        for (Index i = 0; i < count; ++i) {
-            first_length.push_back(first_length.back() +
-                                   (problem.repeats.row(i).array() > 0).count());
+        RowMatrixXd times = problem.repeats;
+        if (problem.loss.kind != LossKind::Squares) {
+            for (const Outlier& outlier : find_outliers(problem, parameters)) {
+                times(outlier.configuration, outlier.target) = 0;
+            }
         }
         RowMatrixXd augmented(sensor.row_count(), size_ + 1);
         FlangeMotion motion;
@@ -91,45 +88,77 @@ class PredictiveScore {
             augmented.col(size_) =
                 sensor.deviation(problem.means.observations.row(i).transpose(),
                                  sensor.predict(motion.world_from_flange, parameters.sensor));
-            const VectorXd repeats = problem.repeats.row(i).transpose();
+            const VectorXd repeats = times.row(i).transpose();
             const auto seen = seen_rows(repeats.array() > 0, sensor.rows_per_target());
+            if (seen.empty()) continue;
             Rows rows{mean_covariance(without, motion, parameters.sensor, repeats),
                       augmented(seen, Eigen::all),
-                      {},
-                      VectorXd::Ones(static_cast<Index>(seen.size()))};
+                      {}};
             for (const Index row : seen) {
                 rows.is_angle.push_back(sensor.is_angle(row));
                 const std::size_t kind = sensor.is_angle(row) ? 1 : 0;
                 has_[kind] = std::isfinite(expected_[kind]);
-            }
-            for (Index j = 0; is_robust && j < rows.root_weights.size(); ++j) {
-                const Index target =
-                    first_length[static_cast<std::size_t>(i)] + j / sensor.rows_per_target();
-                rows.root_weights[j] =
-                    std::sqrt(problem.loss.weight(lengths[target] / problem.deviation));
             }
             row_count_ += rows.augmented.rows();
             rows_.push_back(std::move(rows));
         }
     }
 
-    /// The part of the predictions that depends on the parameters.
-    double predict(const RowMatrixXd& stacked) const {
-        const auto B = stacked.leftCols(size_);
+    System whiten(const LogErrors& errors) const {
+        const std::array<double, 2> squares{std::exp(2 * errors[0]), std::exp(2 * errors[1])};
+        System system{RowMatrixXd(row_count_, size_ + 1)};
+        Index row = 0;
+        for (const Rows& of_pose : rows_) {
+            RowMatrixXd whitened = of_pose.augmented;
+            MatrixXd covariance = of_pose.covariance;
+            for (Index k = 0; k < covariance.rows(); ++k) {
+                covariance(k, k) += squares[of_pose.is_angle[static_cast<std::size_t>(k)] ? 1 : 0];
+            }
+            const MatrixXd L = cholesky_factor(covariance);
+            system.log_deviations += L.diagonal().array().log().sum();
+            L.triangularView<Eigen::Lower>().solveInPlace(whitened);
+            system.augmented.middleRows(row, whitened.rows()) = whitened;
+            row += whitened.rows();
+        }
+        const auto B = system.augmented.leftCols(size_);
         MatrixXd M = MatrixXd::Zero(size_, size_);
         M.selfadjointView<Eigen::Lower>().rankUpdate(B.transpose());
-        VectorXd gradient = B.transpose() * stacked.col(size_);
         M.diagonal().segment(prior_begin_, prior_errors_.size()).array() += 1;
+        system.information.compute(M);
+        system.V = system.information.matrixL().solve(B.transpose());
+        return system;
+    }
+
+    void count_freedom(const LogErrors& errors) {
+        const VectorXd used = whiten(errors).V.colwise().squaredNorm().transpose();
+        std::array<double, 2> left{}, counts{};
+        Index row = 0;
+        for (const Rows& of_pose : rows_) {
+            for (const bool is_angle : of_pose.is_angle) {
+                left[is_angle ? 1 : 0] += 1 - used[row++];
+                ++counts[is_angle ? 1 : 0];
+            }
+        }
+        for (std::size_t kind = 0; kind < 2; ++kind) {
+            if (has_[kind]) freedom_[kind] = std::max(left[kind] / counts[kind], 0.0);
+        }
+    }
+
+    /// Log of the predictive densities of the whitened residuals.
+    double predict(const System& system) const {
+        if (system.information.info() != Eigen::Success) {
+            return -std::numeric_limits<double>::infinity();
+        }
+        const auto B = system.augmented.leftCols(size_);
+        VectorXd gradient = B.transpose() * system.augmented.col(size_);
         gradient.segment(prior_begin_, prior_errors_.size()) -= prior_errors_;
-        const Eigen::LLT<MatrixXd> cholesky(M);
-        if (cholesky.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
-        const VectorXd residuals = stacked.col(size_) - B * cholesky.solve(gradient);
-        const MatrixXd V = cholesky.matrixL().solve(B.transpose());
+        const VectorXd residuals =
+            system.augmented.col(size_) - B * system.information.solve(gradient);
         double score = 0;
         Index row = 0;
         for (const Rows& of_pose : rows_) {
             const Index count = of_pose.augmented.rows();
-            const auto V_i = V.middleCols(row, count);
+            const auto V_i = system.V.middleCols(row, count);
             MatrixXd A = -V_i.transpose() * V_i;
             A.diagonal().array() += 1 + undetermined;
             const Eigen::LLT<MatrixXd> root(A);
@@ -145,7 +174,7 @@ class PredictiveScore {
         double sum = 0;
         for (std::size_t kind = 0; kind < 2; ++kind) {
             if (!has_[kind]) continue;
-            const double u = (errors[kind] - expected_[kind]) / std::log(model_error_factor);
+            const double u = (errors[kind] - expected_[kind]) / log_factor;
             sum -= u * u / 2;
         }
         return sum;
@@ -157,6 +186,7 @@ class PredictiveScore {
     VectorXd prior_errors_;
     Index row_count_ = 0;
     std::array<bool, 2> has_{};
+    std::array<double, 2> freedom_{};  ///< part of the observations that parameters leave over
     std::vector<Rows> rows_;
 };
 
@@ -199,14 +229,29 @@ double climb(const Function& f, double x) {
     return at[1];
 }
 
-/// log of the root of what exp(2 x) is on average where exp(f) is the density of x, taken as normal
-/// about its maximum `x`: with few poses larger numbers remain possible, and count.
+/// log of the root of what exp(2 x) is on average where exp(f) is the density of x, by its maximum:
+/// with few poses larger numbers remain possible, the more as the density is skew, and count.
+/// Adaptive Gauss-Hermite quadrature with five points [Liu & Pierce 1994].
 template <typename Function>
 double average(const Function& f, double x) {
     constexpr double step = 0.25;
-    const double curvature = (2 * f(x) - f(x - step) - f(x + step)) / (step * step);
-    const double least = 1 / (std::log(model_error_factor) * std::log(model_error_factor));
-    return x + 1 / std::max(curvature, least);
+    const double least_curvature = 1 / (log_factor * log_factor);
+    constexpr std::array<std::pair<double, double>, 2> nodes_and_weights{
+        {{1.3556261799742659, 0.2220759220056126}, {2.8569700138728056, 0.0112574113277207}}};
+    const double highest = f(x);
+    if (!std::isfinite(highest)) return x;
+    const double curvature = (2 * highest - f(x - step) - f(x + step)) / (step * step);
+    const double deviation = 1 / std::sqrt(std::max(least_curvature, curvature));
+    double density = 8.0 / 15;
+    double squares = density;
+    for (const auto& [node, weight] : nodes_and_weights) {
+        for (const double t : {-node, node}) {
+            const double part = weight * std::exp(f(x + t * deviation) - highest + node * node / 2);
+            density += part;
+            squares += part * std::exp(2 * t * deviation);
+        }
+    }
+    return x + std::log(squares / density) / 2;
 }
 
 double within_reach(double found, double expected) {
@@ -233,7 +278,7 @@ Campaign find_model_error(const IdentificationProblem& problem, const Parameters
             const auto along = [&](double x) {
                 LogErrors moved = errors;
                 moved[kind] = x;
-                return score(moved);
+                return score(moved, kind);
             };
             errors[kind] = climb(along, errors[kind]);
             if (sweep + 1 == sweeps) averages[kind] = average(along, errors[kind]);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +10,17 @@
 #include "posewise/core/errors.hpp"
 
 namespace posewise::detail {
+namespace {
+
+/// How many parameters the observations determine, the prior the others: trace of (M - P) M^-1,
+/// M^-1 = root root^T.
+double determined_by_data(const IdentificationProblem& problem, const MatrixXd& root) {
+    return static_cast<double>(root.cols()) -
+           root.middleRows(base_parameter_count(problem.campaign), problem.prior_count())
+               .squaredNorm();
+}
+
+}  // namespace
 
 Loss complete_loss(const Loss& loss, const Campaign& campaign) {
     if (!std::isfinite(loss.width) || loss.width < 0) {
@@ -22,34 +34,55 @@ Loss complete_loss(const Loss& loss, const Campaign& campaign) {
     return complete;
 }
 
-double robust_deviation(const IdentificationProblem& problem, const Parameters& parameters) {
-    constexpr double least = 1e-6;
-    const Index equations = problem.equation_count();
-    const Index freedom = equations - problem.scale.size();
-    if (freedom <= 0) return 1;
-    const double middle = quantile(residual_lengths(problem, parameters), 0.5, QuantileRule::Upper);
-    const double median = middle / median_length(problem.campaign.sensor->rows_per_target());
-    const double share = static_cast<double>(equations) / static_cast<double>(freedom);
-    return std::max(median * std::sqrt(share), least);
+double parameters_used(const IdentificationProblem& problem, const Parameters& parameters) {
+    IdentificationProblem of_squares = problem;
+    of_squares.loss = {};
+    const MatrixXd R = triangularise(linearise(of_squares, parameters)).R;
+    return determined_by_data(problem, invert_triangle(R));
 }
 
-double robust_covariance_factor(const IdentificationProblem& problem, const Estimate& estimate) {
-    if (estimate.degrees_of_freedom <= 0) return 1;
-    const VectorXd lengths = residual_lengths(problem, estimate.parameters);
+double robust_deviation(const IdentificationProblem& problem, const Parameters& parameters,
+                        double used) {
+    constexpr double least = 1e-6;
+    const auto observed = static_cast<double>(problem.observation_count());
+    if (observed <= used) return 1;
+    const double middle = quantile(residual_lengths(problem, parameters), 0.5, QuantileRule::Upper);
+    const double median = middle / median_length(problem.campaign.sensor->rows_per_target());
+    return std::max(median * std::sqrt(observed / (observed - used)), least);
+}
+
+MatrixXd robust_covariance(const IdentificationProblem& problem, const Parameters& parameters,
+                           const MatrixXd& R) {
+    const VectorXd lengths = residual_lengths(problem, parameters);
     const auto p = static_cast<double>(problem.campaign.sensor->rows_per_target());
     double weights = 0;
     double rates = 0;
+    double squared_rates = 0;
     double squares = 0;
     for (const double length : lengths) {
         const double u = length / problem.deviation;
         const double weight = problem.loss.weight(u);
         weights += weight;
-        rates += (problem.loss.influence_rate(u) + (p - 1) * weight) / p;
+        const double rate = (problem.loss.influence_rate(u) + (p - 1) * weight) / p;
+        rates += rate;
+        squared_rates += rate * rate;
         squares += weight * weight * length * length;
     }
+    // H = a J^T W J + P = a R^T R + (1 - a) P: a is at most 1, influence never grows faster.
+    const double a = rates / weights;
+    const MatrixXd P = prior_information(problem.campaign);
+    MatrixXd stacked(2 * R.rows(), R.cols());
+    stacked << std::sqrt(a) * R, std::sqrt(1 - a) * P;
+    const MatrixXd triangle =
+        stacked.householderQr().matrixQR().topRows(R.cols()).triangularView<Eigen::Upper>();
+    const MatrixXd root = invert_triangle(triangle);
+    const MatrixXd inverse = root * root.transpose();
+    const auto observed = static_cast<double>(problem.observation_count());
+    const double used = determined_by_data(problem, root);
     const auto count = static_cast<double>(lengths.size());
-    return squares / static_cast<double>(estimate.degrees_of_freedom) * (weights / count) /
-           ((rates / count) * (rates / count));
+    const double K = 1 + used / observed * (squared_rates * count / (rates * rates) - 1);
+    const double spread = observed > used ? K * K * squares / (observed - used) * count / rates : 1;
+    return spread * inverse + (1 - spread) * inverse * P * inverse;
 }
 
 std::vector<Outlier> find_outliers(const IdentificationProblem& problem,

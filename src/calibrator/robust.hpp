@@ -9,12 +9,19 @@ namespace posewise::detail {
 /// negative or not finite.
 Loss complete_loss(const Loss& loss, const Campaign& campaign);
 
-/// Standard deviation of a whitened coordinate from the median length of the residuals: half of the
-/// targets may be anywhere. At least 1e-6, 1 without a degree of freedom.
-double robust_deviation(const IdentificationProblem& problem, const Parameters& parameters);
+/// How many of the parameters squares would determine from what is observed: all without a prior.
+double parameters_used(const IdentificationProblem& problem, const Parameters& parameters);
 
-/// What the inverse of the weighted equations is multiplied by to be the covariance.
-double robust_covariance_factor(const IdentificationProblem& problem, const Estimate& estimate);
+/// Standard deviation of a whitened coordinate from the median length of the residuals of
+/// parameters_used(): half of the targets may be anywhere. At least 1e-6, 1 without a degree of
+/// freedom.
+double robust_deviation(const IdentificationProblem& problem, const Parameters& parameters,
+                        double used);
+
+/// Covariance of scaled parameters, see LevenbergMarquardtOptions; R is the triangle of the
+/// weighted equations, those of the prior among them.
+MatrixXd robust_covariance(const IdentificationProblem& problem, const Parameters& parameters,
+                           const MatrixXd& R);
 
 std::vector<Outlier> find_outliers(const IdentificationProblem& problem,
                                    const Parameters& parameters);

@@ -95,11 +95,17 @@ std::string describe(const Plane& plane) {
 }
 
 std::optional<double> find_residual_ratio(const Estimate& estimate) {
-    constexpr double tolerated = 1.5;
+    constexpr double tolerated = 1.2;  // intervals of 95 % would hold 90 %
+    constexpr double chance = 1e-3;    // of a doubt without a reason, on either side
+    // Degrees of freedom for which the median tells as much as the mean square [Rousseeuw & Croux
+    // 1993].
+    const double efficiency = estimate.loss.kind == LossKind::Squares ? 1 : 0.37;
     if (estimate.degrees_of_freedom <= 0) return std::nullopt;
+    const double freedom = efficiency * static_cast<double>(estimate.degrees_of_freedom);
+    const double squares = freedom * estimate.variance_factor;
     const double ratio = std::sqrt(estimate.variance_factor);
-    const double chance = 4 * std::sqrt(2 / static_cast<double>(estimate.degrees_of_freedom));
-    const bool is_chance = std::abs(estimate.variance_factor - 1) <= chance;
+    const bool is_chance = squares >= detail::chi_squared_quantile(chance, freedom) &&
+                           squares <= detail::chi_squared_quantile(1 - chance, freedom);
     if (is_chance || (ratio <= tolerated && ratio >= 1 / tolerated)) return std::nullopt;
     return ratio;
 }

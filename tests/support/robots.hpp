@@ -7,6 +7,7 @@
 
 #include "posewise/core/random.hpp"
 #include "posewise/model/chain.hpp"
+#include "posewise/model/gravity_torque.hpp"
 
 /// Robots in code, so that tests of the lower modules need no files.
 namespace posewise::testing {
@@ -57,6 +58,15 @@ inline Chain fanuc() {
                   translation(Axis::Z, 0, "Tz5"),
                   rotation(Axis::Z, 0, "Rz5"),  //
                   driven(R, Axis::X, 5, "", -1)});
+}
+
+/// What the links of fanuc() weigh, with a tool of 120 kg.
+inline std::vector<Load> fanuc_loads() {
+    return {{2, 160, {0, 0.1, 0.5}},
+            {3, 190, {0.2, 0, 0.25}},
+            {4, 60, {0.6, 0, 0}},
+            {5, 40, {0.05, 0, 0}},
+            {7, 120, {0.15, 0.05, -0.1}}};
 }
 
 /// Planar arm about z with a length and an offset error each link: dq1, dl1, dq2, dl2, ...

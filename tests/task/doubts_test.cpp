@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "../../src/model/complete_model.hpp"
+#include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/simulation.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "support/campaigns.hpp"
 
 namespace posewise {
@@ -85,6 +89,59 @@ TEST(AddDoubts, JudgesSizesAndResiduals) {
     EXPECT_EQ(doubts.sizes[0].parameter, campaign.robot.parameter_names()[2]);
     EXPECT_NEAR(doubts.sizes[0].times, 25, 1e-9);
     EXPECT_EQ(doubts.residual_ratio, 3);
+}
+
+TEST(AddDoubts, SaysAlwaysThatGravityIsNotInTheModelAndHardlyEverWhereThereIsNone) {
+    const Chain bare = without_parameters(testing::fanuc());
+    const Campaign stated = testing::tracked_campaign(bare);
+    const Campaign geometric = with_robot(stated, irreducible_model(stated));
+    const Campaign bending =
+        with_robot(stated, detail::complete_model(with_compliance(bare, testing::fanuc_loads())));
+    constexpr Index campaigns = 200;
+    for (const double yield : {0.0, 0.7e-3}) {  // rad under the largest torque
+        Index said = 0;
+        for (std::uint64_t run = 0; run < campaigns; ++run) {
+            Parameters truth = draw_truth(bending, run);
+            for (const Compliance& compliance : compliances(bending.robot)) {
+                truth.robot[compliance.parameter] = yield;
+            }
+            const Measurements measured = simulate_measurements(
+                bending, truth, detail::random_configurations(bare, 16, run), 1, 1000 + run);
+            Doubts doubts;
+            add_doubts(geometric,
+                       identify(geometric, measured,
+                                register_base_and_targets(geometric, measured).parameters),
+                       doubts);
+            said += doubts.residual_ratio && *doubts.residual_ratio > 1 ? 1 : 0;
+        }
+        if (yield > 0) {
+            EXPECT_EQ(said, campaigns);
+        } else {
+            EXPECT_LE(said, 2);  // each in a thousand cases
+        }
+    }
+}
+
+TEST(AddDoubts, JudgesResidualsByTheirDegreesOfFreedom) {
+    const Campaign campaign = tracked_fanuc();
+    Estimate estimate;
+    estimate.parameters = campaign.nominal;
+    estimate.names = parameter_names(campaign);
+    const Index count = parameter_count(campaign);
+    estimate.covariance = MatrixXd::Identity(count, count);
+    const auto is_said = [&](double variance_factor, Index freedom) {
+        estimate.variance_factor = variance_factor;
+        estimate.degrees_of_freedom = freedom;
+        Doubts doubts;
+        add_doubts(campaign, estimate, doubts);
+        return doubts.residual_ratio.has_value();
+    };
+    EXPECT_TRUE(is_said(1.58, 507));
+    EXPECT_FALSE(is_said(1.58, 30));
+    EXPECT_TRUE(is_said(0.5, 200));
+    EXPECT_FALSE(is_said(0.5, 20));
+    EXPECT_FALSE(is_said(1.3, 10000));  // beyond chance, and of no consequence
+    EXPECT_FALSE(is_said(9, 0));
 }
 
 }  // namespace

@@ -10,11 +10,13 @@ namespace posewise {
 
 /// Under a robust loss each target of a configuration's mean counts as loss(u), u the length of its
 /// whitened residual in robust standard deviations: those stated times s, s = median length /
-/// normal errors' * sqrt(equations / degrees of freedom), so that noise stated wrong does not make
-/// outliers. s is found together with the parameters; s^2 is the estimate's variance factor. The
-/// weighted least squares J^T W J of the optimum give the covariance f (J^T W J)^-1,
-/// f = sum |w r|^2 / dof * mean(w) / mean(((w u)' + (p - 1) w) / p)^2 for p rows a target
-/// [Huber & Ronchetti 2009, sec. 7.6, for vectors]; with a prior f = 1.
+/// normal errors' * sqrt(n / dof), so that noise stated wrong does not make outliers. Of n
+/// observations dof are left over by the parameters they determine: all, with a prior
+/// trace(J^T J M^-1). s is found together with the parameters; s^2 is the estimate's variance
+/// factor. The covariance is H^-1 V H^-1 with H = a J^T W J + P, V = b J^T W J + P, P the prior's
+/// information or 0, a = mean(g) / mean(w), g = ((w u)' + (p - 1) w) / p for p rows a target,
+/// b = K^2 sum |w r|^2 / dof / mean(w), K = 1 + (1 - dof / n) var(g) / mean(g)^2
+/// [Huber & Ronchetti 2009, sec. 7.6, for vectors].
 struct LevenbergMarquardtOptions {
     Index iteration_limit = 100;
     double relative_tolerance =

@@ -105,8 +105,8 @@ struct Doubts {
     std::optional<OrientationDoubt> orientations;
     std::vector<SizeDoubt> sizes;
     std::vector<ModelErrorDoubt> model_errors;  ///< of lengths, of angles
-    /// Residuals in units of those stated, if clearly not as stated: more than 1.5 times larger or
-    /// smaller, and by more than four standard deviations of the variance factor.
+    /// Residuals in units of those stated, if clearly not as stated: more than 1.2 times larger or
+    /// smaller, and beyond what chi squared of the degrees of freedom is once in a thousand times.
     std::optional<double> residual_ratio;
     /// Joints whose compliance is clearly negative: by three standard deviations.
     std::vector<Index> negative_compliances;
