@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
@@ -8,32 +9,45 @@
 namespace posewise {
 namespace {
 
-constexpr int iteration_limit = 50;
-constexpr double tolerance = 0.01;  // of a size, to end at
+constexpr int iteration_limit = 100;
+constexpr double tolerance = 0.005;  // of a size, to end at
 
-/// Mean squares of the errors that share a size.
-struct SquareMean {
-    double sum;
-    Index count = 1;
+struct SquareSum {
+    double sum = 0;
+    Index count = 0;
 };
+
+/// The most probable size of errors with this sum of squares: the root of n - S / s^2 +
+/// log(s / stated) / log(factor)^2, which grows with s.
+double most_probable(const SquareSum& squares, double stated) {
+    const double log_factor = std::log(error_size_factor);
+    double low = std::log(stated) - 20;
+    double high = std::log(stated) + 20;
+    for (int i = 0; i < 60; ++i) {
+        const double u = 0.5 * (low + high);
+        const double slope = static_cast<double>(squares.count) - squares.sum * std::exp(-2 * u) +
+                             (u - std::log(stated)) / (log_factor * log_factor);
+        (slope > 0 ? high : low) = u;
+    }
+    return std::exp(high);
+}
 
 /// The next sizes; by how large a part any of them changed.
 double update(ParameterSpread& spread, const ParameterSpread& stated, const Chain& robot,
               const VectorXd& squares) {
     ParameterSpread expected = stated;
-    std::map<double*, SquareMean> means;
+    std::map<double*, std::pair<double, SquareSum>> sizes;
     const auto names = robot.parameter_names();
     for (Index k = 0; k < squares.size(); ++k) {
         if (stated.by_name.count(names[static_cast<std::size_t>(k)]) > 0) continue;
-        const double size = size_of(expected, robot, k);
-        SquareMean& mean =
-            means.try_emplace(&size_of(spread, robot, k), SquareMean{size * size}).first->second;
-        mean.sum += squares[k];
-        ++mean.count;
+        auto& [of_stated, sum] = sizes[&size_of(spread, robot, k)];
+        of_stated = size_of(expected, robot, k);
+        sum.sum += squares[k];
+        ++sum.count;
     }
     double change = 0;
-    for (const auto& [size, mean] : means) {
-        const double next = std::sqrt(mean.sum / static_cast<double>(mean.count));
+    for (const auto& [size, stated_and_sum] : sizes) {
+        const double next = most_probable(stated_and_sum.second, stated_and_sum.first);
         change = std::max(change, std::abs(next / *size - 1));
         *size = next;
     }
@@ -45,7 +59,8 @@ double update(ParameterSpread& spread, const ParameterSpread& stated, const Chai
 ParameterSpread learn_sizes(const Campaign& campaign, const Measurements& measurements,
                             const Parameters& start, const LevenbergMarquardtOptions& options) {
     if (!campaign.spread.is_prior) {
-        throw InputError("sizes of errors can be learned only where expected sizes are priors");
+        throw InputError(
+            "sizes of errors can be learned only where expected sizes are priors (--prior)");
     }
     Campaign learned = campaign;
     Parameters from = start;

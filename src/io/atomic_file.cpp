@@ -119,7 +119,10 @@ std::string follow_link(const std::string& path) {
     std::error_code error;
     if (!fs::is_symlink(path, error)) return path;
     const fs::file_status status = fs::status(path, error);
-    if (fs::exists(status)) return fs::canonical(path).string();
+    if (fs::exists(status)) {
+        const fs::path whole = fs::canonical(path, error);
+        return error ? path : whole.string();  // "pipe:[...]" is no place
+    }
     if (status.type() != fs::file_type::not_found) {
         throw input_error_at({path}, "is a link that leads nowhere: " + error.message());
     }

@@ -131,7 +131,7 @@ ErrorModel read_planned_model(const YamlValue& value, ErrorModel fitted) {
     const YamlValue errors = planning.require("errors");
     const ErrorModel planned = detail::read_error_model(errors);
     if (planned >= fitted) return planned;
-    throw errors.error(fmt::format("is {}, poorer than robot.errors; must be {} or left out",
+    throw errors.error(fmt::format("is {}, poorer than robot.errors, {}; must be full or left out",
                                    error_model_name(planned), error_model_name(fitted)));
 }
 

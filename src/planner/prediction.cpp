@@ -43,14 +43,21 @@ PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_err
         const double p = std::clamp(random.uniform(), 1e-12, 1 - 1e-12);
         const double square = detail::chi_squared_quantile(p, accuracy.degrees_of_freedom) /
                               accuracy.degrees_of_freedom;
-        one = total(square, model_error * std::pow(model_error_factor, random.normal()));
+        const double model = std::pow(model_error_factor, random.normal());
+        double growth = 1;
+        if (accuracy.prior_share) {
+            const double sizes = std::pow(error_size_factor, random.normal());
+            growth = std::pow(sizes, *accuracy.prior_share) *
+                     std::pow(model_error > 0 ? model : 1, 1 - *accuracy.prior_share);
+        }
+        one = total(square * growth * growth, model_error * model);
     }
     return {total(1, model_error), quantile(drawn, 0.05, detail::QuantileRule::Linear),
             quantile(drawn, 0.95, detail::QuantileRule::Linear)};
 }
 
 PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
-                                   std::uint64_t seed) {
+                                   const MatrixXd& prior, std::uint64_t seed) {
     constexpr Index draws = 200;
     const Eigen::LLT<MatrixXd> cholesky(M);
     const Index positions = prediction.matrix.rows() / 3;
@@ -83,6 +90,11 @@ PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
     square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
     const double trace = square.trace();
     if (trace > 0) accuracy.degrees_of_freedom = trace * trace / square.squaredNorm();
+    if (prior.size() > 0 && !prior.isZero(0) && sum > 0) {
+        // d trace(B M^-1 B^T) for M = J^T J + prior / f, by log f: trace(B M^-1 prior M^-1 B^T).
+        const MatrixXd by_parameter = cholesky.matrixU().solve(spread);
+        accuracy.prior_share = by_parameter.cwiseProduct(prior * by_parameter).sum() / sum;
+    }
     accuracy.percentile95 = quantile(std::move(errors), 0.95, detail::QuantileRule::Upper);
     return accuracy;
 }

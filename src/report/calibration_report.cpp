@@ -121,7 +121,9 @@ std::string describe_expected(const Calibration& calibration) {
         text += describe(*calibration.expected_validation, "at the validation", is_angle) + '\n';
     }
     for (const ErrorPrediction& prediction : calibration.predicted) {
-        const auto where = fmt::format("at the {} poses to predict", prediction.each.size());
+        const auto where =
+            fmt::format("at the {} to predict",
+                        detail::count_of(static_cast<Index>(prediction.each.size()), "pose"));
         text += describe(prediction.overall, where, prediction.is_angle) + ", 95 % are below " +
                 detail::format_error(prediction.overall.percentile95, prediction.is_angle) + '\n';
     }

@@ -49,6 +49,10 @@ std::string describe_scaling(const Campaign& campaign, double repeats) {
         describe_repeatability(campaign), describe_model_error(campaign),
         format_short(mm_per_m * campaign.spread.length),
         format_short(mrad_per_rad * campaign.spread.angle));
+    if (campaign.spread.offset) {
+        text += fmt::format(", {} mrad a joint offset",
+                            format_short(mrad_per_rad * *campaign.spread.offset));
+    }
     const auto add = [&](TermKind kind, const char* what, double size) {
         for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
             const ErrorTerm* const term = campaign.robot.parameter_term(k);

@@ -46,13 +46,13 @@ std::string describe_judgement(const Study& study) {
 std::string describe_losses(const Study& study) {
     std::string text;
     for (std::size_t c = 0; c < study.criteria.size(); ++c) {
-        std::string lost, unknown;
+        std::string lost, unsure, unknown;
         bool is_known = false;
         for (const StudyRow& row : study.rows) {
             const auto advantage = planned_advantage(study, row, c);
             is_known = is_known || advantage;
-            if (advantage && advantage->ratio <= 1) continue;
-            std::string& counts = advantage ? lost : unknown;
+            if (advantage && advantage->upper <= 1) continue;
+            std::string& counts = !advantage ? unknown : advantage->ratio > 1 ? lost : unsure;
             counts += (counts.empty() ? "" : ", ") + std::to_string(row.pose_count);
         }
         text += study.model + (study.model.empty() ? "" : ", ");
@@ -61,8 +61,9 @@ std::string describe_losses(const Study& study) {
             text += ": whether planned loses to random is not known\n";
             continue;
         }
-        text += fmt::format(": planned {}{}\n",
+        text += fmt::format(": planned {}{}{}\n",
                             lost.empty() ? "never loses to random" : "loses to random at " + lost,
+                            unsure.empty() ? "" : "; within chance at " + unsure,
                             unknown.empty() ? "" : "; not known at " + unknown);
     }
     return text;

@@ -177,6 +177,7 @@ std::string_view method_name(CalibrationMethod method) {
 Index default_folds(Index configuration_count) {
     constexpr Index leave_one_out_limit = 100;
     constexpr Index folds = 10;
+    if (configuration_count < 2) return 0;
     return configuration_count <= leave_one_out_limit ? configuration_count : folds;
 }
 

@@ -76,7 +76,7 @@ std::optional<PredictedAccuracy> predict(const Campaign& campaign, const ChoiceP
     return predict_accuracy(
         make_prediction_blocks(campaign, problem.parameters,
                                RowMatrixXd(problem.configurations(workspace, Eigen::all))),
-        M);
+        M, prior_information(campaign));
 }
 
 /// Plan::value_rms. Where whitening divided every coordinate of every target at every test pose by
@@ -125,6 +125,10 @@ Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_
 }
 
 Plan choose(const Campaign& campaign, const Candidates& candidates, const ChoiceOptions& options) {
+    if (campaign.spread.is_prior) {  // else selection says if they are too few
+        detail::check_enough_poses(campaign, options.pose_count,
+                                   options.held ? options.held->configuration_count() : 0);
+    }
     ChoiceProblem problem =
         detail::state_choice(campaign, candidates, options, options.stop.with_half_the_time());
     Plan plan = solve(problem, options);

@@ -81,4 +81,17 @@ void check_memory(const Campaign& campaign, Index count, const std::string& opti
                     needed / bytes_per_gb, there / bytes_per_gb, option));
 }
 
+void check_enough_poses(const Campaign& campaign, Index count, Index measured) {
+    const Index least = least_calibration_count(campaign) - measured;
+    if (count >= least) return;
+    throw InputError(
+        campaign.spread.is_prior
+            ? fmt::format("--poses is {}, must be at least {}: fewer are not enough to register "
+                          "base and {}, which have no prior",
+                          count, least, campaign.sensor->words().place)
+            : fmt::format("--poses is {}, must be at least {}: fewer do not identify {} "
+                          "parameters; or let --prior tell the rest",
+                          count, least, parameter_count(campaign)));
+}
+
 }  // namespace posewise::detail

@@ -57,4 +57,8 @@ void check_torques_known(const Campaign& campaign);
 /// what says how many.
 void check_memory(const Campaign& campaign, Index count, const std::string& option);
 
+/// Throws InputError where so many poses beside those measured already are fewer than a calibration
+/// needs (least_calibration_count()).
+void check_enough_poses(const Campaign& campaign, Index count, Index measured);
+
 }  // namespace posewise::detail

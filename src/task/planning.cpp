@@ -89,7 +89,8 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.searched_efficiency = planned.efficiency;
     plan.starts_at_best = planned.starts_at_best;
     plan.ending = Ending::Converged;
-    plan.predicted = predict_accuracy(problem.prediction, planned.information);
+    plan.predicted = predict_accuracy(problem.prediction, planned.information,
+                                      prior_information(problem.campaign));
     if (needs_test_poses(plan.request.criterion)) {
         const auto positions = static_cast<double>(problem.prediction[0].rows()) / 3;
         plan.value_rms = 1 / std::sqrt(plan.value * positions);

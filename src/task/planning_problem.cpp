@@ -163,18 +163,7 @@ void count_new_poses(PlanningProblem& problem) {
                                      count, kept, problem.request.sources.repaired));
     }
     problem.search.pose_count = count - kept;
-    const Index least = least_calibration_count(problem.campaign);
-    if (count + problem.measured_count >= least) return;  // selection says if it is too few
-    throw InputError(
-        problem.campaign.spread.is_prior
-            ? fmt::format("--poses is {}, must be at least {}: fewer do not determine base and {}, "
-                          "which have no prior",
-                          count, least - problem.measured_count,
-                          problem.campaign.sensor->words().place)
-            : fmt::format("--poses is {}, must be at least {}: fewer do not identify {} "
-                          "parameters; or let --prior tell the rest",
-                          count, least - problem.measured_count,
-                          parameter_count(problem.campaign)));
+    check_enough_poses(problem.campaign, count, problem.measured_count);
 }
 
 void draw_workspace(PlanningProblem& problem, const PlanningOptions& options) {

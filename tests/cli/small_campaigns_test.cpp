@@ -99,7 +99,9 @@ TEST_F(SmallCampaign, IsCalibratedWithAsManyPosesAsInspectAndPlanPromise) {
     EXPECT_EQ(number_behind(run_well("inspect c.yaml"), "least number of poses:"), 5);
     const std::string plan = "plan c.yaml --pool 300 --starts 1 --workspace-poses 50 --poses ";
     expect_input_error(plan + "4",
-                       "--poses is 4, must be at least 5: fewer do not determine base and targets");
+                       "--poses is 4, must be at least 5: fewer are not enough to register base");
+    expect_input_error("select c.yaml --random 50 -k 4",
+                       "--poses is 4, must be at least 5: fewer are not enough to register base");
     const std::string others = run_well(plan + "8");
     EXPECT_NE(others.find("  4  chosen from the pool       -  "), std::string::npos) << others;
     run_well(plan + "5 --csv p.csv");

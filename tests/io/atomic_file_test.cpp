@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <thread>
@@ -38,6 +39,16 @@ TEST(WriteFile, ReplacesTheFileBehindALink) {
 TEST(WriteFile, WritesToADeviceWithoutReplacingIt) {
     write_file("/dev/null", "text");
     EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(WriteFile, WritesToAPipeThatHasNoPlaceInAnyFolder) {
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::pipe(ends.data()), 0);
+    write_file("/dev/fd/" + std::to_string(ends[1]), "text");
+    std::array<char, 8> read{};
+    EXPECT_EQ(::read(ends[0], read.data(), read.size()), 4);
+    EXPECT_STREQ(read.data(), "text");
+    for (const int end : ends) ::close(end);
 }
 
 TEST(WriteFile, RefusesAFolder) {

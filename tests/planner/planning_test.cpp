@@ -71,6 +71,36 @@ TEST(PredictTotal, AddsTheModelErrorAndItsSpreadAmongRobots) {
     EXPECT_NEAR(model.rms / model.lower, std::pow(2.5, 1.645), 0.35);
 }
 
+TEST(PredictTotal, OfAPriorKnowsTheSizesOfErrorsWithinAFactorOfTwo) {
+    PredictedAccuracy accuracy;
+    accuracy.rms = 3e-4;
+    accuracy.degrees_of_freedom = 1e6;
+    accuracy.prior_share = 1;
+    const PredictedTotal few = predict_total(accuracy, 0);
+    EXPECT_NEAR(few.upper / few.rms, std::pow(2, 1.645), 0.2);
+    EXPECT_NEAR(few.rms / few.lower, std::pow(2, 1.645), 0.2);
+    accuracy.prior_share = 0;  // all by the noise, which the model error is most of
+    const PredictedTotal many = predict_total(accuracy, 1e-4);
+    EXPECT_NEAR(many.upper / many.rms, std::pow(2.5, 1.645), 0.35);
+}
+
+/// The share is the derivative by the prior's size: d log(mean square) / d log(size^2).
+TEST(PredictAccuracy, SharesWhatItKnowsWithThePrior) {
+    const Scene scene(40, 20);
+    const Index L = scene.blocks.parameter_count();
+    const MatrixXd data = information(scene.blocks);
+    const MatrixXd prior = 50 * MatrixXd::Identity(L, L);
+    const auto log_square = [&](double factor) {
+        return 2 * std::log(predict_accuracy(scene.workspace, data + prior / factor).rms);
+    };
+    const double step = 1e-4;
+    const double expected = (log_square(std::exp(step)) - log_square(std::exp(-step))) / (2 * step);
+    const PredictedAccuracy accuracy = predict_accuracy(scene.workspace, data + prior, prior);
+    EXPECT_NEAR(accuracy.prior_share.value(), expected, 1e-5);
+    EXPECT_GT(expected, 0.01);
+    EXPECT_FALSE(predict_accuracy(scene.workspace, data + prior).prior_share.has_value());
+}
+
 TEST(PlanPoses, BeatsTheBestExchangePlanOfThePoolOnEveryCriterion) {
     const Scene scene(200, 12);
     for (const char* const name : {"o1", "o2", "o3", "o4", "o5", "a", "d", "e", "g", "v"}) {

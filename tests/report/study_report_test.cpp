@@ -101,6 +101,21 @@ TEST(ModelsTable, ShowsEachModelAgainstItsRandomSubsetsAndThoseOfTheFirst) {
               std::string::npos);
 }
 
+TEST(FormatStudy, DoesNotSayThatPlannedWinsWhereThatMayBeChance) {
+    StudyRow row{2, {}, {}};
+    for (const Index split : {0, 1}) {
+        row.optimal.push_back(identified({0, 1}, split == 0 ? 0.5e-3 : 1.5e-3, 2e-3));
+        row.random.push_back(identified({1, 2}, 1e-3, 2e-3));
+        row.optimal.back().split = row.random.back().split = split;
+    }
+    Study study = study_of({row});
+    study.splits = 2;
+    study.test_count = 1;
+    EXPECT_NE(format(study).find("\nd: planned never loses to random; within chance at 2\n"),
+              std::string::npos)
+        << format(study);
+}
+
 TEST(ModelsCsv, BeginsWithTheModel) {
     EXPECT_EQ(study_csv(two_models()),
               "model,poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,"

@@ -53,6 +53,13 @@ TEST(Calibrate, LearnsSizesOfErrorsWhereTheyArePriors) {
     EXPECT_THROW(calibrate(example.campaign, example.measurements, options), InputError);
 }
 
+TEST(DefaultFolds, HoldNothingOutOfOneConfiguration) {
+    EXPECT_EQ(default_folds(1), 0);
+    EXPECT_EQ(default_folds(2), 2);
+    EXPECT_EQ(default_folds(100), 100);
+    EXPECT_EQ(default_folds(101), 10);
+}
+
 TEST(Calibrate, RegistersOnce) {
     const Example example;
     for (const bool with_models : {false, true}) {

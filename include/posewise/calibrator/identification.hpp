@@ -43,11 +43,11 @@ Estimate identify(const Campaign& campaign, const Measurements& measurements,
                   const Parameters& start, const LevenbergMarquardtOptions& options = {});
 
 /// The campaign's spread with the sizes that this robot's errors have, of lengths, angles, joint
-/// offsets, gravity (torque) terms and harmonics: where the spread is a prior, the sizes under
-/// which the measurements are most probable, by expectation and maximisation [Dempster, Laird &
-/// Rubin 1977]: a size's square is the mean of its errors' squares, (estimate)^2 + variance, and of
-/// the square stated, which counts as one error more. Sizes stated by parameter's name stay. Throws
-/// InputError where the spread is no prior, and as identify() does.
+/// offsets, gravity (torque) terms and harmonics: where the spread is a prior, the sizes under which
+/// the measurements are most probable, by expectation and maximisation [Dempster, Laird & Rubin
+/// 1977] of each error's square, estimate^2 + variance, with a log-normal density about the size
+/// stated, its deviation a factor of error_size_factor. Sizes stated by parameter's name stay.
+/// Throws InputError where the spread is no prior, and as identify() does.
 ParameterSpread learn_sizes(const Campaign& campaign, const Measurements& measurements,
                             const Parameters& start, const LevenbergMarquardtOptions& options = {});
 

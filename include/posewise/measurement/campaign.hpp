@@ -35,6 +35,8 @@ struct ParameterSpread {
 
 /// Model errors differ so much from robot to robot that one standard deviation is this factor.
 inline constexpr double model_error_factor = 2.5;
+/// And the sizes of the errors that parameters express this one.
+inline constexpr double error_size_factor = 2;
 
 /// The size of this error of the robot by its kind; `by_name` may state another.
 double& size_of(ParameterSpread& spread, const Chain& robot, Index parameter);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "posewise/core/blocks.hpp"
 #include "posewise/measurement/campaign.hpp"
@@ -16,17 +17,23 @@ struct PredictedAccuracy {
     /// Of the scaled chi-squared with the mean and variance that the mean square over the workspace
     /// has [Satterthwaite 1946].
     double degrees_of_freedom = 1;
+    /// By which part its square follows that of the expected sizes if they are stated larger or
+    /// smaller; it follows that of the noise by the rest. Nothing without a prior.
+    std::optional<double> prior_share{};
 };
 
 /// The same with what the model cannot express, which no number of poses reduces: RMS over
 /// workspace and targets, m.
 struct PredictedTotal {
     double rms = 0;    ///< with the model error as the campaign expects it
-    double lower = 0;  ///< ends of the 90 % interval: the parameters' errors are drawn, and the
-    double upper = 0;  ///< model error, log-normal about the expected, its deviation a factor 2.5
+    double lower = 0;  ///< ends of the 90 % interval: the parameters' errors are drawn, the model
+    double upper = 0;  ///< error and, with a prior, the size of all errors, log-normal (see below)
 };
 
-/// Of 4000 draws from stream (seed, 0).
+/// Of 4000 draws from stream (seed, 0). The standard deviation of the model error is a factor of
+/// model_error_factor, that of the sizes one of error_size_factor, by which the parameters' errors
+/// grow as PredictedAccuracy::prior_share says: by the model error, too, which is taken for most of
+/// the noise.
 PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_error,
                              std::uint64_t seed = 1);
 
@@ -37,10 +44,11 @@ PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_err
 Blocks make_prediction_blocks(const Campaign& campaign, const Parameters& parameters,
                               const RowMatrixXd& workspace, Index target = -1);
 
-/// Accuracy over prediction blocks by the information matrix M (scaled parameters). The percentile
-/// is of 200 draws a position, from stream (seed, position). Throws InputError if M is not positive
-/// definite or there are no blocks.
+/// Accuracy over prediction blocks by the information matrix M (scaled parameters), of which
+/// `prior` is what was expected before measuring (parameters square; empty or 0: nothing). The
+/// percentile is of 200 draws a position, from stream (seed, position). Throws InputError if M is
+/// not positive definite or there are no blocks.
 PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
-                                   std::uint64_t seed = 1);
+                                   const MatrixXd& prior = {}, std::uint64_t seed = 1);
 
 }  // namespace posewise

@@ -46,7 +46,7 @@ struct CalibrationOptions {
     ProgressCallback progress{};  ///< of the identification, the groups held out and the sets
 };
 
-/// Each configuration by itself up to 100 of them, else ten groups.
+/// Each configuration by itself up to 100 of them, else ten groups; 0 of one.
 Index default_folds(Index configuration_count);
 
 /// What was measured.
