@@ -11,7 +11,6 @@ namespace {
 
 /// Mean squares (m^2, rad^2) of what one target at one configuration is off by.
 struct PointError {
-    Index configuration = 0;
     double parameters = 0;
     double model = 0;
     double noise = 0;
@@ -51,7 +50,7 @@ std::vector<PointError> point_errors(const Campaign& campaign, const Estimate& e
             const MatrixXd parameters =
                 spread.middleRows(row, count) * seen.middleRows(row, count).transpose();
             const MatrixXd of_noise = noise.block(row, row, count, count);
-            PointError point{i, parameters.trace(), left_over.trace(), of_noise.trace(), 1};
+            PointError point{parameters.trace(), left_over.trace(), of_noise.trace(), 1};
             const double squares = (parameters + left_over + of_noise).squaredNorm();
             if (squares > 0) point.degrees_of_freedom = point.total() * point.total() / squares;
             points.push_back(point);

@@ -21,9 +21,7 @@ Measurements thin_out(const Campaign& campaign, const Measurements& measurements
     const Measurements means = mean_measurements(*campaign.sensor, measurements);
     const Index count = means.configuration_count();
     if (count <= most) return means;
-    std::vector<Index> taken;
-    for (Index k = 0; k < most; ++k) taken.push_back(k * count / most);
-    const Measurements some = take(means, taken);
+    const Measurements some = take(means, evenly_spaced(count, most));
     const auto shown = [](const Measurements& all) { return all.is_seen.colwise().any().count(); };
     return shown(some) < shown(means) ? means : some;
 }

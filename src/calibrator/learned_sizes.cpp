@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
 
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
@@ -12,42 +11,44 @@ namespace {
 constexpr int iteration_limit = 100;
 constexpr double tolerance = 0.005;  // of a size, to end at
 
-struct SquareSum {
-    double sum = 0;
+/// The errors that share a size.
+struct Sharing {
+    double stated = 0;
+    double squares = 0;  ///< summed up
     Index count = 0;
 };
 
-/// The most probable size of errors with this sum of squares: the root of n - S / s^2 +
-/// log(s / stated) / log(factor)^2, which grows with s.
-double most_probable(const SquareSum& squares, double stated) {
+/// The most probable size: the root of n - S / s^2 + log(s / stated) / log(factor)^2, which grows
+/// with s.
+double most_probable(const Sharing& errors) {
     const double log_factor = std::log(error_size_factor);
-    double low = std::log(stated) - 20;
-    double high = std::log(stated) + 20;
+    const double middle = std::log(errors.stated);
+    double low = middle - 20;
+    double high = middle + 20;
     for (int i = 0; i < 60; ++i) {
         const double u = 0.5 * (low + high);
-        const double slope = static_cast<double>(squares.count) - squares.sum * std::exp(-2 * u) +
-                             (u - std::log(stated)) / (log_factor * log_factor);
+        const double slope = static_cast<double>(errors.count) - errors.squares * std::exp(-2 * u) +
+                             (u - middle) / (log_factor * log_factor);
         (slope > 0 ? high : low) = u;
     }
     return std::exp(high);
 }
 
 /// The next sizes; by how large a part any of them changed.
-double update(ParameterSpread& spread, const ParameterSpread& stated, const Chain& robot,
+double update(ParameterSpread& spread, ParameterSpread stated, const Chain& robot,
               const VectorXd& squares) {
-    ParameterSpread expected = stated;
-    std::map<double*, std::pair<double, SquareSum>> sizes;
+    std::map<double*, Sharing> sizes;
     const auto names = robot.parameter_names();
     for (Index k = 0; k < squares.size(); ++k) {
         if (stated.by_name.count(names[static_cast<std::size_t>(k)]) > 0) continue;
-        auto& [of_stated, sum] = sizes[&size_of(spread, robot, k)];
-        of_stated = size_of(expected, robot, k);
-        sum.sum += squares[k];
-        ++sum.count;
+        Sharing& errors = sizes[&size_of(spread, robot, k)];
+        errors.stated = size_of(stated, robot, k);
+        errors.squares += squares[k];
+        ++errors.count;
     }
     double change = 0;
-    for (const auto& [size, stated_and_sum] : sizes) {
-        const double next = most_probable(stated_and_sum.second, stated_and_sum.first);
+    for (const auto& [size, errors] : sizes) {
+        const double next = most_probable(errors);
         change = std::max(change, std::abs(next / *size - 1));
         *size = next;
     }

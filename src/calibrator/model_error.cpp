@@ -70,8 +70,6 @@ class PredictiveScore {
         Campaign without = problem.campaign;
         without.model_error = without.model_error_orientation = 0;
         const Sensor& sensor = *without.sensor;
-        const Index count = problem.means.configuration_count();
-        const Index taken = std::min(count, most_configurations);
         RowMatrixXd times = problem.repeats;
         if (problem.loss.kind != LossKind::Squares) {
             for (const Outlier& outlier : find_outliers(problem, parameters)) {
@@ -80,8 +78,8 @@ class PredictiveScore {
         }
         RowMatrixXd augmented(sensor.row_count(), size_ + 1);
         FlangeMotion motion;
-        for (Index k = 0; k < taken; ++k) {
-            const Index i = k * count / taken;
+        for (const Index i :
+             evenly_spaced(problem.means.configuration_count(), most_configurations)) {
             const VectorXd q = problem.means.configurations.row(i).transpose();
             differentiate_pose(without, parameters, q, motion, augmented.leftCols(size_));
             augmented.leftCols(size_) *= problem.scale.asDiagonal();

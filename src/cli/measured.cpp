@@ -5,7 +5,6 @@
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
-
 namespace {
 
 void warn_beyond_limits(const std::string& path, const io::CampaignFile& file,

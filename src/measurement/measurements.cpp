@@ -103,6 +103,13 @@ std::vector<Index> all_but(Index count, const std::vector<Index>& left_out) {
     return others;
 }
 
+std::vector<Index> evenly_spaced(Index count, Index most) {
+    const Index taken = std::min(count, most);
+    std::vector<Index> indices;
+    for (Index k = 0; k < taken; ++k) indices.push_back(k * count / taken);
+    return indices;
+}
+
 std::optional<Repeatability> repeatability(const Sensor& sensor, const Measurements& measurements) {
     const Measurements means = mean_measurements(sensor, measurements);
     const Index width = sensor.rows_per_target();

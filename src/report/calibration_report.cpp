@@ -323,8 +323,9 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
             detail::format_short(*doubts.gross_error, 3)));
     }
     if (doubts.orientations) sentences.push_back(at + describe_orientations(*doubts.orientations));
-    if (!doubts.sizes.empty())
+    if (!doubts.sizes.empty()) {
         sentences.push_back(describe_sizes(doubts.sizes, calibration.campaign.spread.is_prior));
+    }
     if (!doubts.model_errors.empty()) {
         sentences.push_back(describe_model_errors(doubts.model_errors));
     }

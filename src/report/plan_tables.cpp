@@ -183,8 +183,6 @@ std::string describe(const Finding& finding) {
                        detail::format_short(finding.actual, 12));
 }
 
-}  // namespace
-
 /// Nothing of plain blocks.
 std::string describe_prediction(const Plan& plan) {
     const auto& assumptions = plan.assumptions;
@@ -200,6 +198,8 @@ std::string describe_prediction(const Plan& plan) {
         detail::format_short(mm_per_m * model_error->value, 4), detail::format_mm(total.lower),
         detail::format_mm(total.upper));
 }
+
+}  // namespace
 
 std::string format_choice(const Plan& plan) {
     return fmt::format(

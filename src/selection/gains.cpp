@@ -67,26 +67,23 @@ void Gains::move_to(const MatrixXd& M, const MatrixXd& C_root) {
 }
 
 void Gains::exchange(const Eigen::Ref<const RowMatrixXd>& added, const MatrixXd& M) {
-    const bool has_lanes = shortlist_.lanes.rows > 0;
-    if (has_lanes && (!is_removal_accurate_ || ++updates_ > most_updates)) {
+    if (shortlist_.lanes.rows == 0 || !is_removal_accurate_ || ++updates_ > most_updates) {
         return move_to(M, C_root_);
     }
-    if (has_lanes) {
-        // M'^-1 = W - T T^T and M'^-1 C M'^-1 = W C W - T S^T - S T^T.
-        const auto apply_W = [&](const MatrixXd& X) -> MatrixXd {
-            return cholesky_.solve(X) + P_ * (P_.transpose() * X);
-        };
-        const MatrixXd WA = apply_W(added.transpose());
-        const MatrixXd growth = MatrixXd::Identity(added.rows(), added.rows()) + added * WA;
-        const MatrixXd T = growth.llt().matrixL().solve(WA.transpose()).transpose();
-        MatrixXd S;
-        if (!is_determinant()) {
-            const MatrixXd CT = C_ * T;
-            S = apply_W(CT) - 0.5 * T * (T.transpose() * CT);
-        }
-        update_grams(shortlist_.lanes, P_, Q_, 1, G_, H_);
-        update_grams(shortlist_.lanes, T, S, -1, G_, H_);
+    // M'^-1 = W - T T^T and M'^-1 C M'^-1 = W C W - T S^T - S T^T.
+    const auto apply_W = [&](const MatrixXd& X) -> MatrixXd {
+        return cholesky_.solve(X) + P_ * (P_.transpose() * X);
+    };
+    const MatrixXd WA = apply_W(added.transpose());
+    const MatrixXd growth = MatrixXd::Identity(added.rows(), added.rows()) + added * WA;
+    const MatrixXd T = growth.llt().matrixL().solve(WA.transpose()).transpose();
+    MatrixXd S;
+    if (!is_determinant()) {
+        const MatrixXd CT = C_ * T;
+        S = apply_W(CT) - 0.5 * T * (T.transpose() * CT);
     }
+    update_grams(shortlist_.lanes, P_, Q_, 1, G_, H_);
+    update_grams(shortlist_.lanes, T, S, -1, G_, H_);
     factorise(M);
     find_sensitivities();
 }

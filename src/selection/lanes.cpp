@@ -57,6 +57,17 @@ POSEWISE_INLINE void add_product(const V (&X)[R][R], const V (&Y)[R][R], V (&S)[
     }
 }
 
+template <int R, typename V>
+POSEWISE_INLINE void load(const LaneGrams& G, Index group, int part, V (&S)[packed_size(R)]) {
+    const Lane* gram = G.data() + group * packed_size(R);
+    for (int k = 0; k < packed_size(R); ++k) S[k] = at<V>(gram + k, part);
+}
+template <int R, typename V>
+POSEWISE_INLINE void store(const V (&S)[packed_size(R)], Index group, int part, LaneGrams& G) {
+    Lane* gram = G.data() + group * packed_size(R);
+    for (int k = 0; k < packed_size(R); ++k) at<V>(gram + k, part) = S[k];
+}
+
 /// G += sign X X^T and, where there is an H, H += sign (X Y^T + Y X^T). P and Q are zero beyond
 /// their first `depth` rows.
 template <int R>
@@ -78,27 +89,24 @@ struct UpdateGrams {
 
     template <typename V>
     POSEWISE_INLINE void run_part(Index g, int part) const {
-        constexpr int size = packed_size(R);
         const Lane* B = blocks.entries.data() + g * R * blocks.parameters;
         V X[R][R];
         V signed_X[R][R];
-        V S[size];
+        V S[packed_size(R)];
         multiply<R, V>(B, part, P, blocks.parameters, depth, X);
         for (int a = 0; a < R; ++a) {
             for (int c = 0; c < R; ++c) signed_X[a][c] = sign * X[a][c];
         }
-        Lane* gram = G.data() + g * size;
-        for (int k = 0; k < size; ++k) S[k] = at<V>(gram + k, part);
+        load<R, V>(G, g, part, S);
         add_product<R, V>(signed_X, X, S);
-        for (int k = 0; k < size; ++k) at<V>(gram + k, part) = S[k];
+        store<R, V>(S, g, part, G);
         if (H == nullptr) return;
         V Y[R][R];
         multiply<R, V>(B, part, Q, blocks.parameters, depth, Y);
-        gram = H->data() + g * size;
-        for (int k = 0; k < size; ++k) S[k] = at<V>(gram + k, part);
+        load<R, V>(*H, g, part, S);
         add_product<R, V>(signed_X, Y, S);
         add_product<R, V>(Y, signed_X, S);
-        for (int k = 0; k < size; ++k) at<V>(gram + k, part) = S[k];
+        store<R, V>(S, g, part, *H);
     }
 };
 
@@ -121,13 +129,11 @@ struct Determinants {
 
     template <typename V>
     POSEWISE_INLINE void run_part(Index g, int part) const {
-        constexpr int size = packed_size(R);
-        const Lane* gram = G.data() + g * size;
         V X[R][R];
-        V S[size];
+        V S[packed_size(R)];
         multiply<R, V>(blocks.entries.data() + g * R * blocks.parameters, part, P,
                        blocks.parameters, blocks.parameters, X);
-        for (int k = 0; k < size; ++k) S[k] = at<V>(gram + k, part);
+        load<R, V>(G, g, part, S);
         add_product<R, V>(X, X, S);
         V determinant = {};
         determinant += 1.0;
@@ -169,18 +175,15 @@ struct Traces {
 
     template <typename V>
     POSEWISE_INLINE void run_part(Index g, int part) const {
-        constexpr int size = packed_size(R);
         const Lane* B = blocks.entries.data() + g * R * blocks.parameters;
         V X[R][R];
         V Y[R][R];
-        V S[size];
-        V T[size];
+        V S[packed_size(R)];
+        V T[packed_size(R)];
         multiply<R, V>(B, part, P, blocks.parameters, blocks.parameters, X);
         multiply<R, V>(B, part, Q, blocks.parameters, blocks.parameters, Y);
-        for (int k = 0; k < size; ++k) {
-            S[k] = at<V>(G.data() + g * size + k, part);
-            T[k] = at<V>(H.data() + g * size + k, part);
-        }
+        load<R, V>(G, g, part, S);
+        load<R, V>(H, g, part, T);
         add_product<R, V>(X, X, S);
         add_product<R, V>(X, Y, T);
         add_product<R, V>(Y, X, T);

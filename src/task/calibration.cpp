@@ -25,8 +25,13 @@ struct Work {
     LevenbergMarquardtOptions beside() const {
         LevenbergMarquardtOptions beside;
         beside.loss = options.joint.loss;
-        beside.stop = options.stop;
-        return beside;
+        return stopped(beside);
+    }
+    /// A method's options, ended by what ends the calibration.
+    template <class MethodOptions>
+    MethodOptions stopped(MethodOptions method_options) const {
+        method_options.stop = options.stop;
+        return method_options;
     }
 };
 
@@ -59,24 +64,20 @@ MeasuredCount count_measured(const Measurements& measurements) {
 
 void identify_by_method(const Work& work, const Parameters& registered, Calibration& result) {
     const CalibrationOptions& options = work.options;
-    const auto stopped = [&](auto method_options) {
-        method_options.stop = options.stop;
-        return method_options;
-    };
     switch (options.method) {
         case CalibrationMethod::Joint:
             result.estimate =
-                identify(work.campaign, work.used, registered, stopped(options.joint));
+                identify(work.campaign, work.used, registered, work.stopped(options.joint));
             return;
         case CalibrationMethod::TwoStep:
-            result.estimate =
-                identify_two_step(work.campaign, work.used, registered, stopped(options.two_step));
+            result.estimate = identify_two_step(work.campaign, work.used, registered,
+                                                work.stopped(options.two_step));
             return;
         case CalibrationMethod::Global:
             break;
     }
     GlobalOptions global = options.global;
-    global.start_options.stop = options.stop;
+    global.start_options = work.stopped(global.start_options);
     GlobalEstimate found = identify_globally(work.campaign, work.used, global);
     result.estimate = std::move(found.estimate);
     result.starts = found.starts;
@@ -139,10 +140,9 @@ void calibrate_with(Work& work, Calibration& result) {
     }
     const Parameters& registered = registration.parameters;
     if (work.options.learns_sizes) {
-        LevenbergMarquardtOptions options = work.options.joint;
-        options.stop = work.options.stop;
         result.stated_spread = work.campaign.spread;
-        work.campaign.spread = learn_sizes(work.campaign, work.used, registered, options);
+        work.campaign.spread =
+            learn_sizes(work.campaign, work.used, registered, work.stopped(work.options.joint));
     }
     compare_models(work, registered, result);
     identify_by_method(work, registered, result);

@@ -1,7 +1,6 @@
 #include "posewise/task/choice.hpp"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 
 #include "../measurement/noise.hpp"
@@ -68,11 +67,7 @@ std::optional<PredictedAccuracy> predict(const Campaign& campaign, const ChoiceP
     MatrixXd M = information(problem.blocks, chosen);
     if (problem.options.held.size() > 0) M += problem.options.held;
     if (Eigen::LLT<MatrixXd>(M).info() != Eigen::Success) return std::nullopt;
-    const Index count = std::min(problem.configurations.rows(), most_configurations);
-    std::vector<Index> workspace;
-    for (Index k = 0; k < count; ++k) {
-        workspace.push_back(k * problem.configurations.rows() / count);
-    }
+    const auto workspace = evenly_spaced(problem.configurations.rows(), most_configurations);
     return predict_accuracy(
         make_prediction_blocks(campaign, problem.parameters,
                                RowMatrixXd(problem.configurations(workspace, Eigen::all))),

@@ -54,8 +54,9 @@ std::vector<CountAccuracy> predict_other_counts(const Planning& planning) {
     for (const Index k : std::set<Index>{std::max<Index>(1, count / 2), count, 2 * count}) {
         options.pose_count = k;
         rows.push_back({k, false, std::nullopt});
-        if (k >= least)
+        if (k >= least) {
             rows.back().accuracy = predict_choice(planning.prediction, blocks, options, prior);
+        }
         if (k == count) rows.push_back({k, true, planning.plan.predicted});
     }
     return rows;

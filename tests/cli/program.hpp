@@ -95,6 +95,17 @@ class Program : public ::testing::Test {
     std::filesystem::path folder_;
 };
 
+/// A robot of six joints, below "robot:".
+inline const std::string six_joints = R"(  joints:
+    q1: {limits_deg: [-170, 170]}
+    q2: {limits_deg: [-90, 90]}
+    q3: {limits_deg: [-150, 150]}
+    q4: {limits_deg: [-150, 150]}
+    q5: {limits_deg: [-110, 110]}
+    q6: {limits_deg: [-170, 170]}
+  elements: [Rz q1, Tz 290 mm, Ry q2, Tz 270 mm, Ry q3, Tz 70 mm, Tx 302 mm, Rx q4, Ry q5, Tx 72 mm, Rx q6]
+)";
+
 inline const std::string fanuc_design =
     std::string("'") + POSEWISE_SOURCE_DIR + "/designs/fanuc_r2000ic_165f/campaign.yaml'";
 inline const std::string seed_design =

@@ -18,33 +18,23 @@ sensor:
 model_error_mm: 0.05
 )";
 
-const std::string six_joints = R"(name: six
-robot:
-  joints:
-    q1: {limits_deg: [-170, 170]}
-    q2: {limits_deg: [-90, 90]}
-    q3: {limits_deg: [-150, 150]}
-    q4: {limits_deg: [-150, 150]}
-    q5: {limits_deg: [-110, 110]}
-    q6: {limits_deg: [-170, 170]}
-  elements: [Rz q1, Tz 290 mm, Ry q2, Tz 270 mm, Ry q3, Tz 70 mm, Tx 302 mm, Rx q4, Ry q5, Tx 72 mm, Rx q6]
-base: {position_mm: [1000, 200, 30], rpy_deg: [0, 0, 90]}
-)";
+const std::string six = "name: six\nrobot:\n" + six_joints +
+                        "base: {position_mm: [1000, 200, 30], rpy_deg: [0, 0, 90]}\n";
 
-const std::string one_target = six_joints + R"(sensor:
+const std::string one_target = six + R"(sensor:
   kind: points
   sigma_mm: 0.05
   targets: {position_mm: [[120, 30, 50]]}
 )";
 
-const std::string planes = six_joints + R"(sensor:
+const std::string planes = six + R"(sensor:
   kind: planes
   sigma_mm: 0.01
   planes: [{normal: [0, 0, 1], offset_mm: 300}, {normal: [1, 0, 0], offset_mm: 900}, {normal: [0.1, 1, 0], offset_mm: 700}]
   targets: {position_mm: [[0, 0, 150]]}
 )";
 
-const std::string anchor = six_joints + R"(sensor:
+const std::string anchor = six + R"(sensor:
   kind: distances
   sigma_mm: 0.01
   anchors: {position_mm: [[2000, 500, 0]]}

@@ -8,18 +8,7 @@
 namespace posewise::testing {
 namespace {
 
-const std::string arm = R"(name: arm
-robot:
-  errors: geometric
-  joints:
-    q1: {limits_deg: [-170, 170]}
-    q2: {limits_deg: [-90, 90]}
-    q3: {limits_deg: [-150, 150]}
-    q4: {limits_deg: [-150, 150]}
-    q5: {limits_deg: [-110, 110]}
-    q6: {limits_deg: [-170, 170]}
-  elements: [Rz q1, Tz 290 mm, Ry q2, Tz 270 mm, Ry q3, Tz 70 mm, Tx 302 mm, Rx q4, Ry q5, Tx 72 mm, Rx q6]
-)";
+const std::string arm = "name: arm\nrobot:\n  errors: geometric\n" + six_joints;
 
 const std::string planes = arm + R"(base: {position_mm: [0, 0, 0], rpy_deg: [0, 0, 0], known: true}
 sensor:

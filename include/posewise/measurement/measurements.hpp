@@ -49,6 +49,9 @@ Measurements take(const Measurements& measurements, const std::vector<Index>& co
 /// The other ones: all but those listed.
 std::vector<Index> all_but(Index count, const std::vector<Index>& left_out);
 
+/// So many of `count` at most, evenly spaced from the first on.
+std::vector<Index> evenly_spaced(Index count, Index most);
+
 /// Standard deviation of one observed number about its configuration's mean, pooled over all
 /// samples.
 struct Repeatability {
