@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "../core/decompositions.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/targets.hpp"
 #include "posewise/model/transforms.hpp"
@@ -144,12 +144,12 @@ class Search {
         VectorXd r = VectorXd::Zero(J.rows());
         r.head(system.r.size()) = system.r;
         const double cost = system.r.squaredNorm();
-        const VectorXd whole = J.householderQr().solve(r);
+        const VectorXd whole = detail::solve_least_squares(J, r);
         if ((J * whole).squaredNorm() <= negligible + 1e-12 * cost) return Ending::Converged;
         for (; damping < 1e12; damping *= 10) {
             J.bottomRows(count).diagonal().setConstant(std::sqrt(damping));
             VectorXd moved = q;
-            moved(free) += J.householderQr().solve(r);
+            moved(free) += detail::solve_least_squares(J, r);
             moved = moved.cwiseMax(lower_).cwiseMin(upper_);
             if (equations(moved).r.squaredNorm() < cost) {
                 q = moved;

@@ -1,8 +1,9 @@
 #include "posewise/calibrator/identification.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
+#include <utility>
 
+#include "../core/decompositions.hpp"
 #include "../core/parallel.hpp"
 #include "../core/progress_counter.hpp"
 #include "../measurement/noise.hpp"
@@ -27,7 +28,7 @@ VectorXd damped_step(const detail::Triangle& triangle, double damping) {
         (std::sqrt(damping) * triangle.R.colwise().norm()).transpose().asDiagonal();
     VectorXd right = VectorXd::Zero(2 * size);
     right.head(size) = triangle.c;
-    return stacked.householderQr().solve(right);
+    return detail::solve_least_squares(std::move(stacked), right);
 }
 
 struct LevenbergMarquardt {

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "../core/decompositions.hpp"
 #include "../core/text.hpp"
 #include "../measurement/noise.hpp"
 #include "posewise/core/errors.hpp"
@@ -172,9 +173,8 @@ Triangle triangularise(const LinearisedSystem& system) {
     const Index size = system.J.cols();
     MatrixXd augmented(system.J.rows(), size + 1);
     augmented << system.J, system.r;
-    const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(augmented);
-    return {MatrixXd(augmented.topLeftCorner(size, size).triangularView<Eigen::Upper>()),
-            augmented.col(size).head(size)};
+    const MatrixXd R = triangular_factor(std::move(augmented));
+    return {R.topLeftCorner(size, size), R.col(size).head(size)};
 }
 
 MatrixXd invert_triangle(const MatrixXd& R) {

@@ -1,9 +1,9 @@
 #include "population_search.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "../core/decompositions.hpp"
 #include "../core/nlopt_adapter.hpp"
 #include "global_identification.hpp"
 #include "posewise/core/errors.hpp"
@@ -113,7 +113,7 @@ class CovarianceAdaptation {
 
     /// One generation; the largest standard deviation it was drawn with.
     double advance() {
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(C_);
+        const auto eigen = eigen_decomposition(C_);
         const VectorXd D = eigen.eigenvalues().cwiseMax(1e-20).cwiseSqrt();
         const MatrixXd& B = eigen.eigenvectors();
         std::vector<Member> members;

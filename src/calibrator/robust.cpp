@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "../core/decompositions.hpp"
 #include "../core/statistics.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -73,9 +74,7 @@ MatrixXd robust_covariance(const IdentificationProblem& problem, const Parameter
     const MatrixXd P = prior_information(problem.campaign);
     MatrixXd stacked(2 * R.rows(), R.cols());
     stacked << std::sqrt(a) * R, std::sqrt(1 - a) * P;
-    const MatrixXd triangle =
-        stacked.householderQr().matrixQR().topRows(R.cols()).triangularView<Eigen::Upper>();
-    const MatrixXd root = invert_triangle(triangle);
+    const MatrixXd root = invert_triangle(triangular_factor(std::move(stacked)));
     const MatrixXd inverse = root * root.transpose();
     const auto observed = static_cast<double>(problem.observation_count());
     const double used = determined_by_data(problem, root);

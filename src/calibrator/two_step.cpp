@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include <Eigen/QR>
-
+#include "../core/decompositions.hpp"
 #include "least_squares.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
@@ -41,12 +40,12 @@ Parameters cycle(const detail::IdentificationProblem& problem, const Split& spli
     if (split.robot > 0) {
         const detail::LinearisedSystem system = linearise(problem, parameters);
         const VectorXd step =
-            system.J.middleCols(split.base, split.robot).householderQr().solve(system.r);
+            detail::solve_least_squares(system.J.middleCols(split.base, split.robot), system.r);
         parameters = advance(problem.campaign, parameters,
                              problem.scale.cwiseProduct(split.robot_step(alpha * step)));
     }
     const detail::LinearisedSystem system = linearise(problem, parameters);
-    const VectorXd step = split.base_and_targets(system.J).householderQr().solve(system.r);
+    const VectorXd step = detail::solve_least_squares(split.base_and_targets(system.J), system.r);
     return advance(problem.campaign, parameters,
                    problem.scale.cwiseProduct(split.base_and_target_step(step)));
 }

@@ -1,11 +1,12 @@
 #include "posewise/criteria/criterion.hpp"
 
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cctype>
 #include <limits>
+#include <utility>
 
+#include "../core/decompositions.hpp"
 #include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
 #include "spectral.hpp"
@@ -45,10 +46,7 @@ VectorXd singular_values(const RowMatrixXd& stacked) {
     const Index count = std::min(stacked.rows(), stacked.cols());
     if (count == 0) return values;
     MatrixXd R = stacked;
-    if (stacked.rows() > stacked.cols()) {
-        const Eigen::HouseholderQR<MatrixXd> qr(stacked);
-        R = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
-    }
+    if (stacked.rows() > stacked.cols()) R = detail::triangular_factor(std::move(R));
     values.head(count) = Eigen::JacobiSVD<MatrixXd>(R).singularValues();
     return values;
 }

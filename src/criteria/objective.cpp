@@ -1,8 +1,8 @@
 #include "objective.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "../core/decompositions.hpp"
 #include "posewise/core/errors.hpp"
 #include "prediction.hpp"
 #include "regular.hpp"
@@ -49,7 +49,7 @@ double worst_prediction(const Objective& objective, const Eigen::LLT<MatrixXd>& 
 /// Criteria of single eigenvalues. Minus infinity, and the slope as it was, where the least is not
 /// positive.
 double of_eigenvalues(const Objective& objective, const MatrixXd& M, MatrixXd* slope) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(
+    const auto eigen = eigen_decomposition(
         M, slope == nullptr ? Eigen::EigenvaluesOnly : Eigen::ComputeEigenvectors);
     if (!(eigen.eigenvalues()[0] > 0)) return minus_infinity;
     const Sloped spectral = spectral_criterion(objective, eigen.eigenvalues());

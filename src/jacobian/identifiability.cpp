@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
+#include "../core/decompositions.hpp"
 #include "../model/complete_model.hpp"
 #include "../model/sampling.hpp"
 #include "posewise/jacobian/identification.hpp"
@@ -62,7 +64,7 @@ MatrixXd express_dropped(const MatrixXd& J, const Identifiability& result) {
     }
     const VectorXd norms = kept.colwise().norm().transpose();
     kept.array().rowwise() /= norms.transpose().array();
-    const MatrixXd combination = kept.householderQr().solve(dropped);
+    const MatrixXd combination = detail::solve_least_squares(std::move(kept), dropped);
     return norms.cwiseInverse().asDiagonal() * combination;
 }
 
@@ -197,11 +199,7 @@ Index least_pose_count(const Campaign& stated) {
 std::vector<WeakDirection> weakest_directions(const MatrixXd& stacked, Index count,
                                               Index terms_each) {
     const Index size = stacked.cols();
-    const MatrixXd R =
-        stacked.rows() > size
-            ? MatrixXd(
-                  stacked.householderQr().matrixQR().topRows(size).triangularView<Eigen::Upper>())
-            : stacked;
+    const MatrixXd R = stacked.rows() > size ? detail::triangular_factor(stacked) : stacked;
     const Eigen::JacobiSVD<MatrixXd, Eigen::FullPivHouseholderQRPreconditioner> svd(
         R, Eigen::ComputeFullU | Eigen::ComputeFullV);
     std::vector<WeakDirection> directions;

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "../core/decompositions.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::detail {
@@ -28,7 +28,7 @@ InputError not_positive_definite(const MatrixXd& covariance) {
             "finite number" +
             rule);
     }
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(covariance, Eigen::EigenvaluesOnly);
+    const auto eigen = eigen_decomposition(covariance, Eigen::EigenvaluesOnly);
     return InputError(fmt::format(
         "the covariance of the observation's noise ({0} x {0}) has the least eigenvalue {1:.3g} "
         "where the largest is {2:.3g}{3}",

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "../core/decompositions.hpp"
 #include "../core/parallel.hpp"
 #include "../core/progress_counter.hpp"
 #include "../core/text.hpp"
@@ -161,7 +161,7 @@ void report(const Problem& problem, Refinement best, PlannedPoses& planned) {
 
 /// The criterion's value alone does not tell that a direction is seen by rounding only.
 void check_all_is_seen(const DesignSpace& space, const MatrixXd& M) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(M);
+    const auto eigen = eigen_decomposition(M);
     const double least = eigen.eigenvalues()[0];
     if (least >= 1 / (largest_deviation * largest_deviation)) return;
     const double rounding = std::numeric_limits<double>::epsilon() * eigen.eigenvalues().tail(1)[0];

@@ -1,9 +1,9 @@
 #include "bound.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "../core/decompositions.hpp"
 #include "../core/sensitivities.hpp"
 #include "../criteria/information_function.hpp"
 #include "limits.hpp"
@@ -43,7 +43,7 @@ double largest_ratio(const VectorXd& a, const VectorXd& b, double a0, double b0,
 /// the softened extreme eigenvalues of M.
 double condition_bound(const Blocks& candidates, const SelectOptions& options, const MatrixXd& M,
                        double p) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(M);
+    const auto eigen = eigen_decomposition(M);
     const VectorXd& lambda = eigen.eigenvalues();
     const auto weighted = [&](const Eigen::ArrayXd& weights) -> MatrixXd {
         return eigen.eigenvectors() * (weights / weights.sum()).matrix().asDiagonal() *

@@ -1,11 +1,11 @@
 #include "neighbourhood.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "../core/decompositions.hpp"
 #include "../core/sensitivities.hpp"
 
 namespace posewise::detail {
@@ -15,7 +15,7 @@ constexpr Index witness_count = 32;
 
 /// F with C = F F^T.
 MatrixXd root_of(const MatrixXd& C) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(C);
+    const auto eigen = eigen_decomposition(C);
     return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 

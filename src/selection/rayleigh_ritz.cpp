@@ -1,10 +1,10 @@
 #include "rayleigh_ritz.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "../core/decompositions.hpp"
 #include "../criteria/information_function.hpp"
 
 namespace posewise::detail {
@@ -28,7 +28,7 @@ RayleighRitz::Compression RayleighRitz::compress(Index candidate) const {
 }
 
 void RayleighRitz::move_to(const MatrixXd& M) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(M);
+    const auto eigen = eigen_decomposition(M);
     const Index q = std::min(most_vectors, M.rows());
     U_ = eigen.eigenvectors().leftCols(q);
     v_ = eigen.eigenvectors().rightCols<1>();

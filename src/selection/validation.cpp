@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "../core/decompositions.hpp"
 #include "../core/text.hpp"
 #include "limits.hpp"
 #include "objective_bound.hpp"
@@ -56,7 +56,7 @@ void validate_held(const SelectOptions& options, Index L) {
                          std::to_string(options.held.cols()) +
                          ", must be a finite symmetric matrix, " + std::to_string(L) + " square");
     }
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(options.held, Eigen::EigenvaluesOnly);
+    const auto eigen = eigen_decomposition(options.held, Eigen::EigenvaluesOnly);
     if (eigen.eigenvalues()[0] < -1e-9 * std::abs(eigen.eigenvalues()[L - 1])) {
         throw InputError(fmt::format(
             "held information has the negative eigenvalue {:g}, must be positive semidefinite",
@@ -126,7 +126,7 @@ std::string describe_unseen(const Blocks& candidates, const SelectOptions& optio
     const MatrixXd M = held_information(candidates, options) + information(candidates);
     const VectorXd scale = M.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const MatrixXd normalised = scale.asDiagonal() * M * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(normalised);
+    const auto eigen = eigen_decomposition(normalised);
     const Index L = M.rows();
     const Index missing = (eigen.eigenvalues().array() <= 1e-12).count();
     if (missing == 0) return "";
