@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* step_names[] = {"base and targets",  "+ joint offsets", "+ lengths",
                                       "+ other geometric", "+ gravity terms", "+ free terms",
-                                      "+ harmonics"};
+                                      "+ harmonics",       "+ tilts of axes"};
 
 /// The step, an index of step_names, that adds this parameter.
 int step_of(const Chain& chain, Index parameter) {
@@ -25,6 +25,8 @@ int step_of(const Chain& chain, Index parameter) {
                 return 5;
             case TermKind::Harmonic:
                 return 6;
+            case TermKind::Tilt:
+                return 7;
         }
     }
     const Element& element = chain.parameter_element(parameter);

@@ -33,7 +33,7 @@ void read_base(const YamlValue& value, Campaign& campaign) {
 ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
                             bool has_stated_errors) {
     const YamlMap map(value, {"length_<length>", "angle_<angle>", "gravity_<angle>",
-                              "harmonic_<angle>", "offset_<angle>", "parameters"});
+                              "harmonic_<angle>", "tilt_<angle>", "offset_<angle>", "parameters"});
     ParameterSpread spread = campaign.spread;
     const auto read = [&map](std::string_view key, double& size) {
         if (const auto measure = map.find_measure(key)) size = read_positive(*measure);
@@ -42,6 +42,7 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
     read("angle", spread.angle);
     read("gravity", spread.gravity);
     read("harmonic", spread.harmonic);
+    read("tilt", spread.tilt);
     if (const auto measure = map.find_measure("offset")) spread.offset = read_positive(*measure);
     const auto parameters = map.find("parameters");
     if (!parameters) return spread;

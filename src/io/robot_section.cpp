@@ -154,7 +154,7 @@ io::ErrorModel read_error_model(const YamlValue& errors) {
 
 RobotSection read_robot(const YamlValue& value, std::optional<io::ErrorModel> errors) {
     const YamlMap robot(value, {"joints", "elements", "dh", "urdf", "base_link", "tip_link",
-                                "errors", "gravity", "harmonics", "compliance"});
+                                "errors", "gravity", "harmonics", "axis_tilt", "compliance"});
     RobotSection section = read_described(robot, find_description(value, robot));
     section.error_model = errors ? *errors : find_error_model(robot, section.declared.elements());
     add_stated_terms(robot, section);

@@ -121,7 +121,9 @@ std::vector<double> read_range(const YamlValue& value) {
     return orders;
 }
 
-Chain add_harmonics(const YamlValue& value, const Chain& chain) {
+/// `make` is with_harmonics() or with_axis_tilt().
+template <typename Make>
+Chain add_periodic(const YamlValue& value, const Chain& chain, const Make& make) {
     const YamlMap map(value, {"orders", "joints"});
     const YamlValue listed = map.require("orders");
     const std::vector<double> orders = listed.is_list() ? read_list(listed) : read_range(listed);
@@ -130,7 +132,7 @@ Chain add_harmonics(const YamlValue& value, const Chain& chain) {
                            " orders; must be from 1 to 100");
     }
     const std::vector<Index> joints = read_joints(map, chain);
-    return add(value, [&] { return with_harmonics(chain, orders, joints); });
+    return add(value, [&] { return make(chain, orders, joints); });
 }
 
 double read_number_up_to(const YamlValue& value, double most, const char* unit) {
@@ -207,7 +209,10 @@ Chain add_compliance(const YamlValue& value, const RobotSection& section) {
 void add_stated_terms(const YamlMap& robot, RobotSection& section) {
     Chain& chain = section.declared;
     if (const auto gravity = robot.find("gravity")) add_gravity(*gravity, section);
-    if (const auto harmonics = robot.find("harmonics")) chain = add_harmonics(*harmonics, chain);
+    if (const auto stated = robot.find("harmonics"))
+        chain = add_periodic(*stated, chain, with_harmonics);
+    if (const auto stated = robot.find("axis_tilt"))
+        chain = add_periodic(*stated, chain, with_axis_tilt);
     if (const auto stated = robot.find("compliance")) chain = add_compliance(*stated, section);
 }
 

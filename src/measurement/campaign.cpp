@@ -67,6 +67,7 @@ double& size_of(ParameterSpread& spread, const Chain& robot, Index parameter) {
     const bool turns = element.motion == Motion::Rotation;
     const ErrorTerm* const term = robot.parameter_term(parameter);
     if (term != nullptr && term->kind == TermKind::Harmonic) return spread.harmonic;
+    if (term != nullptr && term->kind == TermKind::Tilt) return spread.tilt;
     if (term != nullptr && term->kind != TermKind::Free) return spread.gravity;
     const bool is_offset = term == nullptr && turns && !element.joints.empty();
     if (is_offset && spread.offset) return *spread.offset;

@@ -26,13 +26,13 @@ bool is_wanted(const std::vector<Index>& joints, Index joint) {
     return joints.empty() || std::find(joints.begin(), joints.end(), joint) != joints.end();
 }
 
-/// A sine and a cosine of the sum of `joints`, as errors of an element that belongs to `owner`.
-void add_waves(const Chain& chain, Index owner, const std::vector<JointTerm>& joints, TermKind kind,
-               Element& element) {
+/// A sine and a cosine of the sum of `joints`, as errors of an element. Their names begin with
+/// `owner`.
+void add_waves(const Chain& chain, const std::string& owner, const std::vector<JointTerm>& joints,
+               TermKind kind, Element& element) {
     for (const double phase : {0.0, std::numbers::pi / 2}) {
         const JointFunction wave{JointFunction::Shape::Sine, joints, phase};
-        const std::string name =
-            joint_name(chain, owner) + '.' + describe_function(wave, chain.joints());
+        const std::string name = owner + '.' + describe_function(wave, chain.joints());
         const auto is_same = [&](const ErrorTerm& term) { return term.parameter == name; };
         if (std::none_of(element.terms.begin(), element.terms.end(), is_same)) {
             element.terms.push_back({name, wave, kind});
@@ -46,6 +46,27 @@ void check_joints(const Chain& chain, const std::vector<Index>& joints) {
             throw InputError("joint index " + std::to_string(joint) + " must be below " +
                              std::to_string(chain.joint_count()));
         }
+    }
+}
+
+/// Whether `element`, driven by joint `owner` (-1: by none), turns and is of one of `joints`.
+bool is_periodic(const Element& element, Index owner, const std::vector<Index>& joints) {
+    return owner >= 0 && element.motion == Motion::Rotation && is_wanted(joints, owner);
+}
+
+/// Throws InputError unless all of `joints` turn and all orders are positive and finite.
+void check_periodic(const Chain& chain, const std::vector<double>& orders,
+                    const std::vector<Index>& joints) {
+    check_joints(chain, joints);
+    for (const double order : orders) {
+        if (!std::isfinite(order) || order <= 0) {
+            throw InputError("order " + std::to_string(order) + " of a harmonic must be positive");
+        }
+    }
+    for (const Index joint : joints) {
+        if (chain.joint(joint).motion == Motion::Rotation) continue;
+        throw InputError("joint '" + joint_name(chain, joint) +
+                         "' slides; harmonics need one that turns");
     }
 }
 
@@ -151,7 +172,8 @@ Chain with_gravity_terms(const Chain& chain, const Vector3d& direction,
         level.push_back(owner);
         for (std::size_t k = j; k < run.size(); ++k) {
             if (sums[k].empty()) continue;
-            add_waves(chain, owner, sums[k], TermKind::Gravity, elements[run[j]]);
+            add_waves(chain, joint_name(chain, owner), sums[k], TermKind::Gravity,
+                      elements[run[j]]);
         }
     }
     for (const Index joint : joints) {
@@ -227,24 +249,37 @@ std::vector<Compliance> compliances(const Chain& chain) {
 
 Chain with_harmonics(const Chain& chain, const std::vector<double>& orders,
                      const std::vector<Index>& joints) {
-    check_joints(chain, joints);
-    for (const double order : orders) {
-        if (!std::isfinite(order) || order <= 0) {
-            throw InputError("order " + std::to_string(order) + " of a harmonic must be positive");
-        }
-    }
-    for (const Index joint : joints) {
-        if (chain.joint(joint).motion == Motion::Rotation) continue;
-        throw InputError("joint '" + joint_name(chain, joint) +
-                         "' slides; harmonics need one that turns");
-    }
+    check_periodic(chain, orders, joints);
     const std::vector<Index> owners = element_owners(chain);
     std::vector<Element> elements = chain.elements();
     for (std::size_t k = 0; k < elements.size(); ++k) {
-        const bool turns = elements[k].motion == Motion::Rotation;
-        if (owners[k] < 0 || !turns || !is_wanted(joints, owners[k])) continue;
+        if (!is_periodic(elements[k], owners[k], joints)) continue;
         for (const double order : orders) {
-            add_waves(chain, owners[k], {{owners[k], order}}, TermKind::Harmonic, elements[k]);
+            add_waves(chain, joint_name(chain, owners[k]), {{owners[k], order}}, TermKind::Harmonic,
+                      elements[k]);
+        }
+    }
+    return chain.with_elements(std::move(elements));
+}
+
+Chain with_axis_tilt(const Chain& chain, const std::vector<double>& orders,
+                     const std::vector<Index>& joints) {
+    check_periodic(chain, orders, joints);
+    const std::vector<Index> owners = element_owners(chain);
+    std::vector<Element> elements;
+    for (std::size_t k = 0; k < owners.size(); ++k) {
+        const Element& element = chain.elements()[k];
+        elements.push_back(element);
+        if (!is_periodic(element, owners[k], joints)) continue;
+        for (const auto& [axis, name] :
+             {std::pair(Axis::X, ".Rx"), std::pair(Axis::Y, ".Ry"), std::pair(Axis::Z, ".Rz")}) {
+            if (axis == element.axis) continue;
+            Element tilt{Motion::Rotation, axis, 0, {}};
+            for (const double order : orders) {
+                add_waves(chain, joint_name(chain, owners[k]) + name, {{owners[k], order}},
+                          TermKind::Tilt, tilt);
+            }
+            elements.push_back(std::move(tilt));
         }
     }
     return chain.with_elements(std::move(elements));

@@ -10,7 +10,7 @@
 namespace posewise::detail {
 namespace {
 
-enum class ErrorClass { Length, Slide, Angle, Offset, Gravity, Torque, Harmonic, Other };
+enum class ErrorClass { Length, Slide, Angle, Offset, Gravity, Torque, Harmonic, Tilt, Other };
 
 const char* class_name(ErrorClass error_class) {
     switch (error_class) {
@@ -28,6 +28,8 @@ const char* class_name(ErrorClass error_class) {
             return "torque shapes";
         case ErrorClass::Harmonic:
             return "harmonics";
+        case ErrorClass::Tilt:
+            return "tilts of axes";
         case ErrorClass::Other:
             break;
     }
@@ -43,6 +45,8 @@ ErrorClass class_of(const Chain& robot, Index parameter) {
                 return ErrorClass::Torque;
             case TermKind::Harmonic:
                 return ErrorClass::Harmonic;
+            case TermKind::Tilt:
+                return ErrorClass::Tilt;
             case TermKind::Free:
                 return ErrorClass::Other;
         }

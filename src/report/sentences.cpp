@@ -63,6 +63,7 @@ std::string describe_scaling(const Campaign& campaign, double repeats) {
     };
     add(TermKind::Gravity, "gravity", campaign.spread.gravity);
     add(TermKind::Harmonic, "harmonic", campaign.spread.harmonic);
+    add(TermKind::Tilt, "tilt", campaign.spread.tilt);
     if (!campaign.spread.by_name.empty()) text += ", others by name in the campaign file";
     text += '\n';
     if (campaign.spread.is_prior) text += "prior: the scale, as standard deviation\n";

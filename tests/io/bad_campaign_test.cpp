@@ -194,6 +194,7 @@ TEST(BadCampaign, GravityAndHarmonicsThatCannotBe) {
         {"", "harmonics: {orders: [1, 2, 1.0]}",
          "7:30: robot.harmonics.orders[3] is '1.0' again; keep one"},
         {"", "harmonics: {orders: []}", "7:23:[...]"},
+        {"", "axis_tilt: {joints: [q1]}", "7:14: robot.axis_tilt has no key orders[...]"},
         {"", "harmonics: {orders: [1], joints: [lift]}",
          "7:14: robot.harmonics is not possible: joint 'lift' slides; harmonics need one that "
          "turns"},

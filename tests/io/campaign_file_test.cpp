@@ -110,6 +110,14 @@ TEST(ReadCampaign, TakesGravityAndHarmonics) {
     EXPECT_EQ(parameter_scale(on_wall)[7], 1e-3);
 }
 
+TEST(ReadCampaign, TakesTiltsOfAxes) {
+    const CampaignFile file =
+        read_level("  axis_tilt: {orders: [1, 2], joints: [q1]}\n", "tilt_mrad: 0.02");
+    EXPECT_EQ(file.robot.parameter_count(), 4 + 2 * 4);
+    EXPECT_EQ((parameter_scale(file).array() == 0.02e-3).count(), 8);
+    EXPECT_EQ(read_level("  axis_tilt: {orders: [1]}\n").spread.tilt, 0.05e-3);
+}
+
 TEST(ReadCampaign, ReducesGeometryBesideTerms) {
     auto text = campaign_text;
     for (const char* const name : {" [dq1]", " [Tx1]", " [dq2]", " [Ty2]"})

@@ -150,6 +150,29 @@ TEST(Harmonics, AreNotAddedWhereGravityHasThem) {
     EXPECT_EQ(both.parameter_term(2)->kind, TermKind::Gravity);
 }
 
+TEST(AxisTilt, IsOfRotationsAboutTheTwoOtherAxes) {
+    EXPECT_EQ(terms_of(with_axis_tilt(without_parameters(fanuc()), {2}, {1})),
+              (Names{"q2.Rx.sin(2q2)", "q2.Rx.cos(2q2)", "q2.Rz.sin(2q2)", "q2.Rz.cos(2q2)"}));
+    EXPECT_EQ(with_axis_tilt(gantry_with_wrist(), {1, 2}).parameter_count(), 3 * 2 * 4);
+    EXPECT_THROW(with_axis_tilt(gantry_with_wrist(), {1}, {0}), InputError);
+    EXPECT_THROW(with_axis_tilt(fanuc(), {0}), InputError);
+}
+
+TEST(AxisTilt, TurnsWhatFollowsTheJoint) {
+    const Chain tilting = with_axis_tilt(without_parameters(fanuc()), {2}, {1});
+    VectorXd q = VectorXd::Zero(6);
+    q[1] = 0.4;
+    VectorXd errors = VectorXd::Zero(4);
+    errors[2] = 1e-2;  // q2.Rz.sin(2q2)
+    std::vector<Element> elements = tilting.elements();
+    const auto tilt = std::find_if(elements.begin(), elements.end(), [](const Element& element) {
+        return !element.terms.empty() && element.axis == Axis::Z;
+    });
+    tilt->value = 1e-2 * std::sin(0.8);
+    EXPECT_TRUE(tilting.base_from_flange(q, errors).isApprox(
+        tilting.with_elements(elements).base_from_flange(q, VectorXd::Zero(4)), 1e-15));
+}
+
 TEST(ErrorTerms, AreRemovedWithTheOtherParameters) {
     EXPECT_EQ(without_parameters(with_gravity_terms(fanuc())).parameter_count(), 0);
 }

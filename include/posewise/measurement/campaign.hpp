@@ -30,6 +30,7 @@ struct ParameterSpread {
     bool is_prior = false;      ///< whether it is also the prior standard deviation of robot errors
     double gravity = 1e-3;      ///< of terms of TermKind::Gravity and TermKind::Torque
     double harmonic = 0.15e-3;  ///< of terms of TermKind::Harmonic
+    double tilt = 0.05e-3;      ///< of terms of TermKind::Tilt
     std::optional<double> offset = {};  ///< of joints that turn; nothing: as other angles
 };
 

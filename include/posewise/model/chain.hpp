@@ -50,6 +50,7 @@ enum class TermKind {
     Gravity,   ///< torque of the weight on a compliant joint
     Harmonic,  ///< periodic error of an encoder or a gear
     Torque,    ///< shape of the torque that unknown weights put on a compliant joint
+    Tilt,      ///< periodic tilt of a joint's axis as it turns
 };
 
 /// An error of an element that depends on the configuration: its amount gains parameter * f(q).

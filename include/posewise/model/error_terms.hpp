@@ -74,4 +74,11 @@ std::vector<Compliance> compliances(const Chain& chain);
 Chain with_harmonics(const Chain& chain, const std::vector<double>& orders,
                      const std::vector<Index>& joints = {});
 
+/// The robot with the tilt error motion of axes [ISO 230-7], of bearings and of links that bend:
+/// after each of `joints` (empty: all revolute ones) rotations about the two axes perpendicular to
+/// its own, each with a sine and a cosine of order * q for each order: `q4.Rx.sin(q4)`,
+/// `q4.Ry.cos(2q4)`. Throws InputError as with_harmonics() does.
+Chain with_axis_tilt(const Chain& chain, const std::vector<double>& orders,
+                     const std::vector<Index>& joints = {});
+
 }  // namespace posewise
