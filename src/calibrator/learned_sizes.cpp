@@ -1,5 +1,7 @@
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "posewise/calibrator/identification.hpp"
@@ -55,6 +57,27 @@ double update(ParameterSpread& spread, ParameterSpread stated, const Chain& robo
     return change;
 }
 
+constexpr double looser = 100;        // than stated: holds nothing back
+constexpr double doubtful = 3;        // times the size learned
+constexpr double clear_evidence = 5;  // as a logarithm: 150 to 1
+
+double root_mean_square(const VectorXd& values) {
+    return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
+
+/// Of the measurements under the campaign's sizes and model error, but for a constant, by the
+/// estimate under them (Laplace: as if it were linear).
+double log_evidence(const Campaign& campaign, const Estimate& estimate) {
+    const Eigen::LLT<MatrixXd> covariance(estimate.covariance);
+    if (estimate.ending == Ending::NotIdentifiable || covariance.info() != Eigen::Success) {
+        return -std::numeric_limits<double>::infinity();
+    }
+    const VectorXd sizes = parameter_scale(campaign).segment(base_parameter_count(campaign),
+                                                             campaign.robot.parameter_count());
+    return -0.5 * estimate.variance_factor * static_cast<double>(estimate.degrees_of_freedom) +
+           covariance.matrixLLT().diagonal().array().log().sum() - sizes.array().log().sum();
+}
+
 }  // namespace
 
 ParameterSpread learn_sizes(const Campaign& campaign, const Measurements& measurements,
@@ -76,6 +99,42 @@ ParameterSpread learn_sizes(const Campaign& campaign, const Measurements& measur
         if (update(learned.spread, campaign.spread, campaign.robot, squares) < tolerance) break;
     }
     return learned.spread;
+}
+
+std::optional<HeldBackSize> find_held_back_size(const Campaign& learned,
+                                                const ParameterSpread& stated,
+                                                const Measurements& measurements,
+                                                const Parameters& start,
+                                                const LevenbergMarquardtOptions& options) {
+    if (options.loss.kind != LossKind::Squares) return std::nullopt;
+    LevenbergMarquardtOptions fixed = options;
+    fixed.finds_model_error = false;
+    const auto evidence_of = [&](const Campaign& campaign) {
+        return log_evidence(campaign, identify(campaign, measurements, start, fixed));
+    };
+    std::optional<HeldBackSize> found;
+    Campaign best = learned;
+    double largest = -std::numeric_limits<double>::infinity();
+    for (const SharedSize& shared : shared_sizes(learned.spread, learned.robot)) {
+        Campaign other = learned;
+        other.spread = stated;
+        double& size = size_of(other.spread, other.robot, shared.members.front());
+        size *= looser;
+        const Estimate loose = identify(other, measurements, start, fixed);
+        if (loose.ending == Ending::NotIdentifiable) continue;
+        size = root_mean_square(loose.parameters.robot(shared.members));
+        if (size < doubtful * shared.size) continue;
+        const double evidence = evidence_of(other);
+        if (evidence <= largest) continue;
+        largest = evidence;
+        best = other;
+        found = HeldBackSize{shared};
+    }
+    if (!found || options.stop.is_set()) return std::nullopt;
+    best.spread = learn_sizes(best, measurements, start, options);
+    if (evidence_of(best) - evidence_of(learned) < clear_evidence) return std::nullopt;
+    found->fitting = size_of(best.spread, best.robot, found->held.members.front());
+    return found;
 }
 
 }  // namespace posewise

@@ -143,7 +143,7 @@ Registration register_base_and_targets(const Campaign& campaign, const Measureme
 }
 
 Index least_calibration_count(const Campaign& campaign) {
-    const Index least = least_pose_count(campaign);
+    const Index least = std::max(least_pose_count(campaign), campaign.fitted_pose_count);
     const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
     const std::optional<ObservedPoints> observed = registered_points(nominal);
     if (!observed) return least;

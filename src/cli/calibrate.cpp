@@ -31,7 +31,8 @@ Finds base and targets from nothing, then identifies all parameters together, an
 With --plan the calibration sees only the plan's configurations and is judged on the others too.
 With --predict it says what to expect at configurations that need not be measured, as one reading
 there would find it: RMS, 95 %, and each one's in --predict-out (config,parameters_mm,left_over_mm,
-noise_mm,total_mm,p95_mm; orientations likewise in mrad).
+noise_mm,total_mm,p95_mm; orientations likewise in mrad). Each row is one, the same pose as often as
+it stands there; of a file with a column sample each configuration.
 With --loss huber or cauchy a target seen wrongly counts less (cauchy: hardly at all) and is listed:
 if its mean is farther off than 4.95 robust standard deviations (three coordinates), which come from
 the residuals' median, whatever sigma is stated. sqrt(variance factor) is their ratio to the stated.

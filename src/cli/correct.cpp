@@ -60,7 +60,8 @@ void correct(const CorrectArguments& arguments) {
     check_outputs({arguments.paths.campaign, arguments.estimate, arguments.poses}, {arguments.out});
     const io::CampaignFile file = io::read_campaign(arguments.paths.campaign);
     const Parameters found = io::read_estimate(arguments.estimate, file);
-    const io::Configurations poses = io::read_configurations(arguments.poses, file);
+    const io::Configurations poses = io::read_program(arguments.poses, file);
+    io::check_within_limits(arguments.poses, file, poses);
     const auto base =
         arguments.base == "campaign" ? CorrectionBase::Campaign : CorrectionBase::Estimate;
     if (base == CorrectionBase::Campaign && !file.has_nominal_base) {

@@ -39,7 +39,7 @@ void print_indices(const IndicesArguments& arguments) {
     const Rating rating = compute_from(arguments.paths.measurements, [&] {
         return rate(file, measurements, arguments.directions);
     });
-    print(format(rating, file));
+    print(format(rating, file) + describe_unused_planning(file));
 }
 
 }  // namespace

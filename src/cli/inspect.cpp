@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
+#include "measured.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/io/measurements_file.hpp"
@@ -61,7 +62,7 @@ void print_campaign(const io::CampaignFile& file) {
     const Inspection inspection = posewise::inspect(file, file.declared_robot, is_stated);
     const std::string gap = describe_gap(inspection);
     if (!gap.empty()) print_warning(file.path + ": " + gap);
-    print(format(inspection));
+    print(format(inspection) + describe_unused_planning(file));
 }
 
 bool is_urdf(const InspectArguments& arguments) {

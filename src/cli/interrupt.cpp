@@ -1,7 +1,10 @@
 #include "interrupt.hpp"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <csignal>
+#include <string_view>
 
 namespace posewise::cli {
 namespace {
@@ -22,6 +25,11 @@ void note_interrupt(int /*signal*/) {
     if (first_at.compare_exchange_strong(first, now)) {
         is_interrupted = true;
     } else if (steady_clock::duration(now - first) > echo) {
+        constexpr std::string_view last_words =
+            "posewise: interrupted twice; nothing was written\n";
+        // Nobody is there to tell of a failure.
+        [[maybe_unused]] const auto said =
+            ::write(STDERR_FILENO, last_words.data(), last_words.size());
         std::signal(SIGINT, SIG_DFL);
         std::raise(SIGINT);
     }

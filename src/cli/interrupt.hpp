@@ -5,7 +5,7 @@
 namespace posewise::cli {
 
 /// While it lives, the first Ctrl-C (SIGINT) only sets the flag; another, half a second later or
-/// more, ends the program.
+/// more, ends the program, and says that nothing was written: it must not outlive that.
 class InterruptFlag {
   public:
     InterruptFlag();

@@ -1,5 +1,7 @@
 #include "measured.hpp"
 
+#include <fmt/format.h>
+
 #include "common.hpp"
 #include "files.hpp"
 #include "posewise/report/reports.hpp"
@@ -26,9 +28,16 @@ std::string describe_planned(const io::CampaignFile& campaign, double repeats) {
     std::string text = detail::describe_scaling(campaign, repeats);
     if (campaign.planned_model) {
         text += "errors: " + std::string(io::error_model_name(*campaign.planned_model)) +
-                ", as planning.errors says; calibrate fits those of robot.errors\n";
+                ", as planning.errors says: the accuracy predicted is that of a calibration that "
+                "fits these, calibrate fits those of robot.errors\n";
     }
     return text;
+}
+
+std::string describe_unused_planning(const io::CampaignFile& campaign) {
+    if (!campaign.planned_model) return "";
+    return fmt::format("planning.errors, {}, is for select and plan, and not used here\n",
+                       io::error_model_name(*campaign.planned_model));
 }
 
 Measurements read_measured(const std::string& path, const io::CampaignFile& file) {
@@ -38,7 +47,7 @@ Measurements read_measured(const std::string& path, const io::CampaignFile& file
 }
 
 io::Configurations read_unlimited(const std::string& path, const io::CampaignFile& file) {
-    io::Configurations read = io::read_any_configurations(path, file);
+    io::Configurations read = io::read_program(path, file);
     warn_beyond_limits(path, file, read.joints, read.ids);
     return read;
 }

@@ -13,11 +13,14 @@ io::CampaignFile read_with_prior(const std::string& path, std::optional<bool> pr
 /// Noise, scales and errors that poses are planned with, a line each.
 std::string describe_planned(const io::CampaignFile& campaign, double repeats);
 
+/// A line that says so of a file that states errors to plan with, where they are not used.
+std::string describe_unused_planning(const io::CampaignFile& campaign);
+
 /// io::read_measurements(). Configurations beyond the joint limits are taken, since they were
 /// measured; a warning on standard error says so.
 Measurements read_measured(const std::string& path, const io::CampaignFile& file);
 
-/// io::read_any_configurations(), with the same warning.
+/// io::read_program(), with the same warning.
 io::Configurations read_unlimited(const std::string& path, const io::CampaignFile& file);
 
 }  // namespace posewise::cli

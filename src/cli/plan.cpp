@@ -116,16 +116,16 @@ void plan(const PlanArguments& arguments) {
         arguments.out.empty() ? default_plan_out(sources.campaign) : arguments.out;
     check_outputs({sources.campaign, sources.augment, sources.repaired, sources.workspace},
                   {out, arguments.csv});
-    const InterruptFlag interrupted;
-    const StopSignal stop{interrupted.get(), deadline_after(arguments.request.time_limit)};
-    io::CampaignFile campaign = io::read_planned_campaign(sources.campaign);
+    std::optional<InterruptFlag> interrupted(std::in_place);
+    const StopSignal stop{interrupted->get(), deadline_after(arguments.request.time_limit)};
+    const io::CampaignFile campaign = io::read_planned_campaign(sources.campaign, arguments.prior);
     const PlanRequest request = make_request(arguments, &campaign, Criterion::V);
-    io::set_prior(campaign, request.has_prior);
     PlanningOptions options = read_planning_inputs(request, campaign);
     if (!sources.repaired.empty()) options.repaired = io::read_plan(sources.repaired);
     options.stop = stop;
     const Planning planning = plan_with_progress(campaign, options, arguments.progress);
     io::write_plan(out, planning.plan);
+    interrupted.reset();
     if (!arguments.csv.empty()) {
         io::write_configurations_csv(arguments.csv, planning.campaign, planning.plan.poses);
     }

@@ -39,8 +39,7 @@ Measurements register the base and the targets; other candidates need them in th
 measured poses, --augment). A candidate file has the columns config,q1_deg,... and perhaps
 visible_targets (as plan --csv writes it), or is a measurement file; --random draws a scrambled Halton
 sequence within the joint limits. A file of blocks has a row of numbers a line (or is a MATLAB
-matrix), and each --rows of them are one candidate, named 0, 1, ...
-A file of --groups has the columns config,group.
+matrix), each --rows of them one candidate, named 0, 1, ... One of --groups: columns config,group.
 
 Ctrl-C or --time end the search with the best plan so far, written with its bound; exit code 0.
 The same seed gives the same plan, on any number of threads, unless time ended it.)";
@@ -49,7 +48,7 @@ struct SelectArguments : RequestArguments {
     std::string measurements;
     std::string candidates;
     std::string blocks;
-    std::optional<Index> random;
+    Index random = 0;  ///< how many; 0: others
     double least_distance_deg = 0;
 };
 
@@ -77,7 +76,7 @@ void check_select_usage(const SelectArguments& arguments) {
 }
 
 CandidateKind kind_of(const SelectArguments& arguments) {
-    if (arguments.random) return CandidateKind::Random;
+    if (arguments.random > 0) return CandidateKind::Random;
     if (!arguments.candidates.empty()) return CandidateKind::Configurations;
     return arguments.blocks.empty() ? CandidateKind::Measurements : CandidateKind::Blocks;
 }
@@ -106,30 +105,31 @@ void print_plan(const Plan& plan, const io::CampaignFile* campaign, const std::s
 
 void select(const SelectArguments& arguments) {
     check_select_usage(arguments);
-    const InterruptFlag interrupted;
-    const StopSignal stop{interrupted.get(), deadline_after(arguments.request.time_limit)};
+    std::optional<InterruptFlag> interrupted(std::in_place);
+    const StopSignal stop{interrupted->get(), deadline_after(arguments.request.time_limit)};
     std::optional<io::CampaignFile> file;
     const std::string& path = arguments.request.sources.campaign;
-    if (!path.empty()) file = io::read_planned_campaign(path);
+    if (!path.empty()) file = io::read_planned_campaign(path, arguments.prior);
     const PlanRequest request = complete_request(arguments, file ? &*file : nullptr);
     const PlanSources& sources = request.sources;
     const std::string out = arguments.out.empty() ? default_select_out(sources) : arguments.out;
     check_outputs(
         {sources.campaign, sources.candidates, sources.augment, sources.test_poses, sources.groups},
         {out});
-    const Index count = arguments.random.value_or(0);
-    ChoiceInputs inputs = read_choice_inputs(request, kind_of(arguments), count, std::move(file));
+    ChoiceInputs inputs =
+        read_choice_inputs(request, kind_of(arguments), arguments.random, std::move(file));
     inputs.options.stop = stop;
     ProgressLine line("selecting", arguments.progress);
     inputs.options.progress = [&](const Progress& state) { line(state); };
     const Plan plan = inputs.campaign ? choose(*inputs.campaign, inputs.candidates, inputs.options)
                                       : choose(inputs.blocks, inputs.options);
-    if (plan.candidate_count < count) {
+    if (plan.candidate_count < arguments.random) {
         print_warning(
             fmt::format("only {} of the {} random candidates were drawn in the time there was",
-                        plan.candidate_count, count));
+                        plan.candidate_count, arguments.random));
     }
     io::write_plan(out, plan);
+    interrupted.reset();
     print_plan(plan, inputs.campaign ? &*inputs.campaign : nullptr, out);
 }
 

@@ -79,7 +79,7 @@ void study(const StudyArguments& arguments) {
         throw input_error_at({paths.measurements},
                              (compares ? study.model + ": " : "") + study.undetermined);
     }
-    print(compares ? format(studies) : format(studies.front()));
+    print((compares ? format(studies) : format(studies.front())) + describe_unused_planning(file));
     if (!arguments.csv.empty()) {
         detail::write_file(arguments.csv,
                            compares ? study_csv(studies) : study_csv(studies.front()));

@@ -1,5 +1,6 @@
 #include "study_options.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 #include "../core/text.hpp"
@@ -41,7 +42,13 @@ template <class Parse>
 auto parse_names(const std::string& text, const char* option, const char* example, Parse&& parse) {
     std::vector<decltype(parse(text))> values;
     try {
-        for (const std::string& name : CLI::detail::split(text, ',')) values.push_back(parse(name));
+        for (const std::string& name : CLI::detail::split(text, ',')) {
+            const auto value = parse(name);
+            if (std::find(values.begin(), values.end(), value) != values.end()) {
+                throw InputError("names " + detail::quote(name) + " twice; keep one");
+            }
+            values.push_back(value);
+        }
     } catch (const InputError& error) {
         throw CLI::ValidationError(option, error.what());
     }

@@ -7,6 +7,7 @@
 #include "../model/complete_model.hpp"
 #include "atomic_file.hpp"
 #include "campaign_sections.hpp"
+#include "posewise/calibrator/registration.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "text.hpp"
 
@@ -219,16 +220,28 @@ CampaignFile read_campaign(const std::string& path) {
 std::vector<CampaignFile> read_campaign(const std::string& path,
                                         const std::vector<ErrorModel>& models) {
     const std::string content = detail::read_file(path, most_bytes);
-    parse_campaign(content, path);  // what is wrong with it as it stands is said
+    const CampaignFile stated = parse_campaign(content, path);  // says what is wrong with it
     std::vector<CampaignFile> files;
-    for (const ErrorModel model : models) files.push_back(parse(content, path, model));
+    for (const ErrorModel model : models) {
+        files.push_back(parse(content, path, model));
+        if (model == stated.error_model || files.back().robot.parameter_count() > 0) continue;
+        throw input_error_at({path},
+                             fmt::format("has no errors to fit as {}, none is named in brackets; "
+                                         "must be compared without that model",
+                                         error_model_name(model)));
+    }
     return files;
 }
 
-CampaignFile read_planned_campaign(const std::string& path) {
+CampaignFile read_planned_campaign(const std::string& path, std::optional<bool> prior) {
     const std::string content = detail::read_file(path, most_bytes);
     CampaignFile file = parse_campaign(content, path);
-    return file.planned_model ? parse(content, path, file.planned_model) : file;
+    set_prior(file, prior.value_or(file.spread.is_prior));
+    if (!file.planned_model) return file;
+    CampaignFile planned = parse(content, path, file.planned_model);
+    set_prior(planned, prior.value_or(planned.spread.is_prior));
+    planned.fitted_pose_count = least_calibration_count(file);
+    return planned;
 }
 
 CampaignFile parse_campaign(const std::string& content, const std::string& path) {

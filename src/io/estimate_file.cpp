@@ -193,6 +193,19 @@ Json trial_to_json(const ModelTrial& trial) {
     return json;
 }
 
+/// Of each class the size stated and the one learned.
+Json sizes_to_json(const Calibration& calibration) {
+    const Chain& robot = calibration.campaign.robot;
+    Json sizes = Json::object();
+    for (const SharedSize& stated : shared_sizes(*calibration.stated_spread, robot)) {
+        sizes[stated.key + detail::si_suffix(stated.is_angle)] = {{"stated", stated.size}};
+    }
+    for (const SharedSize& learned : shared_sizes(calibration.campaign.spread, robot)) {
+        sizes[learned.key + detail::si_suffix(learned.is_angle)]["learned"] = learned.size;
+    }
+    return sizes;
+}
+
 Json selection_to_json(const ModelSelection& selection) {
     Json sets = Json::array();
     for (const ModelTrial& trial : selection.trials) sets.push_back(trial_to_json(trial));
@@ -240,6 +253,7 @@ void write_estimate(const std::string& path, const Calibration& calibration,
     }
     if (calibration.selection)
         document["model_selection"] = selection_to_json(*calibration.selection);
+    if (calibration.stated_spread) document["learned_sizes"] = sizes_to_json(calibration);
     document["assumes"] = detail::numbers_to_json(assumptions_of(campaign));
     detail::write_json(path, document);
 }

@@ -19,8 +19,11 @@ class HeaderReader {
           joints_(campaign.robot.joints()),
           wanted_(wanted_columns(campaign)),
           has_orientation_(campaign.sensor->has_orientation()),
-          examples_{"config", "sample"} {
-        for (const WantedColumn& column : wanted_) examples_.push_back(column.example());
+          examples_{"config"} {
+        if (!is_optional(Role::Sample)) examples_.emplace_back("sample");
+        for (const WantedColumn& column : wanted_) {
+            if (!is_optional(column.role)) examples_.push_back(column.example());
+        }
     }
 
     std::vector<Column> read() const {
@@ -45,8 +48,15 @@ class HeaderReader {
                               "column " + quote(csv_.fields()[field]) + " " + problem);
     }
 
+    /// What configurations need not state.
+    bool is_optional(Role role) const {
+        return content_ != Content::JointsAndObservations &&
+               (role == Role::Sample || role == Role::Observation);
+    }
+
     InputError unknown(std::size_t field) const {
         std::vector<std::string> known = examples_;
+        if (is_optional(Role::Sample)) known.emplace_back("sample");
         known.emplace_back(visible_targets);
         return error(field, "is unknown; " + suggest(csv_.fields()[field], known));
     }
@@ -133,8 +143,7 @@ class HeaderReader {
         std::vector<std::string> missing;
         if (!has(Role::Configuration, 0)) missing.emplace_back("config");
         for (const WantedColumn& column : wanted_) {
-            if (column.role == Role::Observation && content_ == Content::JointsAndVisibleTargets)
-                continue;
+            if (is_optional(column.role)) continue;
             if (is_replaced && column.role == Role::Observation && column.index >= 3) continue;
             if (!has(column.role, column.index)) missing.push_back(column.example());
         }

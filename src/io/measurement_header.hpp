@@ -17,8 +17,9 @@ struct Column {
 };
 
 /// What of a row is read: observations, or without them (their columns may be missing or hold
-/// anything) which targets the column visible_targets lists.
-enum class Content { JointsAndObservations, JointsAndVisibleTargets };
+/// anything) which targets the column visible_targets lists, of candidates, all different, or of a
+/// program, which may hold the same pose more than once.
+enum class Content { JointsAndObservations, JointsAndVisibleTargets, Program };
 
 /// The columns of the row that `csv` has just read. `q1_rad` is looked up by its stem and its unit
 /// checked. Throws InputError with the place for columns that are unknown, missing or there twice.

@@ -30,7 +30,11 @@ class RowReader {
           content_(content),
           columns_(std::move(columns)),
           field_of_joint_(static_cast<std::size_t>(campaign.robot.configuration_size())),
-          field_of_observation_(static_cast<std::size_t>(campaign.sensor->row_count())) {
+          field_of_observation_(static_cast<std::size_t>(campaign.sensor->row_count())),
+          is_each_row_one_(content == Content::Program &&
+                           std::none_of(columns_.begin(), columns_.end(), [](const auto& column) {
+                               return column.role == Role::Sample;
+                           })) {
         for (std::size_t field = 0; field < columns_.size(); ++field) {
             const auto index = static_cast<std::size_t>(columns_[field].index);
             if (columns_[field].role == Role::Joint) field_of_joint_[index] = field;
@@ -55,9 +59,10 @@ class RowReader {
         for (std::size_t field = 0; field < columns_.size(); ++field) read_field(field);
         if (content_ == Content::JointsAndObservations) read_targets();
         check_new_sample();
-        samples.add(row_, [this](Index joint) {
+        const auto locate = [this](Index joint) {
             return csv_.locate(field_of_joint_[static_cast<std::size_t>(joint)]);
-        });
+        };
+        samples.add(row_, locate, is_each_row_one_);
     }
 
   private:
@@ -84,7 +89,7 @@ class RowReader {
                 return;
             case Role::VisibleTargets:
                 // What was planned; what was measured tells by itself what was seen.
-                if (content_ == Content::JointsAndVisibleTargets) read_visible(field);
+                if (content_ != Content::JointsAndObservations) read_visible(field);
                 return;
             case Role::Joint:
                 row_.joints[column.index] = read_number(field);
@@ -229,6 +234,7 @@ class RowReader {
     std::vector<Column> columns_;
     std::vector<std::size_t> field_of_joint_;
     std::vector<std::size_t> field_of_observation_;
+    bool is_each_row_one_;                         ///< a configuration by itself
     std::vector<std::size_t> orientation_fields_;  ///< if it is not a rotation vector
     std::unordered_set<std::string> seen_;
     std::string sample_;
@@ -238,14 +244,21 @@ class RowReader {
 Measurements read_csv(const std::string& path, const Campaign& campaign, Content content) {
     detail::CsvReader csv(path);
     if (!csv.next_row()) {
-        throw input_error_at({path},
-                             "is empty; must begin with a header like "
-                             "config,sample,q1_rad,...,p1_x_mm,...");
+        throw input_error_at({path}, std::string("is empty; must begin with a header like ") +
+                                         (content == Content::JointsAndObservations
+                                              ? "config,sample,q1_rad,...,p1_x_mm,..."
+                                              : "config,q1_rad,..."));
     }
     RowReader row(csv, campaign, content, read_header(csv, campaign, content));
     detail::SampleCollector samples(campaign);
     while (csv.next_row()) row.add_to(samples);
-    return samples.finish(path);
+    return samples.finish(path, content == Content::Program);
+}
+
+Configurations read_unmeasured(const std::string& path, const Campaign& campaign, Content content) {
+    Measurements read = read_csv(path, campaign, content);
+    const RowMatrixXd visible = times_seen(read);
+    return {std::move(read.ids), std::move(read.configurations), visible.array() > 0};
 }
 
 }  // namespace
@@ -255,9 +268,11 @@ Measurements read_measurements_csv(const std::string& path, const Campaign& camp
 }
 
 Configurations read_configurations_csv(const std::string& path, const Campaign& campaign) {
-    Measurements read = read_csv(path, campaign, Content::JointsAndVisibleTargets);
-    const RowMatrixXd visible = times_seen(read);
-    return {std::move(read.ids), std::move(read.configurations), visible.array() > 0};
+    return read_unmeasured(path, campaign, Content::JointsAndVisibleTargets);
+}
+
+Configurations read_program_csv(const std::string& path, const Campaign& campaign) {
+    return read_unmeasured(path, campaign, Content::Program);
 }
 
 }  // namespace posewise::io

@@ -9,6 +9,13 @@ namespace {
 
 bool is_matlab(const std::string& path) { return path.ends_with(".mat") || path.ends_with(".MAT"); }
 
+Configurations read_matlab(const std::string& path, const CampaignFile& file) {
+    Measurements read = read_measurements_mat(path, file, file.mat);
+    const Index count = read.configuration_count();
+    return {std::move(read.ids), std::move(read.configurations),
+            all_seen(count, file.sensor->target_count())};
+}
+
 }  // namespace
 
 Measurements read_measurements(const std::string& path, const CampaignFile& file) {
@@ -16,25 +23,28 @@ Measurements read_measurements(const std::string& path, const CampaignFile& file
                            : read_measurements_csv(path, file);
 }
 
-Configurations read_any_configurations(const std::string& path, const CampaignFile& file) {
-    if (!is_matlab(path)) return read_configurations_csv(path, file);
-    Measurements read = read_measurements_mat(path, file, file.mat);
-    const Index count = read.configuration_count();
-    return {std::move(read.ids), std::move(read.configurations),
-            all_seen(count, file.sensor->target_count())};
+Configurations read_configurations(const std::string& path, const CampaignFile& file) {
+    Configurations read =
+        is_matlab(path) ? read_matlab(path, file) : read_configurations_csv(path, file);
+    check_within_limits(path, file, read);
+    return read;
 }
 
-Configurations read_configurations(const std::string& path, const CampaignFile& file) {
-    Configurations read = read_any_configurations(path, file);
-    for (Index i = 0; i < read.joints.rows(); ++i) {
+void check_within_limits(const std::string& path, const CampaignFile& file,
+                         const Configurations& configurations) {
+    for (Index i = 0; i < configurations.joints.rows(); ++i) {
         const std::string violation =
-            detail::describe_limit_violation(file.robot, read.joints.row(i).transpose());
+            detail::describe_limit_violation(file.robot, configurations.joints.row(i).transpose());
         if (violation.empty()) continue;
-        throw input_error_at({path}, "configuration " +
-                                         detail::quote(read.ids[static_cast<std::size_t>(i)]) +
-                                         " is beyond the joint limits: " + violation);
+        throw input_error_at({path},
+                             "configuration " +
+                                 detail::quote(configurations.ids[static_cast<std::size_t>(i)]) +
+                                 " is beyond the joint limits: " + violation);
     }
-    return read;
+}
+
+Configurations read_program(const std::string& path, const CampaignFile& file) {
+    return is_matlab(path) ? read_matlab(path, file) : read_program_csv(path, file);
 }
 
 }  // namespace posewise::io

@@ -167,7 +167,7 @@ void read_bounds(const JsonValue& document, Plan& plan) {
 
 void read_search(const JsonValue& search, Plan& plan) {
     plan.request.seed = search["seed"].natural_number();
-    plan.request.starts = search["starts"].count(1, most_starts);
+    plan.request.starts = search["starts"].count(0, most_starts);
     plan.starts_at_best = search["starts_at_best"].count(0, plan.request.starts);
     const std::string reason = search["stop_reason"].text();
     const auto found = std::find_if(detail::plan_endings.begin(), detail::plan_endings.end(),

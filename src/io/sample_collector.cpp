@@ -21,21 +21,20 @@ std::string in_line(const FileLocation& location) {
 
 }  // namespace
 
-void SampleCollector::add(const Sample& sample, const LocateJoint& locate) {
+void SampleCollector::add(const Sample& sample, const LocateJoint& locate, bool is_apart) {
     check_torques(sample.joints, locate);
     const auto next = static_cast<Index>(ids_.size());
-    const auto [entry, is_new] = configuration_of_id_.emplace(sample.id, next);
-    if (is_new) {
+    const Index i = is_apart ? next : configuration_of_id_.emplace(sample.id, next).first->second;
+    if (i == next) {
         ids_.push_back(sample.id);
         configurations_.push_back(sample.joints);
         first_places_.push_back(locate(0));
     } else {
-        check_same_joints(entry->second, sample.joints, locate);
+        check_same_joints(i, sample.joints, locate);
         const Index torques = sample.joints.size() - campaign_.robot.joint_count();
-        configurations_[static_cast<std::size_t>(entry->second)].tail(torques) +=
-            sample.joints.tail(torques);
+        configurations_[static_cast<std::size_t>(i)].tail(torques) += sample.joints.tail(torques);
     }
-    configuration_.push_back(entry->second);
+    configuration_.push_back(i);
     observations_.insert(observations_.end(), sample.observation.begin(), sample.observation.end());
     is_seen_.push_back(sample.is_seen);
 }
@@ -90,11 +89,11 @@ void SampleCollector::check_all_different() const {
     }
 }
 
-Measurements SampleCollector::finish(const std::string& path) const {
+Measurements SampleCollector::finish(const std::string& path, bool may_repeat) const {
     if (ids_.empty()) {
-        throw input_error_at({path}, "has a header but no rows; must have at least one sample");
+        throw input_error_at({path}, "has a header but no rows; must have at least one row");
     }
-    check_all_different();
+    if (!may_repeat) check_all_different();
     Measurements measurements;
     measurements.ids = ids_;
     const Chain& robot = campaign_.robot;

@@ -29,12 +29,14 @@ class SampleCollector {
 
     /// One more sample. Throws InputError if its joint values differ by over 1e-6 from those of the
     /// configuration's first sample, or a torque is over twice the largest that occurs. Torques may
-    /// differ: the configuration's are their means.
-    void add(const Sample& sample, const LocateJoint& locate);
+    /// differ: the configuration's are their means. One that is apart is a configuration by itself,
+    /// whatever its id.
+    void add(const Sample& sample, const LocateJoint& locate, bool is_apart = false);
 
     /// Samples grouped by configuration, in the order the configurations first occurred. Throws
-    /// InputError if there are none or if two configurations have the same joint values.
-    Measurements finish(const std::string& path) const;
+    /// InputError if there are none or, unless they may, if two configurations have the same joint
+    /// values.
+    Measurements finish(const std::string& path, bool may_repeat = false) const;
 
   private:
     void check_same_joints(Index configuration, const VectorXd& joints,

@@ -74,6 +74,30 @@ double& size_of(ParameterSpread& spread, const Chain& robot, Index parameter) {
     return turns ? spread.angle : spread.length;
 }
 
+std::vector<SharedSize> shared_sizes(const ParameterSpread& spread, const Chain& robot) {
+    ParameterSpread sizes = spread;
+    const auto key_of = [&](const double* size) {
+        if (size == &sizes.length) return "length";
+        if (size == &sizes.angle) return "angle";
+        if (size == &sizes.gravity) return "gravity";
+        return size == &sizes.harmonic ? "harmonic" : "offset";
+    };
+    const auto names = robot.parameter_names();
+    std::vector<SharedSize> shared;
+    for (Index k = 0; k < robot.parameter_count(); ++k) {
+        if (sizes.by_name.contains(names[static_cast<std::size_t>(k)])) continue;
+        const double& size = size_of(sizes, robot, k);
+        const std::string key = key_of(&size);
+        auto found = std::find_if(shared.begin(), shared.end(),
+                                  [&](const SharedSize& one) { return one.key == key; });
+        if (found == shared.end()) {
+            found = shared.insert(found, {key, size, key != "length", {}});
+        }
+        found->members.push_back(k);
+    }
+    return shared;
+}
+
 VectorXd parameter_scale(const Campaign& campaign) {
     const auto names = parameter_names(campaign);
     const auto is_angle = parameter_is_angle(campaign);

@@ -145,6 +145,12 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
     return results;
 }
 
+/// Of a start: whether it was stopped on its way, or before it.
+bool is_cut_short(Ending ending, const StopSignal& stop) {
+    return ending == Ending::Interrupted || ending == Ending::TimeLimit ||
+           (ending == Ending::NotRun && stop.is_set());
+}
+
 /// The best refinement's plan and information.
 void report(const Problem& problem, Refinement best, PlannedPoses& planned) {
     const DesignSpace& space = problem.space;
@@ -206,6 +212,8 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
                           [](const auto& a, const auto& b) { return a.value < b.value; });
     for (const Refinement& result : results) {
         planned.endings.push_back(result.ending);
+        if (is_cut_short(result.ending, problem.options.stop)) continue;
+        ++planned.starts;
         const double behind = best.value - result.value;
         if (behind <= 1e-6 * std::abs(best.value)) ++planned.starts_at_best;
     }

@@ -62,7 +62,10 @@ std::string describe_ending(const Calibration& calibration) {
     if (estimate.ending != Ending::Converged) text += "; this is not the optimum";
     text += '\n';
     if (is_model_error_found(calibration)) {
-        text += "model error found: " + detail::describe_model_error(calibration.campaign) + '\n';
+        const bool has_any = estimate.degrees_of_freedom > 0;
+        text += (has_any ? "model error found: "
+                         : "model error assumed, nothing is left to find it from: ") +
+                detail::describe_model_error(calibration.campaign) + '\n';
     }
     return text + fmt::format(
                       "variance factor {} with {} degrees of freedom (1: noise and model error "
@@ -279,6 +282,16 @@ std::string describe_model_errors(const std::vector<ModelErrorDoubt>& errors) {
            "points are grossly wrong (try --loss cauchy)";
 }
 
+std::string describe_held_back(const HeldBackSize& size) {
+    const bool is_angle = size.held.is_angle;
+    return fmt::format(
+        "the size learned for spread.{}_{}, {}, holds its errors back, the one stated is too "
+        "small: "
+        "{} would fit",
+        size.held.key, units_of(is_angle).error, detail::format_error(size.held.size, is_angle),
+        detail::format_error(size.fitting, is_angle));
+}
+
 }  // namespace
 
 std::string format(const Calibration& calibration, bool has_all_parameters) {
@@ -329,6 +342,7 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     if (!doubts.model_errors.empty()) {
         sentences.push_back(describe_model_errors(doubts.model_errors));
     }
+    if (doubts.held_back) sentences.push_back(describe_held_back(*doubts.held_back));
     return sentences;
 }
 

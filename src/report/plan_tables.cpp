@@ -15,6 +15,12 @@ namespace {
 
 using detail::Table;
 
+/// How many starts agree; those that a stop cut short tell nothing.
+std::string describe_starts(const Plan& plan, const char* where) {
+    if (plan.request.starts == 0) return "none ended before the stop";
+    return fmt::format("{} of {} ended {}", plan.starts_at_best, plan.request.starts, where);
+}
+
 /// Says, where little is proven about a plan, what tells more.
 std::string describe_bound(const Plan& plan) {
     return detail::describe_looseness(plan.efficiency, plan.starts_at_best, plan.request.starts);
@@ -204,10 +210,10 @@ std::string describe_prediction(const Plan& plan) {
 std::string format_choice(const Plan& plan) {
     return fmt::format(
         "chosen:     {}\ncriterion:  {}\nvalue:      {}\nbound:      {}\n"
-        "efficiency: {} proven\nstarts:     {} of {} ended here, {}\n{}{}",
+        "efficiency: {} proven\nstarts:     {}, {}\n{}{}",
         describe_ids(plan), criterion_name(plan.request.criterion), describe_value(plan),
         format_value(plan, plan.bound), detail::format_fixed(plan.efficiency, 4),
-        plan.starts_at_best, plan.request.starts, ending_name(plan.ending), describe_proof(plan),
+        describe_starts(plan, "here"), ending_name(plan.ending), describe_proof(plan),
         describe_prediction(plan));
 }
 
@@ -232,10 +238,9 @@ std::string format_planning(const Planning& planning) {
         detail::format_fixed(plan.efficiency, 4));
     const std::string looseness = describe_bound(plan);
     if (!looseness.empty()) text += "note:        " + looseness + '\n';
-    text +=
-        fmt::format("searched:    {}\nstarts:      {} of {} ended at the best\norder:       {}\n",
-                    describe_searched_bound(plan), plan.starts_at_best, plan.request.starts,
-                    describe_order(planning.tour));
+    text += fmt::format("searched:    {}\nstarts:      {}\norder:       {}\n",
+                        describe_searched_bound(plan), describe_starts(plan, "at the best"),
+                        describe_order(planning.tour));
     return text + format_section("Poses, in the order to visit them", pose_table(plan));
 }
 

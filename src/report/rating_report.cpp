@@ -50,6 +50,13 @@ std::string format(const Rating& rating, const Campaign& campaign) {
                     detail::describe_scaling(campaign, rating.repeats));
     text += format_section("Indices (-inf, condition inf: the parameters are not identifiable)",
                            index_table(rating, campaign.spread.is_prior));
+    text += fmt::format(
+        "\nwhitened, scaled: rows divided by the noise, columns times the expected errors{}: what "
+        "posewise selects by\nplain: of the Jacobian in mm and mrad, without noise, scale or "
+        "prior, "
+        "as papers print them\nLarger is better, but of the condition number; G and V predict "
+        "these configurations' own readings.\n",
+        campaign.spread.is_prior ? ", and what the prior tells" : "");
     text += "\nWeakest directions, known to\n\n";
     for (const WeakDirection& direction : rating.weakest) {
         text += "  " + describe_direction(campaign, direction) + '\n';

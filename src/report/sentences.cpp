@@ -73,6 +73,7 @@ std::string describe_scaling(const Campaign& campaign, double repeats) {
 std::string describe_looseness(double efficiency, Index starts_at_best, Index starts) {
     constexpr double loose_efficiency = 0.9;
     if (efficiency >= loose_efficiency) return "";
+    if (starts == 0) return "the bound is loose at so few poses";
     return fmt::format(
         "the bound is loose at so few poses: {} of {} independent starts ended at this value",
         starts_at_best, starts);

@@ -66,7 +66,7 @@ ScoredPoses make_first_start(const SearchProblem& problem, const Relaxation& rel
         const bool is_one = poses.size() == 1;
         throw InputError(fmt::format(
             "pose count is {}, but only {} {} found that exclusions, groups and distances "
-            "(least_joint_distance_deg of a cell) allow{}",
+            "(--least-distance-deg, of plans the cell's least_joint_distance_deg) allow{}",
             problem.options.pose_count, poses.size(), is_one ? "pose was" : "poses were",
             is_one ? "" : " together"));
     }
@@ -132,13 +132,20 @@ Shortlist shortlist_by_sensitivity(const SearchProblem& problem, const Relaxatio
     return detail::make_shortlist(problem.candidates, std::move(members));
 }
 
+struct Outcome {
+    ScoredPoses best;
+    std::vector<ScoredPoses> starts;  // what each start ended at, but for those cut short
+    bool is_optimal = false;
+};
+
 /// Searches from `first`, the start of the relaxation, and from random ones.
-std::vector<ScoredPoses> run_starts(const SearchProblem& problem, const Relaxation& relaxation,
-                                    const Shortlist& shortlist, const ScoredPoses& first) {
+Outcome run_starts(const SearchProblem& problem, const Relaxation& relaxation,
+                   const Shortlist& shortlist, const ScoredPoses& first) {
     const SelectOptions& options = problem.options;
     const Index starts = start_count(shortlist, problem.candidates, options);
     detail::ProgressCounter counter(options.progress, {.total = starts, .bound = relaxation.bound});
     std::vector<std::optional<ScoredPoses>> ends(static_cast<std::size_t>(starts));
+    std::vector<char> is_cut_short(static_cast<std::size_t>(starts));
     detail::for_each_index(starts, [&](Index start) {
         if (start > 0 && options.stop.is_set()) return;
         RandomStream random(options.seed, static_cast<std::uint64_t>(start));
@@ -151,13 +158,16 @@ std::vector<ScoredPoses> run_starts(const SearchProblem& problem, const Relaxati
                 progress.value = std::max(progress.value, choice.score.value);
             }
         });
+        is_cut_short[static_cast<std::size_t>(start)] = options.stop.is_set() ? 1 : 0;
         ends[static_cast<std::size_t>(start)] = std::move(choice);
     });
-    std::vector<ScoredPoses> choices;  // of the starts there was time for
-    for (const auto& end : ends) {
-        if (end) choices.push_back(*end);
+    Outcome outcome{*ends.front(), {}, false};
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        if (!ends[i]) continue;  // there was no time for it
+        if (is_better(ends[i]->score, outcome.best.score)) outcome.best = *ends[i];
+        if (is_cut_short[i] == 0) outcome.starts.push_back(*ends[i]);
     }
-    return choices;
+    return outcome;
 }
 
 /// Exchanges with every candidate that could improve the choice, shortlisted or not, until none
@@ -190,12 +200,6 @@ double ridge_of(const Blocks& candidates) {
     return 1e-11 * std::max(candidates.matrix.squaredNorm() / entries, 1e-300);
 }
 
-struct Outcome {
-    ScoredPoses best;
-    std::vector<ScoredPoses> starts;  // what each start ended at
-    bool is_optimal = false;
-};
-
 /// The relaxation's own start may leave few enough other choices to try them all; else all starts.
 Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
     const Shortlist shortlist = shortlist_by_sensitivity(problem, relaxation);
@@ -203,11 +207,7 @@ Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
     if (auto optimum = enumerate_open_choices(problem, relaxation, first)) {
         return {*optimum, {*optimum}, true};
     }
-    Outcome outcome{{}, run_starts(problem, relaxation, shortlist, first), false};
-    outcome.best = outcome.starts.front();
-    for (const ScoredPoses& choice : outcome.starts) {
-        if (is_better(choice.score, outcome.best.score)) outcome.best = choice;
-    }
+    Outcome outcome = run_starts(problem, relaxation, shortlist, first);
     outcome.best = sweep_all(problem, outcome.best);
     if (problem.options.stop.is_set()) return outcome;
     if (auto optimum = enumerate_open_choices(problem, relaxation, outcome.best)) {

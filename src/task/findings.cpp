@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "posewise/core/errors.hpp"
 
@@ -23,6 +24,15 @@ const NamedNumber* find(const std::vector<NamedNumber>& numbers, const std::stri
     const auto found = std::find_if(numbers.begin(), numbers.end(),
                                     [&](const NamedNumber& other) { return other.name == name; });
     return found == numbers.end() ? nullptr : &*found;
+}
+
+/// Names of the parameters whose scales these numbers are, in any order.
+std::set<std::string> parameters_in(const std::vector<NamedNumber>& numbers) {
+    std::set<std::string> names;
+    for (const NamedNumber& one : numbers) {
+        if (one.name.starts_with("expected_error/")) names.insert(one.name);
+    }
+    return names;
 }
 
 /// "sigma_m: stated 1e-05, is 5.2e-05" for each that differs.
@@ -69,6 +79,18 @@ void Findings::note(const std::string& name, bool is_right, const std::string& t
 
 void Findings::compare(const std::string& name, double stated, double actual, bool is_right) {
     findings_.push_back({name, is_right, "", stated, actual});
+}
+
+bool Findings::has_same_parameters(const Plan& plan, const Campaign& campaign) {
+    const auto stated = parameters_in(plan.assumptions);
+    const auto actual = parameters_in(assumptions_of(campaign));
+    if (stated.empty() || stated == actual) return true;
+    note(
+        "parameters", false,
+        fmt::format("planned for {}, the campaign has {} now, not the same ones; put back what its "
+                    "keys errors, prior, planning, known and targets said, or plan again",
+                    stated.size(), actual.size()));
+    return false;
 }
 
 void Findings::compare_assumptions(const Plan& plan, const Campaign& campaign) {

@@ -15,6 +15,9 @@ class Findings {
   public:
     void note(const std::string& name, bool is_right, const std::string& text);
     void compare(const std::string& name, double stated, double actual, bool is_right);
+    /// Whether a plan is of the parameters that the campaign has now; notes it if not, for then no
+    /// other number of it can be compared.
+    bool has_same_parameters(const Plan& plan, const Campaign& campaign);
     /// Noise and scales that a plan states against those of the campaign.
     void compare_assumptions(const Plan& plan, const Campaign& campaign);
 

@@ -84,6 +84,12 @@ void check_memory(const Campaign& campaign, Index count, const std::string& opti
 void check_enough_poses(const Campaign& campaign, Index count, Index measured) {
     const Index least = least_calibration_count(campaign) - measured;
     if (count >= least) return;
+    if (campaign.fitted_pose_count > 0) {
+        throw InputError(
+            fmt::format("--poses is {}, must be at least {}: fewer do not identify the errors that "
+                        "calibrate fits, robot.errors",
+                        count, least));
+    }
     throw InputError(
         campaign.spread.is_prior
             ? fmt::format("--poses is {}, must be at least {}: fewer are not enough to register "

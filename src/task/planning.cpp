@@ -87,6 +87,7 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.efficiency = planned.pool_choice.efficiency;
     plan.searched_bound = planned.searched_bound;
     plan.searched_efficiency = planned.efficiency;
+    plan.request.starts = planned.starts;
     plan.starts_at_best = planned.starts_at_best;
     plan.ending = Ending::Converged;
     plan.predicted = predict_accuracy(problem.prediction, planned.information,

@@ -121,6 +121,7 @@ Verification verify(const Plan& plan, const Campaign& campaign, const PlanningOp
     if (!mismatch.empty()) throw InputError(mismatch);
     return detail::collect(static_cast<Index>(plan.poses.size()), [&](Findings& findings) {
         check_poses(problem, plan.poses, findings);
+        if (!findings.has_same_parameters(plan, problem.campaign)) return;
         const Blocks blocks = detail::blocks_of(problem, plan.poses);
         check_value(plan, problem, blocks, findings);
         check_prediction(plan, problem, blocks, findings);

@@ -191,6 +191,7 @@ Verification check(const Plan& plan, const ChoiceProblem& problem, const Campaig
         check_candidates(plan, problem, findings);
         const std::vector<Index> poses = find_poses(plan, problem, findings);
         check_poses(problem, poses, findings);
+        if (campaign != nullptr && !findings.has_same_parameters(plan, *campaign)) return;
         check_numbers(plan, problem, poses, findings);
         if (campaign != nullptr) findings.compare_assumptions(plan, *campaign);
     });

@@ -58,6 +58,21 @@ TEST_F(LearnSizes, KeepsWhatIsExpectedWhereNothingTells) {
     EXPECT_EQ(learned.length, expected_.spread.length);
 }
 
+TEST_F(LearnSizes, AreDoubtedWhereTheyHoldTheirErrorsBack) {
+    const auto find_doubt = [&] {
+        Campaign learned = expected_;
+        learned.spread = learn_sizes(expected_, measured_, start_);
+        return find_held_back_size(learned, expected_.spread, measured_, start_);
+    };
+    EXPECT_FALSE(find_doubt());
+    expected_.spread.offset = 0.1e-3;
+    const auto doubt = find_doubt();
+    ASSERT_TRUE(doubt);
+    EXPECT_EQ(doubt->held.key, "offset");
+    EXPECT_LT(doubt->held.size, 1e-3);
+    EXPECT_NEAR(doubt->fitting, 20e-3, 10e-3);
+}
+
 TEST_F(LearnSizes, NeedsPriors) {
     expected_.spread.is_prior = false;
     EXPECT_THROW(learn_sizes(expected_, measured_, start_), InputError);

@@ -157,9 +157,43 @@ TEST_F(Calibrate, PredictsPosesThatNeedNotBeMeasured) {
               0U)
         << beyond.err;
     write_text("q.csv", "config,q1_deg,q2_deg\na,10,20\n");
-    expect_input_error(clean_ + predict, "q.csv:1:");
+    expect_input_error(clean_ + predict,
+                       "the header must have config,q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad\n");
+    write_text("q.csv", "");
+    expect_input_error(clean_ + predict, "must begin with a header like config,q1_rad,...\n");
     expect_input_error(clean_ + "--predict q.csv --predict-out q.csv", "must be another file");
     EXPECT_EQ(run(clean_ + "--predict-out p.csv").code, 2);
+}
+
+TEST_F(Calibrate, PredictsEachRowOfAProgramThatComesBackToItsPoses) {
+    const std::string a = ",10,20,-30,40,50,60\n";
+    write_text("q.csv", "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\nhome" + a +
+                            "weld,-20,5,10,80,-60,10\nhome" + a + "end" + a);
+    run_well(clean_ + "--folds 0 --predict q.csv --predict-out p.csv");
+    std::istringstream lines(text_of("p.csv"));
+    std::vector<std::string> rows;
+    for (std::string line; std::getline(lines, line);) rows.push_back(line);
+    ASSERT_EQ(rows.size(), 5U);
+    EXPECT_EQ(rows[1], rows[3]);
+    EXPECT_EQ(rows[1].substr(4), rows[4].substr(3));
+    EXPECT_NE(rows[1].substr(4), rows[2].substr(4));
+    // Of a file of samples a pose is a configuration, as everywhere.
+    EXPECT_NE(run_well(clean_ + "--folds 0 --predict s.csv").find("at the 30 poses to predict"),
+              std::string::npos);
+}
+
+TEST_F(Calibrate, RecordsWhichSizesWereLearned) {
+    const std::string calibrate = clean_ + "--folds 0 --prior -o e.json ";
+    run_well(calibrate);
+    EXPECT_FALSE(Json::parse(text_of("e.json")).contains("learned_sizes"));
+    run_well(calibrate + "--learn-sizes");
+    const Json sizes = Json::parse(text_of("e.json")).at("learned_sizes");
+    EXPECT_EQ(sizes.size(), 2U);
+    EXPECT_EQ(sizes.at("length_m").at("stated"), 1e-3);
+    EXPECT_NE(sizes.at("length_m").at("learned"), 1e-3);
+    EXPECT_GT(sizes.at("angle_rad").at("learned"), 0);
+    write_text("q.csv", "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\na,1,2,3,4,5,6\n");
+    run_well("correct " + fanuc_design + " e.json --poses q.csv");
 }
 
 TEST_F(Calibrate, ComparesSetsEvenIfTheWholeCannotBeIdentified) {

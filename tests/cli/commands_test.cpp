@@ -50,6 +50,9 @@ TEST_F(Commands, IndicesCountWhatThePriorTells) {
     write_text("full.yaml", campaign);
     const std::string text = run_well("indices full.yaml -m s.csv");
     EXPECT_NE(text.find("with the prior"), std::string::npos);
+    EXPECT_NE(text.find("\nwhitened, scaled: rows divided by the noise"), std::string::npos);
+    EXPECT_NE(text.find(", and what the prior tells: what posewise selects by\nplain: of the "),
+              std::string::npos);
     std::istringstream line(text.substr(text.find("\nv ")));
     std::string name, with_prior, plain;
     line >> name >> with_prior >> plain;
@@ -152,6 +155,15 @@ TEST_F(Commands, StudyComparesErrorModelsOnTheSameSubsets) {
         while (std::getline(lines, line)) expected += model + ',' + line + '\n';
     }
     EXPECT_EQ(text_of("both.csv"), expected);
+
+    write_text("none.yaml", "name: none\nrobot:\n" + six_joints +
+                                "sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n");
+    expect_input_error("study none.yaml -m s.csv --models geometric,stated " + options + "no.csv",
+                       "none.yaml: has no errors to fit as stated, none is named in brackets");
+    const Outcome twice = run("study " + input_ + "--models full,geometric,full");
+    EXPECT_EQ(twice.code, 2);
+    EXPECT_NE(twice.err.find("--models: names 'full' twice; keep one"), std::string::npos)
+        << twice.err;
 }
 
 TEST_F(Commands, StudyPlansOnlyWhatIsFarEnoughApart) {
@@ -160,7 +172,9 @@ TEST_F(Commands, StudyPlansOnlyWhatIsFarEnoughApart) {
     const std::string free = text_of("r.csv");
     run_well(study + "--least-distance-deg 200");
     EXPECT_NE(text_of("r.csv"), free);
-    expect_input_error(study + "--least-distance-deg 2000", "only 1 pose was found that ");
+    expect_input_error(study + "--least-distance-deg 2000",
+                       "only 1 pose was found that exclusions, groups and distances "
+                       "(--least-distance-deg, ");
 }
 
 TEST_F(Commands, StudyWithoutGnuplotLeavesTheScript) {

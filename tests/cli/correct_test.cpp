@@ -1,3 +1,5 @@
+#include <vector>
+
 #include "program.hpp"
 
 /// Nominal configurations corrected for the calibrated robot.
@@ -40,6 +42,21 @@ TEST_F(Correct, LeavesLessThanAHundredthOfTheError) {
     EXPECT_LT(number_behind(moved, "position RMS/mm", 1), 1e-3);
 }
 
+TEST_F(Correct, TakesAProgramThatComesBackToItsPoses) {
+    write_text("p.csv",
+               "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n"
+               "home,10,20,30,40,50,60\nweld,-80,-20,0,-40,-70,0\nhome,10,20,30,40,50,60\n"
+               "end,10,20,30,40,50,60\n");
+    EXPECT_NE(run_well(correct_ + "p.csv -o c.csv").find("4 configurations corrected"),
+              std::string::npos);
+    std::istringstream lines(text_of("c.csv"));
+    std::vector<std::string> rows;
+    for (std::string line; std::getline(lines, line);) rows.push_back(line);
+    ASSERT_EQ(rows.size(), 5U);
+    EXPECT_EQ(rows[1], rows[3]);
+    EXPECT_EQ(rows[1].substr(4), rows[4].substr(3));
+}
+
 TEST_F(Correct, NamesTheJointThatIsHeld) {
     write_text("p.csv",
                "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n"
@@ -57,9 +74,10 @@ TEST_F(Correct, RefusesWhatItCannotUse) {
     write_text("p.csv",
                "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\na,10,20,30,40,50,60\n"
                "b,10,120,30,40,50,60\n");
-    expect_input_error(correct_ + "p.csv -o c.csv",
-                       "p.csv: configuration 'b' is beyond the joint limits: q2 is 120 deg, must be "
-                       "from -60 to 60 deg");
+    expect_input_error(
+        correct_ + "p.csv -o c.csv",
+        "p.csv: configuration 'b' is beyond the joint limits: q2 is 120 deg, must be "
+        "from -60 to 60 deg");
     expect_input_error(correct_ + "p.csv -o e.json", "is read and shall be written");
     expect_input_error(correct_ + "absent.csv", "absent.csv");
     expect_input_error("correct " + fanuc_design + " m.csv --poses m.csv", "m.csv");

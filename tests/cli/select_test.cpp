@@ -195,6 +195,17 @@ TEST_F(Select, ReturnsTheBestSoFarWhenTimeIsUpOrCtrlCComes) {
     run_well("verify c.json");
 }
 
+TEST_F(Select, AnotherCtrlCEndsItAndSaysThatNothingWasWritten) {
+    // Nobody writes to the pipe: the first wish waits.
+    const auto files = file_count();
+    const Outcome outcome = run("select " + fanuc_design + " -m m.fifo -k 8 -o c.json",
+                                "mkfifo m.fifo && sh -c '\"$0\" \"$@\" & "
+                                "while sleep 1 && kill -INT $! 2> /dev/null; do :; done; wait $!'");
+    EXPECT_NE(outcome.code, 0);
+    EXPECT_EQ(outcome.err, "posewise: interrupted twice; nothing was written\n");
+    EXPECT_EQ(file_count(), files + 1);  // the pipe
+}
+
 TEST_F(Select, NamesTheDirectionThatNoCandidateSees) {
     expect_input_error("select " + seed_design + " -m s.csv -k 12",
                        "(0.61 Tx2 - 0.56 dq2 + 0.56 dq3)");

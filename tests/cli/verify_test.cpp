@@ -50,6 +50,26 @@ TEST_F(Verify, FindsEveryPlanOfEveryCriterion) {
     }
 }
 
+TEST_F(Verify, SaysInOneSentenceThatTheErrorsAreOthersNow) {
+    std::string campaign =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    write_text("c.yaml", campaign);
+    run_well("select c.yaml -m s.csv -k 10 --starts 1 -o q.json");
+    run_well("plan c.yaml -k 10 --pool 500 --starts 1 --workspace-poses 50 -o r.json");
+    campaign.insert(campaign.find("  elements:"), "  errors: full\n");
+    write_text("c.yaml", campaign);
+    for (const std::string plan : {"q.json", "r.json"}) {
+        const Outcome outcome = run("verify " + plan);
+        EXPECT_EQ(outcome.code, 1);
+        EXPECT_NE(outcome.out.find("parameters: planned for 33, the campaign has "),
+                  std::string::npos)
+            << outcome.out;
+        EXPECT_EQ(outcome.out.find("inf"), std::string::npos) << outcome.out;
+        EXPECT_EQ(outcome.out.find("assumes"), std::string::npos) << outcome.out;
+        EXPECT_EQ(outcome.err, "posewise: " + plan + ": not as stated: parameters\n");
+    }
+}
+
 TEST_F(Verify, SaysWhichNumberWasEdited) {
     const auto shift = [](const std::string& key) {
         return [key](Json& plan) { plan[key] = plan[key].get<double>() + 1e-3; };

@@ -199,7 +199,7 @@ TEST(BadMeasurementsCsv, Headers) {
         {good, "", " is empty; must begin with a header like config,sample,q1_rad,...,p1_x_mm,..."},
         {good, "# only a comment\n", " is empty;[...]"},
         {good, good.substr(0, good.find('\n') + 1),
-         " has a header but no rows; must have at least one sample"},
+         " has a header but no rows; must have at least one row"},
         {",p2_z_m\n", "\n",
          "1:70: missing column p2_z_mm; the header must have "
          "config,sample,q1_rad,q2_rad,lift_mm,p1_x_mm,p1_y_mm,p1_z_mm,p2_x_mm,p2_y_mm,p2_z_mm"},

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <atomic>
+
 #include "../../src/criteria/objective.hpp"
 #include "../../src/planner/plan_space.hpp"
 #include "../../src/planner/refinement.hpp"
@@ -122,6 +124,19 @@ TEST(PlanPoses, TestsGAndVOnPartOfThePoolUnlessToldOtherwise) {
     const PlannedPoses plan = plan_poses(scene.space, scene.pool, scene.blocks, options);
     EXPECT_NEAR(plan.value / evaluate(Criterion::V, plan.information, 9, &first), 1, 1e-9);
     EXPECT_EQ(plan.endings.size(), 2U);
+    EXPECT_EQ(plan.starts, 2);
+}
+
+TEST(PlanPoses, CountsOnlyTheStartsThatEnded) {
+    const Scene scene(300, 1);
+    PlanOptions options = scene.options(Criterion::D, 9, 4);
+    const std::atomic<bool> stop{true};
+    options.stop.interrupted = &stop;
+    const PlannedPoses plan = plan_poses(scene.space, scene.pool, scene.blocks, options);
+    EXPECT_TRUE(plan.is_interrupted);
+    EXPECT_EQ(plan.endings.size(), 4U);
+    EXPECT_EQ(plan.starts, 0);
+    EXPECT_EQ(plan.starts_at_best, 0);
 }
 
 TEST(PlanPoses, TellsItsProgressAndPassesOnWhatTheCallbackThrows) {

@@ -49,6 +49,17 @@ TEST(FormatCalibration, ShowsLearnedSizesBesideTheExpected) {
     EXPECT_TRUE(holds(text, "class           count  expected  learned     RMS")) << text;
 }
 
+TEST(FormatCalibration, DoesNotClaimAModelErrorFoundFromNothing) {
+    Example example(16);
+    example.campaign.spread.is_prior = true;
+    Calibration calibration = calibrate(example.campaign, example.measurements, {.folds = 0});
+    EXPECT_TRUE(holds(format(calibration), "\nmodel error found: 0."));
+    calibration.estimate.degrees_of_freedom = 0;
+    const std::string text = format(calibration);
+    EXPECT_TRUE(holds(text, "\nmodel error assumed, nothing is left to find it from: 0.")) << text;
+    EXPECT_FALSE(holds(text, "error found"));
+}
+
 TEST(FormatCalibration, SaysWhatToExpectAtPosesToPredict) {
     const Example example(16);
     Calibration calibration = calibrate(example.campaign, example.measurements, {.folds = 0});
@@ -91,8 +102,12 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
     calibration.doubts.sizes = {{"dq2", 3.5, 0.07, true}};
     calibration.campaign.spread.is_prior = true;
     calibration.doubts.model_errors = {{9, 9e-4, false}};
+    calibration.doubts.held_back = HeldBackSize{{"offset", 2e-4, true, {0}}, 0.012};
     const auto sentences = describe_doubts(calibration);
-    ASSERT_EQ(sentences.size(), 2U);
+    ASSERT_EQ(sentences.size(), 3U);
+    EXPECT_EQ(sentences[2],
+              "the size learned for spread.offset_mrad, 0.2 mrad, holds its errors back, the one "
+              "stated is too small: 12 mrad would fit");
     EXPECT_TRUE(sentences[0].starts_with(
         "beyond three times the expected size, which holds them back: dq2 (70 mrad, 3.5 times);"));
     EXPECT_TRUE(sentences[1].starts_with(

@@ -22,6 +22,19 @@ TEST(FormatChoice, SaysWhatTheValueMeansWhereItMeansMillimetres) {
               "value:      0.3766 (predicted 0.0941 mm RMS at the worst pose by the parameters)");
 }
 
+TEST(FormatChoice, SaysThatNoStartEndedBeforeTheStop) {
+    Plan plan;
+    plan.ending = Ending::Interrupted;
+    plan.efficiency = 0.5;
+    const std::string text = format_choice(plan);
+    EXPECT_NE(text.find("starts:     none ended before the stop, interrupted\n"), std::string::npos)
+        << text;
+    EXPECT_NE(text.find("note:       the bound is loose at so few poses\n"), std::string::npos);
+    plan.request.starts = 4;
+    EXPECT_NE(format_choice(plan).find("starts:     0 of 4 ended here, interrupted\n"),
+              std::string::npos);
+}
+
 TEST(FormatPlanning, SaysTheSameBesideTheUnit) {
     Planning planning;
     planning.plan.kind = CandidateKind::Pool;

@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "../../src/selection/bound.hpp"
@@ -180,6 +181,21 @@ TEST(SelectByExchange, GivesTheSamePlanForAnyNumberOfThreads) {
         EXPECT_EQ(serial.starts_at_best, parallel.starts_at_best);
     }
     omp_set_num_threads(threads);
+}
+
+TEST(SelectByExchange, CountsOnlyTheStartsThatEnded) {
+    const Blocks candidates = test::random_blocks(300, 3, 9, 5);
+    SelectOptions options = make_options(Criterion::D, 8);
+    options.enumeration = 0;
+    const Choice whole = select_poses(candidates, options);
+    EXPECT_GT(whole.starts, 0);
+    const std::atomic<bool> stop{true};
+    options.stop.interrupted = &stop;
+    const Choice stopped = select_poses(candidates, options);
+    EXPECT_EQ(stopped.ending, Ending::Interrupted);
+    EXPECT_EQ(stopped.poses.size(), 8U);
+    EXPECT_EQ(stopped.starts, 0);
+    EXPECT_EQ(stopped.starts_at_best, 0);
 }
 
 TEST(SelectByExchange, FindsThePosesThatJustIdentifyTheParameters) {

@@ -43,13 +43,31 @@ Estimate identify(const Campaign& campaign, const Measurements& measurements,
                   const Parameters& start, const LevenbergMarquardtOptions& options = {});
 
 /// The campaign's spread with the sizes that this robot's errors have, of lengths, angles, joint
-/// offsets, gravity (torque) terms and harmonics: where the spread is a prior, the sizes under which
-/// the measurements are most probable, by expectation and maximisation [Dempster, Laird & Rubin
-/// 1977] of each error's square, estimate^2 + variance, with a log-normal density about the size
-/// stated, its deviation a factor of error_size_factor. Sizes stated by parameter's name stay.
+/// offsets, gravity (torque) terms and harmonics: where the spread is a prior, the sizes under
+/// which the measurements are most probable, by expectation and maximisation [Dempster, Laird &
+/// Rubin 1977] of each error's square, estimate^2 + variance, with a log-normal density about the
+/// size stated, its deviation a factor of error_size_factor. Sizes stated by parameter's name stay.
 /// Throws InputError where the spread is no prior, and as identify() does.
 ParameterSpread learn_sizes(const Campaign& campaign, const Measurements& measurements,
                             const Parameters& start, const LevenbergMarquardtOptions& options = {});
+
+/// A size that was stated far too small to be learned.
+struct HeldBackSize {
+    SharedSize held;     ///< as learned
+    double fitting = 0;  ///< m or rad
+};
+
+/// Where learn_sizes() got stuck: a size stated far too small holds its errors back, and others
+/// take them up. `learned` has the sizes learned from `stated`, and the model error found with
+/// them. Of the sizes that errors which nothing holds back go beyond by more than three times, the
+/// one that alone makes the measurements most probable is tried: the sizes are learned again from
+/// it. Nothing if the measurements are not clearly more probable then (150 to 1), or for losses but
+/// squares.
+std::optional<HeldBackSize> find_held_back_size(const Campaign& learned,
+                                                const ParameterSpread& stated,
+                                                const Measurements& measurements,
+                                                const Parameters& start,
+                                                const LevenbergMarquardtOptions& options = {});
 
 struct TwoStepOptions {
     Index iteration_limit = 200;

@@ -96,8 +96,9 @@ CampaignFile read_campaign(const std::string& path);
 CampaignFile parse_campaign(const std::string& content, const std::string& path);
 
 /// The campaign of a file as poses are planned for it: with the error model that it states under
-/// `planning`, if it does.
-CampaignFile read_planned_campaign(const std::string& path);
+/// `planning`, if it does, and then with the Campaign::fitted_pose_count of the one that it states
+/// under `robot`. The expected sizes are priors as asked, else as the file says.
+CampaignFile read_planned_campaign(const std::string& path, std::optional<bool> prior = {});
 
 /// The campaign of a file with each of these error models in turn, whatever it states under
 /// `errors`; expected sizes of single parameters that a model does not have are left out.

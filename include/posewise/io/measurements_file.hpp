@@ -28,9 +28,15 @@ struct Configurations {
 /// targets each shows ("1 3"), as plans do; else all are visible. What is beyond the joint limits
 /// is refused: nobody measured there.
 Configurations read_configurations(const std::string& path, const CampaignFile& file);
-/// The same without a look at the limits, and of CSV alone.
-Configurations read_any_configurations(const std::string& path, const CampaignFile& file);
+/// Throws InputError, naming the file, if one of them is beyond the joint limits.
+void check_within_limits(const std::string& path, const CampaignFile& file,
+                         const Configurations& configurations);
+/// The poses of a program, which may hold the same one more than once: each row is one, or where
+/// there is a column sample each configuration. The limits are not looked at.
+Configurations read_program(const std::string& path, const CampaignFile& file);
+/// The same of CSV alone, without a look at the limits.
 Configurations read_configurations_csv(const std::string& path, const Campaign& campaign);
+Configurations read_program_csv(const std::string& path, const Campaign& campaign);
 
 /// CSV with a header that carries the units: config, <joint>_rad or _deg (_m or _mm if it slides),
 /// the sensor's columns with _m or _mm (orientations: rx, ry, rz or roll, pitch, yaw with _rad or

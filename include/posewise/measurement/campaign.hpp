@@ -42,6 +42,17 @@ inline constexpr double error_size_factor = 2;
 /// The size of this error of the robot by its kind; `by_name` may state another.
 double& size_of(ParameterSpread& spread, const Chain& robot, Index parameter);
 
+/// A size that several errors of a robot share.
+struct SharedSize {
+    std::string key;  ///< under `spread` in a campaign file, without unit: "offset"
+    double size = 0;  ///< m or rad
+    bool is_angle = false;
+    std::vector<Index> members;  ///< parameters of the robot
+};
+
+/// The sizes that the robot's errors share, but for those that `by_name` states.
+std::vector<SharedSize> shared_sizes(const ParameterSpread& spread, const Chain& robot);
+
 /// What errors robots of this size have, as a prior: for full_model().
 ParameterSpread population_spread(const Chain& robot);
 
@@ -67,6 +78,9 @@ struct Campaign {
     /// Whether base and targets in `nominal` were stated, not made up.
     bool has_nominal_base = false;
     bool has_nominal_targets = false;
+    /// Poses that the model needs which is fitted in the end, if that is another than the robot
+    /// here; 0: this one is.
+    Index fitted_pose_count = 0;
     Cell cell;  ///< the place it stands in; empty if nothing is said of one
 };
 

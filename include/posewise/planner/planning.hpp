@@ -45,7 +45,8 @@ struct PlannedPoses {
     /// As Choice::efficiency, of the value against the searched bound; 0 without.
     double efficiency = 0;
     std::vector<Ending> endings;  ///< of each start; NotRun: it identified too little
-    Index starts_at_best = 0;     ///< how many starts ended at the best of them, to 1e-6 of it
+    Index starts = 0;             ///< how many ended; a stop cuts others short
+    Index starts_at_best = 0;     ///< how many of them ended at the best met, to 1e-6 of it
     bool is_interrupted = false;  ///< stopped early by flag or time: the best so far
     std::uint64_t seed = 0;
 };

@@ -31,8 +31,8 @@ struct Choice {
     double efficiency = 0;
     Certificate certificate;
     std::uint64_t seed = 0;
-    Index starts = 0;
-    Index starts_at_best = 0;  ///< how many independent starts ended at this value
+    Index starts = 0;          ///< independent ones that ended; a stop cuts others short
+    Index starts_at_best = 0;  ///< how many of them ended at this value
     Ending ending = Ending::NotRun;
     /// Where the ending is NotIdentifiable, which directions stay open and what would close them,
     /// as a sentence; then there are no poses.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "posewise/calibrator/estimate.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/measurement/sensors.hpp"
 
@@ -105,6 +105,7 @@ struct Doubts {
     std::optional<OrientationDoubt> orientations;
     std::vector<SizeDoubt> sizes;
     std::vector<ModelErrorDoubt> model_errors;  ///< of lengths, of angles
+    std::optional<HeldBackSize> held_back;      ///< where sizes were learned
     /// Residuals in units of those stated, if clearly not as stated: more than 1.2 times larger or
     /// smaller, and beyond what chi squared of the degrees of freedom is once in a thousand times.
     std::optional<double> residual_ratio;

@@ -44,8 +44,10 @@ struct PlanRequest {
     /// campaign its ParameterSpread::is_prior says so.
     bool has_prior = false;
     bool is_focused_on_robot = false;  ///< base and targets are estimated along, but do not count
-    double repeats = 0;      ///< samples of each configuration; 0: as in measured candidates, or 1
-    Index starts = 0;        ///< independent searches; 0: as many as the search takes by default
+    double repeats = 0;  ///< samples of each configuration; 0: as in measured candidates, or 1
+    /// Independent searches; 0: as many as the search takes by default. Of a plan: those that
+    /// ended.
+    Index starts = 0;
     std::uint64_t seed = 1;  ///< of all draws
     PlanSources sources;
 
