@@ -4,8 +4,6 @@
 #include <utility>
 
 #include "../core/decompositions.hpp"
-#include "../core/parallel.hpp"
-#include "../core/progress_counter.hpp"
 #include "../measurement/noise.hpp"
 #include "least_squares.hpp"
 #include "model_error.hpp"
@@ -14,10 +12,6 @@
 
 namespace posewise {
 namespace {
-
-/// Falls of chi^2 below this many times the number of equations are rounding: residuals of
-/// 1e-10 standard deviations.
-constexpr double negligible_per_equation = 1e-20;
 
 /// The step of minimal |R d - c|^2 + damping |D d|^2, D the column norms [Marquardt 1963].
 VectorXd damped_step(const detail::Triangle& triangle, double damping) {
@@ -55,10 +49,8 @@ struct LevenbergMarquardt {
     void iterate() {
         if (deviations_open > 0) follow_deviation();
         const detail::Triangle triangle = triangularise(linearise(problem, estimate.parameters));
-        const double converged_below =
-            negligible_per_equation * static_cast<double>(problem.equation_count()) +
-            options.relative_tolerance * cost;
-        if (triangle.c.squaredNorm() <= converged_below) {  // what a full step could gain
+        const double gain = triangle.c.squaredNorm();  // what a full step could
+        if (gain <= converged_below(problem, options.relative_tolerance, cost)) {
             if (deviations_open == 0) estimate.ending = Ending::Converged;
             return;
         }
@@ -103,12 +95,6 @@ bool is_alike(const Campaign& a, const Campaign& b) {
            is_near(a.model_error_orientation, b.model_error_orientation);
 }
 
-std::vector<Index> fold_members(Index count, Index folds, Index fold) {
-    std::vector<Index> members;
-    for (Index i = fold; i < count; i += folds) members.push_back(i);
-    return members;
-}
-
 }  // namespace
 
 Estimate identify(const Campaign& campaign, const Measurements& measurements,
@@ -131,52 +117,6 @@ Estimate identify(const Campaign& campaign, const Measurements& measurements,
     }
     finish(problem, estimate);
     return estimate;
-}
-
-CrossValidation cross_validate(const Campaign& campaign, const Measurements& measurements,
-                               const Parameters& start, Index folds,
-                               const LevenbergMarquardtOptions& options,
-                               const ProgressCallback& progress) {
-    const Index count = measurements.configuration_count();
-    if (folds < 2 || folds > count) {
-        throw InputError("folds is " + std::to_string(folds) + ", must be 2 to the number of " +
-                         "configurations, " + std::to_string(count));
-    }
-    const auto fold_count = static_cast<std::size_t>(folds);
-    std::vector<RowMatrixXd> samples(fold_count);
-    std::vector<RowMatrixXd> means(fold_count);
-    RowMatrixXd distances = RowMatrixXd::Zero(count, measurements.is_seen.cols());
-    std::vector<std::string> failures(fold_count);
-    detail::ProgressCounter counter(progress, folds);
-    detail::for_each_index(folds, [&](Index fold) {
-        const auto f = static_cast<std::size_t>(fold);
-        const auto held_out = fold_members(count, folds, fold);
-        const Estimate estimate =
-            identify(campaign, take(measurements, all_but(count, held_out)), start, options);
-        if (estimate.ending == Ending::NotIdentifiable) {
-            failures[f] = "fold " + std::to_string(fold + 1) + ": " + estimate.undetermined;
-        } else {
-            const Measurements judged = take(measurements, held_out);
-            samples[f] = residuals(campaign, estimate.parameters, judged);
-            means[f] = mean_residuals(campaign, estimate.parameters, judged);
-            distances(held_out, Eigen::all) =
-                squared_distances(campaign, estimate.parameters, judged);
-        }
-        counter.count();
-    });
-    const auto join = [&](const std::vector<RowMatrixXd>& parts) {
-        RowMatrixXd all(0, campaign.sensor->rows_per_target());
-        for (const RowMatrixXd& part : parts) {
-            if (part.rows() == 0) continue;  // a fold that failed
-            all.conservativeResize(all.rows() + part.rows(), all.cols());
-            all.bottomRows(part.rows()) = part;
-        }
-        return make_metrics(all, campaign.sensor->lengths_per_target());
-    };
-    CrossValidation result{folds, join(samples), join(means), distances, {}};
-    std::copy_if(failures.begin(), failures.end(), std::back_inserter(result.failures),
-                 [](const std::string& failure) { return !failure.empty(); });
-    return result;
 }
 
 }  // namespace posewise

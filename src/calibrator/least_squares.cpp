@@ -169,6 +169,13 @@ double total_loss(const IdentificationProblem& problem, const Parameters& parame
     return sum;
 }
 
+double converged_below(const IdentificationProblem& problem, double relative_tolerance,
+                       double cost) {
+    constexpr double negligible_per_equation = 1e-20;
+    return negligible_per_equation * static_cast<double>(problem.equation_count()) +
+           relative_tolerance * cost;
+}
+
 Triangle triangularise(const LinearisedSystem& system) {
     const Index size = system.J.cols();
     MatrixXd augmented(system.J.rows(), size + 1);

@@ -60,6 +60,11 @@ VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters
 double total_loss(const IdentificationProblem& problem, const Parameters& parameters,
                   const Parameters* noise_at = nullptr);
 
+/// What a step must gain of a sum of squares, `cost`, to be worth taking: a part of it, and more
+/// than rounding is, residuals of 1e-10 standard deviations.
+double converged_below(const IdentificationProblem& problem, double relative_tolerance,
+                       double cost);
+
 /// J reduced to its triangle by Householder QR: |J d - r|^2 = |R d - c|^2 + rest.
 struct Triangle {
     MatrixXd R;  ///< L x L, upper

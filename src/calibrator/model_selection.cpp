@@ -75,8 +75,8 @@ MeanError average(const RowMatrixXd& squared_errors, const Seen& is_judged) {
 MeanError judge(Candidate& candidate, const Measurements& measurements, const Seen& is_judged,
                 Index folds, const LevenbergMarquardtOptions& options) {
     ModelTrial& trial = candidate.trial;
-    const CrossValidation held_out =
-        cross_validate(candidate.campaign, measurements, candidate.start, folds, options);
+    const CrossValidation held_out = cross_validate(candidate.campaign, measurements,
+                                                    candidate.estimate.parameters, folds, options);
     if (!held_out.failures.empty()) {
         trial.failure = held_out.failures.front();
         return {};

@@ -92,13 +92,13 @@ Metrics fit_nominal(const Work& work, Parameters registered) {
 }
 
 /// Nothing if it was stopped on the way.
-std::optional<CrossValidation> hold_out(Work& work, const Campaign& found,
-                                        const Parameters& start) {
+std::optional<CrossValidation> hold_out(Work& work, const Calibration& result) {
     if (work.folds == 0 || work.options.stop.is_set()) return std::nullopt;
     // One configuration more or less hardly changes the model error.
     LevenbergMarquardtOptions options = work.beside();
     options.finds_model_error = false;
-    auto held_out = cross_validate(found, work.used, start, work.folds, options, work.step());
+    auto held_out = cross_validate(result.campaign, work.used, result.estimate.parameters,
+                                   work.folds, options, work.step());
     if (work.options.stop.is_set()) return std::nullopt;
     return held_out;
 }
@@ -150,11 +150,9 @@ void calibrate_with(Work& work, Calibration& result) {
     if (!result.is_identified()) return;
     result.nominal = fit_nominal(work, registered);
     result.repeatability = repeatability(*work.campaign.sensor, work.used);
-    const bool is_far = work.options.method == CalibrationMethod::Global;
     result.campaign = with_model_error(work.campaign, result.estimate);
     result.expected = expected_error(result.campaign, result.estimate, work.used);
-    result.held_out =
-        hold_out(work, result.campaign, is_far ? result.estimate.parameters : registered);
+    result.held_out = hold_out(work, result);
     result.without_outliers = judge_without_outliers(work, result);
     result.doubts = find_doubts(work.campaign, work.used, registered, result.nominal);
     add_doubts(work.campaign, result.estimate, result.doubts);

@@ -246,47 +246,5 @@ TEST(IdentifyTwoStep, RefusesAStepSizeOutsideZeroToOne) {
     }
 }
 
-TEST(CrossValidate, LeavesOutEachConfigurationOnce) {
-    const Campaign campaign = with_sigma(5e-5);
-    const auto measurements = simulate(campaign, {20, 2, 7, 8}).measurements;
-    const Parameters start = register_base_and_targets(campaign, measurements).parameters;
-    const CrossValidation result = cross_validate(campaign, measurements, start, 20);
-    EXPECT_TRUE(result.failures.empty());
-    EXPECT_EQ(result.samples.point_count, 20 * 2 * 3);
-    EXPECT_EQ(result.means.point_count, 20 * 3);
-    // By hand for one fold, and worse than the fit.
-    const auto seen = take(measurements, all_but(20, {4}));
-    const Estimate without = identify(campaign, seen, start);
-    const double left_out =
-        make_metrics(residuals(campaign, without.parameters, take(measurements, {4}))).distance_max;
-    EXPECT_LE(left_out, result.samples.distance_max);
-    EXPECT_GT(result.samples.distance_rms, calibrate(campaign, measurements).fit.distance_rms);
-}
-
-TEST(CrossValidate, TellsItsProgressAndPassesOnWhatTheCallbackThrows) {
-    const Campaign campaign = with_sigma(5e-5);
-    const auto measurements = simulate(campaign, {12, 1, 7, 8}).measurements;
-    const Parameters start = register_base_and_targets(campaign, measurements).parameters;
-    Index told = 0;
-    cross_validate(campaign, measurements, start, 4, {}, [&](const Progress& progress) {
-        EXPECT_EQ(progress.done, ++told);
-        EXPECT_EQ(progress.total, 4);
-    });
-    EXPECT_EQ(told, 4);
-    const auto fail = [](const Progress&) { throw std::bad_alloc(); };
-    EXPECT_THROW(cross_validate(campaign, measurements, start, 4, {}, fail), std::bad_alloc);
-}
-
-TEST(CrossValidate, CountsFoldsThatCannotBeIdentified) {
-    const Campaign campaign = with_sigma(5e-5);
-    const auto measurements = simulate(campaign, {6, 1, 7, 8}).measurements;
-    const Parameters start = register_base_and_targets(campaign, measurements).parameters;
-    const CrossValidation halves = cross_validate(campaign, measurements, start, 2);
-    EXPECT_EQ(halves.failures.size(), 2U);
-    EXPECT_EQ(halves.samples.point_count, 0);
-    EXPECT_THROW(cross_validate(campaign, measurements, start, 1), InputError);
-    EXPECT_THROW(cross_validate(campaign, measurements, start, 7), InputError);
-}
-
 }  // namespace
 }  // namespace posewise

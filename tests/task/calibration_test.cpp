@@ -83,7 +83,7 @@ TEST(Calibrate, HoldsWhatItsPartsFind) {
     EXPECT_EQ(result.estimate.parameters.robot, estimate.parameters.robot);
     EXPECT_EQ(result.estimate.covariance, estimate.covariance);
     const CrossValidation held_out =
-        cross_validate(example.campaign, example.measurements, registered.parameters, 16);
+        cross_validate(example.campaign, example.measurements, estimate.parameters, 16);
     ASSERT_TRUE(result.held_out.has_value());
     EXPECT_EQ(result.held_out->samples.distance_rms, held_out.samples.distance_rms);
     EXPECT_GT(result.nominal.distance_rms, 2 * result.estimate.fit.distance_rms);

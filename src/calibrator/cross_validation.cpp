@@ -1,0 +1,214 @@
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "../core/parallel.hpp"
+#include "../core/progress_counter.hpp"
+#include "least_squares.hpp"
+#include "model_error.hpp"
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::IdentificationProblem;
+using detail::LinearisedSystem;
+
+std::vector<Index> fold_members(Index count, Index folds, Index fold) {
+    std::vector<Index> members;
+    for (Index i = fold; i < count; i += folds) members.push_back(i);
+    return members;
+}
+
+/// |J d - r|^2 = d^T M d - 2 g^T d + squares.
+struct NormalEquations {
+    MatrixXd M;  ///< lower half
+    VectorXd g;
+    double squares;
+};
+
+NormalEquations normal_equations(const LinearisedSystem& system) {
+    const Index size = system.J.cols();
+    NormalEquations equations{MatrixXd::Zero(size, size), system.J.transpose() * system.r,
+                              system.r.squaredNorm()};
+    equations.M.selfadjointView<Eigen::Lower>().rankUpdate(system.J.transpose());
+    return equations;
+}
+
+/// Every configuration linearised at the same parameters, so that what is left without some of them
+/// is a difference.
+class Linearisation {
+  public:
+    Linearisation(const IdentificationProblem& problem, const Parameters& parameters)
+        : system_(linearise(problem, parameters)), all_(normal_equations(system_)) {
+        const Index width = problem.campaign.sensor->rows_per_target();
+        for (Index i = 0; i < problem.means.configuration_count(); ++i) {
+            first_row_.push_back(first_row_.back() + width * problem.means.is_seen.row(i).count());
+        }
+    }
+
+    NormalEquations without(const std::vector<Index>& configurations) const {
+        NormalEquations others = all_;
+        for (const Index i : configurations) {
+            const auto k = static_cast<std::size_t>(i);
+            const Index rows = first_row_[k + 1] - first_row_[k];
+            const MatrixXd J = system_.J.middleRows(first_row_[k], rows);
+            const auto r = system_.r.segment(first_row_[k], rows);
+            others.M.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose(), -1);
+            others.g -= J.transpose() * r;
+            others.squares -= r.squaredNorm();
+        }
+        return others;
+    }
+
+  private:
+    LinearisedSystem system_;
+    NormalEquations all_;
+    std::vector<Index> first_row_{0};
+};
+
+/// Inverse of a symmetric positive definite M, its rows and columns first scaled to a diagonal
+/// of 1.
+class Metric {
+  public:
+    explicit Metric(const MatrixXd& M) : inverse_norms_(M.diagonal().cwiseSqrt().cwiseInverse()) {
+        root_.compute(inverse_norms_.asDiagonal() * M * inverse_norms_.asDiagonal());
+    }
+
+    /// Whether its columns are so far from dependent that rounding of M, which squares them, does
+    /// not matter.
+    bool is_regular() const {
+        constexpr double least_singular_value = 1e-6;
+        if (!inverse_norms_.allFinite() || root_.info() != Eigen::Success) return false;
+        const Index size = inverse_norms_.size();
+        return root_.matrixL().solve(MatrixXd::Identity(size, size)).norm() * least_singular_value <
+               1;
+    }
+
+    VectorXd solve(const VectorXd& g) const {
+        return inverse_norms_.cwiseProduct(root_.solve(inverse_norms_.cwiseProduct(g)));
+    }
+
+  private:
+    VectorXd inverse_norms_;
+    Eigen::LLT<MatrixXd> root_;
+};
+
+/// Identifications without some configurations each.
+class Folds {
+  public:
+    Folds(const Campaign& campaign, const Measurements& measurements, const Parameters& start,
+          const LevenbergMarquardtOptions& options)
+        : campaign_(campaign), measurements_(measurements), start_(start), options_(options) {
+        const bool are_squares = options.loss.kind == LossKind::Squares;
+        const bool finds_model_error =
+            options.finds_model_error && detail::is_model_error_open(campaign);
+        if (!are_squares || finds_model_error) return;
+        const IdentificationProblem problem = detail::make_problem(campaign, measurements);
+        Parameters nominal = start;
+        nominal.robot.setZero();
+        at_nominal_.emplace(problem, nominal);
+        at_start_.emplace(problem, start);
+    }
+
+    Estimate identify_without(const std::vector<Index>& held_out) const {
+        const Measurements others =
+            take(measurements_, all_but(measurements_.configuration_count(), held_out));
+        if (auto parameters = refine(others, held_out)) {
+            Estimate estimate;
+            estimate.ending = Ending::Converged;
+            estimate.parameters = std::move(*parameters);
+            return estimate;
+        }
+        return identify(campaign_, others, start_, options_);
+    }
+
+  private:
+    /// By steps of Gauss and Newton in information form. Nothing unless every step could gain far
+    /// less than the last, as near an optimum, down to where identify() would stop.
+    std::optional<Parameters> refine(const Measurements& others,
+                                     const std::vector<Index>& held_out) const {
+        constexpr double falling = 0.1;
+        if (!at_start_ || !Metric(at_nominal_->without(held_out).M).is_regular()) {
+            return std::nullopt;
+        }
+        const IdentificationProblem problem = detail::make_problem(campaign_, others);
+        NormalEquations equations = at_start_->without(held_out);
+        Parameters parameters = start_;
+        double last_gain = std::numeric_limits<double>::infinity();
+        for (Index step = 0; step < options_.iteration_limit && !options_.stop.is_set(); ++step) {
+            const Metric metric(equations.M);
+            if (!metric.is_regular()) return std::nullopt;
+            const VectorXd d = metric.solve(equations.g);
+            const double gain = equations.g.dot(d);
+            if (!(gain <= falling * last_gain)) return std::nullopt;
+            parameters = advance(campaign_, parameters, problem.scale.cwiseProduct(d));
+            if (gain <= converged_below(problem, options_.relative_tolerance, equations.squares)) {
+                return parameters;
+            }
+            equations = normal_equations(linearise(problem, parameters));
+            last_gain = gain;
+        }
+        return std::nullopt;
+    }
+
+    const Campaign& campaign_;
+    const Measurements& measurements_;
+    const Parameters& start_;
+    const LevenbergMarquardtOptions& options_;
+    std::optional<Linearisation> at_nominal_;  ///< where a lost rank is exactly lost
+    std::optional<Linearisation> at_start_;
+};
+
+}  // namespace
+
+CrossValidation cross_validate(const Campaign& campaign, const Measurements& measurements,
+                               const Parameters& start, Index folds,
+                               const LevenbergMarquardtOptions& options,
+                               const ProgressCallback& progress) {
+    const Index count = measurements.configuration_count();
+    if (folds < 2 || folds > count) {
+        throw InputError("folds is " + std::to_string(folds) + ", must be 2 to the number of " +
+                         "configurations, " + std::to_string(count));
+    }
+    const auto fold_count = static_cast<std::size_t>(folds);
+    std::vector<RowMatrixXd> samples(fold_count);
+    std::vector<RowMatrixXd> means(fold_count);
+    RowMatrixXd distances = RowMatrixXd::Zero(count, measurements.is_seen.cols());
+    std::vector<std::string> failures(fold_count);
+    detail::ProgressCounter counter(progress, folds);
+    const Folds identifications(campaign, measurements, start, options);
+    detail::for_each_index(folds, [&](Index fold) {
+        const auto f = static_cast<std::size_t>(fold);
+        const auto held_out = fold_members(count, folds, fold);
+        const Estimate estimate = identifications.identify_without(held_out);
+        if (estimate.ending == Ending::NotIdentifiable) {
+            failures[f] = "fold " + std::to_string(fold + 1) + ": " + estimate.undetermined;
+        } else {
+            const Measurements judged = take(measurements, held_out);
+            samples[f] = residuals(campaign, estimate.parameters, judged);
+            means[f] = mean_residuals(campaign, estimate.parameters, judged);
+            distances(held_out, Eigen::all) =
+                squared_distances(campaign, estimate.parameters, judged);
+        }
+        counter.count();
+    });
+    const auto join = [&](const std::vector<RowMatrixXd>& parts) {
+        RowMatrixXd all(0, campaign.sensor->rows_per_target());
+        for (const RowMatrixXd& part : parts) {
+            if (part.rows() == 0) continue;  // a fold that failed
+            all.conservativeResize(all.rows() + part.rows(), all.cols());
+            all.bottomRows(part.rows()) = part;
+        }
+        return make_metrics(all, campaign.sensor->lengths_per_target());
+    };
+    CrossValidation result{folds, join(samples), join(means), distances, {}};
+    std::copy_if(failures.begin(), failures.end(), std::back_inserter(result.failures),
+                 [](const std::string& failure) { return !failure.empty(); });
+    return result;
+}
+
+}  // namespace posewise

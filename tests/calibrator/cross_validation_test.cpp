@@ -1,0 +1,127 @@
+#include <gtest/gtest.h>
+
+#include <new>
+
+#include "../../src/model/complete_model.hpp"
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "support/campaigns.hpp"
+
+namespace posewise {
+namespace {
+
+using testing::fanuc;
+using testing::tracked_campaign;
+
+Campaign precise_campaign(double sigma) {
+    Campaign campaign = tracked_campaign(fanuc());
+    campaign.model_error = 0;
+    campaign.sensor =
+        std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(3, std::nullopt), sigma);
+    return campaign;
+}
+
+/// Parameters under priors, more than the poses determine.
+Campaign rich_campaign() {
+    const Chain robot = without_parameters(fanuc());
+    Campaign campaign = with_robot(tracked_campaign(fanuc()), detail::full_model(robot));
+    campaign.spread = population_spread(robot);
+    campaign.model_error = 1e-4;
+    return campaign;
+}
+
+/// Noise that depends on the pose.
+Campaign shaky_campaign() {
+    Campaign campaign = tracked_campaign(fanuc());
+    campaign.joint_repeatability = VectorXd::Constant(6, 1e-4);
+    return campaign;
+}
+
+/// Of every fold, identified by itself from `start`, and further than anyone needs.
+RowMatrixXd squares_by_hand(const Campaign& campaign, const Measurements& measured,
+                            const Parameters& start, Index folds) {
+    LevenbergMarquardtOptions to_the_end;
+    to_the_end.finds_model_error = false;
+    to_the_end.relative_tolerance = 1e-18;
+    const Index count = measured.configuration_count();
+    RowMatrixXd squares(count, measured.is_seen.cols());
+    for (Index fold = 0; fold < folds; ++fold) {
+        std::vector<Index> held_out;
+        for (Index i = fold; i < count; i += folds) held_out.push_back(i);
+        const Estimate others =
+            identify(campaign, take(measured, all_but(count, held_out)), start, to_the_end);
+        squares(held_out, Eigen::all) =
+            squared_distances(campaign, others.parameters, take(measured, held_out));
+    }
+    return squares;
+}
+
+TEST(CrossValidate, IsAnIdentificationOfEveryFoldWhereverItStarts) {
+    LevenbergMarquardtOptions options;
+    options.finds_model_error = false;
+    for (const Campaign& campaign : {precise_campaign(5e-5), rich_campaign(), shaky_campaign()}) {
+        const auto measured = simulate(campaign, {16, 2, 7, 8}).measurements;
+        const Parameters start = register_base_and_targets(campaign, measured).parameters;
+        const Parameters estimate = identify(campaign, measured, start, options).parameters;
+        for (const Index folds : {4, 16}) {
+            const RowMatrixXd expected = squares_by_hand(campaign, measured, start, folds);
+            for (const Parameters& from : {start, estimate}) {
+                const CrossValidation found =
+                    cross_validate(campaign, measured, from, folds, options);
+                EXPECT_TRUE(found.failures.empty());
+                EXPECT_LT((found.squared_distances - expected).norm(), 1e-7 * expected.norm());
+            }
+        }
+    }
+}
+
+TEST(CrossValidate, LeavesOutEachConfigurationOnce) {
+    const Campaign campaign = precise_campaign(5e-5);
+    const auto measurements = simulate(campaign, {20, 2, 7, 8}).measurements;
+    const Parameters start = register_base_and_targets(campaign, measurements).parameters;
+    const CrossValidation result = cross_validate(campaign, measurements, start, 20);
+    EXPECT_TRUE(result.failures.empty());
+    EXPECT_EQ(result.samples.point_count, 20 * 2 * 3);
+    EXPECT_EQ(result.means.point_count, 20 * 3);
+    // By hand for one fold, and worse than the fit.
+    const auto seen = take(measurements, all_but(20, {4}));
+    const Estimate without = identify(campaign, seen, start);
+    const double left_out =
+        make_metrics(residuals(campaign, without.parameters, take(measurements, {4}))).distance_max;
+    EXPECT_LE(left_out, result.samples.distance_max);
+    EXPECT_GT(result.samples.distance_rms,
+              identify(campaign, measurements, start).fit.distance_rms);
+}
+
+TEST(CrossValidate, TellsItsProgressAndPassesOnWhatTheCallbackThrows) {
+    const Campaign campaign = precise_campaign(5e-5);
+    const auto measurements = simulate(campaign, {12, 1, 7, 8}).measurements;
+    const Parameters start = register_base_and_targets(campaign, measurements).parameters;
+    Index told = 0;
+    cross_validate(campaign, measurements, start, 4, {}, [&](const Progress& progress) {
+        EXPECT_EQ(progress.done, ++told);
+        EXPECT_EQ(progress.total, 4);
+    });
+    EXPECT_EQ(told, 4);
+    const auto fail = [](const Progress&) { throw std::bad_alloc(); };
+    EXPECT_THROW(cross_validate(campaign, measurements, start, 4, {}, fail), std::bad_alloc);
+}
+
+TEST(CrossValidate, CountsFoldsThatCannotBeIdentified) {
+    const Campaign campaign = precise_campaign(5e-5);
+    const auto measurements = simulate(campaign, {6, 1, 7, 8}).measurements;
+    const Parameters start = register_base_and_targets(campaign, measurements).parameters;
+    const Parameters estimate = identify(campaign, measurements, start).parameters;
+    for (const Parameters& from : {start, estimate}) {
+        const CrossValidation halves = cross_validate(campaign, measurements, from, 2);
+        EXPECT_EQ(halves.failures.size(), 2U);
+        EXPECT_EQ(halves.samples.point_count, 0);
+    }
+    EXPECT_THROW(cross_validate(campaign, measurements, start, 1), InputError);
+    EXPECT_THROW(cross_validate(campaign, measurements, start, 7), InputError);
+}
+
+}  // namespace
+}  // namespace posewise
