@@ -27,13 +27,13 @@ Example:
   posewise select campaign.yaml --candidates pool.csv -k 6 --augment measured.csv
   posewise select --blocks jacobians.csv --rows 9 -k 40 --criterion a
 
-Chooses the candidates that tell most about the parameters and writes them as a plan file (JSON)
-that calibrate --plan takes and verify checks. Prints the chosen ids, the criterion's value, and
-what is proven about it:
+Chooses the candidates that tell most about the parameters, writes them as a plan file (JSON) for
+calibrate --plan and verify, prints the chosen ids, the criterion's value and what is proven:
   bound       no choice of as many candidates has a larger value
   efficiency  part of the best possible information per measurement that is surely reached
-  starts      how many of the starts ended at this same value; many of them: hard to beat
-At few poses the bound is loose: the plan may well be the best although little is proven.
+  starts      how many of the starts ended at this same value; five that agree end the search
+  proof       optimal: the choices that the bound leaves open, up to some millions, were all tried
+Where they are more, at few poses, the bound is loose: the plan may well be the best.
 
 Measurements register the base and the targets; other candidates need them in the campaign file (or
 measured poses, --augment). A candidate file has the columns config,q1_deg,... and perhaps
@@ -196,7 +196,7 @@ void add_select_problem(CLI::App& command, SelectArguments& arguments) {
 void add_select_search(CLI::App& command, SelectArguments& arguments) {
     command
         .add_option("--starts", arguments.request.starts,
-                    "Independent searches (default: 20, fewer where each takes seconds)")
+                    "Independent searches (default: until five agree, 2 to 100)")
         ->check(whole_number(1, 1000000));
     add_search_options(command, arguments,
                        "Of the random starts and of --random (default: the campaign's, else 1)",

@@ -169,6 +169,7 @@ void read_search(const JsonValue& search, Plan& plan) {
     plan.request.seed = search["seed"].natural_number();
     plan.request.starts = search["starts"].count(0, most_starts);
     plan.starts_at_best = search["starts_at_best"].count(0, plan.request.starts);
+    if (search.has("tried")) plan.tried = search["tried"].count(0);
     const std::string reason = search["stop_reason"].text();
     const auto found = std::find_if(detail::plan_endings.begin(), detail::plan_endings.end(),
                                     [&](Ending known) { return ending_name(known) == reason; });

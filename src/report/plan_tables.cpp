@@ -28,6 +28,11 @@ std::string describe_bound(const Plan& plan) {
 
 /// What the bound says, in words, where the numbers alone may mislead.
 std::string describe_proof(const Plan& plan) {
+    if (plan.ending == Ending::Optimal && plan.tried > 0) {
+        return fmt::format(
+            "proof:      optimal: the bound leaves {} open, all of which were tried\n",
+            detail::count_of(plan.tried, "choice"));
+    }
     if (plan.ending == Ending::Optimal) {
         return "proof:      optimal: every other choice is ruled out by the bound or was tried\n";
     }

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "../core/parallel.hpp"
 #include "../core/progress_counter.hpp"
@@ -26,6 +29,7 @@ using detail::Shortlist;
 
 constexpr Index sweep_limit = 50;  // of the last sweeps over all candidates
 constexpr Index sweep_size = 4096;
+constexpr Index agreeing_starts = 5;  // end the search
 
 std::vector<Index> by_decreasing(const VectorXd& values) {
     std::vector<Index> order(static_cast<std::size_t>(values.size()));
@@ -107,16 +111,16 @@ Index shortlist_size(const Blocks& candidates, const SelectOptions& options) {
     return std::clamp<Index>(250'000 / numbers_each, 800, 5000);
 }
 
-Index start_count(const Shortlist& shortlist, const Blocks& candidates,
-                  const SelectOptions& options) {
+Index start_count(const Shortlist& shortlist, const SearchProblem& problem) {
+    const SelectOptions& options = problem.options;
     if (options.starts > 0) return options.starts;
     // A start of 20 out of 800 blocks of 9 rows and 86 parameters takes 4 s of a CPU.
-    const double rows = static_cast<double>(candidates.matrix.rows()) /
-                        static_cast<double>(std::max<Index>(1, candidates.count()));
-    const double work = rows * rows * static_cast<double>(candidates.parameter_count()) *
+    const double rows = detail::mean_rows(problem.candidates);
+    const double work = rows * rows * static_cast<double>(problem.candidates.parameter_count()) *
                         static_cast<double>(options.pose_count) *
-                        static_cast<double>(shortlist.members.size());
-    return static_cast<Index>(std::clamp(5e8 / work, 2.0, 20.0));
+                        static_cast<double>(shortlist.members.size()) * detail::ruggedness(problem);
+    const double most = detail::has_exact_gains(problem.objective) ? 100 : 20;  // others are slow
+    return static_cast<Index>(std::clamp(5e8 / work, 2.0, most));
 }
 
 /// The most sensitive candidates at the relaxed optimum that are not excluded.
@@ -132,22 +136,82 @@ Shortlist shortlist_by_sensitivity(const SearchProblem& problem, const Relaxatio
     return detail::make_shortlist(problem.candidates, std::move(members));
 }
 
+/// Whether two values of the criterion are the same but for rounding.
+bool agree(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(1e-6, std::abs(a)); }
+
+/// How many choices have the value of the best of them.
+Index count_at_best(std::span<const ScoredPoses> choices, double best) {
+    return std::count_if(choices.begin(), choices.end(), [best](const ScoredPoses& choice) {
+        return choice.score.identifies && agree(best, choice.score.value);
+    });
+}
+
+/// What the starts ended at, in their order whichever ended first. Where they may agree, those
+/// after the first ones of which enough ended at the best of them are not needed.
+class Ends {
+  public:
+    Ends(Index starts, bool may_agree)
+        : ends_(static_cast<std::size_t>(starts)), may_agree_(may_agree), needed_(starts) {}
+
+    bool is_needed(Index start) const { return start < needed_; }
+
+    void keep(Index start, ScoredPoses choice, bool is_cut_short) {
+        const std::lock_guard lock(mutex_);
+        if (is_cut_short) {
+            cut_short_.push_back(std::move(choice));
+            return;
+        }
+        ends_[static_cast<std::size_t>(start)] = std::move(choice);
+        while (is_needed(counted()) && ends_[first_.size()]) {
+            first_.push_back(*ends_[first_.size()]);
+            const auto& [identifies, value] = first_.back().score;
+            if (identifies) best_ = std::max(best_, value);
+            if (may_agree_ && count_at_best(first_, best_) >= agreeing_starts) needed_ = counted();
+        }
+    }
+
+    /// Of all that are needed and had the time to end.
+    std::vector<ScoredPoses> choices() const {
+        std::vector<ScoredPoses> choices = first_;
+        for (Index start = counted(); is_needed(start); ++start) {
+            const auto& end = ends_[static_cast<std::size_t>(start)];
+            if (end) choices.push_back(*end);
+        }
+        return choices;
+    }
+
+    /// What those without the time had come to.
+    const std::vector<ScoredPoses>& cut_short() const { return cut_short_; }
+
+  private:
+    Index counted() const { return static_cast<Index>(first_.size()); }
+
+    std::vector<std::optional<ScoredPoses>> ends_;
+    std::vector<ScoredPoses> cut_short_;
+    std::vector<ScoredPoses> first_;                          // without a gap
+    double best_ = -std::numeric_limits<double>::infinity();  // of them
+    bool may_agree_;
+    std::atomic<Index> needed_;
+    std::mutex mutex_;
+};
+
 struct Outcome {
     ScoredPoses best;
     std::vector<ScoredPoses> starts;  // what each start ended at, but for those cut short
+    Index tried = 0;                  // choices, all that the bound left open
     bool is_optimal = false;
 };
 
-/// Searches from `first`, the start of the relaxation, and from random ones.
-Outcome run_starts(const SearchProblem& problem, const Relaxation& relaxation,
-                   const Shortlist& shortlist, const ScoredPoses& first) {
+/// Searches from the best so far, the start of the relaxation, and from random ones.
+void run_starts(const SearchProblem& problem, const Relaxation& relaxation,
+                const Shortlist& shortlist, Outcome& outcome) {
+    const ScoredPoses first = outcome.best;
     const SelectOptions& options = problem.options;
-    const Index starts = start_count(shortlist, problem.candidates, options);
+    const Index starts = start_count(shortlist, problem);
     detail::ProgressCounter counter(options.progress, {.total = starts, .bound = relaxation.bound});
-    std::vector<std::optional<ScoredPoses>> ends(static_cast<std::size_t>(starts));
-    std::vector<char> is_cut_short(static_cast<std::size_t>(starts));
+    Ends ends(starts, options.starts == 0);
     detail::for_each_index(starts, [&](Index start) {
-        if (start > 0 && options.stop.is_set()) return;
+        if (!ends.is_needed(start) || (start > 0 && options.stop.is_set())) return;
         RandomStream random(options.seed, static_cast<std::uint64_t>(start));
         ScoredPoses choice = first;
         if (start > 0) choice = make_random_start(problem, relaxation, random).value_or(first);
@@ -158,16 +222,14 @@ Outcome run_starts(const SearchProblem& problem, const Relaxation& relaxation,
                 progress.value = std::max(progress.value, choice.score.value);
             }
         });
-        is_cut_short[static_cast<std::size_t>(start)] = options.stop.is_set() ? 1 : 0;
-        ends[static_cast<std::size_t>(start)] = std::move(choice);
+        ends.keep(start, std::move(choice), options.stop.is_set());
     });
-    Outcome outcome{*ends.front(), {}, false};
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-        if (!ends[i]) continue;  // there was no time for it
-        if (is_better(ends[i]->score, outcome.best.score)) outcome.best = *ends[i];
-        if (is_cut_short[i] == 0) outcome.starts.push_back(*ends[i]);
+    outcome.starts = ends.choices();
+    for (const auto& found : {outcome.starts, ends.cut_short()}) {
+        for (const ScoredPoses& choice : found) {
+            if (is_better(choice.score, outcome.best.score)) outcome.best = choice;
+        }
     }
-    return outcome;
 }
 
 /// Exchanges with every candidate that could improve the choice, shortlisted or not, until none
@@ -200,19 +262,30 @@ double ridge_of(const Blocks& candidates) {
     return 1e-11 * std::max(candidates.matrix.squaredNorm() / entries, 1e-300);
 }
 
+/// Tries all that is open beside the best, if there is patience for it.
+bool prove(const SearchProblem& problem, const Relaxation& relaxation, detail::Patience patience,
+           Outcome& outcome) {
+    auto enumerated = enumerate_open_choices(problem, relaxation, outcome.best, patience);
+    if (!enumerated) return false;
+    outcome.best = std::move(enumerated->best);
+    outcome.tried = enumerated->tried;
+    outcome.is_optimal = enumerated->is_complete;
+    return outcome.is_optimal;
+}
+
 /// The relaxation's own start may leave few enough other choices to try them all; else all starts.
 Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
     const Shortlist shortlist = shortlist_by_sensitivity(problem, relaxation);
     const ScoredPoses first = improve(problem, shortlist, make_first_start(problem, relaxation));
-    if (auto optimum = enumerate_open_choices(problem, relaxation, first)) {
-        return {*optimum, {*optimum}, true};
+    Outcome outcome{first, {}, 0, false};
+    if (prove(problem, relaxation, detail::Patience::Short, outcome)) {
+        outcome.starts = {outcome.best};
+        return outcome;
     }
-    Outcome outcome = run_starts(problem, relaxation, shortlist, first);
+    run_starts(problem, relaxation, shortlist, outcome);
     outcome.best = sweep_all(problem, outcome.best);
-    if (problem.options.stop.is_set()) return outcome;
-    if (auto optimum = enumerate_open_choices(problem, relaxation, outcome.best)) {
-        outcome.best = *optimum;
-        outcome.is_optimal = true;
+    if (!problem.options.stop.is_set()) {
+        prove(problem, relaxation, detail::Patience::Full, outcome);
     }
     return outcome;
 }
@@ -251,18 +324,14 @@ Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     }
     Choice plan;
     plan.starts = static_cast<Index>(outcome.starts.size());
-    plan.starts_at_best =
-        std::count_if(outcome.starts.begin(), outcome.starts.end(), [&](const ScoredPoses& choice) {
-            return choice.score.identifies && best.score.value - choice.score.value <=
-                                                  1e-9 * std::max(1.0, std::abs(best.score.value));
-        });
+    plan.starts_at_best = count_at_best(outcome.starts, best.score.value);
+    plan.tried = outcome.is_optimal ? outcome.tried : 0;
     plan.ending = outcome.is_optimal ? Ending::Optimal : options.stop.ending_or(Ending::Converged);
-    plan.bound = outcome.is_optimal ? best.score.value : relaxation.bound;
     plan.poses = best.poses;
     std::sort(plan.poses.begin(), plan.poses.end());
     plan.criterion = options.criterion;
     plan.value = detail::choice_value(candidates, options, plan.poses);
-    plan.bound = std::max(plan.bound, plan.value);
+    plan.bound = outcome.is_optimal ? plan.value : std::max(relaxation.bound, plan.value);
     plan.efficiency = detail::efficiency(
         plan.criterion, plan.value, plan.bound,
         candidates.parameter_count() - static_cast<Index>(options.nuisance.size()));

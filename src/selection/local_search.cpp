@@ -113,13 +113,25 @@ class LocalSearch {
     ScoredPoses choice_;
 };
 
-/// Kicks without success to give up after: ten times as many where few candidates make them cheap,
-/// since plans that hardly identify their parameters have many local optima.
-Index patience(const SearchProblem& problem, const Shortlist& shortlist) {
-    return problem.options.kicks * (shortlist.members.size() <= 64 ? 10 : 1);
+/// Kicks without success to give up after.
+Index patience(const SearchProblem& problem) {
+    return static_cast<Index>(
+        std::lround(static_cast<double>(problem.options.kicks) * ruggedness(problem)));
 }
 
 }  // namespace
+
+double mean_rows(const Blocks& candidates) {
+    return static_cast<double>(candidates.matrix.rows()) /
+           static_cast<double>(std::max<Index>(1, candidates.count()));
+}
+
+double ruggedness(const SearchProblem& problem) {
+    const double poses = static_cast<double>(problem.options.pose_count);
+    const double needed = static_cast<double>(problem.candidates.parameter_count()) /
+                          (poses * mean_rows(problem.candidates));
+    return 1 + 9 * std::pow(std::min(1.0, needed), 4);
+}
 
 bool is_better(const Score& a, const Score& b) {
     if (a.identifies != b.identifies) return a.identifies;
@@ -154,7 +166,7 @@ ScoredPoses improve_with_kicks(const SearchProblem& problem, const Shortlist& sh
     search.start_at(choice);
     search.improve();
     ScoredPoses best = search.choice();
-    const Index most_failures = patience(problem, shortlist);
+    const Index most_failures = patience(problem);
     for (Index failures = 0; failures < most_failures && !problem.options.stop.is_set();) {
         search.start_near(best, random);
         search.improve();

@@ -26,6 +26,12 @@ struct SearchProblem {
     Score score(const MatrixXd& regularised) const;
 };
 
+double mean_rows(const Blocks& candidates);
+
+/// From 1 to 10: plans with hardly more rows than parameters, which hardly identify them, have many
+/// local optima.
+double ruggedness(const SearchProblem& problem);
+
 /// A choice of candidates in the search, and how good it is.
 struct ScoredPoses {
     std::vector<Index> poses;
@@ -37,8 +43,7 @@ ScoredPoses improve(const SearchProblem& problem, const Shortlist& shortlist,
                     const ScoredPoses& choice);
 
 /// Iterated local search: some poses of the best choice are replaced at random and the result
-/// improved, until `options.kicks` kicks in a row bring nothing (ten times as many on a small
-/// shortlist).
+/// improved, until `options.kicks` kicks in a row, times the ruggedness, bring nothing.
 ScoredPoses improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
                                const ScoredPoses& choice, RandomStream& random);
 

@@ -37,6 +37,11 @@ std::vector<RowMatrixXd> worst_predicted(const Blocks& test_poses, const MatrixX
 
 }  // namespace
 
+bool has_exact_gains(const Objective& objective) {
+    const Criterion criterion = objective.criterion;
+    return objective.nuisance.empty() && is_smooth(criterion) && criterion != Criterion::O5;
+}
+
 Neighbourhood::Neighbourhood(const Objective& objective, const Blocks& candidates,
                              const Shortlist& shortlist, Index most_evaluated,
                              const StopSignal& stop)

@@ -10,6 +10,9 @@
 
 namespace posewise::detail {
 
+/// Whether the gains of exchanges are cheap to know exactly: by D, O1, A and V.
+bool has_exact_gains(const Objective& objective);
+
 /// Finds the best candidate to take a removed pose's place. One for each search: it keeps what
 /// depends on the current plan. What is cheap to know about an exchange depends on the criterion:
 /// the gains of block updates are exact for D, O1, A and V; for G, those of the test pose that is

@@ -50,6 +50,7 @@ Plan solve(ChoiceProblem& problem, const ChoiceOptions& options) {
     plan.efficiency = choice.efficiency;
     plan.certificate = choice.certificate;
     plan.starts_at_best = choice.starts_at_best;
+    plan.tried = choice.tried;
     plan.ending = choice.ending;
     return plan;
 }

@@ -92,10 +92,10 @@ TEST_F(Select, ChoosesFromPlainBlocksWithoutARobot) {
 }
 
 TEST_F(Select, SaysThatTheBoundIsLooseAtFewPoses) {
-    const std::string text = run_well("select " + input_ + "-k 5");
+    const std::string text = run_well("select " + fanuc_design + " --random 200 -k 5");
     EXPECT_LT(number_behind(text, "efficiency:"), 0.9);
     EXPECT_NE(text.find("the bound is loose at so few poses: "), std::string::npos) << text;
-    EXPECT_NE(text.find("of 20 independent starts ended at this value"), std::string::npos);
+    EXPECT_NE(text.find(" independent starts ended at this value"), std::string::npos);
 }
 
 TEST_F(Select, APriorAllowsFewerPosesThanParametersNeed) {

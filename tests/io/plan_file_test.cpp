@@ -42,6 +42,7 @@ class PlanFileTest : public ::testing::Test {
                        {"dritte Stück", Eigen::Vector3d(0.7, 0.8, 0.125), 2, {1}}};
         plan_.value = -12.5;
         plan_.starts_at_best = 4;
+        plan_.tried = 38760;
         plan_.ending = Ending::TimeLimit;
         plan_.certificate.M = Eigen::Matrix2d{{1.0 / 3, -0.1}, {-0.1, 7}};
     }
@@ -102,6 +103,7 @@ TEST_F(PlanFileTest, IsReadBackToTheLastDigit) {
     EXPECT_EQ(read.value, -12.5);
     EXPECT_EQ(read.bound, std::numeric_limits<double>::infinity());
     EXPECT_EQ(read.ending, Ending::TimeLimit);
+    EXPECT_EQ(read.tried, 38760);
     EXPECT_EQ(read.certificate.M, plan_.certificate.M);
     EXPECT_EQ(read.certificate.sharpness, std::numeric_limits<double>::infinity());
     ASSERT_EQ(read.assumptions.size(), plan_.assumptions.size());

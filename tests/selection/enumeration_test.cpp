@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <array>
 
+#include "../../src/selection/bound.hpp"
 #include "posewise/selection/exchange.hpp"
 #include "support/designs.hpp"
 
@@ -76,7 +78,6 @@ void expect_best_found(const Shape& shape, std::uint64_t seed) {
     SelectOptions options;
     options.pose_count = pose_count;
     options.enumeration = 0;  // so that it is the search that finds
-    options.starts = 12;      // few poses: many local optima, and rounding decides which are met
     const MatrixXd identity = MatrixXd::Identity(shape.parameters, shape.parameters);
     if (shape.has_prior) options.held = identity;
     const BestValues best =
@@ -101,6 +102,106 @@ TEST(SelectAgainstEnumeration, FindsTheBestOfAllChoices) {
 TEST(SelectAgainstEnumeration, FindsTheBestWithAPriorAndFewerRowsThanParameters) {
     constexpr std::array shapes = {Shape{1, 9, true}, Shape{1, 33, true}};
     for (std::size_t k = 0; k < shapes.size(); ++k) expect_best_found(shapes[k], 200 + k);
+}
+
+/// All choices are tried or ruled out, and the best one is found: of equals the first.
+void expect_proven(const Blocks& candidates, const SelectOptions& options) {
+    double best = -std::numeric_limits<double>::infinity();
+    std::vector<Index> first;
+    test::for_each_choice(candidates.count(), options, [&](const std::vector<Index>& poses) {
+        const double value = detail::choice_value(candidates, options, poses);
+        if (!(value > best + 1e-11 * std::abs(value))) return;
+        best = value;
+        first = poses;
+    });
+    const Choice plan = select_poses(candidates, options);
+    EXPECT_EQ(plan.ending, Ending::Optimal) << criterion_name(options.criterion);
+    EXPECT_NEAR(plan.value, best, 1e-11 * std::abs(best)) << criterion_name(options.criterion);
+    EXPECT_EQ(plan.poses, first) << criterion_name(options.criterion);
+    EXPECT_EQ(plan.bound, plan.value);
+    EXPECT_EQ(plan.efficiency, 1);
+    EXPECT_GE(plan.tried, 1);
+}
+
+SelectOptions few_poses(Criterion criterion, Index count) {
+    SelectOptions options;
+    options.criterion = criterion;
+    options.pose_count = count;
+    return options;
+}
+
+TEST(Enumeration, ProvesTheBestChoiceByEveryCriterion) {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        const Blocks candidates = test::random_blocks(12, 3, 13, 400 + seed);
+        for (const Criterion criterion : all_criteria) {
+            SelectOptions options = few_poses(criterion, 5);
+            expect_proven(candidates, options);
+            options.held = 0.1 * MatrixXd::Identity(13, 13);
+            options.pose_count = 3;
+            expect_proven(candidates, options);
+        }
+    }
+}
+
+TEST(Enumeration, HonoursEveryLimit) {
+    const Blocks candidates = test::random_blocks(9, 2, 5, 7);
+    for (const Criterion criterion : all_criteria) {
+        SelectOptions repeats = few_poses(criterion, 5);
+        repeats.repeat_limit = 3;
+        expect_proven(candidates, repeats);
+        SelectOptions limited = few_poses(criterion, 4);
+        limited.excluded = {4};
+        limited.groups = {5, 5, 5, -1, -1, -1, 0, 0, 0};
+        limited.group_limit = 2;
+        limited.positions = VectorXd::LinSpaced(9, 0, 8);
+        limited.least_distance = 1.5;
+        expect_proven(candidates, limited);
+    }
+}
+
+TEST(Enumeration, LeavesNuisanceOutOfTheValue) {
+    const Blocks candidates = test::random_blocks(10, 2, 6, 9);
+    for (const Criterion criterion :
+         {Criterion::O1, Criterion::O3, Criterion::O5, Criterion::A, Criterion::D, Criterion::E}) {
+        SelectOptions options = few_poses(criterion, 4);
+        options.nuisance = {0, 2, 5};
+        expect_proven(candidates, options);
+    }
+}
+
+TEST(Enumeration, TakesTheFirstOfEquallyGoodChoices) {
+    Blocks candidates = test::random_blocks(10, 2, 4, 11);
+    candidates.matrix.bottomRows(10) = candidates.matrix.topRows(10);  // each is there twice
+    for (const Criterion criterion : all_criteria) {
+        expect_proven(candidates, few_poses(criterion, 4));
+    }
+}
+
+TEST(Enumeration, GivesTheSamePlanForAnyNumberOfThreads) {
+    const Blocks candidates = test::random_blocks(18, 3, 14, 12);
+    const int threads = omp_get_max_threads();
+    for (const Criterion criterion : all_criteria) {
+        const SelectOptions options = few_poses(criterion, 5);
+        omp_set_num_threads(1);
+        const Choice serial = select_poses(candidates, options);
+        omp_set_num_threads(3);
+        const Choice parallel = select_poses(candidates, options);
+        EXPECT_EQ(serial.ending, Ending::Optimal);
+        EXPECT_EQ(serial.poses, parallel.poses);
+        EXPECT_EQ(serial.value, parallel.value);
+        EXPECT_EQ(serial.tried, parallel.tried);
+    }
+    omp_set_num_threads(threads);
+}
+
+TEST(Enumeration, IsLeftOutWhereItWouldTakeLong) {
+    SelectOptions options = few_poses(Criterion::O2, 10);
+    options.starts = 1;
+    options.kicks = 0;
+    const Choice plan = select_poses(test::random_blocks(60, 2, 8, 13), options);
+    EXPECT_EQ(plan.ending, Ending::Converged);
+    EXPECT_EQ(plan.tried, 0);
+    EXPECT_LT(plan.efficiency, 1);
 }
 
 }  // namespace

@@ -33,6 +33,8 @@ struct Choice {
     std::uint64_t seed = 0;
     Index starts = 0;          ///< independent ones that ended; a stop cuts others short
     Index starts_at_best = 0;  ///< how many of them ended at this value
+    /// Of an optimal choice: how many the bound left open, all of which were tried.
+    Index tried = 0;
     Ending ending = Ending::NotRun;
     /// Where the ending is NotIdentifiable, which directions stay open and what would close them,
     /// as a sentence; then there are no poses.

@@ -28,20 +28,23 @@ struct SelectOptions {
     double least_distance = 0;    ///< Euclidean, between any two different poses chosen
     std::vector<std::string> column_names;  ///< for messages; empty: columns are numbered from 1
 
-    /// Independent searches. 0: 20, fewer (2 at least) where blocks of many rows and parameters
-    /// make each take seconds.
+    /// Independent searches. 0: until five of them agree on the best value, at most 100 (20 by
+    /// E, G and O2 to O5), fewer (2 at least) where blocks of many rows and parameters make
+    /// each take seconds.
     Index starts = 0;
-    /// Perturbations of each start's plan without success until it ends; ten times as many where
-    /// the shortlist is at most 64 candidates.
+    /// Perturbations of each start's plan without success until it ends; up to ten times as many
+    /// where the poses have hardly more rows than there are parameters.
     Index kicks = 20;
     /// Candidates searched; all are looked at in the last sweeps. 0: from 800 for large blocks to
     /// 5000 for small ones.
     Index shortlist = 0;
-    Index enumeration = 5000;  ///< most choices left open by the bound that are all tried; 0: none
+    /// Most choices left open by the bound that are all tried, where factorising that many
+    /// information matrices takes about ten seconds of a CPU at most. 0: none.
+    Index enumeration = 10'000'000;
     double gap = 1e-5;       ///< relative gap of the information function to end the relaxation at
     std::uint64_t seed = 1;  ///< start i draws from stream (seed, i)
     StopSignal stop{};       ///< ends the search with the best so far
-    ProgressCallback progress{};  ///< of the starts
+    ProgressCallback progress{};  ///< of the starts; agreeing ones end them before the total
 };
 
 /// The best K of the candidates, and a proven bound. The continuous relaxation gives the bound, a

@@ -112,6 +112,7 @@ struct Plan {
     double searched_efficiency = 0;
 
     Index starts_at_best = 0;  ///< how many of the starts ended at this value
+    Index tried = 0;           ///< of an optimal choice: how many the bound left open, all tried
     Ending ending = Ending::NotRun;
 
     /// What calibration will achieve: over the workspace, of choices over the candidates. Files

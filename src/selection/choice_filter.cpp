@@ -1,0 +1,262 @@
+#include "choice_filter.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "../core/decompositions.hpp"
+#include "../core/simd.hpp"
+#include "../criteria/prediction.hpp"
+
+namespace posewise::detail {
+namespace {
+
+constexpr double margin = 1e-6;  // relative, far above the rounding of regular matrices
+constexpr double witness_sharpness = 16;
+
+constexpr Index packed(Index a, Index b) { return a * (a + 1) / 2 + b; }
+
+template <typename V>
+POSEWISE_INLINE V* in(std::vector<Lane>& lanes, int part) {
+    return reinterpret_cast<V*>(lanes.data()) + part;
+}
+
+/// Factorises M in place, the pivots on the diagonal; their least over all columns.
+struct Factorise {
+    Index size;
+    std::vector<Lane>& M;
+    Lane& least;
+
+    template <typename V>
+    POSEWISE_INLINE void run() const {
+        for (int part = 0; part < parts<V>; ++part) run_part<V>(part);
+    }
+    template <typename V>
+    static constexpr int parts = lane_width / simd::width<V>;
+
+    template <typename V>
+    POSEWISE_INLINE void run_part(int part) const {
+        V* const m = in<V>(M, part);
+        V smallest = m[0];
+        for (Index k = 0; k < size; ++k) {
+            const V pivot = m[packed(k, k) * parts<V>];
+            smallest = pivot < smallest ? pivot : smallest;
+            const V inverse = 1.0 / pivot;
+            for (Index i = k + 1; i < size; ++i) {
+                V* const row = m + packed(i, 0) * parts<V>;
+                const V factor = row[k * parts<V>] * inverse;
+                for (Index j = k + 1; j <= i; ++j) {
+                    row[j * parts<V>] -= factor * m[packed(j, k) * parts<V>];
+                }
+            }
+            for (Index i = k + 1; i < size; ++i) m[packed(i, k) * parts<V>] *= inverse;
+        }
+        *(reinterpret_cast<V*>(&least) + part) = smallest;
+    }
+};
+
+/// root = L^-1 T in place; the sum of its squares over the pivots.
+struct SolveRoot {
+    Index size;
+    Index first;  // rows before it are zero
+    std::vector<Lane>& M;
+    std::vector<Lane>& root;
+    Lane& sum;
+
+    template <typename V>
+    POSEWISE_INLINE void run() const {
+        constexpr int parts = lane_width / simd::width<V>;
+        for (int part = 0; part < parts; ++part) {
+            V* const m = in<V>(M, part);
+            V* const y = in<V>(root, part);
+            V total = {};
+            for (Index k = first; k < size; ++k) {
+                const V* const solved = y + packed(k, 0) * parts;
+                V squares = {};
+                for (Index j = first; j <= k; ++j) squares += solved[j * parts] * solved[j * parts];
+                total += squares / m[packed(k, k) * parts];
+                for (Index i = k + 1; i < size; ++i) {
+                    V* const row = y + packed(i, 0) * parts;
+                    const V factor = m[packed(i, k) * parts];
+                    for (Index j = first; j <= k; ++j) row[j * parts] -= factor * solved[j * parts];
+                }
+            }
+            *(reinterpret_cast<V*>(&sum) + part) = total;
+        }
+    }
+};
+
+/// The sum of squares of all entries of the inverse, from what SolveRoot left.
+struct SquareInverse {
+    Index size;
+    Index first;
+    std::vector<Lane>& M;
+    std::vector<Lane>& root;
+    Lane& sum;
+
+    template <typename V>
+    POSEWISE_INLINE void run() const {
+        constexpr int parts = lane_width / simd::width<V>;
+        for (int part = 0; part < parts; ++part) {
+            const V* const m = in<V>(M, part);
+            const V* const y = in<V>(root, part);
+            V total = {};
+            for (Index a = first; a < size; ++a) {
+                for (Index b = first; b <= a; ++b) {
+                    V product = {};
+                    for (Index j = first; j <= b; ++j) {
+                        product += y[packed(a, j) * parts] * y[packed(b, j) * parts];
+                    }
+                    const double times = a == b ? 1 : 2;
+                    total += times * product * product /
+                             (m[packed(a, a) * parts] * m[packed(b, b) * parts]);
+                }
+            }
+            *(reinterpret_cast<V*>(&sum) + part) = total;
+        }
+    }
+};
+
+/// Mean information of the test poses, the more of each the worse it is predicted from M.
+MatrixXd worst_information(const Objective& objective, const MatrixXd& M) {
+    Objective softened = objective;
+    softened.sharpness = witness_sharpness;
+    const VectorXd weights = worst_variance(softened, Eigen::LLT<MatrixXd>(M)).slope;
+    return weighted_information(*objective.test_poses, weights) / weights.sum();
+}
+
+/// Lower triangular T with C = T T^T, C positive semidefinite.
+MatrixXd lower_root(const MatrixXd& C) {
+    const auto eigen = eigen_decomposition(C);
+    const VectorXd roots = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+    return triangular_factor(roots.asDiagonal() * eigen.eigenvectors().transpose()).transpose();
+}
+
+}  // namespace
+
+ChoiceFilter::ChoiceFilter(const Objective& objective, const MatrixXd& M)
+    : objective_(objective),
+      test_(Test::Trace),
+      order_(objective.nuisance),
+      nuisance_(static_cast<Index>(objective.nuisance.size())) {
+    const Index L = M.rows();
+    packed_size_ = packed(L, 0) + 1;
+    for (Index i = 0; i < L; ++i) {
+        if (!std::binary_search(objective.nuisance.begin(), objective.nuisance.end(), i)) {
+            order_.push_back(i);
+        }
+    }
+    strongest_ = eigen_decomposition(M).eigenvectors().rightCols(1);
+    MatrixXd T = MatrixXd::Identity(L, L);
+    T.topLeftCorner(nuisance_, nuisance_).setZero();
+    switch (objective.criterion) {
+        case Criterion::D:
+        case Criterion::O1:
+            test_ = Test::Determinant;
+            return;
+        case Criterion::A:
+            break;
+        case Criterion::V:
+            T = lower_root(objective.mean_test_information);
+            break;
+        case Criterion::G:
+            T = lower_root(worst_information(objective, M));
+            break;
+        case Criterion::O5:
+            test_ = Test::FourthMoment;
+            break;
+        default:
+            test_ = Test::Shift;
+            return;
+    }
+    for (Index i = 0; i < L; ++i) {
+        for (Index j = 0; j <= i; ++j) root_.push_back(T(i, j));
+    }
+}
+
+VectorXd ChoiceFilter::pack(const MatrixXd& M) const {
+    VectorXd result(packed_size_);
+    for (Index i = 0; i < M.rows(); ++i) {
+        for (Index j = 0; j <= i; ++j) {
+            result[packed(i, j)] =
+                M(order_[static_cast<std::size_t>(i)], order_[static_cast<std::size_t>(j)]);
+        }
+    }
+    result[packed_size_ - 1] = strongest_.dot(M * strongest_);
+    return result;
+}
+
+ChoiceFilter::Batch ChoiceFilter::make_batch() const {
+    Batch batch;
+    batch.M.resize(static_cast<std::size_t>(packed_size_));
+    batch.root.resize(root_.size());
+    return batch;
+}
+
+void ChoiceFilter::add(const double* a, const double* b, Batch& batch) const {
+    const auto at = static_cast<std::size_t>(batch.count++);
+    for (Index k = 0; k < packed_size_; ++k) {
+        batch.M[static_cast<std::size_t>(k)].of[at] = a[k] + b[k];
+    }
+}
+
+/// For the least eigenvalue to be large enough beside the largest, which is no less than M along
+/// any direction.
+void ChoiceFilter::subtract_shift(double value, Batch& batch) const {
+    const auto L = static_cast<Index>(order_.size());
+    const Lane& strongest = batch.M.back();
+    Lane shift;
+    for (std::size_t lane = 0; lane < lane_width; ++lane) {
+        const double along = strongest.of[lane];
+        const double least = objective_.criterion == Criterion::E    ? value
+                             : objective_.criterion == Criterion::O3 ? value * value
+                             : objective_.criterion == Criterion::O2 ? value * value * along
+                                                                     : value * std::sqrt(along);
+        shift.of[lane] = least * (1 - margin) - 1e-14 * along;
+    }
+    for (Index i = nuisance_; i < L; ++i) {
+        Lane& diagonal = batch.M[static_cast<std::size_t>(packed(i, i))];
+        for (std::size_t lane = 0; lane < lane_width; ++lane) diagonal.of[lane] -= shift.of[lane];
+    }
+}
+
+bool ChoiceFilter::may_reach(double value, double sum, double fourth) const {
+    if (test_ == Test::Shift) return true;
+    if (test_ == Test::Trace) return 1 / sum >= value * (1 - margin);
+    if (test_ == Test::FourthMoment) {
+        // Of x = 1 / s by Hoelder: sum x >= (sum x^2)^(3/2) / (sum x^4)^(1/2).
+        return std::sqrt(fourth / sum) / sum >= value * (1 - margin);
+    }
+    const Index interest = static_cast<Index>(order_.size()) - nuisance_;
+    const double reached = value_of_log_determinant(objective_, sum, interest);
+    return reached >= value - margin * std::max(1.0, std::abs(value));
+}
+
+std::array<bool, lane_width> ChoiceFilter::may_reach(double value, Batch& batch) const {
+    const auto L = static_cast<Index>(order_.size());
+    if (test_ == Test::Shift) subtract_shift(value, batch);
+    Lane least;
+    Lane sum;
+    Lane fourth;
+    simd::run(Factorise{L, batch.M, least});
+    if (!root_.empty()) {
+        for (std::size_t k = 0; k < root_.size(); ++k) batch.root[k].of.fill(root_[k]);
+        const Index first = objective_.test_poses == nullptr ? nuisance_ : 0;
+        simd::run(SolveRoot{L, first, batch.M, batch.root, sum});
+        if (test_ == Test::FourthMoment) {
+            simd::run(SquareInverse{L, first, batch.M, batch.root, fourth});
+        }
+    }
+    std::array<bool, lane_width> result{};
+    for (std::size_t lane = 0; lane < static_cast<std::size_t>(batch.count); ++lane) {
+        if (!(least.of[lane] > 0)) continue;
+        for (Index i = nuisance_; test_ == Test::Determinant && i < L; ++i) {
+            sum.of[lane] += std::log(batch.M[static_cast<std::size_t>(packed(i, i))].of[lane]);
+        }
+        result[lane] = may_reach(value, sum.of[lane], fourth.of[lane]);
+    }
+    batch.count = 0;
+    return result;
+}
+
+}  // namespace posewise::detail
