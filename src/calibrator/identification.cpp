@@ -1,6 +1,7 @@
 #include "posewise/calibrator/identification.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "../core/decompositions.hpp"
@@ -29,6 +30,7 @@ struct LevenbergMarquardt {
     detail::IdentificationProblem& problem;
     const LevenbergMarquardtOptions& options;
     Estimate& estimate;
+    std::optional<detail::Triangle> triangle{};  ///< at the estimate, if it is known
     double cost = total_loss(problem, estimate.parameters);
     double damping = 1e-6;
     bool has_constant_noise = detail::has_constant_noise(problem.campaign);
@@ -48,14 +50,14 @@ struct LevenbergMarquardt {
     /// One accepted step, or an ending.
     void iterate() {
         if (deviations_open > 0) follow_deviation();
-        const detail::Triangle triangle = triangularise(linearise(problem, estimate.parameters));
-        const double gain = triangle.c.squaredNorm();  // what a full step could
+        triangle = triangularise(linearise(problem, estimate.parameters));
+        const double gain = triangle->c.squaredNorm();  // what a full step could
         if (gain <= converged_below(problem, options.relative_tolerance, cost)) {
             if (deviations_open == 0) estimate.ending = Ending::Converged;
             return;
         }
         for (; damping < 1e12; damping *= 10) {
-            const VectorXd step = damped_step(triangle, damping);
+            const VectorXd step = damped_step(*triangle, damping);
             const Parameters moved =
                 advance(problem.campaign, estimate.parameters, problem.scale.cwiseProduct(step));
             // Where noise depends on the pose a step is judged with that before it: the fixed
@@ -64,6 +66,7 @@ struct LevenbergMarquardt {
                 total_loss(problem, moved, has_constant_noise ? nullptr : &estimate.parameters);
             if (moved_cost < cost) {
                 estimate.parameters = moved;
+                triangle.reset();
                 cost = has_constant_noise ? moved_cost : total_loss(problem, moved);
                 damping = std::max(damping / 100, 1e-15);
                 return;
@@ -73,8 +76,9 @@ struct LevenbergMarquardt {
     }
 };
 
-void search(detail::IdentificationProblem& problem, const LevenbergMarquardtOptions& options,
-            Estimate& estimate) {
+/// The triangle where it ends.
+detail::Triangle search(detail::IdentificationProblem& problem,
+                        const LevenbergMarquardtOptions& options, Estimate& estimate) {
     LevenbergMarquardt steps{problem, options, estimate};
     while (estimate.ending == Ending::NotRun) {
         if (estimate.iterations >= options.iteration_limit) {
@@ -85,6 +89,8 @@ void search(detail::IdentificationProblem& problem, const LevenbergMarquardtOpti
         if (estimate.ending == Ending::NotRun) steps.iterate();
         if (estimate.ending == Ending::NotRun) ++estimate.iterations;
     }
+    return steps.triangle ? std::move(*steps.triangle)
+                          : triangularise(linearise(problem, estimate.parameters));
 }
 
 /// Whether their model errors are the same within 5 %: parameters and deviations depend on them far
@@ -104,7 +110,7 @@ Estimate identify(const Campaign& campaign, const Measurements& measurements,
     Estimate estimate = begin_estimate(problem, start);
     problem.loss = detail::complete_loss(options.loss, campaign);
     if (estimate.ending == Ending::NotIdentifiable) return estimate;
-    search(problem, options, estimate);
+    detail::Triangle triangle = search(problem, options, estimate);
     if (options.finds_model_error && detail::is_model_error_open(campaign)) {
         bool stays = false;
         for (int round = 0; round < 4 && !stays && estimate.ending == Ending::Converged; ++round) {
@@ -112,10 +118,10 @@ Estimate identify(const Campaign& campaign, const Measurements& measurements,
             stays = is_alike(found, better);
             found = better;  // problem refers to it
             estimate.ending = Ending::NotRun;
-            search(problem, options, estimate);
+            triangle = search(problem, options, estimate);
         }
     }
-    finish(problem, estimate);
+    finish(problem, triangle, estimate);
     return estimate;
 }
 

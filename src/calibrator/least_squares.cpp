@@ -181,7 +181,7 @@ Triangle triangularise(const LinearisedSystem& system) {
     MatrixXd augmented(system.J.rows(), size + 1);
     augmented << system.J, system.r;
     const MatrixXd R = triangular_factor(std::move(augmented));
-    return {R.topLeftCorner(size, size), R.col(size).head(size)};
+    return {R.topLeftCorner(size, size), R.col(size).head(size), system.r.squaredNorm()};
 }
 
 MatrixXd invert_triangle(const MatrixXd& R) {
@@ -247,16 +247,14 @@ Estimate begin_estimate(const IdentificationProblem& problem, const Parameters& 
     return estimate;
 }
 
-void finish(const IdentificationProblem& problem, Estimate& estimate) {
-    const LinearisedSystem system = linearise(problem, estimate.parameters);
-    const Index size = system.J.cols();
-    const MatrixXd R = triangularise(system).R;
-    estimate.degrees_of_freedom = system.r.size() - size;
+void finish(const IdentificationProblem& problem, const Triangle& at_estimate, Estimate& estimate) {
+    const MatrixXd& R = at_estimate.R;
+    estimate.degrees_of_freedom = problem.equation_count() - R.cols();
     const bool is_robust = problem.loss.kind != LossKind::Squares;
     estimate.variance_factor =
         is_robust ? problem.deviation * problem.deviation
         : estimate.degrees_of_freedom > 0
-            ? system.r.squaredNorm() / static_cast<double>(estimate.degrees_of_freedom)
+            ? at_estimate.squares / static_cast<double>(estimate.degrees_of_freedom)
             : 1.0;
     if (is_robust) {
         estimate.covariance = robust_covariance(problem, estimate.parameters, R);

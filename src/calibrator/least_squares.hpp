@@ -67,8 +67,9 @@ double converged_below(const IdentificationProblem& problem, double relative_tol
 
 /// J reduced to its triangle by Householder QR: |J d - r|^2 = |R d - c|^2 + rest.
 struct Triangle {
-    MatrixXd R;  ///< L x L, upper
-    VectorXd c;  ///< L
+    MatrixXd R;          ///< L x L, upper
+    VectorXd c;          ///< L
+    double squares = 0;  ///< |r|^2
 };
 Triangle triangularise(const LinearisedSystem& system);
 
@@ -92,7 +93,8 @@ std::string describe_undetermined(const IdentificationProblem& problem,
 /// An estimate at `start` that has not run, or that says why it cannot.
 Estimate begin_estimate(const IdentificationProblem& problem, const Parameters& start);
 
-/// Fills covariance, variance factor and metrics of an estimate from its parameters.
-void finish(const IdentificationProblem& problem, Estimate& estimate);
+/// Fills covariance, variance factor and metrics of an estimate from its parameters, `at_estimate`
+/// its triangle there.
+void finish(const IdentificationProblem& problem, const Triangle& at_estimate, Estimate& estimate);
 
 }  // namespace posewise::detail

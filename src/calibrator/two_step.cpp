@@ -83,7 +83,7 @@ Estimate identify_two_step(const Campaign& campaign, const Measurements& measure
             break;
         }
     }
-    finish(problem, estimate);
+    finish(problem, triangularise(linearise(problem, estimate.parameters)), estimate);
     return estimate;
 }
 

@@ -13,6 +13,10 @@
 #include "posewise/core/reproducible.hpp"
 #include "posewise/core/version.hpp"
 
+#ifdef __GLIBC__  // only after another header
+#include <malloc.h>
+#endif
+
 namespace {
 
 constexpr int input_error = 1;
@@ -68,6 +72,16 @@ std::string find_unknown_command(const CLI::App& program, int argc, char** argv)
            posewise::detail::suggest(first, names);
 }
 
+/// Freed memory stays with the program: matrices come and go by the thousand, and pages from the
+/// system cost more than what is written to them.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+    constexpr int mebibyte = 1 << 20;
+    mallopt(M_MMAP_THRESHOLD, 32 * mebibyte);  // the most there is
+    mallopt(M_TRIM_THRESHOLD, 256 * mebibyte);
+#endif
+}
+
 void add_commands(CLI::App& program) {
     using namespace posewise::cli;
     program.require_subcommand(1);
@@ -82,6 +96,7 @@ void add_commands(CLI::App& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    keep_freed_memory();
     posewise::fix_cache_sizes();
     std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is an error like a full disk
     CLI::App program{"Which poses to measure, how many, and what a calibration achieved.",

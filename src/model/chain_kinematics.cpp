@@ -67,7 +67,7 @@ struct FunctionValue {
 };
 
 FunctionValue evaluate(const JointFunction& function, const VectorXd& q) {
-    if (function.torque != nullptr) return {function.torque->evaluate(q).value, 0, 0};
+    if (function.torque != nullptr) return {function.torque->value(q), 0, 0};
     const double u = sum_of(function.phase, function.joints, q);
     if (function.shape == JointFunction::Shape::Linear) return {u, 1, 0};
     const double sine = std::sin(u);

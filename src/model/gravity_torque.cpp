@@ -31,6 +31,16 @@ void check_load(const Chain& chain, const Load& load) {
     }
 }
 
+/// Mass times centre in the base frame; `moment` is that in the frame of the link.
+Vector3d first_moment(const Isometry3d& link, double mass, const Vector3d& moment) {
+    return link.linear() * moment + mass * link.translation();
+}
+
+/// How a first moment changes as what carries it moves by a twist.
+Vector3d rate_of(double mass, const Vector3d& first_moment, const Twist& twist) {
+    return mass * twist.tail<3>() + twist.head<3>().cross(first_moment);
+}
+
 TorqueShare divided(TorqueShare torque, double largest) {
     torque.value /= largest;
     torque.gradient /= largest;
@@ -107,7 +117,7 @@ GravityTorque::GravityTorque(const Chain& chain, std::size_t element, const Vect
     double low = 0, high = 0, moment = 0;
     for (Index i = 0; i < samples; ++i) {
         const VectorXd q = configurations.row(i).transpose();
-        const double value = torque(q, false).value;
+        const double value = largest_ * this->value(q);
         moment = std::max(moment, moment_about_base(q));
         low = i == 0 ? value : std::min(low, value);
         high = i == 0 ? value : std::max(high, value);
@@ -136,10 +146,23 @@ double GravityTorque::moment_about_base(const VectorXd& q) const {
     double moment = 0;
     for (const LinkWeight& weight : weights_) {
         const Isometry3d& link = links[static_cast<std::size_t>(weight.link)];
-        const Vector3d first = link.linear() * weight.moment + weight.mass * link.translation();
+        const Vector3d first = first_moment(link, weight.mass, weight.moment);
         moment += gravity_.norm() * first.norm();
     }
     return moment;
+}
+
+double GravityTorque::value(const VectorXd& q) const {
+    const Arm::Motion& motion = arm_->at(q);
+    const Twist twist = motion.flange.twists.col(6 + driven_);
+    double torque = 0;
+    for (const LinkWeight& weight : weights_) {
+        if (driven_ >= weight.moved_by) continue;
+        const Isometry3d& link = motion.links[static_cast<std::size_t>(weight.link)];
+        torque += gravity_.dot(
+            rate_of(weight.mass, first_moment(link, weight.mass, weight.moment), twist));
+    }
+    return torque / largest_;
 }
 
 TorqueShare GravityTorque::evaluate(const VectorXd& q) const {
@@ -154,6 +177,7 @@ TorqueShare GravityTorque::torque(const VectorXd& q, bool is_twice) const {
     const Arm::Motion& motion = arm_->at(q);
     const TwistMatrix& twists = motion.flange.twists;
     const Index count = arm_->driven_count();
+    const auto twist = [&](Index e) { return Twist(twists.col(6 + e)); };
     const auto w = [&](Index e) { return Vector3d(twists.col(6 + e).head<3>()); };
 
     // By driven elements: the torque of element E is g . D_E (m c). What element i moves turns with
@@ -164,11 +188,8 @@ TorqueShare GravityTorque::torque(const VectorXd& q, bool is_twice) const {
     for (const LinkWeight& weight : weights_) {
         if (driven_ >= weight.moved_by) continue;
         const Isometry3d& link = motion.links[static_cast<std::size_t>(weight.link)];
-        const Vector3d first_moment =
-            link.linear() * weight.moment + weight.mass * link.translation();
-        const auto rate = [&](Index e) {
-            return Vector3d(weight.mass * twists.col(6 + e).tail<3>() + w(e).cross(first_moment));
-        };
+        const Vector3d moment = first_moment(link, weight.mass, weight.moment);
+        const auto rate = [&](Index e) { return rate_of(weight.mass, moment, twist(e)); };
         value += gravity_.dot(rate(driven_));
         for (Index i = 0; i < weight.moved_by; ++i) {
             const auto [first, second] = std::minmax(i, driven_);

@@ -58,7 +58,7 @@ MatrixXd evaluate_moments(const std::shared_ptr<const GravityTorque::Arm>& arm, 
     for (Index i = 0; i < configurations.rows(); ++i) {
         const VectorXd q = configurations.row(i).transpose();
         for (std::size_t k = 0; k < probes.size(); ++k) {
-            moments(i, static_cast<Index>(k)) = torques[k].evaluate(q).value;
+            moments(i, static_cast<Index>(k)) = torques[k].value(q);
         }
     }
     moments.rowwise() -= moments.colwise().mean().eval();

@@ -71,7 +71,8 @@ TEST(CrossValidate, IsAnIdentificationOfEveryFoldWhereverItStarts) {
                 const CrossValidation found =
                     cross_validate(campaign, measured, from, folds, options);
                 EXPECT_TRUE(found.failures.empty());
-                EXPECT_LT((found.squared_distances - expected).norm(), 1e-7 * expected.norm());
+                // A sum of squares tells its minimum to half of its digits.
+                EXPECT_LT((found.squared_distances - expected).norm(), 1e-6 * expected.norm());
             }
         }
     }

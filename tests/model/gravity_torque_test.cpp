@@ -25,6 +25,7 @@ TEST(GravityTorque, OfAPendulumIsItsWeightTimesItsArm) {
     EXPECT_TRUE(torque.varies());
     for (const double q : {-1.2, 0.0, 0.7}) {
         const TorqueShare share = torque.evaluate_twice(VectorXd::Constant(1, q));
+        EXPECT_DOUBLE_EQ(torque.value(VectorXd::Constant(1, q)), share.value);
         const double scale = 3 * 9.80665 * 0.5 / torque.largest();
         EXPECT_NEAR(share.value, scale * std::cos(q), 1e-14);
         EXPECT_NEAR(share.gradient[0], -scale * std::sin(q), 1e-14);

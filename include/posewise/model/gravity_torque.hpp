@@ -52,6 +52,8 @@ class GravityTorque {
 
     /// At a configuration (joint values, what follows them does not matter), divided by largest().
     TorqueShare evaluate(const VectorXd& q) const;
+    /// The value alone.
+    double value(const VectorXd& q) const;
     /// The same with the second derivatives.
     TorqueShare evaluate_twice(const VectorXd& q) const;
 
