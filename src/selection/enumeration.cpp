@@ -16,8 +16,7 @@ namespace {
 /// Choices times parameters cubed. The filter takes half a second to a second of a CPU for 1e10.
 constexpr double short_work = 1e10;
 constexpr double full_work = 1.5e11;
-constexpr double eigenvalue_work = 30;  // of O5, whose moments rule out less
-constexpr double most_numbers = 3e7;    // of all candidates' information matrices
+constexpr double most_numbers = 3e7;  // of all candidates' information matrices
 constexpr std::size_t least_branches = 64;
 
 /// Candidates in the order in which choices take them, the most sensitive first; one that may be
@@ -96,6 +95,12 @@ Tree make_tree(const SearchProblem& problem, const Relaxation& relaxation) {
         }
     }
     return tree;
+}
+
+/// How much longer a choice takes than by D, where the filter rules out fewer of them.
+double work_beside_filter(Criterion criterion) {
+    if (criterion == Criterion::O5) return 30;
+    return criterion == Criterion::G ? 7 : 1;
 }
 
 /// How many choices the bound leaves open, counted no further than beyond `most`. Limits of groups
@@ -283,8 +288,7 @@ std::optional<Enumerated> enumerate_open_choices(const SearchProblem& problem,
                                                  const ScoredPoses& best, Patience patience) {
     if (!best.score.identifies || problem.options.enumeration == 0) return std::nullopt;
     const auto L = static_cast<double>(problem.candidates.parameter_count());
-    const double each =
-        L * L * L * (problem.objective.criterion == Criterion::O5 ? eigenvalue_work : 1);
+    const double each = L * L * L * work_beside_filter(problem.objective.criterion);
     const double work = patience == Patience::Short ? short_work : full_work;
     const double most = std::min(static_cast<double>(problem.options.enumeration), work / each);
     const Tree tree = make_tree(problem, relaxation);
