@@ -1,8 +1,17 @@
 #include "design_space.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "../core/decompositions.hpp"
+#include "../core/text.hpp"
 #include "../jacobian/pose_information.hpp"
+#include "posewise/core/errors.hpp"
 
 namespace posewise::detail {
+
 DesignSpace make_design_space(const Campaign& campaign, const Parameters& parameters,
                               double repeats, const Constraints* constraints) {
     const auto pose = std::make_shared<PoseInformation>(campaign, parameters, repeats);
@@ -31,6 +40,25 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
     space.least_joint_distance = constraints->cell().least_joint_distance;
     space.margin = [constraints](const VectorXd& q) { return constraints->margin(q); };
     return space;
+}
+
+void check_all_is_seen(const DesignSpace& space, const MatrixXd& M) {
+    // A plan that leaves a direction less sure than so many expected errors is no plan.
+    constexpr double largest_deviation = 1000;
+    const auto eigen = eigen_decomposition(M);
+    const double least = eigen.eigenvalues()[0];
+    if (least >= 1 / (largest_deviation * largest_deviation)) return;
+    const double rounding = std::numeric_limits<double>::epsilon() * eigen.eigenvalues().tail(1)[0];
+    const std::string deviation =
+        least > 100 * rounding
+            ? fmt::format("known to {:.2g} times its expected size only", 1 / std::sqrt(least))
+            : "unknown";
+    throw InputError(fmt::format(
+        "the best plan found leaves the parameter direction {} (in expected errors) {}, must be "
+        "known to {} times at worst; take more poses, more starts or a prior (--poses, --starts, "
+        "--prior)",
+        describe_combination(eigen.eigenvectors().col(0), space.parameter_names), deviation,
+        largest_deviation));
 }
 
 }  // namespace posewise::detail

@@ -35,4 +35,8 @@ struct DesignSpace {
 DesignSpace make_design_space(const Campaign& campaign, const Parameters& parameters,
                               double repeats = 1, const Constraints* constraints = nullptr);
 
+/// Throws InputError that names a parameter direction which M sees by rounding only, or much less
+/// than is expected of its errors; a criterion's value does not tell.
+void check_all_is_seen(const DesignSpace& space, const MatrixXd& M);
+
 }  // namespace posewise::detail

@@ -1,7 +1,5 @@
 #include "plan_space.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -9,10 +7,8 @@
 #include <limits>
 #include <numeric>
 
-#include "../core/decompositions.hpp"
 #include "../core/parallel.hpp"
 #include "../core/progress_counter.hpp"
-#include "../core/text.hpp"
 #include "../selection/bound.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
@@ -22,8 +18,6 @@ namespace posewise::detail {
 namespace {
 
 constexpr Index test_pose_limit = 500;
-/// A plan that leaves a direction less sure than so many expected errors is no plan.
-constexpr double largest_deviation = 1000;
 
 /// What the starts share.
 struct Problem {
@@ -164,24 +158,6 @@ void report(const Problem& problem, Refinement best, PlannedPoses& planned) {
     for (Index i = 0; i < planned.configurations.rows(); ++i) {
         planned.information += space.information(planned.configurations.row(i).transpose());
     }
-}
-
-/// The criterion's value alone does not tell that a direction is seen by rounding only.
-void check_all_is_seen(const DesignSpace& space, const MatrixXd& M) {
-    const auto eigen = eigen_decomposition(M);
-    const double least = eigen.eigenvalues()[0];
-    if (least >= 1 / (largest_deviation * largest_deviation)) return;
-    const double rounding = std::numeric_limits<double>::epsilon() * eigen.eigenvalues().tail(1)[0];
-    const std::string deviation =
-        least > 100 * rounding
-            ? fmt::format("known to {:.2g} times its expected size only", 1 / std::sqrt(least))
-            : "unknown";
-    throw InputError(fmt::format(
-        "the best plan found leaves the parameter direction {} (in expected errors) {}, must be "
-        "known to {} times at worst; take more poses, more starts or a prior (--poses, --starts, "
-        "--prior)",
-        describe_combination(eigen.eigenvectors().col(0), space.parameter_names), deviation,
-        largest_deviation));
 }
 
 }  // namespace

@@ -43,6 +43,17 @@ class Refiner {
     Ending ending() const { return ending_; }
     bool has_stopped() const { return options_.stop.is_set(); }
 
+    /// Held information and that of all poses but one; -1: of all. Summed anew each time, so that
+    /// rounding does not pile up.
+    MatrixXd information_without(Index skipped) const {
+        MatrixXd M = held_.information;
+        if (M.size() == 0) M.setZero(space_.parameter_count, space_.parameter_count);
+        for (std::size_t i = 0; i < informations_.size(); ++i) {
+            if (static_cast<Index>(i) != skipped) M += informations_[i];
+        }
+        return M;
+    }
+
     double current(const Objective& objective) const {
         return merit(objective, information_without(-1));
     }
@@ -91,17 +102,6 @@ class Refiner {
     bool is_constrained() const { return space_.margin || space_.least_joint_distance > 0; }
     VectorXd pose(Index i) const { return poses_.row(i).transpose(); }
     MatrixXd information(const VectorXd& q) const { return space_.information(q); }
-
-    /// Held information and that of all poses but one; -1: of all. Summed anew each time, so that
-    /// rounding does not pile up.
-    MatrixXd information_without(Index skipped) const {
-        MatrixXd M = held_.information;
-        if (M.size() == 0) M.setZero(space_.parameter_count, space_.parameter_count);
-        for (std::size_t i = 0; i < informations_.size(); ++i) {
-            if (static_cast<Index>(i) != skipped) M += informations_[i];
-        }
-        return M;
-    }
 
     void place(Index i, const VectorXd& q) {
         poses_.row(i) = q.transpose();
@@ -273,6 +273,7 @@ Refinement refine_poses(const DesignSpace& space, const Objective& objective, co
     result.configurations = start;
     result.start_value = result.value = value_of(objective, refiner.current(objective));
     if (!std::isfinite(result.value)) {
+        check_all_is_seen(space, refiner.information_without(-1));
         throw InputError("the plan to refine does not identify all parameters");
     }
     if (!is_smooth(objective.criterion)) {

@@ -121,7 +121,9 @@ TEST_F(Verify, NoticesEditedAssumptions) {
     expect_found([](Json& plan) { plan["assumes"]["sigma_m"] = 1e-5; },
                  "assumes:    sigma_m: stated 1e-05, is 5.2e-05", "assumes");
     expect_found([](Json& plan) { plan["assumes"]["expected_error"].erase("Tx1_m"); },
-                 "assumes:    expected_error/Tx1_m: stated null, is 0.001", "assumes");
+                 "parameters: planned for 32, the campaign has 33 now", "parameters");
+    expect_found([](Json& plan) { plan["assumes"]["expected_error"]["Tx1_m"] = 0.002; },
+                 "assumes:    expected_error/Tx1_m: stated 0.002, is 0.001", "assumes");
     expect_found([](Json& plan) { plan["assumes"]["wind"] = 3; }, "wind: stated 3, is not assumed",
                  "assumes");
 }
