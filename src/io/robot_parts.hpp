@@ -35,7 +35,8 @@ RobotSection read_dh(const YamlValue& dh);
 /// `urdf`, `base_link`, `tip_link` and perhaps `joints`.
 RobotSection read_urdf_robot(const YamlMap& robot);
 
-/// Adds the terms that `gravity`, `harmonics`, `axis_tilt` and `compliance` state to `section.declared`.
+/// Adds the terms that `gravity`, `harmonics`, `axis_tilt` and `compliance` state to
+/// `section.declared`.
 void add_stated_terms(const YamlMap& robot, RobotSection& section);
 
 }  // namespace posewise::detail
