@@ -120,7 +120,7 @@ Index start_count(const Shortlist& shortlist, const SearchProblem& problem) {
                         static_cast<double>(options.pose_count) *
                         static_cast<double>(shortlist.members.size()) * detail::ruggedness(problem);
     const double most = detail::has_exact_gains(problem.objective) ? 100 : 20;  // others are slow
-    return static_cast<Index>(std::clamp(2.5e8 / work, 2.0, most));
+    return static_cast<Index>(std::clamp(5e8 / work, 2.0, most));
 }
 
 /// The most sensitive candidates at the relaxed optimum that are not excluded.

@@ -277,7 +277,7 @@ TEST(SelectByExchange, TakesFewerStartsWhereEachTakesLong) {
     options.pose_count = 10;
     options.kicks = 0;
     options.enumeration = 0;
-    EXPECT_EQ(select_poses(test::random_blocks(120, 12, 90, 1), options).starts, 4);
+    EXPECT_EQ(select_poses(test::random_blocks(300, 12, 90, 1), options).starts, 3);
 }
 
 TEST(SelectByExchange, RefusesUnusableInput) {
