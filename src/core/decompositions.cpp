@@ -31,4 +31,9 @@ Eigen::SelfAdjointEigenSolver<MatrixXd> eigen_decomposition(const MatrixXd& M,
     return Eigen::SelfAdjointEigenSolver<MatrixXd>(M, options);
 }
 
+MatrixXd root_of(const MatrixXd& C) {
+    const auto eigen = eigen_decomposition(C);
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
 }  // namespace posewise::detail

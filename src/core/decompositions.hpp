@@ -19,4 +19,7 @@ MatrixXd solve_least_squares(MatrixXd A, const MatrixXd& B);
 Eigen::SelfAdjointEigenSolver<MatrixXd> eigen_decomposition(
     const MatrixXd& M, Eigen::DecompositionOptions options = Eigen::ComputeEigenvectors);
 
+/// F with C = F F^T, for a positive semidefinite C.
+MatrixXd root_of(const MatrixXd& C);
+
 }  // namespace posewise::detail

@@ -127,9 +127,7 @@ MatrixXd worst_information(const Objective& objective, const MatrixXd& M) {
 
 /// Lower triangular T with C = T T^T, C positive semidefinite.
 MatrixXd lower_root(const MatrixXd& C) {
-    const auto eigen = eigen_decomposition(C);
-    const VectorXd roots = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-    return triangular_factor(roots.asDiagonal() * eigen.eigenvectors().transpose()).transpose();
+    return triangular_factor(root_of(C).transpose()).transpose();
 }
 
 }  // namespace

@@ -13,12 +13,6 @@ namespace {
 
 constexpr Index witness_count = 32;
 
-/// F with C = F F^T.
-MatrixXd root_of(const MatrixXd& C) {
-    const auto eigen = eigen_decomposition(C);
-    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-}
-
 /// The test poses predicted worst, the worst first.
 std::vector<RowMatrixXd> worst_predicted(const Blocks& test_poses, const MatrixXd& M) {
     const VectorXd variances = sensitivities(test_poses, M.inverse());
