@@ -1,10 +1,10 @@
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "../core/parallel.hpp"
+#include "../core/products.hpp"
 #include "../core/progress_counter.hpp"
 #include "least_squares.hpp"
 #include "model_error.hpp"
@@ -30,11 +30,14 @@ struct NormalEquations {
     double squares;
 };
 
-NormalEquations normal_equations(const LinearisedSystem& system) {
-    const Index size = system.J.cols();
-    NormalEquations equations{MatrixXd::Zero(size, size), system.J.transpose() * system.r,
-                              system.r.squaredNorm()};
-    equations.M.selfadjointView<Eigen::Lower>().rankUpdate(system.J.transpose());
+NormalEquations normal_equations(const IdentificationProblem& problem,
+                                 const LinearisedSystem& system) {
+    const Index measured = system.J.rows() - problem.prior_count();
+    NormalEquations equations{detail::gram(system.J.topRows(measured)),
+                              system.J.transpose() * system.r, system.r.squaredNorm()};
+    equations.M.diagonal()
+        .segment(base_parameter_count(problem.campaign), problem.prior_count())
+        .array() += 1;
     return equations;
 }
 
@@ -43,7 +46,7 @@ NormalEquations normal_equations(const LinearisedSystem& system) {
 class Linearisation {
   public:
     Linearisation(const IdentificationProblem& problem, const Parameters& parameters)
-        : system_(linearise(problem, parameters)), all_(normal_equations(system_)) {
+        : system_(linearise(problem, parameters)), all_(normal_equations(problem, system_)) {
         const Index width = problem.campaign.sensor->rows_per_target();
         for (Index i = 0; i < problem.means.configuration_count(); ++i) {
             first_row_.push_back(first_row_.back() + width * problem.means.is_seen.row(i).count());
@@ -74,27 +77,30 @@ class Linearisation {
 /// of 1.
 class Metric {
   public:
-    explicit Metric(const MatrixXd& M) : inverse_norms_(M.diagonal().cwiseSqrt().cwiseInverse()) {
-        root_.compute(inverse_norms_.asDiagonal() * M * inverse_norms_.asDiagonal());
-    }
+    explicit Metric(const MatrixXd& M)
+        : inverse_norms_(M.diagonal().cwiseSqrt().cwiseInverse()),
+          L_(detail::cholesky(inverse_norms_.asDiagonal() * M * inverse_norms_.asDiagonal())) {}
 
     /// Whether its columns are so far from dependent that rounding of M, which squares them, does
     /// not matter.
     bool is_regular() const {
         constexpr double least_singular_value = 1e-6;
-        if (!inverse_norms_.allFinite() || root_.info() != Eigen::Success) return false;
         const Index size = inverse_norms_.size();
-        return root_.matrixL().solve(MatrixXd::Identity(size, size)).norm() * least_singular_value <
-               1;
+        if (L_.rows() < size) return false;
+        const auto identity = RowMatrixXd::Identity(size, size);
+        return detail::solve_lower(L_, identity).norm() * least_singular_value < 1;
     }
 
     VectorXd solve(const VectorXd& g) const {
-        return inverse_norms_.cwiseProduct(root_.solve(inverse_norms_.cwiseProduct(g)));
+        VectorXd d = inverse_norms_.cwiseProduct(g);
+        L_.triangularView<Eigen::Lower>().solveInPlace(d);
+        L_.transpose().triangularView<Eigen::Upper>().solveInPlace(d);
+        return inverse_norms_.cwiseProduct(d);
     }
 
   private:
     VectorXd inverse_norms_;
-    Eigen::LLT<MatrixXd> root_;
+    MatrixXd L_;  ///< empty where M is not positive definite
 };
 
 /// Identifications without some configurations each.
@@ -149,7 +155,7 @@ class Folds {
             if (gain <= converged_below(problem, options_.relative_tolerance, equations.squares)) {
                 return parameters;
             }
-            equations = normal_equations(linearise(problem, parameters));
+            equations = normal_equations(problem, linearise(problem, parameters));
             last_gain = gain;
         }
         return std::nullopt;

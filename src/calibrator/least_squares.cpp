@@ -105,7 +105,7 @@ std::string describe_missing_equations(const IdentificationProblem& problem) {
 LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters) {
     const Campaign& campaign = problem.campaign;
     const Index size = problem.scale.size();
-    LinearisedSystem system{MatrixXd(problem.equation_count(), size),
+    LinearisedSystem system{RowMatrixXd(problem.equation_count(), size),
                             VectorXd(problem.equation_count())};
     // The residual is whitened with the Jacobian.
     RowMatrixXd augmented(campaign.sensor->row_count(), size + 1);

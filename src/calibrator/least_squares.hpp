@@ -9,7 +9,7 @@ namespace posewise::detail {
 /// |J d - r|^2 over the scaled step d, rows = equations: observations, then the prior's. The rows
 /// of a target are multiplied by the square root of its weight under the loss.
 struct LinearisedSystem {
-    MatrixXd J;  ///< equations x L
+    RowMatrixXd J;  ///< equations x L
     VectorXd r;  ///< observed means minus predicted
 };
 

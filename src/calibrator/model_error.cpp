@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "../core/products.hpp"
 #include "../measurement/noise.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "robust.hpp"
@@ -62,8 +63,8 @@ class PredictiveScore {
     struct System {
         RowMatrixXd augmented;
         double log_deviations = 0;  ///< of the observations, summed up
-        Eigen::LLT<MatrixXd> information{};
-        MatrixXd V{};  ///< B M^-1 B^T = V^T V
+        RowMatrixXd V{};            ///< B M^-1 B^T = V^T V; empty where M has no inverse
+        VectorXd residuals{};       ///< at the optimum
     };
 
     void collect(const IdentificationProblem& problem, const Parameters& parameters) {
@@ -119,16 +120,24 @@ class PredictiveScore {
             row += whitened.rows();
         }
         const auto B = system.augmented.leftCols(size_);
-        MatrixXd M = MatrixXd::Zero(size_, size_);
-        M.selfadjointView<Eigen::Lower>().rankUpdate(B.transpose());
+        MatrixXd M = gram(B);
         M.diagonal().segment(prior_begin_, prior_errors_.size()).array() += 1;
-        system.information.compute(M);
-        system.V = system.information.matrixL().solve(B.transpose());
+        const MatrixXd L = cholesky(M);
+        if (L.rows() < size_) return system;
+        const auto r = system.augmented.col(size_);
+        RowMatrixXd sides(size_, row_count_ + 1);
+        sides << B.transpose(), B.transpose() * r;
+        sides.col(row_count_).segment(prior_begin_, prior_errors_.size()) -= prior_errors_;
+        const RowMatrixXd solved = solve_lower(L, sides);
+        system.V = solved.leftCols(row_count_);
+        system.residuals = r - system.V.transpose() * solved.col(row_count_);
         return system;
     }
 
     void count_freedom(const LogErrors& errors) {
-        const VectorXd used = whiten(errors).V.colwise().squaredNorm().transpose();
+        const System system = whiten(errors);
+        if (system.V.cols() < row_count_) return;
+        const VectorXd used = system.V.colwise().squaredNorm().transpose();
         std::array<double, 2> left{}, counts{};
         Index row = 0;
         for (const Rows& of_pose : rows_) {
@@ -144,14 +153,7 @@ class PredictiveScore {
 
     /// Log of the predictive densities of the whitened residuals.
     double predict(const System& system) const {
-        if (system.information.info() != Eigen::Success) {
-            return -std::numeric_limits<double>::infinity();
-        }
-        const auto B = system.augmented.leftCols(size_);
-        VectorXd gradient = B.transpose() * system.augmented.col(size_);
-        gradient.segment(prior_begin_, prior_errors_.size()) -= prior_errors_;
-        const VectorXd residuals =
-            system.augmented.col(size_) - B * system.information.solve(gradient);
+        if (system.V.cols() < row_count_) return -std::numeric_limits<double>::infinity();
         double score = 0;
         Index row = 0;
         for (const Rows& of_pose : rows_) {
@@ -162,7 +164,7 @@ class PredictiveScore {
             const Eigen::LLT<MatrixXd> root(A);
             if (root.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
             score += root.matrixLLT().diagonal().array().log().sum() -
-                     root.matrixL().solve(residuals.segment(row, count)).squaredNorm() / 2;
+                     root.matrixL().solve(system.residuals.segment(row, count)).squaredNorm() / 2;
             row += count;
         }
         return score;

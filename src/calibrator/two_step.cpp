@@ -39,8 +39,8 @@ Parameters cycle(const detail::IdentificationProblem& problem, const Split& spli
                  Parameters parameters, double alpha) {
     if (split.robot > 0) {
         const detail::LinearisedSystem system = linearise(problem, parameters);
-        const VectorXd step =
-            detail::solve_least_squares(system.J.middleCols(split.base, split.robot), system.r);
+        const VectorXd step = detail::solve_least_squares(
+            MatrixXd(system.J.middleCols(split.base, split.robot)), system.r);
         parameters = advance(problem.campaign, parameters,
                              problem.scale.cwiseProduct(split.robot_step(alpha * step)));
     }

@@ -37,7 +37,7 @@ Vector3d first_moment(const Isometry3d& link, double mass, const Vector3d& momen
 }
 
 /// How a first moment changes as what carries it moves by a twist.
-Vector3d rate_of(double mass, const Vector3d& first_moment, const Twist& twist) {
+Vector3d rate_of(double mass, const Vector3d& first_moment, const Eigen::Ref<const Twist>& twist) {
     return mass * twist.tail<3>() + twist.head<3>().cross(first_moment);
 }
 
@@ -177,11 +177,11 @@ TorqueShare GravityTorque::torque(const VectorXd& q, bool is_twice) const {
     const Arm::Motion& motion = arm_->at(q);
     const TwistMatrix& twists = motion.flange.twists;
     const Index count = arm_->driven_count();
-    const auto twist = [&](Index e) { return Twist(twists.col(6 + e)); };
-    const auto w = [&](Index e) { return Vector3d(twists.col(6 + e).head<3>()); };
+    const auto w = [&](Index e) { return twists.col(6 + e).head<3>(); };
 
     // By driven elements: the torque of element E is g . D_E (m c). What element i moves turns with
     // it, so that D_i D_j c = w_i x D_j c for i before j, and likewise once more.
+    const Vector3d pull = gravity_.cross(w(driven_));
     double value = 0;
     VectorXd gradient = VectorXd::Zero(count);
     MatrixXd hessian = MatrixXd::Zero(is_twice ? count : 0, is_twice ? count : 0);
@@ -189,12 +189,14 @@ TorqueShare GravityTorque::torque(const VectorXd& q, bool is_twice) const {
         if (driven_ >= weight.moved_by) continue;
         const Isometry3d& link = motion.links[static_cast<std::size_t>(weight.link)];
         const Vector3d moment = first_moment(link, weight.mass, weight.moment);
-        const auto rate = [&](Index e) { return rate_of(weight.mass, moment, twist(e)); };
-        value += gravity_.dot(rate(driven_));
-        for (Index i = 0; i < weight.moved_by; ++i) {
-            const auto [first, second] = std::minmax(i, driven_);
-            gradient[i] += gravity_.dot(w(first).cross(rate(second)));
-            for (Index h = 0; is_twice && h <= i; ++h) {
+        const auto rate = [&](Index e) { return rate_of(weight.mass, moment, twists.col(6 + e)); };
+        const Vector3d rate_of_driven = rate(driven_);
+        const Vector3d turned = rate_of_driven.cross(gravity_);
+        value += gravity_.dot(rate_of_driven);
+        for (Index i = 0; i < driven_; ++i) gradient[i] += w(i).dot(turned);
+        for (Index i = driven_; i < weight.moved_by; ++i) gradient[i] += pull.dot(rate(i));
+        for (Index i = 0; is_twice && i < weight.moved_by; ++i) {
+            for (Index h = 0; h <= i; ++h) {
                 std::array<Index, 3> order{h, i, driven_};
                 std::sort(order.begin(), order.end());
                 const double third =

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "posewise/core/types.hpp"
+
+namespace posewise::detail {
+
+// Products and factors of dense matrices in the widest vectors that the machine has. Each number is
+// one sum in the order of the rows, whatever their width and the caches are.
+
+/// A^T A, its lower half; zero above.
+MatrixXd gram(const Eigen::Ref<const RowMatrixXd>& A);
+
+/// The L of M = L L^T, zero above its diagonal, by the lower half of M; empty if M is not positive
+/// definite.
+MatrixXd cholesky(const MatrixXd& M);
+
+/// L^-1 B, L the lower half of a square matrix.
+RowMatrixXd solve_lower(const MatrixXd& L, const Eigen::Ref<const RowMatrixXd>& B);
+
+}  // namespace posewise::detail
