@@ -155,7 +155,7 @@ void calibrate_with(Work& work, Calibration& result) {
     result.held_out = hold_out(work, result);
     result.without_outliers = judge_without_outliers(work, result);
     result.doubts = find_doubts(work.campaign, work.used, registered, result.nominal);
-    add_doubts(work.campaign, result.estimate, result.doubts);
+    add_doubts(work.campaign, work.used, result.estimate, result.doubts);
     if (work.options.learns_sizes) {
         result.doubts.held_back =
             find_held_back_size(result.campaign, *result.stated_spread, work.used,

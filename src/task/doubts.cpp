@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "../calibrator/missing_errors.hpp"
 #include "../core/format.hpp"
 #include "../core/statistics.hpp"
 #include "../model/joint_limits.hpp"
@@ -138,6 +139,17 @@ std::vector<ModelErrorDoubt> find_model_error_doubts(const Campaign& campaign,
     return doubts;
 }
 
+std::optional<double> find_missing_errors(const Campaign& campaign, const Measurements& measured,
+                                          const Estimate& estimate) {
+    const Campaign found = with_model_error(campaign, estimate);
+    detail::IdentificationProblem problem = detail::make_problem(found, measured);
+    problem.loss = estimate.loss;
+    problem.deviation = std::sqrt(estimate.variance_factor);
+    const double times = detail::missing_errors(problem, estimate.parameters);
+    if (times <= 1) return std::nullopt;
+    return times;
+}
+
 std::vector<Index> find_negative_compliances(const Campaign& campaign, const Estimate& estimate) {
     constexpr double significant = 3;  // standard deviations
     const VectorXd sigmas = standard_deviations(estimate);
@@ -228,10 +240,12 @@ Doubts find_doubts(const Campaign& campaign, const Measurements& measured,
     return doubts;
 }
 
-void add_doubts(const Campaign& campaign, const Estimate& estimate, Doubts& doubts) {
+void add_doubts(const Campaign& campaign, const Measurements& measured, const Estimate& estimate,
+                Doubts& doubts) {
     doubts.sizes = find_size_doubts(campaign, estimate);
     doubts.model_errors = find_model_error_doubts(campaign, estimate);
     doubts.residual_ratio = find_residual_ratio(estimate);
+    doubts.missing_errors = find_missing_errors(campaign, measured, estimate);
     doubts.negative_compliances = find_negative_compliances(campaign, estimate);
 }
 

@@ -105,7 +105,10 @@ struct Doubts {
     std::optional<OrientationDoubt> orientations;
     std::vector<SizeDoubt> sizes;
     std::vector<ModelErrorDoubt> model_errors;  ///< of lengths, of angles
-    std::optional<HeldBackSize> held_back;      ///< where sizes were learned
+    /// How clearly residuals follow the bending and the harmonics that the model has not: in times
+    /// what chance gives once in a thousand cases, if more than that.
+    std::optional<double> missing_errors;
+    std::optional<HeldBackSize> held_back;  ///< where sizes were learned
     /// Residuals in units of those stated, if clearly not as stated: more than 1.2 times larger or
     /// smaller, and beyond what chi squared of the degrees of freedom is once in a thousand times.
     std::optional<double> residual_ratio;
@@ -117,6 +120,7 @@ struct Doubts {
 Doubts find_doubts(const Campaign& campaign, const Measurements& measurements,
                    const Parameters& registered, const Metrics& nominal);
 /// Adds those about what was identified from them.
-void add_doubts(const Campaign& campaign, const Estimate& estimate, Doubts& doubts);
+void add_doubts(const Campaign& campaign, const Measurements& measurements,
+                const Estimate& estimate, Doubts& doubts);
 
 }  // namespace posewise
