@@ -11,7 +11,7 @@
 namespace posewise::detail {
 namespace {
 
-constexpr double chance = 1e-3;
+constexpr double chance = 1e-3;  // of an answer that is not 0 without a reason
 
 bool has_torques(const Chain& robot) {
     return std::any_of(robot.elements().begin(), robot.elements().end(), [](const Element& e) {
@@ -78,7 +78,8 @@ double missing_errors(const IdentificationProblem& problem, const Parameters& pa
     const double score = (C.transpose() * r.head(C.rows())).squaredNorm() / variance;
     const double by_chance =
         squares / mean * chi_squared_quantile(1 - chance, mean * mean / squares);
-    return score / by_chance;
+    if (score <= by_chance) return 0;
+    return std::min(1.0, (score - mean) / squares * mean / static_cast<double>(freedom));
 }
 
 }  // namespace posewise::detail

@@ -344,10 +344,9 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     }
     if (doubts.missing_errors) {
         sentences.push_back(fmt::format(
-            "what is left over follows the joints' positions {} times as clearly as by chance once "
-            "in a thousand cases: joints bend or have periodic errors, which this model leaves out "
-            "(errors: full has them)",
-            detail::format_fixed(*doubts.missing_errors, 1)));
+            "about {:.0f} % of the squares left over follow the joints' positions: joints bend or "
+            "have periodic errors that this model leaves out (errors: full has them)",
+            100 * *doubts.missing_errors));
     }
     if (doubts.held_back) sentences.push_back(describe_held_back(*doubts.held_back));
     return sentences;

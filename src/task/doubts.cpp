@@ -145,9 +145,10 @@ std::optional<double> find_missing_errors(const Campaign& campaign, const Measur
     detail::IdentificationProblem problem = detail::make_problem(found, measured);
     problem.loss = estimate.loss;
     problem.deviation = std::sqrt(estimate.variance_factor);
-    const double times = detail::missing_errors(problem, estimate.parameters);
-    if (times <= 1) return std::nullopt;
-    return times;
+    constexpr double of_no_consequence = 0.05;
+    const double share = detail::missing_errors(problem, estimate.parameters);
+    if (share <= of_no_consequence) return std::nullopt;
+    return share;
 }
 
 std::vector<Index> find_negative_compliances(const Campaign& campaign, const Estimate& estimate) {

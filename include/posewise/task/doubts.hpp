@@ -105,8 +105,8 @@ struct Doubts {
     std::optional<OrientationDoubt> orientations;
     std::vector<SizeDoubt> sizes;
     std::vector<ModelErrorDoubt> model_errors;  ///< of lengths, of angles
-    /// How clearly residuals follow the bending and the harmonics that the model has not: in times
-    /// what chance gives once in a thousand cases, if more than that.
+    /// About how much of the squares left over follows bending and periodic errors of joints that
+    /// the model has not, 0 to 1; if that is clear, and more than a twentieth.
     std::optional<double> missing_errors;
     std::optional<HeldBackSize> held_back;  ///< where sizes were learned
     /// Residuals in units of those stated, if clearly not as stated: more than 1.2 times larger or
