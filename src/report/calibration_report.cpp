@@ -93,6 +93,14 @@ std::string judge_residuals(const Calibration& calibration) {
                 : " or add error terms (errors: full)\n");
 }
 
+std::string describe_missing_errors(const Calibration& calibration) {
+    if (!calibration.doubts.missing_errors) return "";
+    return fmt::format(
+        "about {:.0f} % of the squares left over follow the joints' positions: joints bend or have "
+        "periodic errors that this model leaves out (errors: full has them)\n",
+        100 * *calibration.doubts.missing_errors);
+}
+
 std::string describe_noise_floor(const Calibration& calibration) {
     const auto& repeatability = calibration.repeatability;
     if (!repeatability) return "noise floor: unknown, no configuration was repeated\n";
@@ -299,8 +307,8 @@ std::string format(const Calibration& calibration, bool has_all_parameters) {
     if (!calibration.is_identified()) return models + calibration.estimate.undetermined + '\n';
     return models + describe_starts(calibration) + describe_measured(calibration) +
            describe_ending(calibration) + judge_residuals(calibration) +
-           format_accuracy(calibration) + format_outliers(calibration) +
-           format_parameters(calibration, has_all_parameters);
+           describe_missing_errors(calibration) + format_accuracy(calibration) +
+           format_outliers(calibration) + format_parameters(calibration, has_all_parameters);
 }
 
 std::string format(const ModelSelection& selection) {
@@ -341,12 +349,6 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     }
     if (!doubts.model_errors.empty()) {
         sentences.push_back(describe_model_errors(doubts.model_errors));
-    }
-    if (doubts.missing_errors) {
-        sentences.push_back(fmt::format(
-            "about {:.0f} % of the squares left over follow the joints' positions: joints bend or "
-            "have periodic errors that this model leaves out (errors: full has them)",
-            100 * *doubts.missing_errors));
     }
     if (doubts.held_back) sentences.push_back(describe_held_back(*doubts.held_back));
     return sentences;
