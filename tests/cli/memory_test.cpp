@@ -16,7 +16,7 @@ class Memory : public Program {
         Program::SetUp();
         if (is_sanitized) GTEST_SKIP() << "memory cannot be limited under a sanitizer";
         run_well("simulate " + fanuc_design +
-                 " --truth 7 --seed 3 --poses 100 --repeats 100 -o s.csv");
+                 " --truth 7 --seed 3 --poses 400 --repeats 25 -o s.csv");
     }
     Outcome calibrate(int folds, int limit_kb) const {
         return run("calibrate " + fanuc_design + " -m s.csv --folds " + std::to_string(folds),
