@@ -7,6 +7,7 @@
 
 #include "calibrate_options.hpp"
 #include "commands.hpp"
+#include "estimates.hpp"
 #include "files.hpp"
 #include "measured.hpp"
 #include "posewise/core/errors.hpp"
@@ -28,6 +29,8 @@ Finds base and targets from nothing, then identifies all parameters together, an
   - the noise floor, from the repeats: no calibration gets below it;
   - every parameter with its standard deviation, the base as position and rotation vector;
   - the strongest correlations: what these poses can hardly tell apart.
+What did not converge, or has errors a hundred times their expected size, or residuals of hundreds of
+standard deviations, is printed and not written, with exit code 3; --force writes it, marked.
 With --plan the calibration sees only the plan's configurations and is judged on the others too.
 With --predict it says what to expect at configurations that need not be measured, as one reading
 there would find it: RMS, 95 %, and each one's in --predict-out (config,parameters_mm,left_over_mm,
@@ -108,6 +111,16 @@ void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& ar
     require(options.folds != 0, "--model-selection", "needs --folds of 2 or more");
 }
 
+/// With faults it is printed, but not written.
+void check_faults(const CalibrateArguments& arguments, const Calibration& result) {
+    const std::string words = "this is no calibration: " + join_faults(result.faults);
+    if (arguments.is_forced) return print_warning(words);
+    print(format(result, arguments.has_all_parameters));
+    throw NoCalibration(fmt::format(
+        "{}: {}; {}--force takes it all the same", arguments.paths.measurements, words,
+        arguments.out.empty() && arguments.predict_out.empty() ? "" : "nothing was written, "));
+}
+
 void calibrate(const CalibrateArguments& arguments) {
     const InputPaths& paths = arguments.paths;
     check_outputs(
@@ -131,11 +144,12 @@ void calibrate(const CalibrateArguments& arguments) {
         if (result.selection) print(format(*result.selection));
         throw input_error_at({paths.measurements}, result.estimate.undetermined);
     }
+    std::ranges::for_each(describe_doubts(result, paths.measurements), print_warning);
+    if (!result.faults.empty()) check_faults(arguments, result);
     if (!arguments.out.empty()) io::write_estimate(arguments.out, result, paths.measurements);
     if (!arguments.predict_out.empty()) {
         io::write_predictions_csv(arguments.predict_out, predicted.ids, result.predicted);
     }
-    std::ranges::for_each(describe_doubts(result, paths.measurements), print_warning);
     print(format(result, arguments.has_all_parameters));
 }
 

@@ -1,5 +1,6 @@
 #include "calibrate_options.hpp"
 
+#include "estimates.hpp"
 #include "options.hpp"
 
 namespace posewise::cli {
@@ -71,6 +72,7 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     command.add_flag("--learn-sizes", options.learns_sizes,
                      "Learn how large the errors of each class are, instead of the expected sizes");
     command.add_flag("--all-parameters", arguments.has_all_parameters, "List each, however many");
+    add_force_option(command, arguments.is_forced);
     command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
         ->check(file_name());
 }

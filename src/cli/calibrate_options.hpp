@@ -25,6 +25,7 @@ struct CalibrateArguments {
     std::optional<Index> iteration_limit;
     std::optional<bool> prior;
     bool has_all_parameters = false;
+    bool is_forced = false;
     CalibrationOptions options;  ///< with the numbers that are options as they are
 };
 

@@ -7,10 +7,10 @@
 #include "../core/text.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "estimates.hpp"
 #include "files.hpp"
 #include "options.hpp"
 #include "posewise/io/correction_file.hpp"
-#include "posewise/io/estimate_file.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
@@ -45,6 +45,7 @@ struct CorrectArguments {
     double mm_per_mrad = 1;
     double largest_change_deg = 5;
     double largest_change_mm = 50;
+    bool is_forced = false;
 };
 
 CorrectionOptions correction_options(const CorrectArguments& arguments) {
@@ -59,7 +60,8 @@ CorrectionOptions correction_options(const CorrectArguments& arguments) {
 void correct(const CorrectArguments& arguments) {
     check_outputs({arguments.paths.campaign, arguments.estimate, arguments.poses}, {arguments.out});
     const io::CampaignFile file = io::read_campaign(arguments.paths.campaign);
-    const Parameters found = io::read_estimate(arguments.estimate, file);
+    const Parameters found =
+        read_usable_estimate(arguments.estimate, file, arguments.is_forced).parameters;
     const io::Configurations poses = io::read_program(arguments.poses, file);
     io::check_within_limits(arguments.poses, file, poses);
     const auto base =
@@ -127,6 +129,7 @@ void add_correct(CLI::App& program) {
         ->required()
         ->check(file_name());
     add_correct_options(*command, *arguments);
+    add_force_option(*command, arguments->is_forced);
     command->footer(correct_footer);
     command->callback([arguments] { correct(*arguments); });
 }

@@ -8,13 +8,13 @@
 #include "../io/atomic_file.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "estimates.hpp"
 #include "files.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/dh_file.hpp"
-#include "posewise/io/estimate_file.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/model/transforms.hpp"
 
@@ -42,6 +42,7 @@ struct ExportArguments {
     std::string estimate;
     std::string urdf;
     std::string dh;
+    bool is_forced = false;
 };
 
 detail::Table change_table(const io::CalibratedUrdf& urdf) {
@@ -150,7 +151,8 @@ void export_estimate(const ExportArguments& arguments) {
     check_outputs({arguments.campaign, arguments.estimate}, {arguments.urdf, arguments.dh});
     const io::CampaignFile file = io::read_campaign(arguments.campaign);
     if (!arguments.urdf.empty()) check_urdf(arguments, file);
-    const Parameters parameters = io::read_estimate(arguments.estimate, file);
+    const Parameters parameters =
+        read_usable_estimate(arguments.estimate, file, arguments.is_forced).parameters;
     if (!arguments.urdf.empty()) export_urdf(arguments, file, parameters);
     if (!arguments.dh.empty()) export_dh(arguments, file, parameters);
 }
@@ -171,6 +173,7 @@ void add_export(CLI::App& program) {
         ->check(file_name());
     command->add_option("--dh", arguments->dh, "Write it as a Denavit-Hartenberg table (YAML)")
         ->check(file_name());
+    add_force_option(*command, arguments->is_forced);
     command->footer(export_footer);
     command->callback([arguments] { export_estimate(*arguments); });
 }

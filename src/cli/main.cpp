@@ -9,6 +9,7 @@
 
 #include "../core/text.hpp"
 #include "commands.hpp"
+#include "estimates.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/reproducible.hpp"
 #include "posewise/core/version.hpp"
@@ -21,6 +22,7 @@ namespace {
 
 constexpr int input_error = 1;
 constexpr int usage_error = 2;
+constexpr int no_calibration = 3;
 constexpr int internal_error = 70;  // EX_SOFTWARE of sysexits.h: a bug of ours
 
 constexpr const char* program_footer = R"(
@@ -36,7 +38,7 @@ Start with:
 
 posewise COMMAND --help explains each with an example.
 Exit code: 0 good, 1 unusable input (one line on standard error), 2 wrong usage,
-70 internal error, a bug of posewise.)";
+3 a calibration that must not be used (calibrate), 70 internal error, a bug of posewise.)";
 
 /// A message is one line, whatever it quotes.
 int fail(const std::string& message, int code) {
@@ -112,6 +114,8 @@ int main(int argc, char** argv) {
         return fail_usage(program, error.what());
     } catch (const posewise::InputError& error) {
         return fail(error.what(), input_error);
+    } catch (const posewise::cli::NoCalibration& error) {
+        return fail(error.what(), no_calibration);
     } catch (const std::bad_alloc&) {
         return fail(
             "out of memory; take fewer candidates (--random, --pool) or set OMP_NUM_THREADS=1",

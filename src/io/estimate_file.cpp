@@ -9,6 +9,7 @@
 #include "json.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/model/transforms.hpp"
+#include "robot_statement.hpp"
 
 namespace posewise::io {
 namespace {
@@ -69,16 +70,19 @@ Json unknowns_to_json(const Sensor& sensor, const VectorXd& unknowns) {
     return json;
 }
 
-/// The robot's error parameters: value (added to the nominal one) and standard deviation.
+/// The robot's error parameters: value (added to the nominal one), standard deviation and expected
+/// size.
 Json robot_to_json(const Campaign& campaign, const Estimate& estimate, const VectorXd& sigmas) {
     const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const VectorXd scale = parameter_scale(campaign);
     const Index robot_begin = base_parameter_count(campaign);
     Json robot = Json::object();
     for (Index k = 0; k < estimate.parameters.robot.size(); ++k) {
         const auto i = static_cast<std::size_t>(robot_begin + k);
         const std::string unit = detail::si_suffix(is_angle[i]);
         robot[estimate.names[i]] = {{"value" + unit, estimate.parameters.robot[k]},
-                                    {"sigma" + unit, sigmas[robot_begin + k]}};
+                                    {"sigma" + unit, sigmas[robot_begin + k]},
+                                    {"expected" + unit, scale[robot_begin + k]}};
     }
     for (const Compliance& compliance : compliances(campaign.robot)) {
         const auto i = static_cast<std::size_t>(robot_begin + compliance.parameter);
@@ -99,6 +103,16 @@ Json other_sigmas_to_json(const Campaign& campaign, const Estimate& estimate,
         others[estimate.names[i] + detail::si_suffix(is_angle[i])] = sigmas[static_cast<Index>(i)];
     }
     return others;
+}
+
+/// All parameters' names, and the rows of their covariance up to its diagonal.
+Json covariance_to_json(const Estimate& estimate) {
+    Json rows = Json::array();
+    for (Index k = 0; k < estimate.covariance.rows(); ++k) {
+        rows.push_back(
+            detail::vector_to_json(VectorXd(estimate.covariance.row(k).head(k + 1).transpose())));
+    }
+    return {{"parameters", estimate.names}, {"rows_si", std::move(rows)}};
 }
 
 Json correlations_to_json(const Estimate& estimate) {
@@ -233,9 +247,14 @@ void write_estimate(const std::string& path, const Calibration& calibration,
     document["measurements"] = measurements;
     document["method"] = method_name(calibration.method);
     document["ending"] = ending_name(estimate.ending);
+    if (!calibration.faults.empty()) document["faults"] = calibration.faults;
     document["iterations"] = estimate.iterations;
     document["degrees_of_freedom"] = estimate.degrees_of_freedom;
     document["variance_factor"] = estimate.variance_factor;
+    document["model_error_m"] = estimate.model_error;
+    document["model_error_rad"] = estimate.model_error_orientation;
+    document["readings"] = campaign.sensor->words().readings;
+    document["chain"] = detail::robot_statement(campaign.robot);
     document["base"] = base_to_json(estimate.parameters.world_from_base);
     document["robot"] = robot_to_json(campaign, estimate, sigmas);
     if (campaign.sensor->observes_targets()) {
@@ -244,6 +263,7 @@ void write_estimate(const std::string& path, const Calibration& calibration,
         document["sensor"] = unknowns_to_json(*campaign.sensor, estimate.parameters.sensor);
     }
     document["sigma"] = other_sigmas_to_json(campaign, estimate, sigmas);
+    document["covariance"] = covariance_to_json(estimate);
     document["strongest_correlations"] = correlations_to_json(estimate);
     document["accuracy"] = accuracy_to_json(calibration);
     if (estimate.loss.kind != LossKind::Squares) {

@@ -7,6 +7,7 @@
 #include "json_reader.hpp"
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "robot_statement.hpp"
 #include "units.hpp"
 
 namespace posewise::io {
@@ -109,11 +110,7 @@ VectorXd read_unknowns(const JsonValue& values, const Sensor& sensor) {
     return unknowns;
 }
 
-}  // namespace
-
-Parameters read_estimate(const std::string& path, const Campaign& campaign) {
-    const detail::Json document = detail::read_document(path, "estimate");
-    const JsonValue root(document, path);
+Parameters read_parameters(const JsonValue& root, const Campaign& campaign) {
     Parameters parameters;
     parameters.world_from_base = read_base(root["base"]);
     parameters.robot = read_robot(root["robot"], campaign);
@@ -123,6 +120,73 @@ Parameters read_estimate(const std::string& path, const Campaign& campaign) {
         parameters.sensor = read_unknowns(root["sensor"], *campaign.sensor);
     }
     return parameters;
+}
+
+MatrixXd read_covariance(const JsonValue& covariance, const std::vector<std::string>& names) {
+    const std::vector<JsonValue> listed = covariance["parameters"].list();
+    const std::vector<JsonValue> rows = covariance["rows_si"].list();
+    if (listed.size() != names.size() || rows.size() != names.size()) {
+        throw covariance.error(fmt::format("has {} parameters in {} rows; must have {}",
+                                           listed.size(), rows.size(), names.size()));
+    }
+    MatrixXd matrix(std::ssize(names), std::ssize(names));
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        if (listed[k].text() != names[k]) {
+            throw listed[k].error("is " + detail::quote(listed[k].text()) + "; must be " +
+                                  detail::quote(names[k]));
+        }
+        const std::vector<double> row = read_numbers(rows[k], k + 1);
+        const auto i = static_cast<Index>(k);
+        matrix.row(i).head(i + 1) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), i + 1);
+        matrix.col(i).head(i + 1) = matrix.row(i).head(i + 1).transpose();
+        constexpr double rounding = 1 + 1e-9;
+        for (Index j = 0; j <= i; ++j) {
+            if (matrix(i, j) * matrix(i, j) <= rounding * matrix(i, i) * matrix(j, j) &&
+                matrix(i, i) >= 0) {
+                continue;
+            }
+            throw rows[k].error("is no row of a covariance; a correlation is beyond 1");
+        }
+    }
+    return matrix;
+}
+
+Ending read_ending(const JsonValue& value) {
+    for (int k = 0; k <= static_cast<int>(Ending::Failed); ++k) {
+        if (value.text() == ending_name(static_cast<Ending>(k))) return static_cast<Ending>(k);
+    }
+    throw value.error("is " + detail::quote(value.text()) + "; must be as posewise writes it");
+}
+
+double read_size(const JsonValue& value) {
+    const double number = value.number();
+    if (!(number >= 0)) throw value.error(fmt::format("is {:g}; must be at least 0", number));
+    return number;
+}
+
+}  // namespace
+
+Estimate read_estimate(const std::string& path, const Campaign& campaign) {
+    const detail::Json document = detail::read_document(path, "estimate");
+    const JsonValue root(document, path);
+    const std::string readings = root["readings"].text();
+    if (readings != campaign.sensor->words().readings) {
+        throw root["readings"].error("is " + detail::quote(readings) + ", the campaign's sensor " +
+                                     "measures " + campaign.sensor->words().readings +
+                                     "; must be an estimate of this campaign");
+    }
+    detail::check_is_of_robot(root["chain"], campaign.robot);
+    Estimate estimate;
+    estimate.parameters = read_parameters(root, campaign);
+    estimate.names = parameter_names(campaign);
+    estimate.covariance = read_covariance(root["covariance"], estimate.names);
+    estimate.ending = read_ending(root["ending"]);
+    estimate.iterations = root["iterations"].count(0);
+    estimate.degrees_of_freedom = root["degrees_of_freedom"].count(0);
+    estimate.variance_factor = read_size(root["variance_factor"]);
+    estimate.model_error = read_size(root["model_error_m"]);
+    estimate.model_error_orientation = read_size(root["model_error_rad"]);
+    return estimate;
 }
 
 }  // namespace posewise::io

@@ -130,7 +130,9 @@ std::string si_suffix(bool is_angle) { return '_' + std::string(units_of(is_angl
 
 const char* load_key(bool turns) { return turns ? "at_Nm" : "at_N"; }
 
-Json vector_to_json(const Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+Json vector_to_json(const Eigen::Ref<const VectorXd>& vector) {
+    return std::vector<double>(vector.begin(), vector.end());
+}
 
 Json numbers_to_json(const std::vector<NamedNumber>& numbers) {
     Json flat = Json::object();

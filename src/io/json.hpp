@@ -29,7 +29,7 @@ std::string si_suffix(bool is_angle);
 /// The key of the torque or force under which a compliance's value is what gives way.
 const char* load_key(bool turns);
 
-Json vector_to_json(const Vector3d& vector);
+Json vector_to_json(const Eigen::Ref<const VectorXd>& vector);
 
 /// An object of them; "expected_error/dq2_rad" is dq2_rad of the object expected_error (a JSON
 /// pointer without the first slash).

@@ -26,6 +26,7 @@ class JsonValue {
     /// Values of an object in the order of the file.
     std::vector<JsonValue> values() const;
 
+    const Json& json() const { return *value_; }
     bool is_null() const { return value_->is_null(); }
     std::string text() const;
     bool boolean() const;

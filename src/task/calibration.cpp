@@ -155,6 +155,10 @@ void calibrate_with(Work& work, Calibration& result) {
     result.held_out = hold_out(work, result);
     result.without_outliers = judge_without_outliers(work, result);
     result.doubts = find_doubts(work.campaign, work.used, registered, result.nominal);
+    result.faults =
+        find_faults(work.campaign, result.estimate,
+                    result.method == CalibrationMethod::Global ? ValueCheck::None
+                                                               : ValueCheck::ByExpectedSizes);
     add_doubts(work.campaign, work.used, result.estimate, result.doubts);
     if (work.options.learns_sizes) {
         result.doubts.held_back =

@@ -32,6 +32,10 @@ constexpr double doubtful_size = 20;
 /// A prior holds values back: beyond it, it is wrong or the model is.
 constexpr double doubtful_under_prior = 3;
 
+/// What no robot has, in expected sizes, and no measurement, in standard deviations as stated.
+constexpr double incredible_size = 100;
+constexpr double incredible_residuals = 300;
+
 /// How much farther the measured points of a target spread than the flange, by the joints, does.
 double measured_extent(const Campaign& campaign, const Measurements& measured) {
     const VectorXd no_errors = VectorXd::Zero(campaign.robot.parameter_count());
@@ -226,6 +230,37 @@ std::string describe_misfit(const Campaign& campaign, const Misfit& misfit) {
         detail::format_short(mm_per_m * misfit.distance, 3),
         detail::format_short(mm_per_m * misfit.expected, 3), campaign.name, ask_about(misfit.unit),
         misfit.planes.empty() ? "" : "; ", describe_planes(misfit.planes));
+}
+
+std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& estimate,
+                                     ValueCheck values) {
+    std::vector<std::string> faults;
+    if (estimate.ending != Ending::Converged && estimate.ending != Ending::RoundoffLimited) {
+        faults.push_back(fmt::format("it did not converge ({})", ending_name(estimate.ending)));
+    }
+    const double ratio = std::sqrt(estimate.variance_factor);
+    if (!(ratio <= incredible_residuals)) {
+        faults.push_back(fmt::format("its residuals are {} times what sigma and model error say",
+                                     detail::format_short(ratio, 2)));
+    }
+    if (values == ValueCheck::None) return faults;
+    const VectorXd scale = parameter_scale(campaign);
+    const VectorXd sigmas = standard_deviations(estimate);
+    const Index robot_begin = base_parameter_count(campaign);
+    const auto add = [&](Index k, double value, const char* what) {
+        const double times = std::abs(value) / scale[robot_begin + k];
+        if (times <= incredible_size) return;
+        const bool is_angle = campaign.robot.parameter_element(k).motion == Motion::Rotation;
+        faults.push_back(fmt::format("{}{} is {} {}, {} times the size expected of it", what,
+                                     estimate.names[static_cast<std::size_t>(robot_begin + k)],
+                                     detail::format_short(1e3 * value, 4), is_angle ? "mrad" : "mm",
+                                     detail::format_short(times, 2)));
+    };
+    for (Index k = 0; k < estimate.parameters.robot.size(); ++k) {
+        add(k, estimate.parameters.robot[k], "");
+        add(k, sigmas[robot_begin + k], "the standard deviation of ");
+    }
+    return faults;
 }
 
 Doubts find_doubts(const Campaign& campaign, const Measurements& measured,

@@ -155,7 +155,8 @@ TEST_F(EstimateFile, HasTheSameBytesForTheSameEstimate) {
 
 TEST_F(EstimateFile, IsReadBackExactly) {
     written();
-    const Parameters parameters = read_estimate(path_, campaign_);
+    const Estimate estimate = read_estimate(path_, campaign_);
+    const Parameters& parameters = estimate.parameters;
     const Parameters& expected = calibration_.estimate.parameters;
     EXPECT_EQ(parameters.robot, expected.robot);
     EXPECT_EQ(parameters.sensor, expected.sensor);
@@ -170,8 +171,23 @@ TEST_F(EstimateFile, OfAnotherCampaignIsRefused) {
         folder_.write("estimate.json", testing::replaced(good, part, by));
         return testing::input_error_of([&] { read_estimate(path_, campaign_); });
     };
-    EXPECT_EQ(error_with("\"Tx1\"", "\"Tx9\""),
+    EXPECT_EQ(error_with("\"Tx1\": {", "\"Tx9\": {"),
               "estimate.json: robot: has no parameter 'Tx1'; must be an estimate of this campaign");
+    const std::string of_another =
+        "; the estimate is of another robot, or of this one before its nominal values were changed "
+        "(a robot that it has corrected, for one)";
+    EXPECT_EQ(error_with("0.312", "0.3125"),
+              "estimate.json: chain.elements: element 3 is "
+              R"({"motion":"Tx","amount_m":0.3125,"error":"Tx1"}, the campaign's robot has )"
+              R"({"motion":"Tx","amount_m":0.312,"error":"Tx1"})" +
+                  of_another);
+    EXPECT_EQ(error_with("\"elements\": [", "\"elements\": [1,").substr(0, 50),
+              "estimate.json: chain.elements: element 1 is 1, the");
+    EXPECT_EQ(error_with("\"readings\": \"points\"", "\"readings\": \"poses\""),
+              "estimate.json: readings: is 'poses', the campaign's sensor measures points; must be "
+              "an estimate of this campaign");
+    EXPECT_EQ(error_with("\"ending\": \"converged\"", "\"ending\": \"fine\""),
+              "estimate.json: ending: is 'fine'; must be as posewise writes it");
     EXPECT_EQ(error_with("\"robot\": {", "\"robot\": {\"Tx9\": {},"),
               "estimate.json: robot: has 5 parameters, the campaign's robot 4; must be an estimate "
               "of this campaign");
@@ -185,6 +201,50 @@ TEST_F(EstimateFile, OfAnotherCampaignIsRefused) {
               "posewise");
     EXPECT_EQ(error_with("\"target2\"", "\"target7\""),
               "estimate.json: targets.target2: is missing; must be there as posewise writes it");
+}
+
+TEST_F(EstimateFile, HoldsTheWholeCovarianceAndHowTheIdentificationEnded) {
+    Estimate& expected = calibration_.estimate;
+    expected.iterations = 7;
+    expected.degrees_of_freedom = 42;
+    expected.variance_factor = 1.25;
+    expected.model_error = 2e-4;
+    expected.ending = Ending::IterationLimit;
+    calibration_.faults = {"it did not converge (iteration limit)"};
+    const Json document = written();
+    EXPECT_EQ(document.at("faults").size(), 1U);
+    EXPECT_EQ(document.at("robot").at("Tx1").at("expected_m").get<double>(), 4e-3);
+    const Estimate estimate = read_estimate(path_, campaign_);
+    EXPECT_EQ(estimate.covariance, expected.covariance);
+    EXPECT_EQ(estimate.names, expected.names);
+    EXPECT_EQ(estimate.iterations, 7);
+    EXPECT_EQ(estimate.degrees_of_freedom, 42);
+    EXPECT_EQ(estimate.variance_factor, 1.25);
+    EXPECT_EQ(estimate.model_error, 2e-4);
+    EXPECT_EQ(estimate.ending, Ending::IterationLimit);
+
+    const auto error_with = [&](const char* pointer, const Json& value) {
+        Json changed = document;
+        changed[Json::json_pointer(pointer)] = value;
+        folder_.write("estimate.json", changed.dump());
+        return testing::input_error_of([&] { read_estimate(path_, campaign_); });
+    };
+    EXPECT_EQ(error_with("/covariance/rows_si/1/0", -2e-8),
+              "estimate.json: covariance.rows_si[1]: is no row of a covariance; a correlation is "
+              "beyond 1");
+    EXPECT_EQ(error_with("/covariance/rows_si/3", {1, 2}),
+              "estimate.json: covariance.rows_si[3]: has 2 values; must have 4");
+    EXPECT_EQ(error_with("/covariance/parameters/2", "x"),
+              "estimate.json: covariance.parameters[2]: is 'x'; must be 'base.z'");
+    EXPECT_EQ(error_with("/variance_factor", -1),
+              "estimate.json: variance_factor: is -1; must be at least 0");
+}
+
+TEST_F(EstimateFile, DoesNotDependOnJointLimits) {
+    written();
+    const std::string text =
+        testing::replaced(testing::campaign_text, "limits_deg: [-90, 90]", "limits_deg: [-80, 90]");
+    EXPECT_NO_THROW(read_estimate(path_, read_campaign(folder_.write("other.yaml", text))));
 }
 
 TEST_F(EstimateFile, WithAQuaternionThatIsNoRotationIsRefused) {

@@ -19,8 +19,10 @@ void write_estimate(const std::string& path, const Calibration& calibration,
 void write_predictions_csv(const std::string& path, const std::vector<std::string>& ids,
                            const std::vector<ErrorPrediction>& predictions);
 
-/// The identified parameters that such a file holds, exactly as they were. Throws InputError with
-/// the place if it is none, or not one of this campaign's parameters.
-Parameters read_estimate(const std::string& path, const Campaign& campaign);
+/// What such a file holds, exactly as it was: parameters, names, covariance, ending, variance
+/// factor, degrees of freedom, model errors. Throws InputError with the place if it is none, if it
+/// is of another robot than the campaign's (see designs/README.md) or of another kind of sensor.
+/// Whether it can be used is for find_faults() to say.
+Estimate read_estimate(const std::string& path, const Campaign& campaign);
 
 }  // namespace posewise::io

@@ -90,6 +90,9 @@ struct Calibration {
     std::optional<WithoutOutliers> without_outliers;  ///< if there are some
     std::optional<ModelSelection> selection;          ///< if asked for
     Doubts doubts;
+    /// What makes it none that may reach a robot, find_faults(); beside Global, which expects large
+    /// errors, values of any size are taken.
+    std::vector<std::string> faults;
 
     bool is_identified() const { return estimate.ending != Ending::NotIdentifiable; }
 };

@@ -116,6 +116,15 @@ struct Doubts {
     std::vector<Index> negative_compliances;
 };
 
+/// How large values may be to be believed.
+enum class ValueCheck { ByExpectedSizes, None };
+
+/// What is so wrong with an estimate of this campaign that it must not reach a robot, in words:
+/// that it did not converge, residuals of hundreds of times the noise and model error stated, a
+/// value or standard deviation of a hundred times its expected size. Empty: nothing.
+std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& estimate,
+                                     ValueCheck values = ValueCheck::ByExpectedSizes);
+
 /// Doubts about measurements: `registered` as for find_misfit(), `nominal` its metrics.
 Doubts find_doubts(const Campaign& campaign, const Measurements& measurements,
                    const Parameters& registered, const Metrics& nominal);

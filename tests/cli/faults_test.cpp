@@ -1,0 +1,82 @@
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+/// Estimates that must not reach a robot: not written, and refused where they are read.
+namespace posewise::testing {
+namespace {
+
+class Faults : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        run_well("simulate " + fanuc_design +
+                 " --truth 7 --seed 3 --poses 30 --repeats 3 -o s.csv");
+    }
+
+    const std::string calibrate_ = "calibrate " + fanuc_design + " -m s.csv --folds 0 ";
+};
+
+TEST_F(Faults, AreNotWrittenAndLeaveTheLastEstimate) {
+    run_well(calibrate_ + "-o e.json");
+    const std::string good = text_of("e.json");
+    const Outcome outcome = run(calibrate_ + "--max-iterations 1 -o e.json");
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_EQ(outcome.err,
+              "posewise: s.csv: this is no calibration: it did not converge (iteration limit); "
+              "nothing was written, --force takes it all the same\n");
+    EXPECT_NE(outcome.out.find("Accuracy"), std::string::npos) << outcome.out;
+    EXPECT_EQ(text_of("e.json"), good);
+}
+
+TEST_F(Faults, ThatAreForcedAreMarkedAndRefusedWithoutForce) {
+    const Outcome forced = run(calibrate_ + "--max-iterations 1 --force -o e.json");
+    EXPECT_EQ(forced.code, 0);
+    EXPECT_EQ(forced.err,
+              "posewise: warning: this is no calibration: it did not converge (iteration limit)\n");
+    EXPECT_TRUE(nlohmann::json::parse(text_of("e.json")).contains("faults"));
+    const std::string words =
+        "e.json: is no calibration to use: it did not converge (iteration limit); --force takes";
+    write_text("p.csv", "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n1,0,0,0,0,30,0\n");
+    const std::string do_export = "export " + fanuc_design + " e.json --dh d.yaml";
+    const std::string do_correct = "correct " + fanuc_design + " e.json --poses p.csv -o c.csv";
+    for (const std::string& command : {do_export, do_correct}) {
+        expect_input_error(command, words);
+        const Outcome outcome = run(command + " --force");
+        EXPECT_EQ(outcome.code, 0);
+        EXPECT_EQ(outcome.err.rfind("posewise: warning: e.json: is no calibration", 0), 0U)
+            << outcome.err;
+    }
+    EXPECT_TRUE(has_file("d.yaml") && has_file("c.csv"));
+}
+
+TEST_F(Faults, AreValuesThatNoRobotHas) {
+    run_well(calibrate_ + "-o e.json");
+    nlohmann::ordered_json document = nlohmann::ordered_json::parse(text_of("e.json"));
+    const auto refuses = [&](const std::string& words) {
+        write_text("bad.json", document.dump());
+        expect_input_error("export " + fanuc_design + " bad.json --dh d.yaml", words);
+    };
+    document["robot"]["dq2"]["value_rad"] = 1.5;
+    refuses(
+        "bad.json: is no calibration to use: dq2 is 1500 mrad, 1.5e+03 times the size expected");
+    document["robot"]["dq2"]["value_rad"] = 0.001;
+    document["variance_factor"] = 1e7;
+    refuses("its residuals are 3.2e+03 times what sigma and model error say");
+}
+
+TEST_F(Faults, AnEstimateOfAnotherRobotIsNamedByWhatDiffers) {
+    run_well(calibrate_ + "-o e.json");
+    std::string text =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    const auto at = text.find("Tz 1075 mm");
+    ASSERT_NE(at, std::string::npos);
+    write_text("other.yaml", text.replace(at, 10, "Tz 1000 mm"));
+    for (const std::string command : {"export other.yaml e.json --dh d.yaml"}) {
+        expect_input_error(command, R"("amount_m":1.075)");
+        expect_input_error(command, "the estimate is of another robot");
+    }
+}
+
+}  // namespace
+}  // namespace posewise::testing
