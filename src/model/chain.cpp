@@ -88,4 +88,27 @@ Chain without_parameters(const Chain& chain) {
     return chain.with_elements(std::move(elements));
 }
 
+Chain with_known_errors(const Chain& chain, const VectorXd& values,
+                        const std::vector<bool>& is_known) {
+    std::vector<Element> elements = chain.elements();
+    Index k = 0;
+    const auto knows_next = [&] { return is_known[static_cast<std::size_t>(k++)]; };
+    for (Element& element : elements) {
+        if (!element.parameter.empty() && knows_next()) {
+            element.value += values[k - 1];
+            element.parameter.clear();
+        }
+        std::vector<ErrorTerm> open;
+        for (ErrorTerm& term : element.terms) {
+            if (knows_next()) {
+                element.known_terms.push_back({std::move(term.function), values[k - 1]});
+            } else {
+                open.push_back(std::move(term));
+            }
+        }
+        element.terms = std::move(open);
+    }
+    return chain.with_elements(std::move(elements));
+}
+
 }  // namespace posewise

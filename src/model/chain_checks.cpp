@@ -58,6 +58,10 @@ void check_element(const Element& element, std::size_t number, Index joint_count
         }
         check_sum(its_term, term.function.phase, term.function.joints, input_count);
     }
+    for (const KnownTerm& term : element.known_terms) {
+        check_sum("a known term of " + subject, term.coefficient, term.function.joints,
+                  input_count);
+    }
 }
 
 }  // namespace

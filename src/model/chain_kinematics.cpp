@@ -82,7 +82,26 @@ double amount_of(const Element& element, const VectorXd& q, const VectorXd& para
     for (const ErrorTerm& term : element.terms) {
         amount += parameters[next++] * evaluate(term.function, q).value;
     }
+    for (const KnownTerm& term : element.known_terms) {
+        amount += term.coefficient * evaluate(term.function, q).value;
+    }
     return amount;
+}
+
+/// f(q); adds to the joints' twists what `coefficient` times it moves.
+double add_function(const JointFunction& function, double coefficient, const VectorXd& q,
+                    const Twist& twist, FlangeMotion& motion) {
+    if (function.torque != nullptr) {
+        const TorqueShare share = function.torque->evaluate(q);
+        motion.joint_twists += coefficient * twist * share.gradient.transpose();
+        return share.value;
+    }
+    const FunctionValue f = evaluate(function, q);
+    for (const JointTerm& by : function.joints) {
+        if (by.joint >= motion.joint_twists.cols()) continue;  // a measured torque
+        motion.joint_twists.col(by.joint) += coefficient * f.slope * by.coefficient * twist;
+    }
+    return f.value;
 }
 
 /// What the terms of an element, error parameters `next` on, add to `motion`; returns what they add
@@ -93,66 +112,61 @@ double amount_of(const Element& element, const VectorXd& q, const VectorXd& para
     double amount = 0;
     for (const ErrorTerm& term : element.terms) {
         const double pi = parameters[next];
-        double value = 0;
-        if (term.function.torque != nullptr) {
-            const TorqueShare share = term.function.torque->evaluate(q);
-            value = share.value;
-            motion.joint_twists += pi * twist * share.gradient.transpose();
-        } else {
-            const FunctionValue f = evaluate(term.function, q);
-            value = f.value;
-            for (const JointTerm& by : term.function.joints) {
-                if (by.joint >= motion.joint_twists.cols()) continue;  // a measured torque
-                motion.joint_twists.col(by.joint) += pi * f.slope * by.coefficient * twist;
-            }
-        }
+        const double value = add_function(term.function, pi, q, twist, motion);
         motion.twists.col(6 + next++) = value * twist;
         amount += pi * value;
+    }
+    for (const KnownTerm& term : element.known_terms) {
+        amount +=
+            term.coefficient * add_function(term.function, term.coefficient, q, twist, motion);
     }
     return amount;
 }
 
-/// What a term adds to the rates by joint j of its element's twist, which changes by `change`:
-/// pi df/dq_i in the column of joint i.
-void add_term_rate(const JointFunction& function, const FunctionValue& f, double pi,
-                   const Twist& twist, const Twist& change, Index j, Index k,
-                   FlangeMotionRate& rate) {
-    double du_dqj = 0;
-    for (const JointTerm& by : function.joints) {
-        if (by.joint == j) du_dqj += by.coefficient;
-    }
-    rate.twists.col(6 + k) = f.value * change + f.slope * du_dqj * twist;
-    for (const JointTerm& by : function.joints) {
-        if (by.joint >= rate.joint_twists.cols()) continue;  // a measured torque
-        rate.joint_twists.col(by.joint) +=
-            pi * by.coefficient * (f.slope * change + f.curvature * du_dqj * twist);
+/// What coefficient * f(q), part of the amount of an element, adds to the rates: the element's
+/// twist, which joint j changes by its Lie bracket, is multiplied by pi df/dq_i in the column of
+/// joint i and by f(q) in that of the error parameter k (-1: there is none).
+void add_function_rates(const JointFunction& function, double coefficient, const VectorXd& q,
+                        const Twist& twist, Index k, const TwistMatrix& joint_twists,
+                        std::vector<FlangeMotionRate>& rates) {
+    const bool is_torque = function.torque != nullptr;
+    const TorqueShare share = is_torque ? function.torque->evaluate_twice(q) : TorqueShare{};
+    const FunctionValue f = is_torque ? FunctionValue{} : evaluate(function, q);
+    for (Index j = 0; j < joint_twists.cols(); ++j) {
+        const Twist change = lie_bracket(joint_twists.col(j), twist);
+        FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
+        if (is_torque) {
+            if (k >= 0) {
+                rate.twists.col(6 + k) = share.value * change + share.gradient[j] * twist;
+            }
+            rate.joint_twists +=
+                coefficient * (change * share.gradient.transpose() + twist * share.hessian.row(j));
+            continue;
+        }
+        double du_dqj = 0;
+        for (const JointTerm& by : function.joints) {
+            if (by.joint == j) du_dqj += by.coefficient;
+        }
+        if (k >= 0) rate.twists.col(6 + k) = f.value * change + f.slope * du_dqj * twist;
+        for (const JointTerm& by : function.joints) {
+            if (by.joint >= rate.joint_twists.cols()) continue;  // a measured torque
+            rate.joint_twists.col(by.joint) +=
+                coefficient * by.coefficient * (f.slope * change + f.curvature * du_dqj * twist);
+        }
     }
 }
 
-/// What the terms of an element, error parameters k on, add to the rates: the element's twist,
-/// which joint j changes by its Lie bracket, is multiplied by f(q) in the term's column and by pi
-/// df/dq_i in that of joint i.
+/// The same of all terms of an element, error parameters k on.
 [[gnu::noinline]] void add_term_rates(const Element& element, const VectorXd& q,
                                       const VectorXd& parameters, const Twist& twist, Index k,
                                       const TwistMatrix& joint_twists,
                                       std::vector<FlangeMotionRate>& rates) {
     for (const ErrorTerm& term : element.terms) {
-        const bool is_torque = term.function.torque != nullptr;
-        const TorqueShare share =
-            is_torque ? term.function.torque->evaluate_twice(q) : TorqueShare{};
-        const FunctionValue f = is_torque ? FunctionValue{} : evaluate(term.function, q);
-        for (Index j = 0; j < joint_twists.cols(); ++j) {
-            const Twist change = lie_bracket(joint_twists.col(j), twist);
-            FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
-            if (!is_torque) {
-                add_term_rate(term.function, f, parameters[k], twist, change, j, k, rate);
-                continue;
-            }
-            rate.twists.col(6 + k) = share.value * change + share.gradient[j] * twist;
-            rate.joint_twists += parameters[k] * (change * share.gradient.transpose() +
-                                                  twist * share.hessian.row(j));
-        }
+        add_function_rates(term.function, parameters[k], q, twist, k, joint_twists, rates);
         ++k;
+    }
+    for (const KnownTerm& term : element.known_terms) {
+        add_function_rates(term.function, term.coefficient, q, twist, -1, joint_twists, rates);
     }
 }
 
@@ -187,13 +201,13 @@ void Chain::walk(const Isometry3d& world_from_base, const VectorXd& q, const Vec
         const Index first = next;
         double amount = sum_of(element.value, element.joints, q);
         if (!element.parameter.empty()) amount += parameters[next++];
-        if (next > first || !element.joints.empty() || !element.terms.empty()) {
+        if (next > first || !element.joints.empty() || element.has_functions()) {
             const Twist twist = product.twist(element.motion, element.axis);
             if (next > first) motion.twists.col(6 + first) = twist;
             for (const JointTerm& term : element.joints) {
                 motion.joint_twists.col(term.joint) += term.coefficient * twist;
             }
-            if (!element.terms.empty()) {
+            if (element.has_functions()) {
                 amount += add_terms(element, q, parameters, twist, next, motion);
             }
             visit(element, twist, first);
@@ -245,7 +259,7 @@ void Chain::differentiate_twice(const Isometry3d& world_from_base, const VectorX
                 rate.joint_twists.col(term.joint) += term.coefficient * change;
             }
         }
-        if (element.terms.empty()) return;
+        if (!element.has_functions()) return;
         const Index next = element.parameter.empty() ? first : first + 1;
         add_term_rates(element, q, parameters, twist, next, motion.joint_twists, rates);
     };

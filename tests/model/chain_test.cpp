@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "../../src/model/complete_model.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "support/derivative_check.hpp"
@@ -243,6 +244,47 @@ TEST(Chain, DifferentiatesCompliances) {
             }
         }
     }
+}
+
+TEST(Chain, WithKnownErrorsMovesAsWithTheirParameters) {
+    const Chain bare = without_parameters(fanuc());
+    const Chain full = detail::full_model(with_compliance(bare, fanuc_loads()));
+    const Index count = full.parameter_count();
+    const VectorXd values = 1e-2 * VectorXd::Random(count);
+    std::vector<bool> is_known;
+    VectorXd open(count);
+    Index open_count = 0;
+    for (Index k = 0; k < count; ++k) {
+        is_known.push_back(k % 3 != 0);
+        if (!is_known.back()) open[open_count++] = values[k];
+    }
+    const Chain known = with_known_errors(full, values, is_known);
+    ASSERT_EQ(known.parameter_count(), open_count);
+    open.conservativeResize(open_count);
+    const VectorXd q = VectorXd::LinSpaced(6, -0.7, 0.9);
+    FlangeMotion expected, found;
+    std::vector<FlangeMotionRate> expected_rates, rates;
+    const Isometry3d base = Isometry3d::Identity();
+    full.differentiate_twice(base, q, values, expected, expected_rates);
+    known.differentiate_twice(base, q, open, found, rates);
+    EXPECT_TRUE(known.base_from_flange(q, open).isApprox(expected.world_from_flange, 1e-13));
+    EXPECT_TRUE(found.world_from_flange.isApprox(expected.world_from_flange, 1e-13));
+    EXPECT_TRUE(found.joint_twists.isApprox(expected.joint_twists, 1e-12));
+    for (Index k = 0, own = 0; k < count; ++k) {
+        if (is_known[static_cast<std::size_t>(k)]) continue;
+        EXPECT_TRUE(found.twists.col(6 + own).isApprox(expected.twists.col(6 + k), 1e-11)) << k;
+        EXPECT_TRUE(
+            rates[1].twists.col(6 + own).isApprox(expected_rates[1].twists.col(6 + k), 1e-10))
+            << k;
+        ++own;
+    }
+    for (std::size_t j = 0; j < rates.size(); ++j) {
+        EXPECT_TRUE(rates[j].joint_twists.isApprox(expected_rates[j].joint_twists, 1e-11)) << j;
+    }
+    EXPECT_EQ(
+        with_known_errors(full, values, std::vector<bool>(static_cast<std::size_t>(count), true))
+            .parameter_count(),
+        0);
 }
 
 TEST(Chain, GivesWayInProportionToAMeasuredTorque) {

@@ -60,8 +60,15 @@ struct ErrorTerm {
     TermKind kind = TermKind::Free;
 };
 
+/// A part of an element's amount that depends on the configuration and is known: coefficient *
+/// f(q).
+struct KnownTerm {
+    JointFunction function;
+    double coefficient = 0;  ///< rad or m
+};
+
 /// One elementary transform
-/// E(value + sum of joint terms + error parameter + sum of error terms).
+/// E(value + sum of joint terms + known terms + error parameter + sum of error terms).
 struct Element {
     Motion motion = Motion::Translation;
     Axis axis = Axis::X;
@@ -69,6 +76,9 @@ struct Element {
     std::vector<JointTerm> joints;      ///< empty: a fixed element
     std::string parameter = {};         ///< name of its constant error; empty: none
     std::vector<ErrorTerm> terms = {};  ///< errors that depend on the configuration
+    std::vector<KnownTerm> known_terms = {};
+
+    bool has_functions() const { return !terms.empty() || !known_terms.empty(); }
 };
 
 /// A joint with its limits in rad (revolute) or m (prismatic).
@@ -188,5 +198,10 @@ std::vector<Index> element_owners(const Chain& chain);
 
 /// The same robot without error parameters: calibrating it fits base and targets only.
 Chain without_parameters(const Chain& chain);
+
+/// The robot with these values (parameter_count(), m and rad) of the errors that are known taken
+/// for parts of its elements; the others stay error parameters, in their order.
+Chain with_known_errors(const Chain& chain, const VectorXd& values,
+                        const std::vector<bool>& is_known);
 
 }  // namespace posewise
