@@ -151,7 +151,7 @@ class Folds {
             const VectorXd d = metric.solve(equations.g);
             const double gain = equations.g.dot(d);
             if (!(gain <= falling * last_gain)) return std::nullopt;
-            parameters = advance(campaign_, parameters, problem.scale.cwiseProduct(d));
+            parameters = advance(campaign_, parameters, problem.units.step(d));
             if (gain <= converged_below(problem, options_.relative_tolerance, equations.squares)) {
                 return parameters;
             }

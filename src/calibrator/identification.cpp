@@ -59,7 +59,7 @@ struct LevenbergMarquardt {
         for (; damping < 1e12; damping *= 10) {
             const VectorXd step = damped_step(*triangle, damping);
             const Parameters moved =
-                advance(problem.campaign, estimate.parameters, problem.scale.cwiseProduct(step));
+                advance(problem.campaign, estimate.parameters, problem.units.step(step));
             // Where noise depends on the pose a step is judged with that before it: the fixed
             // point of reweighted least squares is where no such step is left.
             const double moved_cost =

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "../core/decompositions.hpp"
+#include "../core/products.hpp"
 #include "../core/text.hpp"
 #include "../measurement/noise.hpp"
 #include "posewise/core/errors.hpp"
@@ -63,13 +64,57 @@ void weigh_targets(const IdentificationProblem& problem, RowMatrixXd& seen) {
     }
 }
 
-/// The robot's errors in units of their expected size.
-VectorXd scaled_errors(const IdentificationProblem& problem, const Parameters& parameters) {
-    return parameters.robot.cwiseQuotient(
-        problem.scale.segment(base_parameter_count(problem.campaign), parameters.robot.size()));
+}  // namespace
+
+ParameterUnits::ParameterUnits(const Campaign& campaign)
+    : scale_(parameter_scale(campaign)), begin_(base_parameter_count(campaign)) {
+    if (!campaign.prior) return;
+    const Index count = campaign.robot.parameter_count();
+    mean_ = campaign.prior->mean;
+    root_ = cholesky(campaign.prior->covariance);
+    if (mean_.size() != count || root_.rows() != count) {
+        throw InputError(
+            "the prior of the robot's errors is not of this robot, or its covariance not positive "
+            "definite");
+    }
 }
 
-}  // namespace
+VectorXd ParameterUnits::coordinates(const VectorXd& robot) const {
+    if (mean_.size() == 0) return robot.cwiseQuotient(scale_.segment(begin_, robot.size()));
+    return root_.triangularView<Eigen::Lower>().solve(robot - mean_);
+}
+
+VectorXd ParameterUnits::step(const VectorXd& d) const {
+    VectorXd step = scale_.cwiseProduct(d);
+    if (root_.size() > 0) {
+        step.segment(begin_, root_.rows()) =
+            root_.triangularView<Eigen::Lower>() * d.segment(begin_, root_.rows());
+    }
+    return step;
+}
+
+void ParameterUnits::scale_columns(Eigen::Ref<RowMatrixXd> J) const {
+    if (root_.size() == 0) {
+        J *= scale_.asDiagonal();
+        return;
+    }
+    const RowMatrixXd by_robot = J.middleCols(begin_, root_.rows()) * root_;
+    J *= scale_.asDiagonal();
+    J.middleCols(begin_, root_.rows()) = by_robot;
+}
+
+void ParameterUnits::unscale(MatrixXd& covariance) const {
+    const Index count = root_.rows();
+    const MatrixXd rows = root_ * covariance.middleRows(begin_, count);
+    covariance.array() *= (scale_ * scale_.transpose()).array();
+    if (count == 0) return;
+    VectorXd others = scale_;
+    others.segment(begin_, count).setOnes();
+    covariance.middleRows(begin_, count) = rows * others.asDiagonal();
+    covariance.middleCols(begin_, count) = covariance.middleRows(begin_, count).transpose();
+    covariance.block(begin_, begin_, count, count) =
+        rows.middleCols(begin_, count) * root_.transpose();
+}
 
 std::string describe_unseen_target(const Campaign& campaign, const Measurements& measurements) {
     const Sensor& sensor = *campaign.sensor;
@@ -90,21 +135,21 @@ IdentificationProblem make_problem(const Campaign& campaign, const Measurements&
     check_noise(campaign);
     check_size(campaign, measurements);
     return {campaign, measurements, mean_measurements(*campaign.sensor, measurements),
-            times_seen(measurements), parameter_scale(campaign)};
+            times_seen(measurements), ParameterUnits(campaign)};
 }
 
 std::string describe_missing_equations(const IdentificationProblem& problem) {
     std::string unseen = describe_unseen_target(problem.campaign, problem.measurements);
-    if (!unseen.empty() || problem.equation_count() >= problem.scale.size()) return unseen;
+    if (!unseen.empty() || problem.equation_count() >= problem.units.size()) return unseen;
     const Index count = problem.means.configuration_count();
     return fmt::format("{} {} {}, {} parameters need at least as many",
                        count_of(count, "configuration"), count == 1 ? "gives" : "give",
-                       count_of(problem.equation_count(), "equation"), problem.scale.size());
+                       count_of(problem.equation_count(), "equation"), problem.units.size());
 }
 
 LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters) {
     const Campaign& campaign = problem.campaign;
-    const Index size = problem.scale.size();
+    const Index size = problem.units.size();
     LinearisedSystem system{RowMatrixXd(problem.equation_count(), size),
                             VectorXd(problem.equation_count())};
     // The residual is whitened with the Jacobian.
@@ -120,17 +165,18 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
             campaign.sensor->predict(motion.world_from_flange, parameters.sensor));
         RowMatrixXd seen = whiten_equations(problem, i, motion, parameters, augmented);
         weigh_targets(problem, seen);
-        system.J.middleRows(row, seen.rows()) = seen.leftCols(size) * problem.scale.asDiagonal();
+        system.J.middleRows(row, seen.rows()) = seen.leftCols(size);
         system.r.segment(row, seen.rows()) = seen.col(size);
         row += seen.rows();
     }
+    problem.units.scale_columns(system.J.topRows(row));
     if (problem.prior_count() > 0) {
         system.J.bottomRows(problem.prior_count()).setZero();
         system.J
             .block(row, base_parameter_count(campaign), problem.prior_count(),
                    problem.prior_count())
             .setIdentity();
-        system.r.tail(problem.prior_count()) = -scaled_errors(problem, parameters);
+        system.r.tail(problem.prior_count()) = -problem.units.coordinates(parameters.robot);
     }
     return system;
 }
@@ -165,7 +211,7 @@ double total_loss(const IdentificationProblem& problem, const Parameters& parame
         sum += problem.loss.value(length / problem.deviation);
     }
     sum *= problem.deviation * problem.deviation;
-    if (problem.prior_count() > 0) sum += scaled_errors(problem, parameters).squaredNorm();
+    if (problem.prior_count() > 0) sum += problem.units.coordinates(parameters.robot).squaredNorm();
     return sum;
 }
 
@@ -264,7 +310,7 @@ void finish(const IdentificationProblem& problem, const Triangle& at_estimate, E
         const MatrixXd root = invert_triangle(R);
         estimate.covariance = factor * root * root.transpose();
     }
-    estimate.covariance.array() *= (problem.scale * problem.scale.transpose()).array();
+    problem.units.unscale(estimate.covariance);
     estimate.names = parameter_names(problem.campaign);
     estimate.model_error = problem.campaign.model_error;
     estimate.model_error_orientation = problem.campaign.model_error_orientation;

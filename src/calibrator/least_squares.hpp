@@ -10,7 +10,31 @@ namespace posewise::detail {
 /// of a target are multiplied by the square root of its weight under the loss.
 struct LinearisedSystem {
     RowMatrixXd J;  ///< equations x L
-    VectorXd r;  ///< observed means minus predicted
+    VectorXd r;     ///< observed means minus predicted
+};
+
+/// The coordinates that identification works in: parameters in expected errors, the robot's in such
+/// that their prior, where they have one, is standard normal.
+class ParameterUnits {
+  public:
+    /// Throws InputError if the campaign's prior is none of its robot.
+    explicit ParameterUnits(const Campaign& campaign);
+
+    Index size() const { return scale_.size(); }
+    /// The robot's errors in these units; 0 is most probable.
+    VectorXd coordinates(const VectorXd& robot) const;
+    /// A step in parameters (m, rad).
+    VectorXd step(const VectorXd& d) const;
+    /// Derivatives by parameters become such by coordinates.
+    void scale_columns(Eigen::Ref<RowMatrixXd> J) const;
+    /// A covariance of coordinates becomes one of parameters.
+    void unscale(MatrixXd& covariance) const;
+
+  private:
+    VectorXd scale_;
+    Index begin_;    ///< of the robot's errors
+    VectorXd mean_;  ///< of an earlier calibration; empty without
+    MatrixXd root_;  ///< lower, of its covariance
 };
 
 /// The measured means and what every linearisation of them shares.
@@ -19,7 +43,7 @@ struct IdentificationProblem {
     const Measurements& measurements;
     Measurements means;   ///< one sample a configuration
     RowMatrixXd repeats;  ///< configurations x targets: samples of each mean
-    VectorXd scale;
+    ParameterUnits units;
     Loss loss = {};
     double deviation = 1;  ///< unit of the loss, in standard deviations as stated
 

@@ -42,10 +42,9 @@ class PredictiveScore {
     PredictiveScore(const IdentificationProblem& problem, const Parameters& parameters,
                     const Campaign& expected)
         : expected_{std::log(expected.model_error), std::log(expected.model_error_orientation)},
-          size_(problem.scale.size()),
+          size_(problem.units.size()),
           prior_begin_(base_parameter_count(problem.campaign)),
-          prior_errors_(parameters.robot.cwiseQuotient(
-              problem.scale.segment(prior_begin_, parameters.robot.size()))) {
+          prior_errors_(problem.units.coordinates(parameters.robot)) {
         collect(problem, parameters);
         count_freedom({std::log(problem.campaign.model_error),
                        std::log(problem.campaign.model_error_orientation)});
@@ -83,7 +82,7 @@ class PredictiveScore {
              evenly_spaced(problem.means.configuration_count(), most_configurations)) {
             const VectorXd q = problem.means.configurations.row(i).transpose();
             differentiate_pose(without, parameters, q, motion, augmented.leftCols(size_));
-            augmented.leftCols(size_) *= problem.scale.asDiagonal();
+            problem.units.scale_columns(augmented.leftCols(size_));
             augmented.col(size_) =
                 sensor.deviation(problem.means.observations.row(i).transpose(),
                                  sensor.predict(motion.world_from_flange, parameters.sensor));

@@ -71,7 +71,9 @@ MatrixXd robust_covariance(const IdentificationProblem& problem, const Parameter
     }
     // H = a J^T W J + P = a R^T R + (1 - a) P: a is at most 1, influence never grows faster.
     const double a = rates / weights;
-    const MatrixXd P = prior_information(problem.campaign);
+    MatrixXd P = MatrixXd::Zero(R.cols(), R.cols());
+    const Index begin = base_parameter_count(problem.campaign);
+    P.diagonal().segment(begin, problem.prior_count()).setOnes();
     MatrixXd stacked(2 * R.rows(), R.cols());
     stacked << std::sqrt(a) * R, std::sqrt(1 - a) * P;
     const MatrixXd root = invert_triangle(triangular_factor(std::move(stacked)));

@@ -42,12 +42,12 @@ Parameters cycle(const detail::IdentificationProblem& problem, const Split& spli
         const VectorXd step = detail::solve_least_squares(
             MatrixXd(system.J.middleCols(split.base, split.robot)), system.r);
         parameters = advance(problem.campaign, parameters,
-                             problem.scale.cwiseProduct(split.robot_step(alpha * step)));
+                             problem.units.step(split.robot_step(alpha * step)));
     }
     const detail::LinearisedSystem system = linearise(problem, parameters);
     const VectorXd step = detail::solve_least_squares(split.base_and_targets(system.J), system.r);
     return advance(problem.campaign, parameters,
-                   problem.scale.cwiseProduct(split.base_and_target_step(step)));
+                   problem.units.step(split.base_and_target_step(step)));
 }
 
 }  // namespace

@@ -135,11 +135,24 @@ ParameterSpread population_spread(const Chain& robot) {
 }
 
 MatrixXd prior_information(const Campaign& campaign) {
-    VectorXd information = VectorXd::Zero(parameter_count(campaign));
-    if (campaign.spread.is_prior)
-        information.segment(base_parameter_count(campaign), campaign.robot.parameter_count())
-            .setOnes();
-    return information.asDiagonal();
+    const Index size = parameter_count(campaign);
+    MatrixXd information = MatrixXd::Zero(size, size);
+    if (!campaign.spread.is_prior) return information;
+    const Index count = campaign.robot.parameter_count();
+    const Index begin = base_parameter_count(campaign);
+    auto of_robot = information.block(begin, begin, count, count);
+    of_robot.setIdentity();
+    if (!campaign.prior) return information;
+    const VectorXd scale = parameter_scale(campaign).segment(begin, count);
+    const Eigen::LLT<MatrixXd> root(campaign.prior->covariance);
+    if (root.info() != Eigen::Success || root.cols() != count) {
+        throw InputError(
+            "the covariance of the prior is not positive definite, or not that of the robot's " +
+            std::to_string(count) + " errors");
+    }
+    const MatrixXd inverse = root.solve(MatrixXd::Identity(count, count));
+    of_robot = scale.asDiagonal() * inverse * scale.asDiagonal();
+    return information;
 }
 
 Parameters advance(const Campaign& campaign, const Parameters& parameters, const VectorXd& step) {
@@ -187,6 +200,7 @@ Campaign with_robot(const Campaign& campaign, Chain robot) {
     Campaign changed = campaign;
     changed.robot = std::move(robot);
     changed.nominal.robot = VectorXd::Zero(changed.robot.parameter_count());
+    changed.prior.reset();
     const auto names = parameter_names(changed);
     std::erase_if(changed.spread.by_name, [&](const auto& entry) {
         return std::find(names.begin(), names.end(), entry.first) == names.end();

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "../core/progress_counter.hpp"
+#include "earlier_estimate.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -11,7 +12,9 @@ namespace {
 
 /// What is calibrated, with what, and how far it is.
 struct Work {
-    Campaign campaign;
+    const Campaign& whole;       ///< as asked for
+    std::vector<bool> is_known;  ///< of its robot's errors, see CalibrationOptions::only
+    Campaign campaign;           ///< less what is known
     const Measurements& used;
     const CalibrationOptions& options;
     Index folds;
@@ -37,6 +40,13 @@ struct Work {
 
 void check_options(const CalibrationOptions& options) {
     const bool is_joint = options.method == CalibrationMethod::Joint;
+    if (options.earlier && (!is_joint || options.learns_sizes || options.model_selection)) {
+        throw InputError(
+            "an earlier estimate needs the method lm, without model selection or learning sizes");
+    }
+    if (!options.only.empty() && !options.earlier) {
+        throw InputError("what is not identified needs an earlier estimate to take it from");
+    }
     if (!is_joint && options.joint.loss.kind != LossKind::Squares) {
         throw InputError("the loss is " + std::string(loss_name(options.joint.loss.kind)) +
                          ", must be squares with the method " +
@@ -132,13 +142,17 @@ void compare_models(Work& work, const Parameters& registered, Calibration& resul
 
 /// All that `used` alone tell.
 void calibrate_with(Work& work, Calibration& result) {
-    const Registration registration = register_base_and_targets(work.campaign, work.used);
+    Registration registration = register_base_and_targets(work.campaign, work.used);
     if (!registration.is_determined()) {
         result.estimate.ending = Ending::NotIdentifiable;
         result.estimate.undetermined = registration.undetermined;
         return;
     }
-    const Parameters& registered = registration.parameters;
+    Parameters& registered = registration.parameters;
+    const auto& earlier = work.options.earlier;
+    if (earlier) {
+        registered.robot = detail::open_values(earlier->estimate.parameters.robot, work.is_known);
+    }
     if (work.options.learns_sizes) {
         result.stated_spread = work.campaign.spread;
         work.campaign.spread =
@@ -151,7 +165,6 @@ void calibrate_with(Work& work, Calibration& result) {
     result.nominal = fit_nominal(work, registered);
     result.repeatability = repeatability(*work.campaign.sensor, work.used);
     result.campaign = with_model_error(work.campaign, result.estimate);
-    result.expected = expected_error(result.campaign, result.estimate, work.used);
     result.held_out = hold_out(work, result);
     result.without_outliers = judge_without_outliers(work, result);
     result.doubts = find_doubts(work.campaign, work.used, registered, result.nominal);
@@ -165,6 +178,31 @@ void calibrate_with(Work& work, Calibration& result) {
             find_held_back_size(result.campaign, *result.stated_spread, work.used,
                                 result.estimate.parameters, work.stopped(work.options.joint));
     }
+    if (earlier) {
+        result.estimate =
+            detail::complete(work.whole, earlier->estimate, work.is_known, result.estimate);
+        result.campaign = with_model_error(work.whole, result.estimate);
+    }
+    result.expected = expected_error(result.campaign, result.estimate, work.used);
+}
+
+/// The estimate with base and targets identified anew.
+Parameters refit(const Work& work, const Calibration& result, const Measurements& others) {
+    const VectorXd& robot = result.estimate.parameters.robot;
+    const std::vector<bool> all(static_cast<std::size_t>(robot.size()), true);
+    const Campaign held =
+        with_robot(result.campaign, with_known_errors(result.campaign.robot, robot, all));
+    const Registration registration = register_base_and_targets(held, others);
+    const Estimate found = registration.is_determined()
+                               ? identify(held, others, registration.parameters, work.beside())
+                               : Estimate{};
+    const std::string& undetermined =
+        registration.is_determined() ? found.undetermined : registration.undetermined;
+    if (!undetermined.empty())
+        throw InputError("base and targets of the validation: " + undetermined);
+    Parameters refitted = found.parameters;
+    refitted.robot = robot;
+    return refitted;
 }
 
 }  // namespace
@@ -195,7 +233,15 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
         options.used.empty() ? Measurements{} : take(measurements, options.used);
     const Measurements& used = options.used.empty() ? measurements : part;
     const Index folds = options.folds.value_or(default_folds(used.configuration_count()));
-    Work work{campaign, used, options, folds,
+    std::vector<bool> is_known = detail::known_errors(campaign, options.only);
+    Campaign reduced =
+        options.earlier ? detail::with_earlier(campaign, *options.earlier, is_known) : campaign;
+    Work work{campaign,
+              std::move(is_known),
+              std::move(reduced),
+              used,
+              options,
+              folds,
               detail::ProgressCounter(options.progress, part_count(campaign, options, folds))};
     Calibration result;
     result.campaign = campaign;
@@ -203,18 +249,21 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
     result.measured = count_measured(used);
     calibrate_with(work, result);
     if (!result.is_identified()) return result;
-    const auto judge_on = [&](const Measurements& others) {
-        return make_metrics(residuals(campaign, result.estimate.parameters, others),
+    const auto judge_on = [&](const Parameters& parameters, const Measurements& others) {
+        return make_metrics(residuals(campaign, parameters, others),
                             campaign.sensor->lengths_per_target());
     };
     const auto left_out = all_but(measurements.configuration_count(), options.used);
     if (!options.used.empty() && !left_out.empty()) {
         const Measurements others = take(measurements, left_out);
-        result.left_out = judge_on(others);
+        result.left_out = judge_on(result.estimate.parameters, others);
         result.expected_left_out = expected_error(result.campaign, result.estimate, others);
     }
     if (options.validation != nullptr) {
-        result.validation = judge_on(*options.validation);
+        const Parameters parameters = options.refits_validation
+                                          ? refit(work, result, *options.validation)
+                                          : result.estimate.parameters;
+        result.validation = judge_on(parameters, *options.validation);
         result.expected_validation =
             expected_error(result.campaign, result.estimate, *options.validation);
     }

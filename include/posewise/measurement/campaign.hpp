@@ -56,6 +56,13 @@ std::vector<SharedSize> shared_sizes(const ParameterSpread& spread, const Chain&
 /// What errors robots of this size have, as a prior: for full_model().
 ParameterSpread population_spread(const Chain& robot);
 
+/// What an earlier calibration tells of the robot's errors (m and rad): `mean`, give or take
+/// `covariance`, which is positive definite.
+struct RobotPrior {
+    VectorXd mean;
+    MatrixXd covariance;
+};
+
 /// Everything about a measurement campaign that is known before measuring: the robot, the sensor,
 /// how large the errors are expected to be. The subject of every question posewise answers.
 struct Campaign {
@@ -63,6 +70,8 @@ struct Campaign {
     Chain robot;
     std::shared_ptr<const Sensor> sensor;
     ParameterSpread spread;
+    /// In place of the spread as the prior of the robot's errors, where that is one.
+    std::optional<RobotPrior> prior;
     /// Standard deviation (m) of what the model cannot express; acts like noise that repeats do
     /// not reduce.
     double model_error = 1e-4;
@@ -101,7 +110,8 @@ std::vector<bool> parameter_is_angle(const Campaign& campaign);
 VectorXd parameter_scale(const Campaign& campaign);
 
 /// What is known before measuring, in scaled parameters (parameter_count() square): 1 for each of
-/// the robot's errors if the spread is their prior, 0 for base and sensor.
+/// the robot's errors if the spread is their prior, the inverse of an earlier calibration's
+/// covariance if that is; 0 for base and sensor.
 MatrixXd prior_information(const Campaign& campaign);
 
 /// Parameters moved by a small step (parameter_count(), m and rad): the base turns by exp([phi]x)

@@ -20,6 +20,19 @@ enum class CalibrationMethod {
 /// "lm", "two-step", "global".
 std::string_view method_name(CalibrationMethod method);
 
+/// By how much a robot's errors may have changed since it was calibrated, standard deviations.
+struct Drift {
+    double length = 5e-5;  ///< m; 1 m of steel grows so much by 4 K
+    double angle = 1e-4;   ///< rad
+};
+
+/// An earlier estimate of the same robot, where identification starts.
+struct Earlier {
+    Estimate estimate;      ///< names as those of the campaign
+    bool is_prior = false;  ///< its covariance, and drift, are the prior of the robot's errors
+    Drift drift{};
+};
+
 struct CalibrationOptions {
     CalibrationMethod method = CalibrationMethod::Joint;
     /// Of the joint identification; its loss also of the nominal fit and of what is held out. Other
@@ -30,6 +43,14 @@ struct CalibrationOptions {
     /// Configurations to calibrate with, such as those of a plan; it is judged on the others, too.
     /// Empty: all.
     std::vector<Index> used{};
+    /// Needs Joint.
+    std::optional<Earlier> earlier{};
+    /// What is identified: "base" and "targets" (the sensor's unknowns), "robot" or names of its
+    /// errors; the others stay as in `earlier`. Empty: all.
+    std::vector<std::string> only{};
+    /// Whether base and targets are identified anew for `validation`: it was measured with another
+    /// set-up. The robot's errors stay.
+    bool refits_validation = false;
     /// More measurements, to judge on only; the caller keeps them alive. Null: none.
     const Measurements* validation = nullptr;
     /// Configurations that need not be measured, to say what to expect there (m x joints, and
