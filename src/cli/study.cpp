@@ -24,8 +24,9 @@ all, over ten random splits. Prints the distance RMS there, in mm:
       8  0.2773    0.2065      0.57  0.43..0.78          0.2431   0.4535   1.2347      100             0
 is read: eight configurations chosen by V leave 0.28 mm, median of the splits, where the calibrations
 themselves expect 0.21; half of all random eights leave more than 0.45. Planned against random it is
-0.57, geometric mean over the splits with its 95 % interval. Subsets that do not identify the model
-count as the worst ("-": no number). The pose count from which a column stays flat is enough.
+0.57, geometric mean over the splits with its 95 % interval: better where all of it is below 1, loses
+where all is above 1, within chance else. Subsets that do not identify the model count as the worst
+("-": no number). The pose count from which a column stays flat is enough.
 
 With few configurations there are no splits (--splits 0): each subset is judged on what it leaves,
 and one that takes the telling configurations is judged on easier ones than others are.
