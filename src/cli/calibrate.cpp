@@ -12,6 +12,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/io/estimate_file.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
@@ -108,11 +109,11 @@ void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& ar
     require(options.folds != 0, "--model-selection", "needs --folds of 2 or more");
 }
 
-void calibrate(const CalibrateArguments& arguments) {
+void calibrate(const CalibrateArguments& arguments, const CommonOptions& common) {
     const InputPaths& paths = arguments.paths;
     check_outputs(
         {paths.campaign, paths.measurements, arguments.plan, arguments.validate, arguments.predict},
-        {arguments.out, arguments.predict_out});
+        {arguments.out, arguments.predict_out}, common);
     const io::CampaignFile file = read_with_prior(paths.campaign, arguments.prior);
     const Measurements measured = read_measured(paths.measurements, file);
     CalibrationOptions options = make_options(arguments, file.seed);
@@ -128,7 +129,7 @@ void calibrate(const CalibrateArguments& arguments) {
         return posewise::calibrate(file, measured, options);
     });
     if (!result.is_identified()) {
-        if (result.selection) print(format(*result.selection));
+        if (result.selection && !common.json) print(format(*result.selection));
         throw input_error_at({paths.measurements}, result.estimate.undetermined);
     }
     if (!arguments.out.empty()) io::write_estimate(arguments.out, result, paths.measurements);
@@ -136,12 +137,13 @@ void calibrate(const CalibrateArguments& arguments) {
         io::write_predictions_csv(arguments.predict_out, predicted.ids, result.predicted);
     }
     std::ranges::for_each(describe_doubts(result, paths.measurements), print_warning);
-    print(format(result, arguments.has_all_parameters));
+    print(common.json ? io::to_json(result, paths.measurements)
+                      : format(result, arguments.has_all_parameters));
 }
 
 }  // namespace
 
-void add_calibrate(CLI::App& program) {
+void add_calibrate(CLI::App& program, const CommonOptions& common) {
     const auto arguments = std::make_shared<CalibrateArguments>();
     CLI::App* command =
         program.add_subcommand("calibrate", "Identify the robot's errors from measurements");
@@ -149,9 +151,9 @@ void add_calibrate(CLI::App& program) {
     add_measurements_option(*command, arguments->paths);
     add_calibrate_options(*command, *arguments);
     command->footer(calibrate_footer);
-    command->callback([arguments, command] {
+    command->callback([arguments, command, &common] {
         check_calibrate_usage(*command, *arguments);
-        calibrate(*arguments);
+        calibrate(*arguments, common);
     });
 }
 
