@@ -85,23 +85,21 @@ void warn_of_few(Index count, Index asked) {
         "only {} of the {} random candidates were drawn in the time there was", count, asked));
 }
 
-void print_plan(const Plan& plan, const ChoiceInputs& inputs, const std::string& out, int digits) {
-    print(format_choice(plan, digits) + describe_robot(inputs, plan.request.repeats) +
-          "plan:       " + out + '\n');
-}
-
-/// Weights of the candidates.
-void relax(const SelectArguments& arguments, const ChoiceInputs& inputs,
-           const CommonOptions& common) {
-    const ApproximateDesign design =
-        inputs.campaign ? relax_choice(*inputs.campaign, inputs.candidates, inputs.options)
-                        : relax_choice(inputs.blocks, inputs.options);
-    warn_of_few(design.candidate_count, arguments.random);
-    if (!arguments.out.empty()) io::write_weights(arguments.out, design);
+void print_design(const ApproximateDesign& design, const SelectArguments& arguments,
+                  const ChoiceInputs& inputs, const CommonOptions& common) {
     print(common.json ? io::to_json(design)
                       : format(design, arguments.digits) + '\n' +
                             describe_robot(inputs, design.request.repeats));
     note_interrupt(design.ending, "weights are");
+}
+
+void print_plan(const Plan& plan, const SelectArguments& arguments, const ChoiceInputs& inputs,
+                const std::string& out, const CommonOptions& common) {
+    print(common.json
+              ? io::to_json(plan, out)
+              : format_choice(plan, arguments.digits) +
+                    describe_robot(inputs, plan.request.repeats) + "plan:       " + out + '\n');
+    note_interrupt(plan.ending, "plan is");
 }
 
 void select(const SelectArguments& arguments, const CommonOptions& common) {
@@ -121,7 +119,15 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     ChoiceInputs inputs =
         read_choice_inputs(request, kind_of(arguments), arguments.random, std::move(file));
     inputs.options.stop = stop;
-    if (arguments.relaxes) return relax(arguments, inputs, common);
+    if (arguments.relaxes) {
+        const ApproximateDesign design =
+            inputs.campaign ? relax_choice(*inputs.campaign, inputs.candidates, inputs.options)
+                            : relax_choice(inputs.blocks, inputs.options);
+        warn_of_few(design.candidate_count, arguments.random);
+        if (!out.empty()) io::write_weights(out, design);
+        interrupted.reset();
+        return print_design(design, arguments, inputs, common);
+    }
     ProgressLine line("selecting", arguments.progress);
     inputs.options.progress = [&](const Progress& state) { line(state); };
     const Plan plan = inputs.campaign ? choose(*inputs.campaign, inputs.candidates, inputs.options)
@@ -129,12 +135,7 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     warn_of_few(plan.candidate_count, arguments.random);
     io::write_plan(out, plan);
     interrupted.reset();
-    if (common.json) {
-        print(io::to_json(plan, out));
-    } else {
-        print_plan(plan, inputs, out, arguments.digits);
-    }
-    note_interrupt(plan.ending, "plan is");
+    print_plan(plan, arguments, inputs, out, common);
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ Json design_to_json(const ApproximateDesign& design) {
     document["pose_count"] = request.pose_count;
     document["repeat_limit"] = request.repeat_limit;
     document["prior"] = request.has_prior;
+    document["seed"] = request.seed;
     document["candidate_count"] = design.candidate_count;
     document["value"] = design.value;
     document["bound"] = design.bound;
