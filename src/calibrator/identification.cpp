@@ -72,7 +72,8 @@ struct LevenbergMarquardt {
                 return;
             }
         }
-        estimate.ending = Ending::Stalled;
+        constexpr double rounding = 1e-10;  // of the cost; a step could gain less than that
+        estimate.ending = gain <= rounding * cost ? Ending::Converged : Ending::Stalled;
     }
 };
 

@@ -13,6 +13,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/io/estimate_file.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
@@ -36,6 +37,9 @@ With --predict it says what to expect at configurations that need not be measure
 there would find it: RMS, 95 %, and each one's in --predict-out (config,parameters_mm,left_over_mm,
 noise_mm,total_mm,p95_mm; orientations likewise in mrad). Each row is one, the same pose as often as
 it stands there; of a file with a column sample each configuration.
+With --from it starts at an earlier estimate. --only base,targets identifies nothing else: where is the
+robot now that the instrument was moved? --as-prior takes what was known then as prior, so that a few
+new poses say what has changed. --validate NEW.csv --refit: is the calibration still good there?
 With --loss huber or cauchy a target seen wrongly counts less (cauchy: hardly at all) and is listed:
 if its mean is farther off than 4.95 robust standard deviations (three coordinates), which come from
 the residuals' median, whatever sigma is stated. sqrt(variance factor) is their ratio to the stated.
@@ -111,24 +115,37 @@ void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& ar
     require(options.folds != 0, "--model-selection", "needs --folds of 2 or more");
 }
 
+void print_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
+                       const Calibration& result) {
+    print(common.json ? io::to_json(result, arguments.paths.measurements)
+                      : format(result, arguments.has_all_parameters));
+}
+
 /// With faults it is printed, but not written.
-void check_faults(const CalibrateArguments& arguments, const Calibration& result) {
+void check_faults(const CalibrateArguments& arguments, const CommonOptions& common,
+                  const Calibration& result) {
     const std::string words = "this is no calibration: " + join_faults(result.faults);
     if (arguments.is_forced) return print_warning(words);
-    print(format(result, arguments.has_all_parameters));
+    print_calibration(arguments, common, result);
     throw NoCalibration(fmt::format(
         "{}: {}; {}--force takes it all the same", arguments.paths.measurements, words,
         arguments.out.empty() && arguments.predict_out.empty() ? "" : "nothing was written, "));
 }
 
-void calibrate(const CalibrateArguments& arguments) {
+void calibrate(const CalibrateArguments& arguments, const CommonOptions& common) {
     const InputPaths& paths = arguments.paths;
-    check_outputs(
-        {paths.campaign, paths.measurements, arguments.plan, arguments.validate, arguments.predict},
-        {arguments.out, arguments.predict_out});
+    check_outputs({paths.campaign, paths.measurements, arguments.plan, arguments.validate,
+                   arguments.predict, arguments.from},
+                  {arguments.out, arguments.predict_out}, common);
     const io::CampaignFile file = read_with_prior(paths.campaign, arguments.prior);
     const Measurements measured = read_measured(paths.measurements, file);
     CalibrationOptions options = make_options(arguments, file.seed);
+    if (!arguments.from.empty()) {
+        options.earlier =
+            Earlier{read_usable_estimate(arguments.from, file, arguments.is_forced),
+                    arguments.from_is_prior,
+                    {arguments.drift_mm / mm_per_m, arguments.drift_mrad / mrad_per_rad}};
+    }
     if (!arguments.plan.empty()) options.used = find_planned(measured, arguments.plan);
     std::optional<Measurements> validation;
     if (!arguments.validate.empty()) validation = read_measured(arguments.validate, file);
@@ -141,21 +158,21 @@ void calibrate(const CalibrateArguments& arguments) {
         return posewise::calibrate(file, measured, options);
     });
     if (!result.is_identified()) {
-        if (result.selection) print(format(*result.selection));
+        if (result.selection && !common.json) print(format(*result.selection));
         throw input_error_at({paths.measurements}, result.estimate.undetermined);
     }
     std::ranges::for_each(describe_doubts(result, paths.measurements), print_warning);
-    if (!result.faults.empty()) check_faults(arguments, result);
+    if (!result.faults.empty()) check_faults(arguments, common, result);
     if (!arguments.out.empty()) io::write_estimate(arguments.out, result, paths.measurements);
     if (!arguments.predict_out.empty()) {
         io::write_predictions_csv(arguments.predict_out, predicted.ids, result.predicted);
     }
-    print(format(result, arguments.has_all_parameters));
+    print_calibration(arguments, common, result);
 }
 
 }  // namespace
 
-void add_calibrate(CLI::App& program) {
+void add_calibrate(CLI::App& program, const CommonOptions& common) {
     const auto arguments = std::make_shared<CalibrateArguments>();
     CLI::App* command =
         program.add_subcommand("calibrate", "Identify the robot's errors from measurements");
@@ -163,9 +180,9 @@ void add_calibrate(CLI::App& program) {
     add_measurements_option(*command, arguments->paths);
     add_calibrate_options(*command, *arguments);
     command->footer(calibrate_footer);
-    command->callback([arguments, command] {
+    command->callback([arguments, command, &common] {
         check_calibrate_usage(*command, *arguments);
-        calibrate(*arguments);
+        calibrate(*arguments, common);
     });
 }
 

@@ -72,6 +72,36 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     command.add_flag("--learn-sizes", options.learns_sizes,
                      "Learn how large the errors of each class are, instead of the expected sizes");
     command.add_flag("--all-parameters", arguments.has_all_parameters, "List each, however many");
+    CLI::Option* const from =
+        command
+            .add_option("--from", arguments.from,
+                        "Start at this estimate of the same robot (JSON), from calibrate --out")
+            ->check(file_name());
+    CLI::Option* const as_prior =
+        command
+            .add_flag("--as-prior", arguments.from_is_prior,
+                      "Its errors of the robot, as sure as they were but for drift, are the prior")
+            ->needs(from);
+    command
+        .add_option("--drift-mm", arguments.drift_mm,
+                    "With --as-prior: by which lengths may have changed since, standard deviation")
+        ->check(real_number(1e-6, 1e3))
+        ->capture_default_str()
+        ->needs(as_prior);
+    command.add_option("--drift-mrad", arguments.drift_mrad, "The same of angles")
+        ->check(real_number(1e-6, 1e3))
+        ->capture_default_str()
+        ->needs(as_prior);
+    command
+        .add_option("--only", options.only,
+                    "With --from: identify base,targets and, if named, robot or errors of it; the "
+                    "others stay")
+        ->delimiter(',')
+        ->needs(from);
+    command
+        .add_flag("--refit", options.refits_validation,
+                  "With --validate: base and targets are identified anew there; the robot stays")
+        ->needs("--validate");
     add_force_option(command, arguments.is_forced);
     command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
         ->check(file_name());

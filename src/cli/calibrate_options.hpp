@@ -26,6 +26,10 @@ struct CalibrateArguments {
     std::optional<bool> prior;
     bool has_all_parameters = false;
     bool is_forced = false;
+    std::string from;
+    bool from_is_prior = false;
+    double drift_mm = 0.05;
+    double drift_mrad = 0.1;
     CalibrationOptions options;  ///< with the numbers that are options as they are
 };
 

@@ -6,15 +6,21 @@
 /// in the command's callback, once the whole command line is known to be right.
 namespace posewise::cli {
 
-void add_inspect(CLI::App& program);
-void add_indices(CLI::App& program);
-void add_select(CLI::App& program);
-void add_plan(CLI::App& program);
-void add_verify(CLI::App& program);
-void add_calibrate(CLI::App& program);
-void add_export(CLI::App& program);
-void add_correct(CLI::App& program);
-void add_study(CLI::App& program);
-void add_simulate(CLI::App& program);
+/// What every command takes beside its own options.
+struct CommonOptions {
+    bool json = false;  ///< print the result as a JSON document instead of text
+};
+void add_common_options(CLI::App& command, CommonOptions& common);
+
+void add_inspect(CLI::App& program, const CommonOptions& common);
+void add_indices(CLI::App& program, const CommonOptions& common);
+void add_select(CLI::App& program, const CommonOptions& common);
+void add_plan(CLI::App& program, const CommonOptions& common);
+void add_verify(CLI::App& program, const CommonOptions& common);
+void add_calibrate(CLI::App& program, const CommonOptions& common);
+void add_export(CLI::App& program, const CommonOptions& common);
+void add_correct(CLI::App& program, const CommonOptions& common);
+void add_study(CLI::App& program, const CommonOptions& common);
+void add_simulate(CLI::App& program, const CommonOptions& common);
 
 }  // namespace posewise::cli

@@ -9,8 +9,10 @@
 
 #include "../core/format.hpp"
 #include "../core/text.hpp"
+#include "commands.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/threads.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/io/plan_file.hpp"
 
@@ -28,6 +30,24 @@ void add_measurements_option(CLI::App& command, InputPaths& paths) {
                     "Measured configurations (CSV, or MATLAB .mat)")
         ->required()
         ->check(file_name());
+}
+
+void add_digits_option(CLI::App& command, int& digits) {
+    command.add_option("--digits", digits, "Significant digits of values")
+        ->check(whole_number(1, 17))
+        ->capture_default_str();
+}
+
+void add_common_options(CLI::App& command, CommonOptions& common) {
+    CLI::Option* const json = command.add_flag(
+        "--json", common.json, "Print the result as one JSON document instead of text");
+    CLI::Option* const digits = command.get_option_no_throw("--digits");
+    if (digits != nullptr) json->excludes(digits);  // it has all
+    command
+        .add_option_function<Index>("--threads", set_thread_count,
+                                    "Threads to compute with; no result depends on it (default: "
+                                    "all)")
+        ->check(whole_number(1, 1024));
 }
 
 CLI::Validator criterion_check() {

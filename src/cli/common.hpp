@@ -23,6 +23,9 @@ void add_measurements_option(CLI::App& command, InputPaths& paths);
 /// Accepts the name of a criterion; anything else is a usage error that lists them.
 CLI::Validator criterion_check();
 
+/// --digits: significant digits of what is printed as text.
+void add_digits_option(CLI::App& command, int& digits);
+
 /// Indices of the configurations a plan file asks for. Throws InputError if one is not there.
 std::vector<Index> find_planned(const Measurements& measurements, const std::string& plan_path);
 

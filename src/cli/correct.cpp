@@ -11,6 +11,7 @@
 #include "files.hpp"
 #include "options.hpp"
 #include "posewise/io/correction_file.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
@@ -57,8 +58,9 @@ CorrectionOptions correction_options(const CorrectArguments& arguments) {
     return options;
 }
 
-void correct(const CorrectArguments& arguments) {
-    check_outputs({arguments.paths.campaign, arguments.estimate, arguments.poses}, {arguments.out});
+void correct(const CorrectArguments& arguments, const CommonOptions& common) {
+    check_outputs({arguments.paths.campaign, arguments.estimate, arguments.poses}, {arguments.out},
+                  common);
     const io::CampaignFile file = io::read_campaign(arguments.paths.campaign);
     const Parameters found =
         read_usable_estimate(arguments.estimate, file, arguments.is_forced).parameters;
@@ -77,6 +79,7 @@ void correct(const CorrectArguments& arguments) {
     if (!arguments.out.empty()) {
         io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections);
     }
+    if (common.json) return print(io::to_json(corrected, file));
     print(fmt::format("{}: {} corrected{}\n", file.name,
                       detail::count_of(std::ssize(poses.ids), "configuration"),
                       arguments.out.empty() ? "" : ": " + detail::escape_controls(arguments.out)));
@@ -120,7 +123,7 @@ void add_correct_options(CLI::App& command, CorrectArguments& arguments) {
 
 }  // namespace
 
-void add_correct(CLI::App& program) {
+void add_correct(CLI::App& program, const CommonOptions& common) {
     const auto arguments = std::make_shared<CorrectArguments>();
     CLI::App* command = program.add_subcommand(
         "correct", "Joint values that bring the calibrated robot to nominal poses");
@@ -131,7 +134,7 @@ void add_correct(CLI::App& program) {
     add_correct_options(*command, *arguments);
     add_force_option(*command, arguments->is_forced);
     command->footer(correct_footer);
-    command->callback([arguments] { correct(*arguments); });
+    command->callback([arguments, &common] { correct(*arguments, common); });
 }
 
 }  // namespace posewise::cli

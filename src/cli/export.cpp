@@ -15,6 +15,7 @@
 #include "posewise/core/units.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/dh_file.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/model/transforms.hpp"
 
@@ -72,8 +73,8 @@ void print_missing(const std::vector<std::string>& names, const char* reason, co
     print(reason);
 }
 
-void print_export(const ExportArguments& arguments, const io::CampaignFile& file,
-                  const Parameters& parameters, const io::CalibratedUrdf& urdf) {
+void print_urdf(const ExportArguments& arguments, const io::CampaignFile& file,
+                const Parameters& parameters, const io::CalibratedUrdf& urdf) {
     print(fmt::format("{}: {} with the origins of {} joints changed is in {}\n", file.name,
                       detail::escape_controls(file.urdf->path), urdf.changes.size(),
                       detail::escape_controls(arguments.urdf)));
@@ -102,14 +103,10 @@ std::vector<std::string> terms_of(const Chain& robot, const VectorXd& parameters
     return terms;
 }
 
-void export_dh(const ExportArguments& arguments, const io::CampaignFile& file,
-               const Parameters& parameters) {
+void print_dh(const ExportArguments& arguments, const io::CampaignFile& file,
+              const Parameters& parameters, const io::ExportedRobot& robot) {
     constexpr double far = 10;  // m
-    const Chain& robot = file.robot;
-    const std::vector<DhRow> rows = dh_rows(robot, parameters.robot);
-    detail::write_file(arguments.dh,
-                       fmt::format("# {}, calibrated\n", detail::escape_controls(file.name)) +
-                           io::make_dh_text(robot, rows));
+    const std::vector<DhRow>& rows = robot.dh;
     print(fmt::format("{}: the calibrated robot in {} rows is in {}\n", file.name, rows.size(),
                       detail::escape_controls(arguments.dh)));
     print("not in the table: where the instrument sees the base (" +
@@ -121,45 +118,57 @@ void export_dh(const ExportArguments& arguments, const io::CampaignFile& file,
                         "not round it\n",
                         k + 1, detail::format_short(rows[k].d, 4)));
     }
-    print_missing(terms_of(robot, parameters.robot),
+    print_missing(robot.terms,
                   "depend on the configuration, and no table can express that: without them it is "
                   "less accurate than the estimate\n",
                   "table");
 }
 
-void check_urdf(const ExportArguments& arguments, const io::CampaignFile& file) {
+void check_urdf(const ExportArguments& arguments, const io::CampaignFile& file,
+                const CommonOptions& common) {
     if (!file.urdf) {
         throw input_error_at({arguments.campaign},
                              "has a robot that does not come from a URDF; only such a one can go "
                              "into one (--dh takes any)");
     }
-    check_outputs({file.urdf->path}, {arguments.urdf});
+    check_outputs({file.urdf->path}, {arguments.urdf}, common);
 }
 
-void export_urdf(const ExportArguments& arguments, const io::CampaignFile& file,
-                 const Parameters& parameters) {
-    const io::CalibratedUrdf urdf =
-        io::make_calibrated_urdf(*file.urdf, file.robot, parameters.robot);
-    detail::write_file(arguments.urdf, urdf.text);
-    print_export(arguments, file, parameters, urdf);
+/// Made and written.
+io::ExportedRobot write_robot(const ExportArguments& arguments, const io::CampaignFile& file,
+                              const Parameters& parameters) {
+    io::ExportedRobot robot{{}, {}, terms_of(file.robot, parameters.robot)};
+    if (!arguments.urdf.empty()) {
+        robot.urdf = io::make_calibrated_urdf(*file.urdf, file.robot, parameters.robot);
+        detail::write_file(arguments.urdf, robot.urdf->text);
+    }
+    if (!arguments.dh.empty()) {
+        robot.dh = dh_rows(file.robot, parameters.robot);
+        detail::write_file(arguments.dh,
+                           fmt::format("# {}, calibrated\n", detail::escape_controls(file.name)) +
+                               io::make_dh_text(file.robot, robot.dh));
+    }
+    return robot;
 }
 
-void export_estimate(const ExportArguments& arguments) {
+void export_estimate(const ExportArguments& arguments, const CommonOptions& common) {
     if (arguments.urdf.empty() && arguments.dh.empty()) {
         throw CLI::RequiredError("--urdf or --dh");
     }
-    check_outputs({arguments.campaign, arguments.estimate}, {arguments.urdf, arguments.dh});
+    check_outputs({arguments.campaign, arguments.estimate}, {arguments.urdf, arguments.dh}, common);
     const io::CampaignFile file = io::read_campaign(arguments.campaign);
-    if (!arguments.urdf.empty()) check_urdf(arguments, file);
+    if (!arguments.urdf.empty()) check_urdf(arguments, file, common);
     const Parameters parameters =
         read_usable_estimate(arguments.estimate, file, arguments.is_forced).parameters;
-    if (!arguments.urdf.empty()) export_urdf(arguments, file, parameters);
-    if (!arguments.dh.empty()) export_dh(arguments, file, parameters);
+    const io::ExportedRobot robot = write_robot(arguments, file, parameters);
+    if (common.json) return print(io::to_json(robot, file, parameters));
+    if (robot.urdf) print_urdf(arguments, file, parameters, *robot.urdf);
+    if (!robot.dh.empty()) print_dh(arguments, file, parameters, robot);
 }
 
 }  // namespace
 
-void add_export(CLI::App& program) {
+void add_export(CLI::App& program, const CommonOptions& common) {
     const auto arguments = std::make_shared<ExportArguments>();
     CLI::App* command =
         program.add_subcommand("export", "Write the calibrated robot in a form others read");
@@ -175,7 +184,7 @@ void add_export(CLI::App& program) {
         ->check(file_name());
     add_force_option(*command, arguments->is_forced);
     command->footer(export_footer);
-    command->callback([arguments] { export_estimate(*arguments); });
+    command->callback([arguments, &common] { export_estimate(*arguments, common); });
 }
 
 }  // namespace posewise::cli

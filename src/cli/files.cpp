@@ -1,5 +1,6 @@
 #include "files.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -16,6 +17,15 @@ bool is_special(const std::string& path) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     return fs::exists(status) && !fs::is_regular_file(status);
+}
+
+/// Whether that is where standard output goes, too: a pipe, a file or a terminal.
+bool is_standard_output(const std::string& path) {
+    struct stat here {};
+    struct stat out {};
+    return ::stat(path.c_str(), &here) == 0 && ::fstat(STDOUT_FILENO, &out) == 0 &&
+           here.st_dev == out.st_dev && here.st_ino == out.st_ino &&
+           (!S_ISCHR(out.st_mode) || isatty(STDOUT_FILENO) == 1);
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {
@@ -39,15 +49,20 @@ void check_folder(const std::string& path) {
 
 }  // namespace
 
-void check_outputs(const std::vector<std::string>& inputs,
-                   const std::vector<std::string>& outputs) {
+void check_outputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs,
+                   const CommonOptions& common) {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const std::string& path = outputs[i];
         std::error_code ignored;
         if (fs::is_directory(path, ignored)) {
             throw input_error_at({path}, "is a folder; must be the name of a file");
         }
-        if (path.empty() || is_special(path)) continue;
+        if (path.empty()) continue;
+        if (common.json && is_standard_output(path)) {
+            throw input_error_at(
+                {path}, "is standard output, which with --json holds one document; must be a file");
+        }
+        if (is_special(path)) continue;
         for (const std::string& input : inputs) {
             if (!input.empty() && is_same_file(path, input)) {
                 throw input_error_at({path}, "is read and shall be written; must be another file");

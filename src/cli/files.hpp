@@ -4,14 +4,17 @@
 #include <utility>
 #include <vector>
 
+#include "commands.hpp"
 #include "posewise/core/errors.hpp"
 
 /// What commands check about their files.
 namespace posewise::cli {
 
 /// Before anything is computed: throws InputError if an output is an input or another output (by
-/// whatever path or link), or if no file can be written there. Empty paths do not count.
-void check_outputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
+/// whatever path or link), if no file can be written there, or if it is standard output, which with
+/// --json holds one document and nothing else. Empty paths do not count.
+void check_outputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs,
+                   const CommonOptions& common);
 
 /// What `compute` returns; its InputErrors, which are about the content of the file, name it.
 template <class Compute>

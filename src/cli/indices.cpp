@@ -5,6 +5,7 @@
 #include "files.hpp"
 #include "measured.hpp"
 #include "options.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
@@ -26,6 +27,7 @@ struct IndicesArguments {
     InputPaths paths;
     std::string plan;
     Index directions = 3;
+    int digits = 6;
 };
 
 Measurements read_input(const IndicesArguments& arguments, const io::CampaignFile& file) {
@@ -33,18 +35,19 @@ Measurements read_input(const IndicesArguments& arguments, const io::CampaignFil
     return arguments.plan.empty() ? all : take(all, find_planned(all, arguments.plan));
 }
 
-void print_indices(const IndicesArguments& arguments) {
+void print_indices(const IndicesArguments& arguments, const CommonOptions& common) {
     const auto file = io::read_campaign(arguments.paths.campaign);
     const Measurements measurements = read_input(arguments, file);
     const Rating rating = compute_from(arguments.paths.measurements, [&] {
         return rate(file, measurements, arguments.directions);
     });
-    print(format(rating, file) + describe_unused_planning(file));
+    print(common.json ? io::to_json(rating, file)
+                      : format(rating, file, arguments.digits) + describe_unused_planning(file));
 }
 
 }  // namespace
 
-void add_indices(CLI::App& program) {
+void add_indices(CLI::App& program, const CommonOptions& common) {
     const auto arguments = std::make_shared<IndicesArguments>();
     CLI::App* command =
         program.add_subcommand("indices", "Rate measured configurations by every index");
@@ -55,8 +58,9 @@ void add_indices(CLI::App& program) {
     command->add_option("--directions", arguments->directions, "How many weak directions to name")
         ->check(whole_number(0, 1000))
         ->capture_default_str();
+    add_digits_option(*command, arguments->digits);
     command->footer(indices_footer);
-    command->callback([arguments] { print_indices(*arguments); });
+    command->callback([arguments, &common] { print_indices(*arguments, common); });
 }
 
 }  // namespace posewise::cli

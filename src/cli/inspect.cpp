@@ -12,6 +12,7 @@
 #include "measured.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/report/reports.hpp"
@@ -50,47 +51,17 @@ struct InspectArguments {
     std::string measurements;
 };
 
-void print_campaign(const io::CampaignFile& file) {
-    print(fmt::format("{}\nsensor: {}; model error {}\n", file.name, file.sensor->words().sentence,
-                      detail::describe_model_error(file)));
-    if (file.urdf) {
-        print(fmt::format("robot: {}, from base link {} to tip link {}\n",
-                          detail::escape_controls(file.urdf->path),
-                          detail::quote(file.urdf->base_link), detail::quote(file.urdf->tip_link)));
+/// The choices of joint directions that were tried, by the names of the joints.
+std::vector<io::JointDirections> name_directions(const Chain& robot,
+                                                 const std::vector<detail::SignPattern>& patterns) {
+    std::vector<io::JointDirections> directions;
+    for (const auto& [is_reversed, distance_rms] : patterns) {
+        directions.push_back({{}, distance_rms});
+        for (std::size_t j = 0; j < is_reversed.size(); ++j) {
+            if (is_reversed[j]) directions.back().reversed.push_back(robot.joints()[j].name);
+        }
     }
-    const bool is_stated = file.error_model == io::ErrorModel::Stated;
-    const Inspection inspection = posewise::inspect(file, file.declared_robot, is_stated);
-    const std::string gap = describe_gap(inspection);
-    if (!gap.empty()) print_warning(file.path + ": " + gap);
-    print(format(inspection) + describe_unused_planning(file));
-}
-
-bool is_urdf(const InspectArguments& arguments) {
-    return !arguments.base_link.empty() || !arguments.tip_link.empty() ||
-           !arguments.written.empty() || arguments.file.ends_with(".urdf");
-}
-
-/// The campaign that --write-campaign would write.
-void inspect_urdf(const InspectArguments& arguments) {
-    const std::string& urdf = arguments.file;
-    if (!arguments.measurements.empty()) {
-        throw input_error_at({urdf}, "is a robot alone; --measurements needs a campaign file");
-    }
-    const std::string& written = arguments.written;
-    check_outputs({urdf}, {written});
-    if (std::filesystem::exists(written)) {
-        throw input_error_at({written}, "exists already; must be a new file");
-    }
-    const io::UrdfRobot robot = io::read_urdf({urdf, arguments.base_link, arguments.tip_link});
-    const std::string path = written.empty() ? urdf : written;
-    const std::string text = io::make_campaign_text(robot, path);
-    const io::CampaignFile file = io::parse_campaign(text, path);
-    if (!written.empty()) detail::write_file(written, text);
-    print_campaign(file);
-    if (!written.empty()) {
-        print(fmt::format("\nThe campaign is in {}; fill in what is marked there.\n",
-                          detail::escape_controls(written)));
-    }
+    return directions;
 }
 
 /// How to reverse joints where the campaign's robot comes from.
@@ -99,8 +70,63 @@ std::string advise_reversal(const io::CampaignFile& file) {
     return "write each with the opposite sign (-q for q) wherever it stands in the campaign file";
 }
 
-void inspect(const InspectArguments& arguments) {
-    if (is_urdf(arguments)) return inspect_urdf(arguments);
+void print_head(const io::CampaignFile& file) {
+    print(fmt::format("{}\nsensor: {}; model error {}\n", file.name, file.sensor->words().sentence,
+                      detail::describe_model_error(file)));
+    if (file.urdf) {
+        print(fmt::format("robot: {}, from base link {} to tip link {}\n",
+                          detail::escape_controls(file.urdf->path),
+                          detail::quote(file.urdf->base_link), detail::quote(file.urdf->tip_link)));
+    }
+}
+
+/// With the joint directions that were tried, if there are some.
+void print_campaign(const io::CampaignFile& file, const std::vector<detail::SignPattern>& patterns,
+                    const CommonOptions& common) {
+    const bool is_stated = file.error_model == io::ErrorModel::Stated;
+    const Inspection inspection = posewise::inspect(file, file.declared_robot, is_stated);
+    const std::string gap = describe_gap(inspection);
+    if (!gap.empty()) print_warning(file.path + ": " + gap);
+    if (common.json) {
+        return print(patterns.empty()
+                         ? io::to_json(inspection)
+                         : io::to_json(inspection, name_directions(file.robot, patterns)));
+    }
+    print_head(file);
+    print(format(inspection) + describe_unused_planning(file));
+    if (!patterns.empty()) print(describe_joint_directions(file, patterns, advise_reversal(file)));
+}
+
+bool is_urdf(const InspectArguments& arguments) {
+    return !arguments.base_link.empty() || !arguments.tip_link.empty() ||
+           !arguments.written.empty() || arguments.file.ends_with(".urdf");
+}
+
+/// The campaign that --write-campaign would write.
+void inspect_urdf(const InspectArguments& arguments, const CommonOptions& common) {
+    const std::string& urdf = arguments.file;
+    if (!arguments.measurements.empty()) {
+        throw input_error_at({urdf}, "is a robot alone; --measurements needs a campaign file");
+    }
+    const std::string& written = arguments.written;
+    check_outputs({urdf}, {written}, common);
+    if (std::filesystem::exists(written)) {
+        throw input_error_at({written}, "exists already; must be a new file");
+    }
+    const io::UrdfRobot robot = io::read_urdf({urdf, arguments.base_link, arguments.tip_link});
+    const std::string path = written.empty() ? urdf : written;
+    const std::string text = io::make_campaign_text(robot, path);
+    const io::CampaignFile file = io::parse_campaign(text, path);
+    if (!written.empty()) detail::write_file(written, text);
+    print_campaign(file, {}, common);
+    if (!written.empty() && !common.json) {
+        print(fmt::format("\nThe campaign is in {}; fill in what is marked there.\n",
+                          detail::escape_controls(written)));
+    }
+}
+
+void inspect(const InspectArguments& arguments, const CommonOptions& common) {
+    if (is_urdf(arguments)) return inspect_urdf(arguments, common);
     const io::CampaignFile file = io::read_campaign(arguments.file);
     std::vector<detail::SignPattern> patterns;
     if (!arguments.measurements.empty()) {
@@ -111,13 +137,12 @@ void inspect(const InspectArguments& arguments) {
             return std::move(signs.patterns);
         });
     }
-    print_campaign(file);
-    if (!patterns.empty()) print(describe_joint_directions(file, patterns, advise_reversal(file)));
+    print_campaign(file, patterns, common);
 }
 
 }  // namespace
 
-void add_inspect(CLI::App& program) {
+void add_inspect(CLI::App& program, const CommonOptions& common) {
     const auto arguments = std::make_shared<InspectArguments>();
     CLI::App* command =
         program.add_subcommand("inspect", "Show the robot, and which of its errors can be found");
@@ -142,7 +167,7 @@ void add_inspect(CLI::App& program) {
                      "Measured configurations (CSV, or MATLAB .mat): check the joints' directions")
         ->check(file_name());
     command->footer(inspect_footer);
-    command->callback([arguments] { inspect(*arguments); });
+    command->callback([arguments, &common] { inspect(*arguments, common); });
 }
 
 }  // namespace posewise::cli

@@ -36,7 +36,8 @@ Start with:
   posewise export campaign.yaml estimate.json --urdf out.urdf    the calibrated robot
   posewise correct campaign.yaml estimate.json --poses p.csv     joint values that hit the poses
 
-posewise COMMAND --help explains each with an example.
+posewise COMMAND --help explains each with an example. With --json each prints one JSON document, which
+designs/json.md explains, and nothing else.
 Exit code: 0 good, 1 unusable input (one line on standard error), 2 wrong usage,
 3 a calibration that must not be used (calibrate), 70 internal error, a bug of posewise.)";
 
@@ -84,15 +85,16 @@ void keep_freed_memory() {
 #endif
 }
 
-void add_commands(CLI::App& program) {
+void add_commands(CLI::App& program, posewise::cli::CommonOptions& common) {
     using namespace posewise::cli;
     program.require_subcommand(1);
     program.set_version_flag("--version", std::string("posewise ") + posewise::version);
     program.footer(program_footer);
     for (const auto add : {add_inspect, add_indices, add_select, add_plan, add_verify,
                            add_calibrate, add_export, add_correct, add_study, add_simulate}) {
-        add(program);
+        add(program, common);
     }
+    for (CLI::App* command : program.get_subcommands(nullptr)) add_common_options(*command, common);
 }
 
 }  // namespace
@@ -103,8 +105,9 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is an error like a full disk
     CLI::App program{"Which poses to measure, how many, and what a calibration achieved.",
                      "posewise"};
+    posewise::cli::CommonOptions common;
     try {
-        add_commands(program);
+        add_commands(program, common);
         const std::string unknown = find_unknown_command(program, argc, argv);
         if (!unknown.empty()) return fail_usage(program, unknown);
         program.parse(argc, argv);
@@ -117,9 +120,8 @@ int main(int argc, char** argv) {
     } catch (const posewise::cli::NoCalibration& error) {
         return fail(error.what(), no_calibration);
     } catch (const std::bad_alloc&) {
-        return fail(
-            "out of memory; take fewer candidates (--random, --pool) or set OMP_NUM_THREADS=1",
-            input_error);
+        return fail("out of memory; take fewer candidates (--random, --pool) or --threads 1",
+                    input_error);
     } catch (const std::exception& error) {
         return fail(std::string("internal error: ") + error.what(), internal_error);
     }

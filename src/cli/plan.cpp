@@ -15,6 +15,7 @@
 #include "options.hpp"
 #include "plan_inputs.hpp"
 #include "plan_options.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "posewise/io/plan_file.hpp"
 #include "posewise/report/reports.hpp"
 
@@ -86,18 +87,19 @@ std::string default_plan_out(const std::string& campaign) {
 }
 
 void print_planning(const Planning& planning, const io::CampaignFile& campaign,
-                    const std::string& out) {
+                    const std::string& out, const CommonOptions& common) {
     const Plan& plan = planning.plan;
+    const bool is_stopped = plan.is_stopped_early();
+    const auto counts = is_stopped ? std::vector<CountAccuracy>() : predict_other_counts(planning);
+    if (is_stopped) std::fputs("posewise: stopped early; the plan is the best so far\n", stderr);
+    if (common.json) return print(io::to_json(planning, counts, out));
     print(format_planning(planning));
-    print(plan.is_stopped_early()
+    print(is_stopped
               ? "\nPredicted position error by number of poses: left out, planning was stopped\n"
-              : format_other_counts(predict_other_counts(planning), planning.campaign));
+              : format_other_counts(counts, planning.campaign));
     print(format_deviations(plan));
     print(fmt::format("\n{}plan:        {}\n", describe_planned(campaign, plan.request.repeats),
                       out));
-    if (plan.is_stopped_early()) {
-        std::fputs("posewise: stopped early; the plan is the best so far\n", stderr);
-    }
 }
 
 Planning plan_with_progress(const io::CampaignFile& campaign, PlanningOptions& options,
@@ -109,13 +111,13 @@ Planning plan_with_progress(const io::CampaignFile& campaign, PlanningOptions& o
     return make_plan(campaign, options);
 }
 
-void plan(const PlanArguments& arguments) {
+void plan(const PlanArguments& arguments, const CommonOptions& common) {
     check_plan_usage(arguments);
     const PlanSources& sources = arguments.request.sources;
     const std::string out =
         arguments.out.empty() ? default_plan_out(sources.campaign) : arguments.out;
     check_outputs({sources.campaign, sources.augment, sources.repaired, sources.workspace},
-                  {out, arguments.csv});
+                  {out, arguments.csv}, common);
     std::optional<InterruptFlag> interrupted(std::in_place);
     const StopSignal stop{interrupted->get(), deadline_after(arguments.request.time_limit)};
     const io::CampaignFile campaign = io::read_planned_campaign(sources.campaign, arguments.prior);
@@ -129,7 +131,7 @@ void plan(const PlanArguments& arguments) {
     if (!arguments.csv.empty()) {
         io::write_configurations_csv(arguments.csv, planning.campaign, planning.plan.poses);
     }
-    print_planning(planning, campaign, out);
+    print_planning(planning, campaign, out, common);
 }
 
 // ---- The command line ----
@@ -203,7 +205,7 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
 
 }  // namespace
 
-void add_plan(CLI::App& program) {
+void add_plan(CLI::App& program, const CommonOptions& common) {
     const auto arguments = std::make_shared<PlanArguments>();
     CLI::App* command =
         program.add_subcommand("plan", "Propose configurations to measure, from nothing");
@@ -211,7 +213,7 @@ void add_plan(CLI::App& program) {
     add_workspace(*command, arguments->request);
     add_plan_search(*command, *arguments);
     command->footer(plan_footer);
-    command->callback([arguments] { plan(*arguments); });
+    command->callback([arguments, &common] { plan(*arguments, common); });
 }
 
 }  // namespace posewise::cli

@@ -10,6 +10,7 @@
 #include "files.hpp"
 #include "options.hpp"
 #include "posewise/core/version.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "posewise/measurement/simulation.hpp"
 
 namespace posewise::cli {
@@ -58,13 +59,14 @@ Simulation simulate_as_asked(const SimulateArguments& arguments, const io::Campa
     return simulation;
 }
 
-void run_simulation(SimulateArguments arguments) {
-    check_outputs({arguments.paths.campaign, arguments.configurations}, {arguments.out});
+void run_simulation(SimulateArguments arguments, const CommonOptions& common) {
+    check_outputs({arguments.paths.campaign, arguments.configurations}, {arguments.out}, common);
     const auto file = io::read_campaign(arguments.paths.campaign);
     arguments.options.seed = arguments.seed.value_or(file.seed);
     const Simulation simulation = simulate_as_asked(arguments, file);
     io::write_measurements_csv(arguments.out, file, simulation.measurements,
                                make_comments(arguments, file));
+    if (common.json) return print(io::to_json(simulation, file));
     print(fmt::format(
         "{}, {}: {}\n",
         detail::count_of(simulation.measurements.configuration_count(), "configuration"),
@@ -101,13 +103,13 @@ void add_simulate_options(CLI::App& command, SimulateArguments& arguments) {
 
 }  // namespace
 
-void add_simulate(CLI::App& program) {
+void add_simulate(CLI::App& program, const CommonOptions& common) {
     const auto arguments = std::make_shared<SimulateArguments>();
     CLI::App* command = program.add_subcommand("simulate", "Make a synthetic measurement file");
     add_campaign_argument(*command, arguments->paths);
     add_simulate_options(*command, *arguments);
     command->footer(simulate_footer);
-    command->callback([arguments] { run_simulation(*arguments); });
+    command->callback([arguments, &common] { run_simulation(*arguments, common); });
 }
 
 }  // namespace posewise::cli

@@ -6,6 +6,7 @@
 #include "files.hpp"
 #include "measured.hpp"
 #include "posewise/core/units.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "posewise/report/reports.hpp"
 #include "study_options.hpp"
 #include "study_plot.hpp"
@@ -24,8 +25,9 @@ all, over ten random splits. Prints the distance RMS there, in mm:
       8  0.2773    0.2065      0.57  0.43..0.78          0.2431   0.4535   1.2347      100             0
 is read: eight configurations chosen by V leave 0.28 mm, median of the splits, where the calibrations
 themselves expect 0.21; half of all random eights leave more than 0.45. Planned against random it is
-0.57, geometric mean over the splits with its 95 % interval. Subsets that do not identify the model
-count as the worst ("-": no number). The pose count from which a column stays flat is enough.
+0.57, geometric mean over the splits with its 95 % interval: better where all of it is below 1, loses
+where all is above 1, within chance else. Subsets that do not identify the model count as the worst
+("-": no number). The pose count from which a column stays flat is enough.
 
 With few configurations there are no splits (--splits 0): each subset is judged on what it leaves,
 and one that takes the telling configurations is judged on easier ones than others are.
@@ -54,10 +56,10 @@ std::vector<RobotModel> list_models(const std::vector<io::CampaignFile>& files) 
     return models;
 }
 
-void study(const StudyArguments& arguments) {
+void study(const StudyArguments& arguments, const CommonOptions& common) {
     const InputPaths& paths = arguments.paths;
     if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
-    check_outputs({paths.campaign, paths.measurements}, {arguments.csv, arguments.plot});
+    check_outputs({paths.campaign, paths.measurements}, {arguments.csv, arguments.plot}, common);
     const std::vector<io::CampaignFile> files = read_files(arguments);
     const io::CampaignFile& file = files.front();
     const auto measurements = read_measured(paths.measurements, file);
@@ -79,7 +81,9 @@ void study(const StudyArguments& arguments) {
         throw input_error_at({paths.measurements},
                              (compares ? study.model + ": " : "") + study.undetermined);
     }
-    print((compares ? format(studies) : format(studies.front())) + describe_unused_planning(file));
+    print(common.json ? io::to_json(studies)
+                      : (compares ? format(studies) : format(studies.front())) +
+                            describe_unused_planning(file));
     if (!arguments.csv.empty()) {
         detail::write_file(arguments.csv,
                            compares ? study_csv(studies) : study_csv(studies.front()));
@@ -89,7 +93,7 @@ void study(const StudyArguments& arguments) {
 
 }  // namespace
 
-void add_study(CLI::App& program) {
+void add_study(CLI::App& program, const CommonOptions& common) {
     const auto arguments = std::make_shared<StudyArguments>();
     CLI::App* command =
         program.add_subcommand("study", "Accuracy against number of poses, optimal and random");
@@ -97,7 +101,7 @@ void add_study(CLI::App& program) {
     add_measurements_option(*command, arguments->paths);
     add_study_options(*command, *arguments);
     command->footer(study_footer);
-    command->callback([arguments] { study(*arguments); });
+    command->callback([arguments, &common] { study(*arguments, common); });
 }
 
 }  // namespace posewise::cli

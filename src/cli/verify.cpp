@@ -10,6 +10,7 @@
 #include "options.hpp"
 #include "plan_inputs.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "posewise/io/plan_file.hpp"
 #include "posewise/report/reports.hpp"
 
@@ -70,7 +71,6 @@ void check_verify_usage(const VerifyArguments& arguments, CandidateKind kind) {
 
 /// Throws InputError, naming what is wrong, if anything is.
 void conclude(const std::string& path, const Verification& verification) {
-    print(format_findings(verification.findings));
     if (!verification.obstacle.empty()) throw InputError(verification.obstacle);
     if (verification.is_right()) return;
     throw InputError(
@@ -97,26 +97,32 @@ Verification verify_continuous(const Plan& plan, const std::string& path) {
     return verify(plan, campaign, options);
 }
 
-void verify_file(const VerifyArguments& arguments) {
+/// What was checked.
+std::string describe_plan(const Plan& plan, Index candidate_count) {
+    const std::string_view criterion = criterion_name(plan.request.criterion);
+    if (plan.is_continuous()) {
+        return fmt::format("{} by {}", detail::count_of(std::ssize(plan.poses), "pose"), criterion);
+    }
+    return fmt::format("{} of {} by {}", plan.request.pose_count,
+                       detail::count_of(candidate_count, "candidate"), criterion);
+}
+
+void verify_file(const VerifyArguments& arguments, const CommonOptions& common) {
     Plan plan = io::read_plan(arguments.plan);
     redirect(plan.request.sources, arguments);
-    const std::string_view criterion = criterion_name(plan.request.criterion);
     check_verify_usage(arguments, plan.kind);
-    if (!plan.is_continuous()) {
-        const Verification verification = verify_choice(plan);
-        print(fmt::format("{}: {} of {} by {}\n", arguments.plan, plan.request.pose_count,
-                          detail::count_of(verification.candidate_count, "candidate"), criterion));
-        return conclude(arguments.plan, verification);
-    }
-    const Verification verification = verify_continuous(plan, arguments.plan);
-    print(fmt::format("{}: {} by {}\n", arguments.plan,
-                      detail::count_of(std::ssize(plan.poses), "pose"), criterion));
+    const Verification verification =
+        plan.is_continuous() ? verify_continuous(plan, arguments.plan) : verify_choice(plan);
+    print(common.json ? io::to_json(verification, plan, arguments.plan)
+                      : fmt::format("{}: {}\n{}", arguments.plan,
+                                    describe_plan(plan, verification.candidate_count),
+                                    format_findings(verification.findings)));
     conclude(arguments.plan, verification);
 }
 
 }  // namespace
 
-void add_verify(CLI::App& program) {
+void add_verify(CLI::App& program, const CommonOptions& common) {
     const auto arguments = std::make_shared<VerifyArguments>();
     CLI::App* command =
         program.add_subcommand("verify", "Check a plan's value, bound and efficiency");
@@ -131,7 +137,7 @@ void add_verify(CLI::App& program) {
     command->add_option("--test-poses", arguments->test_poses,
                         "As of select, if it is elsewhere now");
     command->footer(verify_footer);
-    command->callback([arguments] { verify_file(*arguments); });
+    command->callback([arguments, &common] { verify_file(*arguments, common); });
 }
 
 }  // namespace posewise::cli

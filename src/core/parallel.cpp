@@ -1,11 +1,25 @@
 #include "parallel.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
 
-namespace posewise::detail {
+#include "posewise/core/errors.hpp"
+#include "posewise/core/threads.hpp"
+
+namespace posewise {
+
+void set_thread_count(Index count) {
+    if (count < 1) {
+        throw InputError("thread count is " + std::to_string(count) + ", must be at least 1");
+    }
+    omp_set_num_threads(static_cast<int>(count));
+}
+
+namespace detail {
 namespace {
 
 /// The exception of the lowest index. None may leave an OpenMP region.
@@ -54,4 +68,5 @@ void for_each_range(Index count, Index grain, const std::function<void(Index, In
                    [&](Index range) { body(range * grain, std::min(count, (range + 1) * grain)); });
 }
 
-}  // namespace posewise::detail
+}  // namespace detail
+}  // namespace posewise

@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "atomic_file.hpp"
 #include "csv_reader.hpp"
+#include "doubts_json.hpp"
 #include "json.hpp"
-#include "posewise/model/error_terms.hpp"
-#include "posewise/model/transforms.hpp"
+#include "parameters_json.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "robot_statement.hpp"
 
 namespace posewise::io {
@@ -17,6 +16,7 @@ namespace {
 using detail::Json;
 
 constexpr double mm = 1e3;
+constexpr int estimate_format = 1;
 
 Json metrics_to_json(const Metrics& metrics) {
     const auto millimetres = [](const std::array<double, 3>& xyz) {
@@ -38,57 +38,6 @@ Json metrics_to_json(const Metrics& metrics) {
         json["orientation_max_mrad"] = 1e3 * metrics.orientation_max;
     }
     return json;
-}
-
-Json base_to_json(const Isometry3d& world_from_base) {
-    Eigen::Quaterniond q(world_from_base.linear());
-    if (q.w() < 0) q.coeffs() *= -1;
-    return {{"position_m", detail::vector_to_json(Vector3d(world_from_base.translation()))},
-            {"quaternion_wxyz", {q.w(), q.x(), q.y(), q.z()}},
-            {"rpy_deg", detail::vector_to_json(rpy_from_rotation(world_from_base.linear()) *
-                                               (180 / std::numbers::pi))}};
-}
-
-Json targets_to_json(const Sensor& sensor, const VectorXd& unknowns) {
-    Json targets = Json::object();
-    for (Index j = 0; j < sensor.target_count(); ++j) {
-        targets["target" + std::to_string(j + 1)] = {
-            {"position_m", detail::vector_to_json(sensor.target_position(j, unknowns))},
-            {"known", sensor.targets().is_known(j)}};
-    }
-    return targets;
-}
-
-/// Values of the unknowns, by name and unit.
-Json unknowns_to_json(const Sensor& sensor, const VectorXd& unknowns) {
-    const std::vector<std::string> names = sensor.unknown_names();
-    const std::vector<bool> is_angle = sensor.unknown_is_angle();
-    Json json = Json::object();
-    for (std::size_t k = 0; k < names.size(); ++k) {
-        json[names[k] + detail::si_suffix(is_angle[k])] = unknowns[static_cast<Index>(k)];
-    }
-    return json;
-}
-
-/// The robot's error parameters: value (added to the nominal one), standard deviation and expected
-/// size.
-Json robot_to_json(const Campaign& campaign, const Estimate& estimate, const VectorXd& sigmas) {
-    const std::vector<bool> is_angle = parameter_is_angle(campaign);
-    const VectorXd scale = parameter_scale(campaign);
-    const Index robot_begin = base_parameter_count(campaign);
-    Json robot = Json::object();
-    for (Index k = 0; k < estimate.parameters.robot.size(); ++k) {
-        const auto i = static_cast<std::size_t>(robot_begin + k);
-        const std::string unit = detail::si_suffix(is_angle[i]);
-        robot[estimate.names[i]] = {{"value" + unit, estimate.parameters.robot[k]},
-                                    {"sigma" + unit, sigmas[robot_begin + k]},
-                                    {"expected" + unit, scale[robot_begin + k]}};
-    }
-    for (const Compliance& compliance : compliances(campaign.robot)) {
-        const auto i = static_cast<std::size_t>(robot_begin + compliance.parameter);
-        robot[estimate.names[i]][detail::load_key(is_angle[i])] = compliance.largest;
-    }
-    return robot;
 }
 
 /// Standard deviations of base and targets, by parameter name and unit.
@@ -142,17 +91,28 @@ std::vector<std::pair<std::string, double>> list_numbers(const PredictedError& e
             {"p95", error.percentile95}};
 }
 
-const char* unit_suffix(const ErrorPrediction& prediction) {
-    return prediction.is_angle ? "_mrad" : "_mm";
-}
-
 Json predictions_to_json(const std::vector<ErrorPrediction>& predictions) {
     Json json = {{"configuration_count", predictions.front().each.size()}};
     for (const ErrorPrediction& prediction : predictions) {
         for (const auto& [name, value] : list_numbers(prediction.overall)) {
-            json[name + unit_suffix(prediction)] = 1e3 * value;
+            json[name + detail::error_suffix(prediction.is_angle)] = 1e3 * value;
         }
     }
+    return json;
+}
+
+/// What points not used are expected to be off by, mm (mrad where no length is measured).
+Json expected_to_json(const Calibration& calibration) {
+    const std::string unit = detail::error_suffix(!calibration.campaign.sensor->has_lengths());
+    const auto one = [&](const ExpectedError& error) {
+        return Json{{"parameters" + unit, mm * error.parameters},
+                    {"left_over" + unit, mm * error.model},
+                    {"noise" + unit, mm * error.noise},
+                    {"total" + unit, mm * error.total()}};
+    };
+    Json json = {{"at_measured", one(calibration.expected)}};
+    if (const auto& error = calibration.expected_left_out) json["at_left_out"] = one(*error);
+    if (const auto& error = calibration.expected_validation) json["at_validation"] = one(*error);
     return json;
 }
 
@@ -167,6 +127,7 @@ Json accuracy_to_json(const Calibration& calibration) {
         }
     }
     if (calibration.held_out) accuracy["held_out"] = held_out_to_json(*calibration.held_out);
+    accuracy["expected"] = expected_to_json(calibration);
     if (calibration.left_out) accuracy["left_out"] = metrics_to_json(*calibration.left_out);
     if (calibration.validation) accuracy["validation"] = metrics_to_json(*calibration.validation);
     if (!calibration.predicted.empty()) {
@@ -179,6 +140,13 @@ Json accuracy_to_json(const Calibration& calibration) {
         }
     }
     return accuracy;
+}
+
+Json measured_to_json(const MeasuredCount& measured) {
+    return {{"configurations", measured.configurations},
+            {"samples", measured.samples},
+            {"readings", measured.readings},
+            {"readings_seen", measured.readings_seen}};
 }
 
 Json outliers_to_json(const Estimate& estimate) {
@@ -235,16 +203,14 @@ Json selection_to_json(const ModelSelection& selection) {
     return json;
 }
 
-}  // namespace
-
-void write_estimate(const std::string& path, const Calibration& calibration,
-                    const std::string& measurements) {
+Json estimate_to_json(const Calibration& calibration, const std::string& measurements) {
     const Campaign& campaign = calibration.campaign;
     const Estimate& estimate = calibration.estimate;
     const VectorXd sigmas = standard_deviations(estimate);
-    Json document = detail::make_document("estimate");
+    Json document = detail::make_document("estimate", estimate_format);
     document["campaign"] = campaign.name;
     document["measurements"] = measurements;
+    document["measured"] = measured_to_json(calibration.measured);
     document["method"] = method_name(calibration.method);
     document["ending"] = ending_name(estimate.ending);
     if (!calibration.faults.empty()) document["faults"] = calibration.faults;
@@ -255,13 +221,7 @@ void write_estimate(const std::string& path, const Calibration& calibration,
     document["model_error_rad"] = estimate.model_error_orientation;
     document["readings"] = campaign.sensor->words().readings;
     document["chain"] = detail::robot_statement(campaign.robot);
-    document["base"] = base_to_json(estimate.parameters.world_from_base);
-    document["robot"] = robot_to_json(campaign, estimate, sigmas);
-    if (campaign.sensor->observes_targets()) {
-        document["targets"] = targets_to_json(*campaign.sensor, estimate.parameters.sensor);
-    } else {
-        document["sensor"] = unknowns_to_json(*campaign.sensor, estimate.parameters.sensor);
-    }
+    document.update(detail::parameters_to_json(campaign, estimate.parameters, &sigmas));
     document["sigma"] = other_sigmas_to_json(campaign, estimate, sigmas);
     document["covariance"] = covariance_to_json(estimate);
     document["strongest_correlations"] = correlations_to_json(estimate);
@@ -275,7 +235,19 @@ void write_estimate(const std::string& path, const Calibration& calibration,
         document["model_selection"] = selection_to_json(*calibration.selection);
     if (calibration.stated_spread) document["learned_sizes"] = sizes_to_json(calibration);
     document["assumes"] = detail::numbers_to_json(assumptions_of(campaign));
-    detail::write_json(path, document);
+    document["doubts"] = detail::doubts_to_json(campaign, calibration.doubts);
+    return document;
+}
+
+}  // namespace
+
+std::string to_json(const Calibration& calibration, const std::string& measurements) {
+    return detail::json_text(estimate_to_json(calibration, measurements));
+}
+
+void write_estimate(const std::string& path, const Calibration& calibration,
+                    const std::string& measurements) {
+    detail::write_json(path, estimate_to_json(calibration, measurements));
 }
 
 void write_predictions_csv(const std::string& path, const std::vector<std::string>& ids,
@@ -283,7 +255,7 @@ void write_predictions_csv(const std::string& path, const std::vector<std::strin
     std::string text = "config";
     for (const ErrorPrediction& prediction : predictions) {
         for (const auto& [name, value] : list_numbers(prediction.overall)) {
-            text += ',' + name + unit_suffix(prediction);
+            text += ',' + name + detail::error_suffix(prediction.is_angle);
         }
     }
     for (std::size_t i = 0; i < ids.size(); ++i) {

@@ -7,6 +7,7 @@
 #include "../core/text.hpp"
 #include "atomic_file.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/core/version.hpp"
 
 namespace posewise::detail {
@@ -71,23 +72,28 @@ class RepeatedKey {
 
 }  // namespace
 
-Json make_document(const std::string& kind) {
+Json make_document(const std::string& kind, int format) {
     Json document;
     document["kind"] = "posewise " + kind;
     document["posewise_version"] = version;
+    document["format"] = format;
     return document;
 }
 
-void write_json(const std::string& path, const Json& document) {
+std::string json_text(const Json& document, const std::string& place) {
     try {
         std::string text;
         append_json(document, "", text);
-        write_file(path, text + "\n");
+        return text + '\n';
     } catch (const Json::type_error&) {  // the only one dump() has
-        throw input_error_at({path},
+        throw input_error_at({place},
                              "cannot be written, since a name or id is not UTF-8 text; "
                              "must be UTF-8 (or plain ASCII)");
     }
+}
+
+void write_json(const std::string& path, const Json& document) {
+    write_file(path, json_text(document, path));
 }
 
 Json read_document(const std::string& path, const std::string& kind, const std::string& old_kind) {
@@ -128,7 +134,13 @@ Json read_document(const std::string& path, const std::string& kind, const std::
 
 std::string si_suffix(bool is_angle) { return '_' + std::string(units_of(is_angle).si); }
 
+std::string error_suffix(bool is_angle) { return '_' + std::string(units_of(is_angle).error); }
+
 const char* load_key(bool turns) { return turns ? "at_Nm" : "at_N"; }
+
+Json millimetres(const std::optional<double>& metres) {
+    return metres ? Json(mm_per_m * *metres) : Json(nullptr);
+}
 
 Json vector_to_json(const Eigen::Ref<const VectorXd>& vector) {
     return std::vector<double>(vector.begin(), vector.end());

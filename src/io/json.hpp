@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,11 +12,14 @@ namespace posewise::detail {
 /// Keys stay in the order they were written, so equal content is equal bytes.
 using Json = nlohmann::ordered_json;
 
-/// The beginning of every file we write: what it is and which version wrote it.
-Json make_document(const std::string& kind);
+/// The beginning of every document we write: what it is, which version wrote it, and the format of
+/// what follows, which grows by one when a key is renamed, removed or means something else.
+Json make_document(const std::string& kind, int format);
 
-/// Writes the document, each number with as many digits as it takes to read it back exactly; what
-/// is infinite or unknown becomes null. Throws InputError if a text is not UTF-8.
+/// The document as text, each number with as many digits as it takes to read it back exactly; what
+/// is infinite or unknown becomes null. Throws InputError, which names the place it is for, if a
+/// text in it is not UTF-8.
+std::string json_text(const Json& document, const std::string& place = "standard output");
 void write_json(const std::string& path, const Json& document);
 
 /// Reads a document of that kind, or of an old one. Throws InputError for anything else, and for a
@@ -25,9 +29,14 @@ Json read_document(const std::string& path, const std::string& kind,
 
 /// `_rad` or `_m`.
 std::string si_suffix(bool is_angle);
+/// `_mrad` or `_mm`: of small errors, a thousand to the SI unit.
+std::string error_suffix(bool is_angle);
 
 /// The key of the torque or force under which a compliance's value is what gives way.
 const char* load_key(bool turns);
+
+/// A length in mm; null if there is none.
+Json millimetres(const std::optional<double>& metres);
 
 Json vector_to_json(const Eigen::Ref<const VectorXd>& vector);
 

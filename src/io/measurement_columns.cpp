@@ -52,13 +52,19 @@ double for_people(const Campaign& campaign, Index joint, double value) {
     return units_of(campaign.robot.joint(joint).motion).to_reading(value);
 }
 
-std::string joint_header(const Campaign& campaign) {
-    std::string text;
+std::vector<std::string> reading_columns(const Campaign& campaign) {
+    std::vector<std::string> names;
     for (const WantedColumn& column : wanted_columns(campaign)) {
         if (column.role != Role::Joint) continue;
-        text +=
-            ',' + (column.quantity == Quantity::Angle ? column.stem + "_deg" : column.example());
+        names.push_back(column.quantity == Quantity::Angle ? column.stem + "_deg"
+                                                           : column.example());
     }
+    return names;
+}
+
+std::string joint_header(const Campaign& campaign) {
+    std::string text;
+    for (const std::string& name : reading_columns(campaign)) text += ',' + name;
     return text;
 }
 

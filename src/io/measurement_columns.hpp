@@ -52,8 +52,10 @@ std::string torque_stem(const Joint& joint);
 /// A joint value in degrees or millimetres, a torque as it is.
 double for_people(const Campaign& campaign, Index joint, double value);
 
-/// Columns of a configuration for people and controllers, each after a comma: ",q1_deg,q2_mm", and
-/// the values (rad or m, N m) for them to 12 digits.
+/// Columns of a configuration for people and controllers: "q1_deg", "q2_mm", "tau_q2_Nm".
+std::vector<std::string> reading_columns(const Campaign& campaign);
+
+/// The same, each after a comma, and the values (rad or m, N m) for them to 12 digits.
 std::string joint_header(const Campaign& campaign);
 std::string joint_cells(const Campaign& campaign, const VectorXd& q);
 

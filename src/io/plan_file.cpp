@@ -12,6 +12,7 @@
 #include "plan_format.hpp"
 #include "plan_paths.hpp"
 #include "posewise/core/units.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "posewise/measurement/seen.hpp"
 
 namespace posewise::io {
@@ -137,11 +138,8 @@ Json pose_to_json(const Plan& plan, const PlannedPose& pose) {
     return json;
 }
 
-}  // namespace
-
-void write_plan(const std::string& path, const Plan& plan) {
-    Json document = detail::make_document(detail::plan_kind);
-    document["format"] = detail::plan_format;
+Json plan_to_json(const Plan& plan, const std::string& path) {
+    Json document = detail::make_document(detail::plan_kind, detail::plan_format);
     document["campaign"] = plan.campaign.empty() ? Json(nullptr) : Json(plan.campaign);
     document["candidates"] = candidates_to_json(plan, path);
     document["problem"] = problem_to_json(plan, path);
@@ -158,7 +156,80 @@ void write_plan(const std::string& path, const Plan& plan) {
     Json& poses = document["poses"] = Json::array();
     for (const PlannedPose& pose : plan.poses) poses.push_back(pose_to_json(plan, pose));
     if (!plan.is_continuous()) document["certificate"] = certificate_to_json(plan.certificate);
-    detail::write_json(path, document);
+    return document;
+}
+
+// ---- What is printed, but not in the file ----
+
+/// Of the positions of targets, by the parameters alone, and with the model error.
+Json accuracy_to_json(const PredictedAccuracy& accuracy, double model_error) {
+    const PredictedTotal total = predict_total(accuracy, model_error);
+    return {{"rms_mm", mm_per_m * accuracy.rms},
+            {"p95_mm", mm_per_m * accuracy.percentile95},
+            {"total_rms_mm", mm_per_m * total.rms},
+            {"total_lower_mm", mm_per_m * total.lower},
+            {"total_upper_mm", mm_per_m * total.upper}};
+}
+
+Json count_to_json(const CountAccuracy& count, double model_error) {
+    return {{"new_pose_count", count.pose_count},
+            {"is_planned", count.is_planned},
+            {"accuracy",
+             count.accuracy ? accuracy_to_json(*count.accuracy, model_error) : Json(nullptr)}};
+}
+
+Json pool_to_json(const Pool& pool) {
+    Json rejections = Json::array();
+    for (std::size_t k = 0; k < pool.rejections.size(); ++k) {
+        const auto& [first, in_all] = pool.rejections[k];
+        if (in_all == 0) continue;
+        rejections.push_back({{"constraint", constraint_name(static_cast<Constraint>(k))},
+                              {"in_all", in_all},
+                              {"first", first}});
+    }
+    return {{"drawn", pool.candidate_count},
+            {"feasible", pool.configurations.rows()},
+            {"rejections", std::move(rejections)}};
+}
+
+Json report_to_json(const Plan& plan, const std::string& path) {
+    Json document = plan_to_json(plan, path);
+    document["plan_file"] = path;
+    document["value_rms_mm"] = detail::millimetres(plan.value_rms);
+    const std::optional<double> model_error = assumed_model_error(plan);
+    if (plan.predicted && model_error) {
+        document["accuracy"] = accuracy_to_json(*plan.predicted, *model_error);
+    }
+    return document;
+}
+
+}  // namespace
+
+std::string to_json(const Plan& plan, const std::string& path) {
+    return detail::json_text(report_to_json(plan, path));
+}
+
+std::string to_json(const Planning& planning, const std::vector<CountAccuracy>& counts,
+                    const std::string& path) {
+    Json document = report_to_json(planning.plan, path);
+    document["new_pose_count"] = planning.search.pose_count;
+    document["measured_count"] = planning.measured_count;
+    document["workspace_count"] = planning.workspace_count;
+    document["pool"] = pool_to_json(planning.pool);
+    const Tour& tour = planning.tour;
+    document["tour"] = {{"time_s", tour.time},
+                        {"as_planned_s", tour.planning_order_time},
+                        {"to_the_nearest_s", tour.nearest_neighbour_time},
+                        {"blocked_count", tour.blocked_count}};
+    Json& others = document["other_counts"] = Json::array();
+    for (const CountAccuracy& count : counts) {
+        others.push_back(count_to_json(count, planning.campaign.model_error));
+    }
+    return detail::json_text(document);
+}
+
+void write_plan(const std::string& path, const Plan& plan) {
+    detail::write_json(path, plan_to_json(plan, path));
 }
 
 void write_configurations_csv(const std::string& path, const Campaign& campaign,

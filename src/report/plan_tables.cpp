@@ -52,14 +52,14 @@ std::string indent_lines(const std::string& text) {
 
 /// A value of the plan's criterion. Of continuous plans V and G are inverse mean and worst squares
 /// of position errors, of choices they are those of whitened ones, which have no unit.
-std::string format_value(const Plan& plan, double value) {
+std::string format_value(const Plan& plan, double value, int digits = 8) {
     const bool is_of_positions = plan.is_continuous() && needs_test_poses(plan.request.criterion);
-    return detail::format_short(value, 8) + (is_of_positions ? " /m^2" : "");
+    return detail::format_short(value, digits) + (is_of_positions ? " /m^2" : "");
 }
 
 /// The plan's value, and what it says in mm where it does.
-std::string describe_value(const Plan& plan) {
-    const std::string value = format_value(plan, plan.value);
+std::string describe_value(const Plan& plan, int digits = 8) {
+    const std::string value = format_value(plan, plan.value, digits);
     if (!plan.value_rms) return value;
     return fmt::format("{} (predicted {} mm RMS{} by the parameters)", value,
                        detail::format_mm(*plan.value_rms),
@@ -196,30 +196,46 @@ std::string describe(const Finding& finding) {
 
 /// Nothing of plain blocks.
 std::string describe_prediction(const Plan& plan) {
-    const auto& assumptions = plan.assumptions;
-    const auto model_error =
-        std::find_if(assumptions.begin(), assumptions.end(),
-                     [](const NamedNumber& one) { return one.name == "model_error_m"; });
-    if (!plan.predicted || model_error == assumptions.end()) return "";
-    const PredictedTotal total = predict_total(*plan.predicted, model_error->value);
+    const std::optional<double> model_error = assumed_model_error(plan);
+    if (!plan.predicted || !model_error) return "";
+    const PredictedTotal total = predict_total(*plan.predicted, *model_error);
     return fmt::format(
         "predicted:  {} mm RMS over the candidates by the parameters, {} with a model error of {} "
         "mm;\n            {} to {} (90 %), as that differs from robot to robot\n",
         detail::format_mm(plan.predicted->rms), detail::format_mm(total.rms),
-        detail::format_short(mm_per_m * model_error->value, 4), detail::format_mm(total.lower),
+        detail::format_short(mm_per_m * *model_error, 4), detail::format_mm(total.lower),
         detail::format_mm(total.upper));
 }
 
 }  // namespace
 
-std::string format_choice(const Plan& plan) {
+std::string format_choice(const Plan& plan, int digits) {
     return fmt::format(
         "chosen:     {}\ncriterion:  {}\nvalue:      {}\nbound:      {}\n"
         "efficiency: {} proven\nstarts:     {}, {}\n{}{}",
-        describe_ids(plan), criterion_name(plan.request.criterion), describe_value(plan),
-        format_value(plan, plan.bound), detail::format_fixed(plan.efficiency, 4),
+        describe_ids(plan), criterion_name(plan.request.criterion), describe_value(plan, digits),
+        format_value(plan, plan.bound, digits), detail::format_fixed(plan.efficiency, 4),
         describe_starts(plan, "here"), ending_name(plan.ending), describe_proof(plan),
         describe_prediction(plan));
+}
+
+std::string format(const ApproximateDesign& design, int digits) {
+    const PlanRequest& request = design.request;
+    Table table{{"candidate", "weight"}, {}};
+    for (const auto& [id, weight] : design.weights) {
+        table.rows.push_back({detail::escape_controls(id), detail::format_short(weight, digits)});
+    }
+    return fmt::format(
+               "weights:    of {} of {}, for {}\ncriterion:  {}\nvalue:      {}\n"
+               "bound:      {}: no choice of {} has a larger value\n"
+               "efficiency: {} proven, {}\n",
+               design.weights.size(), detail::count_of(design.candidate_count, "candidate"),
+               detail::count_of(request.pose_count, "pose"), criterion_name(request.criterion),
+               detail::format_short(design.value, digits),
+               detail::format_short(design.bound, digits),
+               detail::count_of(request.pose_count, "pose"),
+               detail::format_fixed(design.efficiency, 6), ending_name(design.ending)) +
+           format_section("Weights, heaviest first", table);
 }
 
 std::string format_planning(const Planning& planning) {

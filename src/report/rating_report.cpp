@@ -9,18 +9,18 @@
 namespace posewise {
 namespace {
 
-detail::Table index_table(const Rating& rating, bool has_prior) {
+detail::Table index_table(const Rating& rating, bool has_prior, int digits) {
     detail::Table table{
         {"index", has_prior ? "whitened, scaled, with the prior" : "whitened, scaled",
          "plain, mm and mrad"},
         {}};
     for (std::size_t i = 0; i < all_criteria.size(); ++i) {
         table.rows.push_back({std::string(criterion_name(all_criteria[i])),
-                              detail::format_short(rating.scaled.values[i], 6),
-                              detail::format_short(rating.plain.values[i], 6)});
+                              detail::format_short(rating.scaled.values[i], digits),
+                              detail::format_short(rating.plain.values[i], digits)});
     }
-    table.rows.push_back({"condition", detail::format_short(rating.scaled.condition, 6),
-                          detail::format_short(rating.plain.condition, 6)});
+    table.rows.push_back({"condition", detail::format_short(rating.scaled.condition, digits),
+                          detail::format_short(rating.plain.condition, digits)});
     return table;
 }
 
@@ -43,13 +43,13 @@ std::string describe_direction(const Campaign& campaign, const WeakDirection& di
 
 }  // namespace
 
-std::string format(const Rating& rating, const Campaign& campaign) {
+std::string format(const Rating& rating, const Campaign& campaign, int digits) {
     std::string text =
         fmt::format("{}, {}\n{}", detail::count_of(rating.configurations, "configuration"),
                     detail::count_of(rating.parameters, "parameter"),
                     detail::describe_scaling(campaign, rating.repeats));
     text += format_section("Indices (-inf, condition inf: the parameters are not identifiable)",
-                           index_table(rating, campaign.spread.is_prior));
+                           index_table(rating, campaign.spread.is_prior, digits));
     text += fmt::format(
         "\nwhitened, scaled: rows divided by the noise, columns times the expected errors{}: what "
         "posewise selects by\nplain: of the Jacobian in mm and mrad, without noise, scale or "

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <map>
+
 #include "../core/format.hpp"
 #include "../core/text.hpp"
 #include "posewise/core/units.hpp"
@@ -8,6 +10,8 @@
 
 namespace posewise {
 namespace {
+
+constexpr std::string_view unknown = "not known";
 
 /// As a CSV field: in quotes if it needs them.
 std::string quote(const std::string& text) {
@@ -42,29 +46,27 @@ std::string describe_judgement(const Study& study) {
         detail::count_of(study.splits, "split"));
 }
 
-/// Whether to plan was worth it, a line for each criterion.
-std::string describe_losses(const Study& study) {
+/// Whether to plan was worth it, a line for each criterion: "v, planned against random: better at
+/// 8, 12; within chance at 20".
+std::string describe_verdicts(const Study& study) {
     std::string text;
     for (std::size_t c = 0; c < study.criteria.size(); ++c) {
-        std::string lost, unsure, unknown;
-        bool is_known = false;
+        std::map<std::string_view, std::string> counts;  // of poses
         for (const StudyRow& row : study.rows) {
             const auto advantage = planned_advantage(study, row, c);
-            is_known = is_known || advantage;
-            if (advantage && advantage->upper <= 1) continue;
-            std::string& counts = !advantage ? unknown : advantage->ratio > 1 ? lost : unsure;
-            counts += (counts.empty() ? "" : ", ") + std::to_string(row.pose_count);
+            std::string& list = counts[advantage ? verdict_name(verdict_of(*advantage)) : unknown];
+            list += (list.empty() ? "" : ", ") + std::to_string(row.pose_count);
         }
-        text += study.model + (study.model.empty() ? "" : ", ");
-        text += criterion_name(study.criteria[c]);
-        if (!is_known) {
-            text += ": whether planned loses to random is not known\n";
-            continue;
+        std::string line;
+        for (const std::string_view verdict :
+             {verdict_name(Verdict::Better), verdict_name(Verdict::WithinChance),
+              verdict_name(Verdict::Loses), unknown}) {
+            if (!counts.contains(verdict)) continue;
+            line += fmt::format("{}{} at {}", line.empty() ? "" : "; ", verdict, counts[verdict]);
         }
-        text += fmt::format(": planned {}{}{}\n",
-                            lost.empty() ? "never loses to random" : "loses to random at " + lost,
-                            unsure.empty() ? "" : "; within chance at " + unsure,
-                            unknown.empty() ? "" : "; not known at " + unknown);
+        text +=
+            fmt::format("{}{}{}, planned against random: {}\n", study.model,
+                        study.model.empty() ? "" : ", ", criterion_name(study.criteria[c]), line);
     }
     return text;
 }
@@ -99,7 +101,7 @@ constexpr const char* csv_header =
 std::string format(const Study& study) {
     if (study.ending == Ending::NotIdentifiable) return study.undetermined + '\n';
     std::string text = format_table(detail::study_table(study));
-    if (compares_with_random(study)) text += describe_judgement(study) + describe_losses(study);
+    if (compares_with_random(study)) text += describe_judgement(study) + describe_verdicts(study);
     return text;
 }
 
@@ -111,7 +113,7 @@ std::string format(const std::vector<Study>& studies) {
     std::string text = format_table(detail::models_table(studies));
     if (!compares_with_random(studies.front())) return text;
     text += describe_judgement(studies.front());
-    for (const Study& study : studies) text += describe_losses(study);
+    for (const Study& study : studies) text += describe_verdicts(study);
     return text;
 }
 

@@ -1,29 +1,14 @@
 #include "study_table.hpp"
 
-#include <algorithm>
-
 #include "../core/format.hpp"
-#include "../core/statistics.hpp"
 
 namespace posewise::detail {
 namespace {
 
 std::string cell(const std::optional<double>& metres) { return metres ? format_mm(*metres) : "-"; }
 
-std::optional<double> median_expected(std::vector<StudyCase> cases) {
-    std::erase_if(cases, [](const StudyCase& c) { return !c.identified; });
-    if (cases.empty()) return std::nullopt;
-    VectorXd expected(static_cast<Index>(cases.size()));
-    std::transform(cases.begin(), cases.end(), expected.begin(),
-                   [](const StudyCase& c) { return c.expected; });
-    return quantile(expected, 0.5, QuantileRule::Linear);
-}
-
 std::string unidentified_cell(const std::vector<StudyCase>& cases) {
-    if (cases.empty()) return "-";
-    return std::to_string(
-        std::count_if(cases.begin(), cases.end(),
-                      [](const StudyCase& study_case) { return !study_case.identified; }));
+    return cases.empty() ? "-" : std::to_string(count_unidentified(cases));
 }
 
 std::string ratio_cell(const std::optional<Advantage>& advantage) {

@@ -47,6 +47,13 @@ std::string describe_columns(const Plan& plan, const std::vector<std::string>& w
 
 }  // namespace
 
+std::optional<double> assumed_model_error(const Plan& plan) {
+    for (const NamedNumber& one : plan.assumptions) {
+        if (one.name == "model_error_m") return one.value;
+    }
+    return std::nullopt;
+}
+
 std::vector<std::string> configuration_columns(const Campaign& campaign) {
     const Chain& robot = campaign.robot;
     std::vector<std::string> columns;

@@ -51,6 +51,17 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
      "--least-distance-deg: needs a robot"},
     {"select a.yaml -m b.csv -k 6 --groups g.csv", "--groups: and --per-group need each other"},
     {"select a.yaml -m b.csv -k 6 --per-group 2", "--groups: and --per-group need each other"},
+    {"select a.yaml -m b.csv -k 6 --relax --groups g.csv --per-group 2",
+     "--groups: cannot be kept by weights, --relax"},
+    {"select a.yaml -m b.csv -k 6 --relax --least-distance-deg 9",
+     "--least-distance-deg: cannot be kept by weights, --relax"},
+    {"select a.yaml -m b.csv -k 6 --relax --starts 9",
+     "--starts: are of a search, which --relax does not need"},
+    {"select a.yaml -m b.csv -k 6 --relax -o plan.txt",
+     "--out: must end in .csv or .json with --relax"},
+    {"select a.yaml -m b.csv -k 6 --json --digits 9", "--digits excludes --json"},
+    {"indices a.yaml -m b.csv --digits 18",
+     "--digits: is '18'; must be a whole number from 1 to 17"},
     {"select a.yaml -m b.csv -k 6 --time 0",
      "--time: is '0'; must be a number from 0.001 to 1e+09"},
     {"select a.yaml -m b.csv -k 6 --exclude a,,b",
@@ -88,8 +99,7 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
     {"calibrate a.yaml -m b.csv --loss huber --loss-width 0",
      "--loss-width: is '0'; must be a number from 0.1 to 1e+06"},
     {"calibrate a.yaml -m b.csv --loss-width 2", "--loss-width: needs --loss huber or cauchy"},
-    {"calibrate a.yaml -m b.csv --learn-sizes --method global",
-     "--learn-sizes: needs --method lm"},
+    {"calibrate a.yaml -m b.csv --learn-sizes --method global", "--learn-sizes: needs --method lm"},
     {"calibrate a.yaml -m b.csv --learn-sizes --no-prior", "--learn-sizes: needs priors"},
     {"calibrate a.yaml -m b.csv --model-selection --method two-step",
      "--model-selection: needs --method lm"},
@@ -128,6 +138,18 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
      "--models: is 'rigid'; must be full, geometric or stated"},
     {"study a.yaml -m b.csv -k 8:6", "--poses: is '8:6'; the first must not be above the last"},
 };
+
+TEST_F(Usage, EveryCommandRefusesNoThreads) {
+    for (const auto& command : commands) {
+        for (const std::string count : {"0", "-2", "two"}) {
+            const Outcome outcome = run(command + " --threads " + count);
+            EXPECT_EQ(outcome.code, 2) << command;
+            EXPECT_EQ(outcome.err, "posewise: --threads: is '" + count +
+                                       "'; must be a whole number from 1 to 1024; see posewise " +
+                                       command + " --help\n");
+        }
+    }
+}
 
 /// One line that ends with where to look, whatever is wrong; nothing is written.
 TEST_F(Usage, WrongUsageExitsWithTwo) {

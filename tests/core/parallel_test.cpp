@@ -1,12 +1,16 @@
 #include "../../src/core/parallel.hpp"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <atomic>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/core/threads.hpp"
 
 namespace posewise {
 namespace {
@@ -19,6 +23,14 @@ TEST(ForEachIndex, VisitsEveryIndexOnce) {
         for_each_index(count, [&](Index i) { ++visits[static_cast<std::size_t>(i)]; });
         EXPECT_EQ(visits, std::vector<int>(static_cast<std::size_t>(count), 1));
     }
+}
+
+TEST(SetThreadCount, RefusesLessThanOne) {
+    for (const Index count : {0, -1}) EXPECT_THROW(set_thread_count(count), InputError);
+    const int before = omp_get_max_threads();
+    set_thread_count(3);
+    EXPECT_EQ(omp_get_max_threads(), 3);
+    set_thread_count(before);
 }
 
 TEST(ForEachIndex, ThrowsTheFailureOfTheLowestIndex) {

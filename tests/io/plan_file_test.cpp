@@ -8,6 +8,7 @@
 #include "campaign_text.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/io/campaign_file.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -264,6 +265,18 @@ TEST_F(PlanFileTest, IsNotWrittenWithAnIdThatIsNotText) {
               "plan.json: cannot be written, since a name or id is not UTF-8 text; must be UTF-8 "
               "(or plain ASCII)");
     EXPECT_FALSE(std::filesystem::exists(path_));
+}
+
+TEST_F(PlanFileTest, IsWhatIsPrintedAsJsonToo) {
+    const std::string file = written();
+    const std::string printed = to_json(plan_, path_);
+    const std::string common = file.substr(0, file.rfind("\n}"));
+    EXPECT_EQ(printed.substr(0, common.size()), common);
+    EXPECT_NE(printed.find("\n  \"value_rms_mm\": null"), std::string::npos) << printed;
+    plan_.poses[1].id = "\xFF\xFE";
+    EXPECT_EQ(input_error_of([&] { to_json(plan_, path_); }),
+              "standard output: cannot be written, since a name or id is not UTF-8 text; must be "
+              "UTF-8 (or plain ASCII)");
 }
 
 TEST_F(PlanFileTest, IsRefusedIfMissing) {

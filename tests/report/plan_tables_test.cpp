@@ -22,6 +22,34 @@ TEST(FormatChoice, SaysWhatTheValueMeansWhereItMeansMillimetres) {
               "value:      0.3766 (predicted 0.0941 mm RMS at the worst pose by the parameters)");
 }
 
+TEST(FormatChoice, HasAsManyDigitsAsAsked) {
+    Plan plan;
+    plan.value = 1.0 / 3;
+    plan.bound = 2.0 / 3;
+    EXPECT_NE(format_choice(plan).find("value:      0.33333333\nbound:      0.66666667\n"),
+              std::string::npos);
+    EXPECT_NE(
+        format_choice(plan, 12).find("value:      0.333333333333\nbound:      0.666666666667\n"),
+        std::string::npos);
+}
+
+TEST(FormatDesign, ListsTheWeights) {
+    ApproximateDesign design;
+    design.request.pose_count = 2;
+    design.candidate_count = 40;
+    design.weights = {{"a", 1}, {"b", 2.0 / 3}, {"c", 1.0 / 3}};
+    design.value = 1.5;
+    design.bound = 1.6;
+    design.efficiency = 0.95;
+    design.ending = Ending::Converged;
+    EXPECT_EQ(format(design, 3),
+              "weights:    of 3 of 40 candidates, for 2 poses\ncriterion:  d\nvalue:      1.5\n"
+              "bound:      1.6: no choice of 2 poses has a larger value\n"
+              "efficiency: 0.950000 proven, converged\n"
+              "\nWeights, heaviest first\n\ncandidate  weight\n---------  ------\n"
+              "a               1\nb           0.667\nc           0.333\n");
+}
+
 TEST(FormatChoice, SaysThatNoStartEndedBeforeTheStop) {
     Plan plan;
     plan.ending = Ending::Interrupted;

@@ -97,21 +97,30 @@ TEST(ModelsTable, ShowsEachModelAgainstItsRandomSubsetsAndThoseOfTheFirst) {
                                                        "-", "0.30", "0"}));
     EXPECT_EQ(table.rows[1], (std::vector<std::string>{"2", "full", "0.5000", "0.1500", "0.30", "-",
                                                        "0.15", "0"}));
-    EXPECT_NE(format(two_models()).find("\nfull, d: planned never loses to random\n"),
+    EXPECT_NE(format(two_models()).find("\nfull, d, planned against random: better at 2\n"),
               std::string::npos);
 }
 
-TEST(FormatStudy, DoesNotSayThatPlannedWinsWhereThatMayBeChance) {
-    StudyRow row{2, {}, {}};
+/// Two splits in which the planned subset is off by so many times the random one.
+StudyRow row_with_ratios(Index pose_count, double first, double second) {
+    StudyRow row{pose_count, {}, {}};
     for (const Index split : {0, 1}) {
-        row.optimal.push_back(identified({0, 1}, split == 0 ? 0.5e-3 : 1.5e-3, 2e-3));
+        row.optimal.push_back(identified({0, 1}, (split == 0 ? first : second) * 1e-3, 2e-3));
         row.random.push_back(identified({1, 2}, 1e-3, 2e-3));
         row.optimal.back().split = row.random.back().split = split;
     }
-    Study study = study_of({row});
+    return row;
+}
+
+TEST(FormatStudy, CallsWithinChanceWhatMayBeChanceInEitherDirection) {
+    Study study = study_of({row_with_ratios(2, 0.5, 0.501), row_with_ratios(3, 0.5, 1.5),
+                            row_with_ratios(4, 0.9, 2.0), row_with_ratios(5, 1.5, 1.501),
+                            row_with_ratios(6, 0.7, 0.9), row_with_ratios(7, 1.0, 1.0)});
     study.splits = 2;
     study.test_count = 1;
-    EXPECT_NE(format(study).find("\nd: planned never loses to random; within chance at 2\n"),
+    study.rows.push_back({8, {StudyCase{}, StudyCase{}}, {StudyCase{}}});
+    EXPECT_NE(format(study).find("\nd, planned against random: better at 2; within chance at 3, 4, "
+                                 "6, 7; loses at 5; not known at 8\n"),
               std::string::npos)
         << format(study);
 }

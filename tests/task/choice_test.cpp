@@ -65,6 +65,61 @@ TEST(ChooseFromBlocks, HoldsWhatWasMeasuredAndDoesNotChooseItAgain) {
     }
 }
 
+ApproximateDesign weights_of(const Blocks& candidates, const ChoiceOptions& options) {
+    return relax_choice(candidates, options);
+}
+
+/// Two directions, one seen twice as well: D shares the poses evenly among them, A gives the weak
+/// one what makes w1 / w2 = s2 / s1 [Fedorov 1972].
+TEST(RelaxChoice, FindsTheWeightsThatAreKnown) {
+    RowMatrixXd matrix(3, 2);
+    matrix << 2, 0, 0, 1, 0.5, 0.25;  // the last tells less than both
+    const Blocks candidates = make_equal_blocks(matrix, 1);
+    ChoiceOptions options = choice_of(6);
+    options.repeat_limit = 6;
+    const ApproximateDesign d = weights_of(candidates, options);
+    ASSERT_EQ(d.weights.size(), 2u);
+    EXPECT_NEAR(d.weights[0].weight, 3, 1e-3);
+    EXPECT_NEAR(d.value, std::log(4.0 * 3 * 3), 1e-4);
+    EXPECT_GE(d.bound, std::log(4.0 * 3 * 3));
+    EXPECT_NEAR(d.efficiency, 1, 1e-4);
+    options.criterion = Criterion::A;
+    const ApproximateDesign a = weights_of(candidates, options);
+    EXPECT_EQ(a.weights[0].id, "1");
+    EXPECT_NEAR(a.weights[0].weight, 4, 1e-2);
+    EXPECT_NEAR(a.weights[1].weight, 2, 1e-2);
+}
+
+TEST(RelaxChoice, BoundsEveryChoiceAndKeepsTheRepeatLimit) {
+    const Blocks candidates = test::random_blocks(30, 3, 4, 5);
+    for (const Criterion criterion : all_criteria) {
+        ChoiceOptions options = choice_of(6);
+        options.criterion = criterion;
+        const Plan plan = choose(candidates, options);
+        const ApproximateDesign design = weights_of(candidates, options);
+        EXPECT_GE(design.bound, plan.value) << criterion_name(criterion);
+        EXPECT_GE(design.bound, design.value);
+        EXPECT_EQ(design.candidate_count, 30);
+        double sum = 0;
+        for (const auto& [id, weight] : design.weights) {
+            EXPECT_GT(weight, 0);
+            EXPECT_LE(weight, 1 + 1e-12);
+            EXPECT_LE(weight, design.weights.front().weight);
+            sum += weight;
+        }
+        EXPECT_NEAR(sum, 6, 1e-9);
+    }
+}
+
+TEST(RelaxChoice, RefusesWhatWeightsCannotKeep) {
+    const Blocks candidates = test::random_blocks(30, 3, 4, 5);
+    ChoiceOptions options = choice_of(6);
+    options.groups.assign(30, 1);
+    options.group_limit = 3;
+    EXPECT_THROW(weights_of(candidates, options), InputError);
+    EXPECT_THROW(weights_of(test::random_blocks(2, 1, 4, 5), choice_of(2)), InputError);  // unseen
+}
+
 class ChooseWithRobot : public ::testing::Test {
   protected:
     ChooseWithRobot() {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "posewise/task/calibration.hpp"
+#include "posewise/task/choice.hpp"
 #include "posewise/task/correction.hpp"
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"
@@ -20,9 +21,9 @@ std::string format_robot(const Chain& robot);
 /// no measurement can tell it from others, the errors that do the same, as text.
 std::string format(const Inspection& inspection);
 
-/// Every index of measured configurations, and the directions they hardly tell, as text: all that
-/// `posewise indices` prints.
-std::string format(const Rating& rating, const Campaign& campaign);
+/// Every index of measured configurations to so many significant digits, and the directions they
+/// hardly tell, as text: all that `posewise indices` prints.
+std::string format(const Rating& rating, const Campaign& campaign, int digits = 6);
 
 /// Says that there is no clear gap between what is identifiable and what is not, where that is so.
 std::string describe_gap(const Inspection& inspection);
@@ -47,8 +48,12 @@ std::string describe(const BeyondLimits& beyond, const std::vector<std::string>&
 /// twenty poses whose correction is not complete, with the reason, as text.
 std::string format(const CorrectedPoses& poses);
 
-/// What was chosen, its value, and what is proven about it, a line each.
-std::string format_choice(const Plan& plan);
+/// What was chosen, its value to so many significant digits, and what is proven about it, a line
+/// each.
+std::string format_choice(const Plan& plan, int digits = 8);
+
+/// Weights instead of a choice, and the bound they prove.
+std::string format(const ApproximateDesign& design, int digits = 8);
 
 /// What was planned, how good it is, and the poses in visiting order.
 std::string format_planning(const Planning& planning);

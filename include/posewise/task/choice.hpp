@@ -45,4 +45,29 @@ Plan choose(const Campaign& campaign, const Candidates& candidates, const Choice
 /// The same of plain blocks, named 0, 1, ..., without a robot.
 Plan choose(const Blocks& candidates, const ChoiceOptions& options);
 
+/// A candidate and how often it would be measured if that could be any number.
+struct WeightedCandidate {
+    std::string id;
+    double weight = 0;  ///< above 0, at most PlanRequest::repeat_limit
+};
+
+/// Weights instead of a choice, an approximate design [Fedorov 1972]: the continuous relaxation of
+/// the choice of as many poses as its weights sum to.
+struct ApproximateDesign {
+    std::string campaign;                    ///< its name; empty: plain blocks
+    PlanRequest request;                     ///< complete
+    Index candidate_count = 0;               ///< there were to weight
+    std::vector<WeightedCandidate> weights;  ///< heaviest first, candidates of weight 0 left out
+    double value = 0;       ///< of the criterion, of the information that is weighted so
+    double bound = 0;       ///< proven: no weights, and so no choice of poses, have a larger value
+    double efficiency = 0;  ///< of the value against the bound, see Choice::efficiency
+    Ending ending = Ending::NotRun;
+};
+
+/// The weights that tell most about the parameters, from the inputs of choose(). Throws InputError
+/// as it does, and for what weights cannot keep: groups and a least distance.
+ApproximateDesign relax_choice(const Campaign& campaign, const Candidates& candidates,
+                               const ChoiceOptions& options);
+ApproximateDesign relax_choice(const Blocks& candidates, const ChoiceOptions& options);
+
 }  // namespace posewise

@@ -132,6 +132,9 @@ struct Plan {
     }
 };
 
+/// The model error that a plan assumes, m; nothing of plain blocks.
+std::optional<double> assumed_model_error(const Plan& plan);
+
 /// The names of a configuration's numbers, with SI units.
 std::vector<std::string> configuration_columns(const Campaign& campaign);
 

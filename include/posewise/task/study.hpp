@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "posewise/calibrator/identification.hpp"
@@ -100,6 +101,12 @@ std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& r
 std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
                                            std::size_t criterion, const StudyRow& other_row);
 
+/// What an advantage says, its whole interval: below 1, above 1, or neither.
+enum class Verdict { Better, WithinChance, Loses };
+Verdict verdict_of(const Advantage& advantage);
+/// "better", "within chance", "loses".
+std::string_view verdict_name(Verdict verdict);
+
 /// The planned cases of one of so many criteria in a row.
 std::vector<StudyCase> planned_cases(const StudyRow& row, std::size_t criterion,
                                      std::size_t criterion_count);
@@ -108,5 +115,11 @@ std::vector<StudyCase> planned_cases(const StudyRow& row, std::size_t criterion,
 /// are not identified count as worse than any other, so that dropping them cannot flatter the rest;
 /// nothing if the quantile falls among them or nothing was left out.
 std::optional<double> held_out_quantile(const std::vector<StudyCase>& cases, double p);
+
+/// The median of StudyCase::expected over those that are identified, m; nothing if none is.
+std::optional<double> median_expected(const std::vector<StudyCase>& cases);
+
+/// How many cases are not identified.
+Index count_unidentified(const std::vector<StudyCase>& cases);
 
 }  // namespace posewise

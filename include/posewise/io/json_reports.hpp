@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewise/io/urdf_file.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "posewise/model/dh.hpp"
+#include "posewise/task/calibration.hpp"
+#include "posewise/task/choice.hpp"
+#include "posewise/task/correction.hpp"
+#include "posewise/task/inspection.hpp"
+#include "posewise/task/planning.hpp"
+#include "posewise/task/study.hpp"
+#include "posewise/task/verification.hpp"
+
+/// What tasks found, as one JSON document for other programs each: what the program prints with
+/// --json. designs/json.md explains every key. Units stand in the keys, numbers have as many digits
+/// as it takes to read them back exactly, and what is infinite or unknown is null. All throw
+/// InputError if a name or id is not UTF-8.
+namespace posewise::io {
+
+std::string to_json(const Inspection& inspection);
+
+/// How well the robot fits with some joints taken as reversed.
+struct JointDirections {
+    std::vector<std::string> reversed;  ///< names of joints
+    double distance_rms = 0;            ///< base and targets registered, m
+};
+/// With the choices of joint directions that were tried, the best fitting first.
+std::string to_json(const Inspection& inspection, const std::vector<JointDirections>& directions);
+
+std::string to_json(const Rating& rating, const Campaign& campaign);
+
+/// The plan as its file `path` has it, that file, and what is predicted.
+std::string to_json(const Plan& plan, const std::string& path);
+/// Likewise, with what became of the planning and the accuracy of other numbers of poses.
+std::string to_json(const Planning& planning, const std::vector<CountAccuracy>& counts,
+                    const std::string& path);
+
+std::string to_json(const ApproximateDesign& design);
+
+/// Of the plan in the file `path`.
+std::string to_json(const Verification& verification, const Plan& plan, const std::string& path);
+
+/// As write_estimate() writes it. The calibration must be identified.
+std::string to_json(const Calibration& calibration, const std::string& measurements);
+
+/// Of one error model, or of several (compare_models()).
+std::string to_json(const std::vector<Study>& studies);
+
+std::string to_json(const Simulation& simulation, const Campaign& campaign);
+
+std::string to_json(const CorrectedPoses& poses, const Campaign& campaign);
+
+/// A calibrated robot in forms that others read.
+struct ExportedRobot {
+    std::optional<CalibratedUrdf> urdf;
+    std::vector<DhRow> dh;           ///< empty: not asked for
+    std::vector<std::string> terms;  ///< error terms that are not zero, which neither can have
+};
+std::string to_json(const ExportedRobot& robot, const Campaign& campaign,
+                    const Parameters& parameters);
+
+}  // namespace posewise::io

@@ -1,0 +1,121 @@
+#include "select_options.hpp"
+
+#include "common.hpp"
+#include "options.hpp"
+
+namespace posewise::cli {
+namespace {
+
+void require_usage(bool is_right, const char* option, const std::string& rule) {
+    if (!is_right) throw CLI::ValidationError(option, rule);
+}
+
+void add_sources(CLI::App& command, SelectArguments& arguments) {
+    PlanSources& source = arguments.request.sources;
+    command.add_option("CAMPAIGN", source.campaign,
+                       "Campaign file (YAML): robot, sensor, spread; not with --blocks");
+    CLI::Option_group& group =
+        *command.add_option_group("Candidates", "one of these says what to choose from");
+    group.add_option("-m,--measurements", arguments.measurements,
+                     "Measured configurations (CSV, or MATLAB .mat)");
+    group.add_option("--candidates", arguments.candidates, "Configurations to choose from (CSV)");
+    group
+        .add_option("--random", arguments.random, "As many configurations within the joint limits")
+        ->check(whole_number(1, 10000000));
+    group.add_option("--blocks", arguments.blocks, "A plain matrix, CSV or MATLAB .mat; no robot")
+        ->check(file_name());
+    group.require_option(1);
+    command.add_option("--rows", source.rows_per_block, "--blocks: rows of one candidate")
+        ->check(whole_number(1, 1000000));
+    command.add_option("--variable", source.variable,
+                       "--blocks: variable of the MATLAB file (default: the first)");
+    command
+        .add_option("--repeats", arguments.request.repeats,
+                    "Samples of each chosen configuration (default: as in the file, else 1)")
+        ->check(real_number(1, 1e9));
+}
+
+void add_select_problem(CLI::App& command, SelectArguments& arguments) {
+    PlanRequest& request = arguments.request;
+    const auto count = whole_number(1, 1000000);
+    command.add_option("-k,--poses", request.pose_count, "How many to choose")
+        ->required()
+        ->check(count);
+    add_criterion_option(
+        command, arguments,
+        "o1, o2, o3, o4, o5, a, d, e, g or v (default: the campaign's, else v; with "
+        "--focus robot or --blocks d)");
+    command
+        .add_option("--test-poses", request.sources.test_poses,
+                    "g and v: predict these (as --candidates; default: the candidates)")
+        ->check(file_name());
+    add_prior_option(command, arguments.prior, "; --poses may then be below what identifies");
+    add_focus_option(command, arguments);
+    command
+        .add_option("--augment", request.sources.augment,
+                    "Poses measured already: their information is there, they are not chosen")
+        ->check(file_name());
+    add_ids_option(command, "--exclude", request.excluded, "Ids not to choose, by commas");
+    command.add_option("--groups", request.sources.groups, "CSV that gives each candidate a group")
+        ->check(file_name());
+    command.add_option("--per-group", request.group_limit, "At most so many of one group")
+        ->check(count);
+    command
+        .add_option("--repeat-limit", request.repeat_limit, "How often one candidate may be chosen")
+        ->check(count)
+        ->capture_default_str();
+    command
+        .add_option("--least-distance-deg", arguments.least_distance_deg,
+                    "Least distance in joint space (Euclidean) of any two chosen")
+        ->check(real_number(0, 1e4));
+}
+
+void add_select_search(CLI::App& command, SelectArguments& arguments) {
+    command
+        .add_option("--starts", arguments.request.starts,
+                    "Independent searches (default: until five agree, 2 to 100)")
+        ->check(whole_number(1, 1000000));
+    add_search_options(command, arguments,
+                       "Of the random starts and of --random (default: the campaign's, else 1)",
+                       "<candidates>.plan.json");
+    add_progress_flag(command, arguments);
+    command.add_flag("--relax", arguments.relaxes,
+                     "Weights and bound instead of a choice; --out writes them (.csv or .json)");
+    add_digits_option(command, arguments.digits);
+}
+
+}  // namespace
+
+void add_select_options(CLI::App& command, SelectArguments& arguments) {
+    add_sources(command, arguments);
+    add_select_problem(command, arguments);
+    add_select_search(command, arguments);
+}
+
+void check_select_usage(const SelectArguments& arguments) {
+    const std::string& blocks = arguments.blocks;
+    const bool is_plain = !blocks.empty();
+    const PlanRequest& request = arguments.request;
+    const PlanSources& sources = request.sources;
+    require_usage(is_plain == sources.campaign.empty(), "CAMPAIGN",
+                  is_plain ? "must be left out with --blocks" : "is required (but for --blocks)");
+    require_usage(is_plain == (sources.rows_per_block > 0), "--rows",
+                  is_plain ? "is required with --blocks" : "goes with --blocks only");
+    require_usage(sources.variable.empty() || blocks.ends_with(".mat") || blocks.ends_with(".MAT"),
+                  "--variable", "goes with --blocks and a MATLAB file only");
+    require_usage(!is_plain || request.repeats == 0, "--repeats", "needs a robot");
+    require_usage(!is_plain || arguments.focus == "all", "--focus", "needs a robot");
+    const bool has_distance = arguments.least_distance_deg != 0;
+    require_usage(!is_plain || !has_distance, "--least-distance-deg", "needs a robot");
+    require_usage(sources.groups.empty() == (request.group_limit == 0), "--groups",
+                  "and --per-group need each other");
+    if (!arguments.relaxes) return;
+    const std::string& out = arguments.out;
+    require_usage(sources.groups.empty(), "--groups", "cannot be kept by weights, --relax");
+    require_usage(!has_distance, "--least-distance-deg", "cannot be kept by weights, --relax");
+    require_usage(request.starts == 0, "--starts", "are of a search, which --relax does not need");
+    require_usage(out.empty() || out.ends_with(".csv") || out.ends_with(".json"), "--out",
+                  "must end in .csv or .json with --relax");
+}
+
+}  // namespace posewise::cli

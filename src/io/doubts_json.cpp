@@ -1,0 +1,97 @@
+#include "doubts_json.hpp"
+
+#include "posewise/core/units.hpp"
+
+namespace posewise::detail {
+namespace {
+
+const char* unit_name(UnitDoubt unit) {
+    switch (unit) {
+        case UnitDoubt::None:
+            break;
+        case UnitDoubt::JointsInDegrees:
+            return "joints in deg";
+        case UnitDoubt::JointsInRadians:
+            return "joints in rad";
+        case UnitDoubt::PointsInMillimetres:
+            return "points in mm";
+        case UnitDoubt::PointsInMetres:
+            return "points in m";
+    }
+    return "none";
+}
+
+const char* sense_name(OrientationSense sense) {
+    switch (sense) {
+        case OrientationSense::AsRead:
+            break;
+        case OrientationSense::Inverted:
+            return "inverted";
+        case OrientationSense::RealPartLast:
+            return "real part last";
+    }
+    return "as read";
+}
+
+/// Numbers of the planes, from 1.
+Json planes_to_json(const std::vector<PlaneDoubt>& planes) {
+    Json json = Json::array();
+    for (const PlaneDoubt& doubt : planes) json.push_back(doubt.plane + 1);
+    return json;
+}
+
+Json sizes_to_json(const std::vector<SizeDoubt>& sizes) {
+    Json json = Json::array();
+    for (const SizeDoubt& size : sizes) {
+        json.push_back({{"parameter", size.parameter},
+                        {"value" + error_suffix(size.is_angle), mm_per_m * size.value},
+                        {"times_expected", size.times}});
+    }
+    return json;
+}
+
+Json model_errors_to_json(const std::vector<ModelErrorDoubt>& errors) {
+    Json json = Json::array();
+    for (const ModelErrorDoubt& error : errors) {
+        json.push_back({{"value" + error_suffix(error.is_angle), mm_per_m * error.value},
+                        {"times_expected", error.times}});
+    }
+    return json;
+}
+
+}  // namespace
+
+Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
+    Json json = Json::object();
+    if (const auto& misfit = doubts.misfit) {
+        json["misfit"] = {{"distance_mm", mm_per_m * misfit->distance},
+                          {"expected_mm", mm_per_m * misfit->expected},
+                          {"unit", unit_name(misfit->unit)},
+                          {"planes", planes_to_json(misfit->planes)}};
+    }
+    if (!doubts.planes.empty()) json["planes"] = planes_to_json(doubts.planes);
+    if (doubts.gross_error) json["gross_error_mm"] = mm_per_m * *doubts.gross_error;
+    if (const auto& doubt = doubts.orientations) {
+        json["orientations"] = {{"rms_deg", to_degrees(doubt->rms)},
+                                {"sense", sense_name(doubt->sense)},
+                                {"rms_in_sense_deg", to_degrees(doubt->rms_in_sense)}};
+    }
+    if (!doubts.sizes.empty()) json["sizes"] = sizes_to_json(doubts.sizes);
+    if (!doubts.model_errors.empty()) {
+        json["model_errors"] = model_errors_to_json(doubts.model_errors);
+    }
+    if (const auto& size = doubts.held_back) {
+        const std::string unit = error_suffix(size->held.is_angle);
+        json["held_back_size"] = {{"key", size->held.key + unit},
+                                  {"learned" + unit, mm_per_m * size->held.size},
+                                  {"fitting" + unit, mm_per_m * size->fitting}};
+    }
+    if (doubts.residual_ratio) json["residual_ratio"] = *doubts.residual_ratio;
+    if (doubts.missing_errors) json["missing_errors"] = *doubts.missing_errors;
+    for (const Index joint : doubts.negative_compliances) {
+        json["negative_compliances"].push_back(campaign.robot.joint(joint).name);
+    }
+    return json;
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "json.hpp"
+#include "posewise/task/doubts.hpp"
+
+namespace posewise::detail {
+
+/// What looks wrong, in mm, mrad and deg; a key for each kind of doubt that there is.
+Json doubts_to_json(const Campaign& campaign, const Doubts& doubts);
+
+}  // namespace posewise::detail

@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <cmath>
+
+#include "../selection/bound.hpp"
+#include "../selection/objective_bound.hpp"
+#include "../selection/relaxation.hpp"
+#include "../selection/validation.hpp"
+#include "choice_problem.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::ChoiceProblem;
+
+/// Heaviest first.
+std::vector<WeightedCandidate> list_weights(const ChoiceProblem& problem, const VectorXd& weights) {
+    std::vector<WeightedCandidate> list;
+    for (Index i = 0; i < weights.size(); ++i) {
+        if (weights[i] > 0) list.push_back({problem.ids[static_cast<std::size_t>(i)], weights[i]});
+    }
+    std::stable_sort(list.begin(), list.end(),
+                     [](const auto& a, const auto& b) { return a.weight > b.weight; });
+    return list;
+}
+
+/// Held information and that of each candidate times its weight.
+MatrixXd weighted_information(const ChoiceProblem& problem, const VectorXd& weights) {
+    std::vector<Index> used;
+    for (Index i = 0; i < weights.size(); ++i) {
+        if (weights[i] > 0) used.push_back(i);
+    }
+    Blocks blocks = take(problem.blocks, used);
+    for (std::size_t k = 0; k < used.size(); ++k) {
+        blocks.matrix.middleRows(blocks.first_row[k],
+                                 blocks.first_row[k + 1] - blocks.first_row[k]) *=
+            std::sqrt(weights[used[k]]);
+    }
+    return detail::held_information(problem.blocks, problem.options) + information(blocks);
+}
+
+ApproximateDesign weigh(ChoiceProblem& problem, const ChoiceOptions& options) {
+    if (!options.groups.empty() || options.least_distance > 0) {
+        throw InputError(
+            "weights keep neither groups nor a least distance; leave them out, or choose poses");
+    }
+    SelectOptions& stated = problem.options;
+    stated.stop = options.stop;
+    detail::validate(problem.blocks, stated);
+    const std::string unseen = detail::describe_unseen(problem.blocks, stated);
+    if (!unseen.empty()) throw InputError(unseen);
+    const detail::Objective objective = detail::make_objective(problem.blocks, stated);
+    const detail::Relaxation relaxation = relax(objective, problem.blocks, stated);
+    ApproximateDesign design;
+    design.request = problem.request;
+    design.candidate_count = problem.blocks.count();
+    design.weights = list_weights(problem, relaxation.weights);
+    design.value = evaluate(objective, weighted_information(problem, relaxation.weights));
+    design.bound = std::max(relaxation.bound, design.value);
+    design.efficiency = detail::efficiency(
+        stated.criterion, design.value, design.bound,
+        problem.blocks.parameter_count() - static_cast<Index>(stated.nuisance.size()));
+    design.ending = options.stop.ending_or(Ending::Converged);
+    return design;
+}
+
+}  // namespace
+
+ApproximateDesign relax_choice(const Campaign& campaign, const Candidates& candidates,
+                               const ChoiceOptions& options) {
+    ChoiceProblem problem =
+        detail::state_choice(campaign, candidates, options, options.stop.with_half_the_time());
+    ApproximateDesign design = weigh(problem, options);
+    design.campaign = campaign.name;
+    return design;
+}
+
+ApproximateDesign relax_choice(const Blocks& candidates, const ChoiceOptions& options) {
+    ChoiceProblem problem = detail::state_choice(candidates, options);
+    return weigh(problem, options);
+}
+
+}  // namespace posewise
