@@ -105,6 +105,8 @@ void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& ar
     const bool is_squares = arguments.loss == "squares";
     const bool is_lm = arguments.method == "lm";
     require(is_squares || is_lm, "--loss", "needs --method lm; the others know squares only");
+    require(arguments.from.empty() || (is_lm && !options.learns_sizes && !options.model_selection),
+            "--from", "needs --method lm, without --learn-sizes and --model-selection");
     require(!options.learns_sizes || is_lm, "--learn-sizes", "needs --method lm");
     require(!options.learns_sizes || arguments.prior.value_or(true), "--learn-sizes",
             "needs priors; leave --no-prior out");

@@ -66,6 +66,8 @@ Campaign with_earlier(const Campaign& campaign, const Earlier& earlier,
     const Chain robot =
         with_known_errors(campaign.robot, earlier.estimate.parameters.robot, is_known);
     Campaign changed = with_robot(campaign, robot);
+    changed.model_error = earlier.estimate.model_error;
+    changed.model_error_orientation = earlier.estimate.model_error_orientation;
     if (!earlier.is_prior || robot.parameter_count() == 0) return changed;
     const std::vector<Index> open = numbers_of(is_known, false);
     const RobotPrior all = drifted(campaign, earlier);

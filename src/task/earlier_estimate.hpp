@@ -10,8 +10,8 @@ namespace posewise::detail {
 /// InputError for a name that is none, and where base or sensor would be left.
 std::vector<bool> known_errors(const Campaign& campaign, const std::vector<std::string>& only);
 
-/// The campaign less the errors that are known, with the earlier estimate's values of them, and the
-/// prior that it gives of the others, where it is one.
+/// The campaign less the errors that are known, with the earlier estimate's values of them and its
+/// model error, and the prior that it gives of the others, where it is one.
 Campaign with_earlier(const Campaign& campaign, const Earlier& earlier,
                       const std::vector<bool>& is_known);
 
