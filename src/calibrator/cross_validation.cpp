@@ -35,9 +35,7 @@ NormalEquations normal_equations(const IdentificationProblem& problem,
     const Index measured = system.J.rows() - problem.prior_count();
     NormalEquations equations{detail::gram(system.J.topRows(measured)),
                               system.J.transpose() * system.r, system.r.squaredNorm()};
-    equations.M.diagonal()
-        .segment(base_parameter_count(problem.campaign), problem.prior_count())
-        .array() += 1;
+    equations.M.diagonal().segment(problem.prior_begin(), problem.prior_count()).array() += 1;
     return equations;
 }
 

@@ -67,21 +67,21 @@ void weigh_targets(const IdentificationProblem& problem, RowMatrixXd& seen) {
 }  // namespace
 
 ParameterUnits::ParameterUnits(const Campaign& campaign)
-    : scale_(parameter_scale(campaign)), begin_(base_parameter_count(campaign)) {
+    : scale_(parameter_scale(campaign)), begin_(prior_begin(campaign)) {
     if (!campaign.prior) return;
-    const Index count = campaign.robot.parameter_count();
-    mean_ = campaign.prior->mean;
     root_ = cholesky(campaign.prior->covariance);
-    if (mean_.size() != count || root_.rows() != count) {
+    if (root_.rows() != prior_count(campaign)) {
         throw InputError(
-            "the prior of the robot's errors is not of this robot, or its covariance not positive "
-            "definite");
+            "the prior is of other parameters, or its covariance not positive definite");
     }
 }
 
-VectorXd ParameterUnits::coordinates(const VectorXd& robot) const {
-    if (mean_.size() == 0) return robot.cwiseQuotient(scale_.segment(begin_, robot.size()));
-    return root_.triangularView<Eigen::Lower>().solve(robot - mean_);
+VectorXd ParameterUnits::prior_coordinates(const Campaign& campaign,
+                                           const Parameters& parameters) const {
+    const Index count = prior_count(campaign);
+    if (root_.size() == 0) return parameters.robot.cwiseQuotient(scale_.segment(begin_, count));
+    return root_.triangularView<Eigen::Lower>().solve(
+        step_between(campaign, campaign.prior->mean, parameters).segment(begin_, count));
 }
 
 VectorXd ParameterUnits::step(const VectorXd& d) const {
@@ -172,11 +172,10 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
     problem.units.scale_columns(system.J.topRows(row));
     if (problem.prior_count() > 0) {
         system.J.bottomRows(problem.prior_count()).setZero();
-        system.J
-            .block(row, base_parameter_count(campaign), problem.prior_count(),
-                   problem.prior_count())
+        system.J.block(row, problem.prior_begin(), problem.prior_count(), problem.prior_count())
             .setIdentity();
-        system.r.tail(problem.prior_count()) = -problem.units.coordinates(parameters.robot);
+        system.r.tail(problem.prior_count()) =
+            -problem.units.prior_coordinates(campaign, parameters);
     }
     return system;
 }
@@ -211,7 +210,9 @@ double total_loss(const IdentificationProblem& problem, const Parameters& parame
         sum += problem.loss.value(length / problem.deviation);
     }
     sum *= problem.deviation * problem.deviation;
-    if (problem.prior_count() > 0) sum += problem.units.coordinates(parameters.robot).squaredNorm();
+    if (problem.prior_count() > 0) {
+        sum += problem.units.prior_coordinates(problem.campaign, parameters).squaredNorm();
+    }
     return sum;
 }
 

@@ -13,16 +13,16 @@ struct LinearisedSystem {
     VectorXd r;     ///< observed means minus predicted
 };
 
-/// The coordinates that identification works in: parameters in expected errors, the robot's in such
-/// that their prior, where they have one, is standard normal.
+/// The coordinates that identification works in: parameters in expected errors, those that have a
+/// prior in such that it is standard normal.
 class ParameterUnits {
   public:
     /// Throws InputError if the campaign's prior is none of its robot.
     explicit ParameterUnits(const Campaign& campaign);
 
     Index size() const { return scale_.size(); }
-    /// The robot's errors in these units; 0 is most probable.
-    VectorXd coordinates(const VectorXd& robot) const;
+    /// Those of the parameters that have a prior; 0 is most probable.
+    VectorXd prior_coordinates(const Campaign& campaign, const Parameters& parameters) const;
     /// A step in parameters (m, rad).
     VectorXd step(const VectorXd& d) const;
     /// Derivatives by parameters become such by coordinates.
@@ -32,9 +32,8 @@ class ParameterUnits {
 
   private:
     VectorXd scale_;
-    Index begin_;    ///< of the robot's errors
-    VectorXd mean_;  ///< of an earlier calibration; empty without
-    MatrixXd root_;  ///< lower, of its covariance
+    Index begin_;    ///< of those that have a prior
+    MatrixXd root_;  ///< lower, of an earlier calibration's covariance; empty without
 };
 
 /// The measured means and what every linearisation of them shares.
@@ -51,10 +50,9 @@ struct IdentificationProblem {
     Index observation_count() const {
         return means.is_seen.count() * campaign.sensor->rows_per_target();
     }
-    /// One for each error of the robot that has a prior: it is 0, give or take its scale.
-    Index prior_count() const {
-        return campaign.spread.is_prior ? campaign.robot.parameter_count() : 0;
-    }
+    /// One equation for each parameter that has a prior: its coordinate is 0, give or take 1.
+    Index prior_begin() const { return posewise::prior_begin(campaign); }
+    Index prior_count() const { return posewise::prior_count(campaign); }
     Index equation_count() const { return observation_count() + prior_count(); }
 };
 

@@ -43,8 +43,10 @@ class PredictiveScore {
                     const Campaign& expected)
         : expected_{std::log(expected.model_error), std::log(expected.model_error_orientation)},
           size_(problem.units.size()),
-          prior_begin_(base_parameter_count(problem.campaign)),
-          prior_errors_(problem.units.coordinates(parameters.robot)) {
+          prior_begin_(problem.prior_begin()),
+          prior_errors_(problem.prior_count() > 0
+                            ? problem.units.prior_coordinates(problem.campaign, parameters)
+                            : VectorXd()) {
         collect(problem, parameters);
         count_freedom({std::log(problem.campaign.model_error),
                        std::log(problem.campaign.model_error_orientation)});

@@ -17,8 +17,7 @@ namespace {
 /// M^-1 = root root^T.
 double determined_by_data(const IdentificationProblem& problem, const MatrixXd& root) {
     return static_cast<double>(root.cols()) -
-           root.middleRows(base_parameter_count(problem.campaign), problem.prior_count())
-               .squaredNorm();
+           root.middleRows(problem.prior_begin(), problem.prior_count()).squaredNorm();
 }
 
 }  // namespace
@@ -72,8 +71,7 @@ MatrixXd robust_covariance(const IdentificationProblem& problem, const Parameter
     // H = a J^T W J + P = a R^T R + (1 - a) P: a is at most 1, influence never grows faster.
     const double a = rates / weights;
     MatrixXd P = MatrixXd::Zero(R.cols(), R.cols());
-    const Index begin = base_parameter_count(problem.campaign);
-    P.diagonal().segment(begin, problem.prior_count()).setOnes();
+    P.diagonal().segment(problem.prior_begin(), problem.prior_count()).setOnes();
     MatrixXd stacked(2 * R.rows(), R.cols());
     stacked << std::sqrt(a) * R, std::sqrt(1 - a) * P;
     const MatrixXd root = invert_triangle(triangular_factor(std::move(stacked)));

@@ -143,6 +143,9 @@ void calibrate(const CalibrateArguments& arguments, const CommonOptions& common)
     const Measurements measured = read_measured(paths.measurements, file);
     CalibrationOptions options = make_options(arguments, file.seed);
     if (!arguments.from.empty()) {
+        const auto has_moved = [&](const char* part) {
+            return std::ranges::find(arguments.moved, part) != arguments.moved.end();
+        };
         options.earlier =
             Earlier{read_usable_estimate(arguments.from, file, arguments.is_forced),
                     arguments.from_is_prior,

@@ -80,8 +80,14 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     CLI::Option* const as_prior =
         command
             .add_flag("--as-prior", arguments.from_is_prior,
-                      "Its errors of the robot, as sure as they were but for drift, are the prior")
+                      "It is the prior, as sure as it was, but for drift of the robot's errors")
             ->needs(from);
+    command
+        .add_option("--moved", arguments.moved,
+                    "With --as-prior: base, targets or both (base,targets) were moved since")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"base", "targets"}))
+        ->needs(as_prior);
     command
         .add_option("--drift-mm", arguments.drift_mm,
                     "With --as-prior: by which lengths may have changed since, standard deviation")

@@ -28,6 +28,7 @@ struct CalibrateArguments {
     bool is_forced = false;
     std::string from;
     bool from_is_prior = false;
+    std::vector<std::string> moved;
     double drift_mm = 0.05;
     double drift_mrad = 0.1;
     CalibrationOptions options;  ///< with the numbers that are options as they are

@@ -1,5 +1,6 @@
 #include "posewise/measurement/campaign.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "posewise/core/errors.hpp"
@@ -134,24 +135,35 @@ ParameterSpread population_spread(const Chain& robot) {
     return spread;
 }
 
+Index prior_begin(const Campaign& campaign) {
+    return campaign.prior && campaign.prior->has_base ? 0 : base_parameter_count(campaign);
+}
+
+Index prior_count(const Campaign& campaign) {
+    if (!campaign.spread.is_prior) return 0;
+    const bool has_sensor = campaign.prior && campaign.prior->has_sensor;
+    const Index end = has_sensor
+                          ? parameter_count(campaign)
+                          : base_parameter_count(campaign) + campaign.robot.parameter_count();
+    return end - prior_begin(campaign);
+}
+
 MatrixXd prior_information(const Campaign& campaign) {
     const Index size = parameter_count(campaign);
     MatrixXd information = MatrixXd::Zero(size, size);
-    if (!campaign.spread.is_prior) return information;
-    const Index count = campaign.robot.parameter_count();
-    const Index begin = base_parameter_count(campaign);
-    auto of_robot = information.block(begin, begin, count, count);
-    of_robot.setIdentity();
+    const Index begin = prior_begin(campaign);
+    const Index count = prior_count(campaign);
+    auto known = information.block(begin, begin, count, count);
+    known.setIdentity();
     if (!campaign.prior) return information;
     const VectorXd scale = parameter_scale(campaign).segment(begin, count);
     const Eigen::LLT<MatrixXd> root(campaign.prior->covariance);
     if (root.info() != Eigen::Success || root.cols() != count) {
         throw InputError(
-            "the covariance of the prior is not positive definite, or not that of the robot's " +
-            std::to_string(count) + " errors");
+            "the prior is of other parameters, or its covariance not positive definite");
     }
     const MatrixXd inverse = root.solve(MatrixXd::Identity(count, count));
-    of_robot = scale.asDiagonal() * inverse * scale.asDiagonal();
+    known = scale.asDiagonal() * inverse * scale.asDiagonal();
     return information;
 }
 
@@ -172,6 +184,17 @@ Parameters advance(const Campaign& campaign, const Parameters& parameters, const
     moved.robot += step.segment(next, parameters.robot.size());
     moved.sensor += step.tail(parameters.sensor.size());
     return moved;
+}
+
+VectorXd step_between(const Campaign& campaign, const Parameters& from, const Parameters& to) {
+    const Isometry3d& base = from.world_from_base;
+    const Eigen::AngleAxisd turn(to.world_from_base.linear() * base.linear().transpose());
+    Twist of_base;  // translation, turn
+    of_base << to.world_from_base.translation() - base.translation(), turn.angle() * turn.axis();
+    const std::vector<Index> unknown = unknown_of_base(campaign);
+    VectorXd step(std::ssize(unknown) + from.robot.size() + from.sensor.size());
+    step << of_base(unknown), to.robot - from.robot, to.sensor - from.sensor;
+    return step;
 }
 
 Isometry3d world_from_flange(const Campaign& campaign, const Parameters& parameters,

@@ -18,17 +18,42 @@ std::vector<Index> numbers_of(const std::vector<bool>& is_known, bool wanted) {
     return numbers;
 }
 
-/// Of the robot's errors, a year or so later: those of before, and what has drifted since.
-RobotPrior drifted(const Campaign& campaign, const Earlier& earlier) {
+/// Where the parameters of the robot less what is known are among all of them.
+std::vector<Index> open_parameters(const Campaign& campaign, const std::vector<bool>& is_known) {
     const Index begin = base_parameter_count(campaign);
-    const Index count = campaign.robot.parameter_count();
-    RobotPrior prior{earlier.estimate.parameters.robot,
-                     earlier.estimate.covariance.block(begin, begin, count, count)};
-    for (Index k = 0; k < count; ++k) {
+    std::vector<Index> open(static_cast<std::size_t>(begin));
+    std::iota(open.begin(), open.end(), Index{0});
+    for (const Index k : numbers_of(is_known, false)) open.push_back(begin + k);
+    for (Index k = begin + std::ssize(is_known); k < parameter_count(campaign); ++k) {
+        open.push_back(k);
+    }
+    return open;
+}
+
+/// The covariance of what was known then, a year or so later.
+MatrixXd drifted(const Campaign& campaign, const Earlier& earlier) {
+    MatrixXd covariance = earlier.estimate.covariance;
+    const Index begin = base_parameter_count(campaign);
+    for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
         const bool is_angle = campaign.robot.parameter_element(k).motion == Motion::Rotation;
         const double drift = is_angle ? earlier.drift.angle : earlier.drift.length;
-        prior.covariance(k, k) += drift * drift;
+        covariance(begin + k, begin + k) += drift * drift;
     }
+    return covariance;
+}
+
+/// Of `reduced`, the campaign less what is known.
+Prior make_prior(const Campaign& campaign, const Campaign& reduced, const Earlier& earlier,
+                 const std::vector<bool>& is_known) {
+    Prior prior{earlier.estimate.parameters, !earlier.has_new_base, !earlier.has_new_targets, {}};
+    prior.mean.robot = open_values(prior.mean.robot, is_known);
+    std::vector<Index> told = open_parameters(campaign, is_known);
+    if (earlier.has_new_targets) {
+        told.resize(told.size() - static_cast<std::size_t>(prior.mean.sensor.size()));
+    }
+    if (earlier.has_new_base)
+        told.erase(told.begin(), told.begin() + base_parameter_count(reduced));
+    prior.covariance = drifted(campaign, earlier)(told, told);
     return prior;
 }
 
@@ -68,11 +93,9 @@ Campaign with_earlier(const Campaign& campaign, const Earlier& earlier,
     Campaign changed = with_robot(campaign, robot);
     changed.model_error = earlier.estimate.model_error;
     changed.model_error_orientation = earlier.estimate.model_error_orientation;
-    if (!earlier.is_prior || robot.parameter_count() == 0) return changed;
-    const std::vector<Index> open = numbers_of(is_known, false);
-    const RobotPrior all = drifted(campaign, earlier);
+    if (!earlier.is_prior) return changed;
     changed.spread.is_prior = true;
-    changed.prior = RobotPrior{all.mean(open), all.covariance(open, open)};
+    changed.prior = make_prior(campaign, changed, earlier, is_known);
     return changed;
 }
 
@@ -91,10 +114,7 @@ Estimate complete(const Campaign& campaign, const Estimate& earlier,
     whole.parameters.robot(open) = found.parameters.robot;
     const Index begin = base_parameter_count(campaign);
     const Index size = parameter_count(campaign);
-    std::vector<Index> of_found(static_cast<std::size_t>(begin));  // where its parameters are
-    std::iota(of_found.begin(), of_found.end(), Index{0});
-    for (const Index k : open) of_found.push_back(begin + k);
-    for (Index k = begin + std::ssize(is_known); k < size; ++k) of_found.push_back(k);
+    const std::vector<Index> of_found = open_parameters(campaign, is_known);
     std::vector<Index> of_earlier;
     for (const Index k : known) of_earlier.push_back(begin + k);
     whole.covariance = MatrixXd::Zero(size, size);

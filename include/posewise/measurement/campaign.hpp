@@ -56,11 +56,13 @@ std::vector<SharedSize> shared_sizes(const ParameterSpread& spread, const Chain&
 /// What errors robots of this size have, as a prior: for full_model().
 ParameterSpread population_spread(const Chain& robot);
 
-/// What an earlier calibration tells of the robot's errors (m and rad): `mean`, give or take
-/// `covariance`, which is positive definite.
-struct RobotPrior {
-    VectorXd mean;
-    MatrixXd covariance;
+/// What an earlier calibration tells: parameters are as `mean`, give or take `covariance`. It may
+/// tell nothing of base or sensor, where they were moved.
+struct Prior {
+    Parameters mean;
+    bool has_base = true;
+    bool has_sensor = true;
+    MatrixXd covariance;  ///< of those it tells of, in their order; m and rad, positive definite
 };
 
 /// Everything about a measurement campaign that is known before measuring: the robot, the sensor,
@@ -70,8 +72,8 @@ struct Campaign {
     Chain robot;
     std::shared_ptr<const Sensor> sensor;
     ParameterSpread spread;
-    /// In place of the spread as the prior of the robot's errors, where that is one.
-    std::optional<RobotPrior> prior;
+    /// In place of the spread as the prior, where that is one.
+    std::optional<Prior> prior;
     /// Standard deviation (m) of what the model cannot express; acts like noise that repeats do
     /// not reduce.
     double model_error = 1e-4;
@@ -109,14 +111,23 @@ std::vector<bool> parameter_is_angle(const Campaign& campaign);
 /// names a parameter the campaign does not have.
 VectorXd parameter_scale(const Campaign& campaign);
 
+/// The parameters that have a prior are so many, from this one on: none, the robot's errors, and
+/// base and sensor where an earlier calibration tells of them.
+Index prior_begin(const Campaign& campaign);
+Index prior_count(const Campaign& campaign);
+
 /// What is known before measuring, in scaled parameters (parameter_count() square): 1 for each of
 /// the robot's errors if the spread is their prior, the inverse of an earlier calibration's
-/// covariance if that is; 0 for base and sensor.
+/// covariance if that is; 0 for what has none. Throws InputError for a prior of other parameters,
+/// or a covariance that is not positive definite.
 MatrixXd prior_information(const Campaign& campaign);
 
 /// Parameters moved by a small step (parameter_count(), m and rad): the base turns by exp([phi]x)
 /// about its own origin in world axes and is translated along world axes; the rest is added.
 Parameters advance(const Campaign& campaign, const Parameters& parameters, const VectorXd& step);
+
+/// The step from one to other parameters near it: advance() of which is `to`.
+VectorXd step_between(const Campaign& campaign, const Parameters& from, const Parameters& to);
 
 /// world_from_flange at a configuration.
 Isometry3d world_from_flange(const Campaign& campaign, const Parameters& parameters,

@@ -29,8 +29,10 @@ struct Drift {
 /// An earlier estimate of the same robot, where identification starts.
 struct Earlier {
     Estimate estimate;      ///< names as those of the campaign
-    bool is_prior = false;  ///< its covariance, and drift, are the prior of the robot's errors
+    bool is_prior = false;  ///< its covariance, and drift of the robot's errors, are the prior
     Drift drift{};
+    bool has_new_base = false;     ///< moved since: it tells nothing of the base
+    bool has_new_targets = false;  ///< or of the targets (the sensor's unknowns)
 };
 
 struct CalibrationOptions {
