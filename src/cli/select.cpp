@@ -32,8 +32,9 @@ calibrate --plan and verify, prints the chosen ids, the criterion's value and wh
   bound       no choice of as many candidates has a larger value
   efficiency  part of the best possible information per measurement that is surely reached
   starts      how many of the starts ended at this same value; five that agree end the search
-  proof       optimal: the choices that the bound leaves open, up to some millions, were all tried
-Where they are more, at few poses, the bound is loose: the plan may well be the best.
+  proof       optimal: branch and bound has ruled out or tried all other choices; else what is left
+At few poses the bound is loose until branch and bound ends: the plan may well be the best. --proof
+60 gives it more time (counted in operations, so that the result does not depend on the machine).
 
 Measurements register the base and the targets; other candidates need them in the campaign file (or
 measured poses, --augment). A candidate file has the columns config,q1_deg,... and perhaps
@@ -198,6 +199,10 @@ void add_select_search(CLI::App& command, SelectArguments& arguments) {
         .add_option("--starts", arguments.request.starts,
                     "Independent searches (default: until five agree, 2 to 100)")
         ->check(whole_number(1, 1000000));
+    command
+        .add_option("--proof", arguments.request.proof,
+                    "CPU seconds for branch and bound (default: 3, fewer where that is too few)")
+        ->check(real_number(0, 1e9));
     add_search_options(command, arguments,
                        "Of the random starts and of --random (default: the campaign's, else 1)",
                        "<candidates>.plan.json");

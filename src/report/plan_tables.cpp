@@ -30,11 +30,17 @@ std::string describe_bound(const Plan& plan) {
 std::string describe_proof(const Plan& plan) {
     if (plan.ending == Ending::Optimal && plan.tried > 0) {
         return fmt::format(
-            "proof:      optimal: the bound leaves {} open, all of which were tried\n",
-            detail::count_of(plan.tried, "choice"));
+            "proof:      optimal: bounds rule out all other choices but {}, which were tried\n",
+            plan.tried);
     }
     if (plan.ending == Ending::Optimal) {
         return "proof:      optimal: every other choice is ruled out by the bound or was tried\n";
+    }
+    if (plan.tried > 0) {
+        return fmt::format(
+            "proof:      not finished: {} {} tried; up to {} % of the best possible is left open\n",
+            detail::count_of(plan.tried, "choice"), plan.tried == 1 ? "was" : "were",
+            detail::format_fixed(100 * (1 - plan.efficiency), 1));
     }
     const std::string looseness = describe_bound(plan);
     return looseness.empty() ? "" : "note:       " + looseness + '\n';
