@@ -32,9 +32,8 @@ calibrate --plan and verify, prints the chosen ids, the criterion's value and wh
   bound       no choice of as many candidates has a larger value
   efficiency  part of the best possible information per measurement that is surely reached
   starts      how many of the starts ended at this same value; five that agree end the search
-  proof       optimal: branch and bound has ruled out or tried all other choices; else what is left
-At few poses the bound is loose until branch and bound ends: the plan may well be the best. --proof
-60 gives it more time (counted in operations, so that the result does not depend on the machine).
+  proof       optimal: branch and bound has ruled out or tried all other choices; else what is left.
+              --proof 60 gives it more time (operations: the same result on any machine)
 
 Measurements register the base and the targets; other candidates need them in the campaign file (or
 measured poses, --augment). A candidate file has the columns config,q1_deg,... and perhaps
@@ -70,8 +69,8 @@ void check_select_usage(const SelectArguments& arguments) {
                   "--variable", "goes with --blocks and a MATLAB file only");
     require_usage(!is_plain || request.repeats == 0, "--repeats", "needs a robot");
     require_usage(!is_plain || arguments.focus == "all", "--focus", "needs a robot");
-    const bool has_distance = arguments.least_distance_deg != 0;
-    require_usage(!is_plain || !has_distance, "--least-distance-deg", "needs a robot");
+    require_usage(!is_plain || arguments.least_distance_deg == 0, "--least-distance-deg",
+                  "needs a robot");
     require_usage(sources.groups.empty() == (request.group_limit == 0), "--groups",
                   "and --per-group need each other");
 }
@@ -195,13 +194,11 @@ void add_select_problem(CLI::App& command, SelectArguments& arguments) {
 }
 
 void add_select_search(CLI::App& command, SelectArguments& arguments) {
+    PlanRequest& request = arguments.request;
     command
-        .add_option("--starts", arguments.request.starts,
-                    "Independent searches (default: until five agree, 2 to 100)")
+        .add_option("--starts", request.starts, "Searches (default: until five agree, 2 to 100)")
         ->check(whole_number(1, 1000000));
-    command
-        .add_option("--proof", arguments.request.proof,
-                    "CPU seconds for branch and bound (default: 3, fewer where that is too few)")
+    command.add_option("--proof", request.proof, "CPU s for branch and bound (default: 3 at most)")
         ->check(real_number(0, 1e9));
     add_search_options(command, arguments,
                        "Of the random starts and of --random (default: the campaign's, else 1)",

@@ -150,12 +150,14 @@ void check_poses(const ChoiceProblem& problem, const std::vector<Index>& poses,
 /// the plan states or takes far longer than the plan's did.
 double prove_again(const Plan& plan, const ChoiceProblem& problem, const std::vector<Index>& poses,
                    Findings& findings) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const bool is_optimal = plan.ending == Ending::Optimal;
     const detail::Proof proof =
-        detail::prove_choice(problem.blocks, problem.options, poses, plan.certificate, plan.bound);
+        detail::prove_choice(problem.blocks, problem.options, poses, plan.certificate,
+                             is_optimal ? -infinity : plan.bound);
     if (!agree(plan.request.criterion, std::max(proof.bound, plan.bound), plan.bound)) {
         return proof.bound;
     }
-    const bool is_optimal = plan.ending == Ending::Optimal;
     findings.note("proof", true,
                   is_optimal ? "repeated; all other choices are ruled out or tried"
                              : "repeated; no choice is above the bound");
