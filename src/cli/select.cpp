@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* select_footer = R"(
 Example:
-  posewise select campaign.yaml -m measurements.csv -k 12 --criterion d
+  posewise select campaign.yaml -m measurements.csv -k 12 -c d --proof 60
   posewise select campaign.yaml --random 2000 -k 20 --prior --least-distance-deg 10
   posewise select campaign.yaml --candidates pool.csv -k 6 --augment measured.csv
   posewise select --blocks jacobians.csv --rows 9 -k 40 --criterion a
@@ -32,17 +32,15 @@ calibrate --plan and verify, prints the chosen ids, the criterion's value and wh
   bound       no choice of as many candidates has a larger value
   efficiency  part of the best possible information per measurement that is surely reached
   starts      how many of the starts ended at this same value; five that agree end the search
-  proof       optimal: branch and bound has ruled out or tried all other choices; else what is left.
-              --proof 60 gives it more time (operations: the same result on any machine)
+  proof       optimal: branch and bound ruled out or tried all other choices; else what it tried
 
 Measurements register the base and the targets; other candidates need them in the campaign file (or
 measured poses, --augment). A candidate file has the columns config,q1_deg,... and perhaps
-visible_targets (as plan --csv writes it), or is a measurement file; --random draws a scrambled Halton
-sequence within the joint limits. A file of blocks has a row of numbers a line (or is a MATLAB
-matrix), each --rows of them one candidate, named 0, 1, ... One of --groups: columns config,group.
-
-Ctrl-C or --time end the search with the best plan so far, written with its bound; exit code 0.
-The same seed gives the same plan, on any number of threads, unless time ended it.)";
+visible_targets (as plan --csv writes it), or is a measurement file; --random draws a Halton sequence
+within the limits. A file of blocks has a row of numbers a line (or is a MATLAB matrix), each --rows of
+them one candidate, named 0, 1, ... One of --groups: columns config,group.
+Ctrl-C or --time end the search with the best plan so far, written with its bound; exit code 0. The
+same seed gives the same plan, on any number of threads, unless time ended it.)";
 
 struct SelectArguments : RequestArguments {
     std::string measurements;

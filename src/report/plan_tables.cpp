@@ -36,14 +36,13 @@ std::string describe_proof(const Plan& plan) {
     if (plan.ending == Ending::Optimal) {
         return "proof:      optimal: every other choice is ruled out by the bound or was tried\n";
     }
+    std::string text;
     if (plan.tried > 0) {
-        return fmt::format(
-            "proof:      not finished: {} {} tried; up to {} % of the best possible is left open\n",
-            detail::count_of(plan.tried, "choice"), plan.tried == 1 ? "was" : "were",
-            detail::format_fixed(100 * (1 - plan.efficiency), 1));
+        text = fmt::format("proof:      not finished: {} of those that bounds left open tried\n",
+                           detail::count_of(plan.tried, "choice"));
     }
     const std::string looseness = describe_bound(plan);
-    return looseness.empty() ? "" : "note:       " + looseness + '\n';
+    return looseness.empty() ? text : text + "note:       " + looseness + '\n';
 }
 
 /// Further lines begin below the text of the first.

@@ -55,7 +55,7 @@ class Tree {
         return options.stop.is_set() || seconds_ > limits_.seconds || bound() <= limits_.bound ||
                numbers > most_waiting ||
                (limits_.is_only_if_likely && seconds_ > 0.1 * limits_.seconds &&
-                part_waiting() > 0.9);
+                part_waiting() > 0.95);
     }
 
     /// Of all choices.

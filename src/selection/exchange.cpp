@@ -258,12 +258,10 @@ ScoredPoses sweep_all(const SearchProblem& problem, ScoredPoses choice) {
     return choice;
 }
 
-/// Whether the best is proven to be optimal within some seconds of a CPU; once more from what that
-/// found, so that whoever has the plan can repeat it.
-bool prove(const SearchProblem& problem, const Relaxation& relaxation, double seconds,
-           Outcome& outcome) {
-    const detail::ProofLimits limits{.seconds = seconds,
-                                     .is_only_if_likely = !problem.options.proof};
+/// Whether the best is proven to be optimal; once more from what that found, so that whoever has
+/// the plan can repeat it.
+bool prove(const SearchProblem& problem, const Relaxation& relaxation,
+           const detail::ProofLimits& limits, Outcome& outcome) {
     while (true) {
         detail::Proof proof = detail::prove(problem, relaxation.certificate, outcome.best, limits);
         const bool is_improved = is_better(proof.best.score, outcome.best.score);
@@ -275,21 +273,22 @@ bool prove(const SearchProblem& problem, const Relaxation& relaxation, double se
     }
 }
 
-/// The relaxation's own start may leave few enough other choices to try them all; else all starts.
+/// The relaxation's own start may leave few enough other choices to rule them out; else all starts.
 Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
     const Shortlist shortlist = shortlist_by_sensitivity(problem, relaxation);
-    const ScoredPoses first = improve(problem, shortlist, make_first_start(problem, relaxation));
     Outcome outcome;
-    outcome.best = first;
-    const double seconds = problem.options.proof.value_or(detail::usual_proof);
-    if (prove(problem, relaxation, 0.1 * seconds, outcome)) {
+    outcome.best = improve(problem, shortlist, make_first_start(problem, relaxation));
+    const std::optional<double> asked = problem.options.proof;
+    const double seconds = asked.value_or(detail::usual_proof);
+    if (prove(problem, relaxation, {.seconds = std::min(1.0, seconds), .is_only_if_likely = true},
+              outcome)) {
         outcome.starts = {outcome.best};
         return outcome;
     }
     run_starts(problem, relaxation, shortlist, outcome);
     outcome.best = sweep_all(problem, outcome.best);
     if (!problem.options.stop.is_set()) {
-        prove(problem, relaxation, seconds, outcome);
+        prove(problem, relaxation, {.seconds = seconds, .is_only_if_likely = !asked}, outcome);
     }
     return outcome;
 }

@@ -54,7 +54,7 @@ double Explorer::seconds() const {
     const Index L = setting_.problem.candidates.parameter_count();
     return (operations_ +
             static_cast<double>(enumerator_.tried()) * trial_operations(objective.criterion, L) +
-            0.3 * static_cast<double>(enumerator_.scored()) * evaluation_operations(objective, L)) /
+            0.2 * static_cast<double>(enumerator_.scored()) * evaluation_operations(objective, L)) /
            operations_a_second;
 }
 

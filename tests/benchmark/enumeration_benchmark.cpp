@@ -7,7 +7,7 @@
 namespace posewise {
 namespace {
 
-/// N, K and a criterion: proven by trying all choices that the bound leaves open.
+/// N, K and a criterion: proven by branch and bound.
 void BM_ProveOptimum(benchmark::State& state) {
     const Blocks pool = testing::fanuc_pool(state.range(0), 1);
     SelectOptions options;
