@@ -9,7 +9,7 @@
 namespace posewise::detail {
 namespace {
 
-constexpr double operations_a_second = 1e10;
+constexpr double operations_a_second = 2e10;
 constexpr double operations_a_part = 1e6;  // beside its relaxation: sorting, counting
 constexpr double seconds_a_go = 0.01;
 constexpr double few_choices = 500;  // take about as long to try as one relaxation

@@ -191,7 +191,7 @@ void check_numbers(const Plan& plan, const ChoiceProblem& problem, const std::ve
 
     double bound = std::max(value, prove_bound(plan, problem, findings));
     const bool claims_more = plan.bound < bound && !agree(criterion, plan.bound, bound);
-    if (claims_more && plan.bound >= value - 1e-8 * std::abs(value)) {
+    if (claims_more && agree(criterion, plan.value, value)) {
         bound = std::max(value, prove_again(plan, problem, poses, findings));
     }
     findings.compare("bound", plan.bound, bound, agree(criterion, plan.bound, bound));
