@@ -53,7 +53,7 @@ struct SelectOptions {
 /// shortlist and the starts; block exchange with kicks (iterated local search) improves each start,
 /// over OpenMP threads whose number does not matter; last sweeps over all candidates end where no
 /// exchange improves (for O5 and parameters of interest: none of those estimated to be good, but
-/// all in the last sweeps). Where branch and bound rules out or tries all other choices in time, the
+/// all in the last sweeps). Where branch and bound rules out or tries all others in time, the
 /// plan is optimal. Ends NotIdentifiable if all candidates together do not identify the parameters
 /// (naming the columns of the unseen directions), or if no start found K poses that do. Throws
 /// InputError if K is not in [1, candidates x repeats], if the limits leave fewer than K, or for
