@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* select_footer = R"(
 Example:
-  posewise select campaign.yaml -m measurements.csv -k 12 --criterion d
+  posewise select campaign.yaml -m measurements.csv -k 12 -c d --proof 60
   posewise select campaign.yaml --random 2000 -k 20 --prior --least-distance-deg 10
   posewise select campaign.yaml --candidates pool.csv -k 6 --augment measured.csv
   posewise select --blocks jacobians.csv --rows 9 -k 40 --criterion a
@@ -34,8 +34,7 @@ calibrate --plan and verify, prints the chosen ids, the criterion's value and wh
   bound       no choice of as many candidates has a larger value
   efficiency  part of the best possible information per measurement that is surely reached
   starts      how many of the starts ended at this same value; five that agree end the search
-  proof       optimal: the choices that the bound leaves open, up to some millions, were all tried
-Where they are more, at few poses, the bound is loose: the plan may well be the best.
+  proof       optimal: branch and bound ruled out or tried all other choices; else what it tried
 
 Measurements register the base and the targets; other candidates need them in the campaign file (or
 measured poses, --augment). A candidate file has the columns config,q1_deg,... and perhaps

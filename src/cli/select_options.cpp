@@ -75,6 +75,10 @@ void add_select_search(CLI::App& command, SelectArguments& arguments) {
         .add_option("--starts", arguments.request.starts,
                     "Independent searches (default: until five agree, 2 to 100)")
         ->check(whole_number(1, 1000000));
+    command
+        .add_option("--proof", arguments.request.proof,
+                    "CPU seconds for branch and bound (default: 3 at most)")
+        ->check(real_number(0, 1e9));
     add_search_options(command, arguments,
                        "Of the random starts and of --random (default: the campaign's, else 1)",
                        "<candidates>.plan.json");

@@ -26,8 +26,8 @@ certificate, whatever made the plan. Says of each whether it is as stated:
   value:      as stated, -12.345678
   bound:      stated -11.9, is -12.1
 and checks the candidates (a changed file is noticed by its checksum), the poses and the limits the
-plan was made under. That needs no search and no optimiser, unless a plan claims to be optimal
-beyond its certificate: then the choices that the bound leaves open are all tried again.
+plan was made under. That needs no search and no optimiser, unless a plan claims more than its
+certificate proves: then branch and bound is repeated from it, until it proves as much.
 Of a pose plan, as plan writes it, checks every pose (joint limits, the cell's constraints, targets
 seen), the value, the predicted accuracy and each parameter's standard deviation. The time of the
 visit is not checked, and its bounds are not proven by what the file holds.

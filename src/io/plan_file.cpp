@@ -151,6 +151,7 @@ Json plan_to_json(const Plan& plan, const std::string& path) {
                           {"starts_at_best", plan.starts_at_best},
                           {"stop_reason", ending_name(plan.ending)}};
     if (plan.tried > 0) document["search"]["tried"] = plan.tried;
+    if (plan.request.proof) document["search"]["proof_s"] = *plan.request.proof;
     add_prediction(document, plan);
     if (!plan.assumptions.empty()) document["assumes"] = detail::numbers_to_json(plan.assumptions);
     Json& poses = document["poses"] = Json::array();

@@ -170,6 +170,7 @@ void read_search(const JsonValue& search, Plan& plan) {
     plan.request.starts = search["starts"].count(0, most_starts);
     plan.starts_at_best = search["starts_at_best"].count(0, plan.request.starts);
     if (search.has("tried")) plan.tried = search["tried"].count(0);
+    if (search.has("proof_s")) plan.request.proof = read_not_negative(search["proof_s"]);
     const std::string reason = search["stop_reason"].text();
     const auto found = std::find_if(detail::plan_endings.begin(), detail::plan_endings.end(),
                                     [&](Ending known) { return ending_name(known) == reason; });

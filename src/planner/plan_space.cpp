@@ -58,7 +58,7 @@ SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
     const bool is_slow = options.criterion == Criterion::G;
     select.starts = is_slow ? 1 : 4;
     select.kicks = is_slow ? 0 : 4;
-    select.enumeration = 5000;
+    select.proof = 0.01;
     select.gap = 1e-3;
     if (space.least_joint_distance > 0) {
         // Selection measures by Euclid: at distance d sqrt(n) one joint differs by d at least.

@@ -30,14 +30,19 @@ std::string describe_bound(const Plan& plan) {
 std::string describe_proof(const Plan& plan) {
     if (plan.ending == Ending::Optimal && plan.tried > 0) {
         return fmt::format(
-            "proof:      optimal: the bound leaves {} open, all of which were tried\n",
-            detail::count_of(plan.tried, "choice"));
+            "proof:      optimal: bounds rule out all other choices but {}, which were tried\n",
+            plan.tried);
     }
     if (plan.ending == Ending::Optimal) {
         return "proof:      optimal: every other choice is ruled out by the bound or was tried\n";
     }
+    std::string text;
+    if (plan.tried > 0) {
+        text = fmt::format("proof:      not finished: {} of those that bounds left open tried\n",
+                           detail::count_of(plan.tried, "choice"));
+    }
     const std::string looseness = describe_bound(plan);
-    return looseness.empty() ? "" : "note:       " + looseness + '\n';
+    return looseness.empty() ? text : text + "note:       " + looseness + '\n';
 }
 
 /// Further lines begin below the text of the first.

@@ -117,6 +117,55 @@ struct SquareInverse {
     }
 };
 
+/// The sum of the products of the entries of R = D^-1/2 L^-1, from what SolveRoot left, and of Q.
+/// The pivots of M are replaced by their inverse roots.
+struct NuclearProduct {
+    Index size;
+    Index first;
+    const std::vector<double>& Q;  // packed
+    std::vector<Lane>& M;
+    std::vector<Lane>& root;
+    Lane& sum;
+
+    template <typename V>
+    POSEWISE_INLINE void run() const {
+        constexpr int parts = lane_width / simd::width<V>;
+        for (int part = 0; part < parts; ++part) {
+            const V* const m = in<V>(M, part);
+            const V* const y = in<V>(root, part);
+            V total = {};
+            for (Index i = first; i < size; ++i) {
+                V product = {};
+                for (Index j = first; j <= i; ++j) {
+                    product += Q[static_cast<std::size_t>(packed(i, j))] * y[packed(i, j) * parts];
+                }
+                total += product * m[packed(i, i) * parts];
+            }
+            *(reinterpret_cast<V*>(&sum) + part) = total;
+        }
+    }
+};
+
+/// The orthogonal factor of R = D^-1/2 L^-1 of M, packed, of the columns from `first` on.
+std::vector<double> polar_factor(const MatrixXd& M, Index first) {
+    const Index size = M.rows();
+    const Index interest = size - first;
+    const MatrixXd inverse =
+        Eigen::LLT<MatrixXd>(M).matrixL().solve(MatrixXd::Identity(size, size));
+    const MatrixXd R = inverse.bottomRightCorner(interest, interest);
+    const auto eigen = eigen_decomposition(R.transpose() * R);
+    const MatrixXd V = eigen.eigenvectors();
+    const MatrixXd polar =
+        R * (V * eigen.eigenvalues().cwiseSqrt().cwiseInverse().asDiagonal() * V.transpose());
+    std::vector<double> result(static_cast<std::size_t>(packed(size, 0)), 0);
+    for (Index i = 0; i < interest; ++i) {
+        for (Index j = 0; j <= i; ++j) {
+            result[static_cast<std::size_t>(packed(first + i, first + j))] = polar(i, j);
+        }
+    }
+    return result;
+}
+
 /// Mean information of the test poses, the more of each the worse it is predicted from M.
 MatrixXd worst_information(const Objective& objective, const MatrixXd& M) {
     Objective softened = objective;
@@ -161,7 +210,8 @@ ChoiceFilter::ChoiceFilter(const Objective& objective, const MatrixXd& M)
             T = lower_root(worst_information(objective, M));
             break;
         case Criterion::O5:
-            test_ = Test::FourthMoment;
+            test_ = Test::Nuclear;
+            polar_ = polar_factor(M(order_, order_), nuisance_);
             break;
         default:
             test_ = Test::Shift;
@@ -218,13 +268,18 @@ void ChoiceFilter::subtract_shift(double value, Batch& batch) const {
     }
 }
 
-bool ChoiceFilter::may_reach(double value, double sum, double fourth) const {
+void ChoiceFilter::invert_pivots(Batch& batch) const {
+    for (Index i = nuisance_; i < static_cast<Index>(order_.size()); ++i) {
+        for (double& pivot : batch.M[static_cast<std::size_t>(packed(i, i))].of) {
+            pivot = 1 / std::sqrt(pivot);
+        }
+    }
+}
+
+bool ChoiceFilter::may_reach(double value, double sum) const {
     if (test_ == Test::Shift) return true;
     if (test_ == Test::Trace) return 1 / sum >= value * (1 - margin);
-    if (test_ == Test::FourthMoment) {
-        // Of x = 1 / s by Hoelder: sum x >= (sum x^2)^(3/2) / (sum x^4)^(1/2).
-        return std::sqrt(fourth / sum) / sum >= value * (1 - margin);
-    }
+    if (test_ == Test::Nuclear) return 1 / sum >= value * (1 - margin);
     const Index interest = static_cast<Index>(order_.size()) - nuisance_;
     const double reached = value_of_log_determinant(objective_, sum, interest);
     return reached >= value - margin * std::max(1.0, std::abs(value));
@@ -235,14 +290,18 @@ std::array<bool, lane_width> ChoiceFilter::may_reach(double value, Batch& batch)
     if (test_ == Test::Shift) subtract_shift(value, batch);
     Lane least;
     Lane sum;
+    Lane squares;
     Lane fourth;
     simd::run(Factorise{L, batch.M, least});
     if (!root_.empty()) {
         for (std::size_t k = 0; k < root_.size(); ++k) batch.root[k].of.fill(root_[k]);
         const Index first = objective_.test_poses == nullptr ? nuisance_ : 0;
         simd::run(SolveRoot{L, first, batch.M, batch.root, sum});
-        if (test_ == Test::FourthMoment) {
+        if (test_ == Test::Nuclear) {
             simd::run(SquareInverse{L, first, batch.M, batch.root, fourth});
+            squares = sum;
+            invert_pivots(batch);
+            simd::run(NuclearProduct{L, first, polar_, batch.M, batch.root, sum});
         }
     }
     std::array<bool, lane_width> result{};
@@ -251,7 +310,12 @@ std::array<bool, lane_width> ChoiceFilter::may_reach(double value, Batch& batch)
         for (Index i = nuisance_; test_ == Test::Determinant && i < L; ++i) {
             sum.of[lane] += std::log(batch.M[static_cast<std::size_t>(packed(i, i))].of[lane]);
         }
-        result[lane] = may_reach(value, sum.of[lane], fourth.of[lane]);
+        if (test_ == Test::Nuclear) {
+            // Of x = 1 / s by Hoelder: sum x >= (sum x^2)^(3/2) / (sum x^4)^(1/2).
+            const double square = squares.of[lane];
+            sum.of[lane] = std::max(sum.of[lane], square * std::sqrt(square / fourth.of[lane]));
+        }
+        result[lane] = may_reach(value, sum.of[lane]);
     }
     batch.count = 0;
     return result;

@@ -9,7 +9,8 @@ namespace posewise::detail {
 /// L^T of their information matrices, eight at a time. D and O1 are the pivots' product; A, V and G
 /// are traces of the inverse (G that of a mean over its test poses, which is no less than G); E,
 /// O3, O2 and O4 exceed a value only if M less a multiple of the identity has positive pivots; O5
-/// is bounded by the second and fourth moments of the inverse singular values.
+/// is the inverse of the nuclear norm of R = D^-1/2 L^-1, which is no less than trace(Q^T R) for
+/// any orthogonal Q (that of the good choice's R), nor than its moments say.
 class ChoiceFilter {
   public:
     /// M: information of a good choice, where test poses and the largest eigenvalue are looked for.
@@ -33,18 +34,20 @@ class ChoiceFilter {
     std::array<bool, lane_width> may_reach(double value, Batch& batch) const;
 
   private:
-    enum class Test { Determinant, Trace, FourthMoment, Shift };
+    enum class Test { Determinant, Trace, Nuclear, Shift };
 
     void subtract_shift(double value, Batch& batch) const;
-    bool may_reach(double value, double sum, double fourth) const;
+    void invert_pivots(Batch& batch) const;
+    bool may_reach(double value, double sum) const;
 
     const Objective& objective_;
     Test test_;
     std::vector<Index> order_;  // of the columns, nuisance first
     Index nuisance_;
     Index packed_size_;
-    VectorXd strongest_;        // direction
-    std::vector<double> root_;  // packed lower triangle T, the trace is that of T^T M^-1 T
+    VectorXd strongest_;         // direction
+    std::vector<double> polar_;  // packed, of the good choice, for O5
+    std::vector<double> root_;   // packed lower triangle T, the trace is that of T^T M^-1 T
 };
 
 }  // namespace posewise::detail

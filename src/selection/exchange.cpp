@@ -13,7 +13,7 @@
 #include "../core/parallel.hpp"
 #include "../core/progress_counter.hpp"
 #include "../core/sensitivities.hpp"
-#include "enumeration.hpp"
+#include "branch_and_bound.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
 #include "relaxation.hpp"
@@ -200,6 +200,7 @@ struct Outcome {
     std::vector<ScoredPoses> starts;  // what each start ended at, but for those cut short
     Index tried = 0;                  // choices, all that the bound left open
     bool is_optimal = false;
+    double bound = std::numeric_limits<double>::infinity();
 };
 
 /// Searches from the best so far, the start of the relaxation, and from random ones.
@@ -257,35 +258,37 @@ ScoredPoses sweep_all(const SearchProblem& problem, ScoredPoses choice) {
     return choice;
 }
 
-double ridge_of(const Blocks& candidates) {
-    const double entries = static_cast<double>(candidates.count() * candidates.parameter_count());
-    return 1e-11 * std::max(candidates.matrix.squaredNorm() / entries, 1e-300);
+/// Whether the best is proven to be optimal; once more from what that found, so that whoever has
+/// the plan can repeat it.
+bool prove(const SearchProblem& problem, const Relaxation& relaxation,
+           const detail::ProofLimits& limits, Outcome& outcome) {
+    while (true) {
+        detail::Proof proof = detail::prove(problem, relaxation.certificate, outcome.best, limits);
+        const bool is_improved = is_better(proof.best.score, outcome.best.score);
+        outcome.best = std::move(proof.best);
+        outcome.bound = std::min(outcome.bound, proof.bound);
+        outcome.tried = proof.tried;
+        outcome.is_optimal = proof.is_complete;
+        if (!is_improved || !proof.is_complete) return proof.is_complete;
+    }
 }
 
-/// Tries all that is open beside the best, if there is patience for it.
-bool prove(const SearchProblem& problem, const Relaxation& relaxation, detail::Patience patience,
-           Outcome& outcome) {
-    auto enumerated = enumerate_open_choices(problem, relaxation, outcome.best, patience);
-    if (!enumerated) return false;
-    outcome.best = std::move(enumerated->best);
-    outcome.tried = enumerated->tried;
-    outcome.is_optimal = enumerated->is_complete;
-    return outcome.is_optimal;
-}
-
-/// The relaxation's own start may leave few enough other choices to try them all; else all starts.
+/// The relaxation's own start may leave few enough other choices to rule them out; else all starts.
 Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
     const Shortlist shortlist = shortlist_by_sensitivity(problem, relaxation);
-    const ScoredPoses first = improve(problem, shortlist, make_first_start(problem, relaxation));
-    Outcome outcome{first, {}, 0, false};
-    if (prove(problem, relaxation, detail::Patience::Short, outcome)) {
+    Outcome outcome;
+    outcome.best = improve(problem, shortlist, make_first_start(problem, relaxation));
+    const std::optional<double> asked = problem.options.proof;
+    const double seconds = asked.value_or(detail::usual_proof);
+    if (prove(problem, relaxation, {.seconds = std::min(1.0, seconds), .is_only_if_likely = true},
+              outcome)) {
         outcome.starts = {outcome.best};
         return outcome;
     }
     run_starts(problem, relaxation, shortlist, outcome);
     outcome.best = sweep_all(problem, outcome.best);
     if (!problem.options.stop.is_set()) {
-        prove(problem, relaxation, detail::Patience::Full, outcome);
+        prove(problem, relaxation, {.seconds = seconds, .is_only_if_likely = !asked}, outcome);
     }
     return outcome;
 }
@@ -311,7 +314,7 @@ Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     const detail::Objective objective = detail::make_objective(candidates, options);
     const SearchProblem problem{candidates, options, objective,
                                 detail::held_information(candidates, options),
-                                ridge_of(candidates)};
+                                detail::ridge_of(candidates)};
     const Relaxation relaxation = relax(objective, candidates, options);
     const Outcome outcome = search(problem, relaxation);
     const ScoredPoses& best = outcome.best;
@@ -325,13 +328,15 @@ Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     Choice plan;
     plan.starts = static_cast<Index>(outcome.starts.size());
     plan.starts_at_best = count_at_best(outcome.starts, best.score.value);
-    plan.tried = outcome.is_optimal ? outcome.tried : 0;
+    plan.tried = outcome.tried;
     plan.ending = outcome.is_optimal ? Ending::Optimal : options.stop.ending_or(Ending::Converged);
     plan.poses = best.poses;
     std::sort(plan.poses.begin(), plan.poses.end());
     plan.criterion = options.criterion;
     plan.value = detail::choice_value(candidates, options, plan.poses);
-    plan.bound = outcome.is_optimal ? plan.value : std::max(relaxation.bound, plan.value);
+    plan.bound = outcome.is_optimal
+                     ? plan.value
+                     : std::max(std::min(relaxation.bound, outcome.bound), plan.value);
     plan.efficiency = detail::efficiency(
         plan.criterion, plan.value, plan.bound,
         candidates.parameter_count() - static_cast<Index>(options.nuisance.size()));

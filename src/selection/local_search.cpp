@@ -121,6 +121,11 @@ Index patience(const SearchProblem& problem) {
 
 }  // namespace
 
+double ridge_of(const Blocks& candidates) {
+    const double entries = static_cast<double>(candidates.count() * candidates.parameter_count());
+    return 1e-11 * std::max(candidates.matrix.squaredNorm() / entries, 1e-300);
+}
+
 double mean_rows(const Blocks& candidates) {
     return static_cast<double>(candidates.matrix.rows()) /
            static_cast<double>(std::max<Index>(1, candidates.count()));

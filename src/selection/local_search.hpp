@@ -26,6 +26,9 @@ struct SearchProblem {
     Score score(const MatrixXd& regularised) const;
 };
 
+/// Of a SearchProblem: far below what candidates tell.
+double ridge_of(const Blocks& candidates);
+
 double mean_rows(const Blocks& candidates);
 
 /// From 1 to 10: plans with hardly more rows than parameters, which hardly identify them, have many

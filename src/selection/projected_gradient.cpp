@@ -61,10 +61,11 @@ double log_value(const Objective& objective, const MatrixXd& M) {
 }
 
 MatrixXd log_gradient(const Objective& objective, const MatrixXd& M) {
-    const double scale = is_logarithm(objective.criterion)
-                             ? static_cast<double>(interest_count(objective, M.rows()))
-                             : evaluate(objective, M);
-    return gradient(objective, M) / scale;
+    double value = 0;
+    const MatrixXd slope = gradient(objective, M, &value);
+    return slope / (is_logarithm(objective.criterion)
+                        ? static_cast<double>(interest_count(objective, M.rows()))
+                        : value);
 }
 
 WeightSearch ascend(const WeightProblem& problem, const VectorXd& start, double tolerance,

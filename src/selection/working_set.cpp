@@ -4,6 +4,13 @@
 
 namespace posewise::detail {
 
+WorkingSet::WorkingSet(const WorkingSet& all, const std::vector<Index>& places)
+    : candidates_(all.candidates_), packed_(all.packed_(places, Eigen::all)) {
+    for (const Index place : places) {
+        members_.push_back(all.members_[static_cast<std::size_t>(place)]);
+    }
+}
+
 void WorkingSet::add(const std::vector<Index>& candidates) {
     const Index L = candidates_->parameter_count();
     const Index first = size();

@@ -10,6 +10,9 @@ class WorkingSet {
   public:
     explicit WorkingSet(const Blocks& candidates) : candidates_(&candidates) {}
 
+    /// Some members of another set, in their order there.
+    WorkingSet(const WorkingSet& all, const std::vector<Index>& places);
+
     void add(const std::vector<Index>& candidates);
     const std::vector<Index>& members() const { return members_; }
     Index size() const { return static_cast<Index>(members_.size()); }

@@ -115,6 +115,7 @@ void state_limits(ChoiceProblem& problem, const std::vector<Index>& groups) {
     options.criterion = request.criterion;
     options.pose_count = request.pose_count;
     options.starts = request.starts;
+    options.proof = request.proof;
     options.seed = request.seed;
     options.test_poses = problem.test_poses.get();
     options.repeat_limit = request.repeat_limit;

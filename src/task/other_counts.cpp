@@ -21,7 +21,7 @@ SelectOptions quick_options(const Planning& planning) {
     options.held_pose_count = planning.search.held_pose_count;
     options.starts = 1;
     options.kicks = 0;
-    options.enumeration = 0;
+    options.proof = 0;
     options.gap = 1e-2;
     options.seed = planning.search.seed;
     return options;

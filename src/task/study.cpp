@@ -22,7 +22,7 @@ namespace {
 
 /// What more kicks would find is far below the scatter of what is found by calibrating.
 constexpr Index kicks = 2;
-constexpr Index enumeration = 5000;
+constexpr double proof_seconds = 0.01;
 
 /// Configurations to choose from, and those that all subsets are judged on (none: on the rest).
 struct Split {
@@ -152,7 +152,7 @@ std::vector<Index> choose_poses(const Setting& setting, const Job& job, const Sp
     options.pose_count = job.pose_count;
     options.starts = setting.options.starts;
     options.kicks = kicks;
-    options.enumeration = enumeration;
+    options.proof = proof_seconds;
     if (setting.campaign.spread.is_prior) options.held = prior_information(setting.campaign);
     options.positions = split.positions;
     options.least_distance = setting.options.least_distance;

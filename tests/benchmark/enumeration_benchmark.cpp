@@ -7,7 +7,7 @@
 namespace posewise {
 namespace {
 
-/// N, K and a criterion: proven by trying all choices that the bound leaves open.
+/// N, K and a criterion: proven by branch and bound.
 void BM_ProveOptimum(benchmark::State& state) {
     const Blocks pool = testing::fanuc_pool(state.range(0), 1);
     SelectOptions options;
@@ -31,7 +31,7 @@ void BM_SelectFromFew(benchmark::State& state) {
     const Blocks pool = testing::fanuc_pool(state.range(0), 1);
     SelectOptions options;
     options.pose_count = 20;
-    options.enumeration = 0;
+    options.proof = 0;
     Choice choice;
     for (auto _ : state) choice = select_poses(pool, options);
     state.counters["starts"] = static_cast<double>(choice.starts);

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <array>
+#include <atomic>
 
 #include "../../src/selection/bound.hpp"
 #include "posewise/selection/exchange.hpp"
@@ -77,7 +78,7 @@ void expect_best_found(const Shape& shape, std::uint64_t seed) {
         test::random_blocks(candidate_count, shape.rows, shape.parameters, seed);
     SelectOptions options;
     options.pose_count = pose_count;
-    options.enumeration = 0;  // so that it is the search that finds
+    options.proof = 0;  // so that it is the search that finds
     const MatrixXd identity = MatrixXd::Identity(shape.parameters, shape.parameters);
     if (shape.has_prior) options.held = identity;
     const BestValues best =
@@ -194,14 +195,43 @@ TEST(Enumeration, GivesTheSamePlanForAnyNumberOfThreads) {
     omp_set_num_threads(threads);
 }
 
-TEST(Enumeration, IsLeftOutWhereItWouldTakeLong) {
-    SelectOptions options = few_poses(Criterion::O2, 10);
+TEST(Enumeration, ProvesMoreTheLongerItLasts) {
+    const Blocks candidates = test::random_blocks(60, 3, 20, 13);
+    for (const Criterion criterion : {Criterion::D, Criterion::O4}) {
+        SelectOptions options = few_poses(criterion, 9);
+        options.starts = 1;
+        options.kicks = 0;
+        double bound = std::numeric_limits<double>::infinity();
+        for (const double seconds : {0.0, 0.3}) {
+            options.proof = seconds;
+            const Choice plan = select_poses(candidates, options);
+            EXPECT_EQ(plan.ending, Ending::Converged);
+            EXPECT_LT(plan.efficiency, 1);
+            EXPECT_LT(plan.bound, bound) << seconds;
+            bound = plan.bound;
+        }
+    }
+}
+
+TEST(Enumeration, TellsHowFarItIsAndEndsWithTheBestSoFar) {
+    const Blocks candidates = test::random_blocks(60, 3, 20, 14);
+    SelectOptions options = few_poses(Criterion::D, 9);
     options.starts = 1;
     options.kicks = 0;
-    const Choice plan = select_poses(test::random_blocks(60, 2, 8, 13), options);
-    EXPECT_EQ(plan.ending, Ending::Converged);
-    EXPECT_EQ(plan.tried, 0);
+    options.proof = 1e6;
+    std::atomic<bool> is_interrupted = false;
+    options.stop.interrupted = &is_interrupted;
+    Index calls = 0;
+    options.progress = [&](const Progress& progress) {
+        EXPECT_LE(progress.done, progress.total);
+        is_interrupted = ++calls >= 5;
+    };
+    const Choice plan = select_poses(candidates, options);
+    EXPECT_GE(calls, 5);
+    EXPECT_EQ(plan.ending, Ending::Interrupted);
+    EXPECT_EQ(plan.poses.size(), 9U);
     EXPECT_LT(plan.efficiency, 1);
+    EXPECT_GT(plan.efficiency, 0.1);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ SelectOptions make_options(Criterion criterion, Index pose_count) {
     SelectOptions options;
     options.criterion = criterion;
     options.pose_count = pose_count;
-    options.enumeration = 0;  // so that it is the search that finds
+    options.proof = 0;  // so that it is the search that finds
     options.starts = 6;
     return options;
 }
@@ -158,7 +158,7 @@ TEST(SelectByExchange, LeavesNuisanceOutOfTheValue) {
 TEST(SelectByExchange, SaysWhenThePlanIsOptimal) {
     const Blocks candidates = test::random_blocks(10, 3, 4, 5);
     SelectOptions options = make_options(Criterion::D, 5);
-    options.enumeration = 1000;
+    options.proof = 1;
     const Choice plan = select_poses(candidates, options);
     EXPECT_EQ(plan.ending, Ending::Optimal);
     EXPECT_EQ(plan.bound, plan.value);
@@ -186,7 +186,7 @@ TEST(SelectByExchange, GivesTheSamePlanForAnyNumberOfThreads) {
 TEST(SelectByExchange, CountsOnlyTheStartsThatEnded) {
     const Blocks candidates = test::random_blocks(300, 3, 9, 5);
     SelectOptions options = make_options(Criterion::D, 8);
-    options.enumeration = 0;
+    options.proof = 0;
     const Choice whole = select_poses(candidates, options);
     EXPECT_GT(whole.starts, 0);
     const std::atomic<bool> stop{true};
@@ -235,7 +235,7 @@ TEST(SelectByExchange, TellsItsProgress) {
 
 TEST(SelectByExchange, PassesOnWhatTheProgressCallbackThrows) {
     SelectOptions options = make_options(Criterion::D, 6);
-    options.enumeration = 0;
+    options.proof = 0;
     options.progress = [](const Progress&) { throw std::domain_error("enough"); };
     EXPECT_THROW(select_poses(test::random_blocks(20, 1, 4, 5), options), std::domain_error);
 }
@@ -243,7 +243,7 @@ TEST(SelectByExchange, PassesOnWhatTheProgressCallbackThrows) {
 TEST(SelectByExchange, EndsWhenFiveStartsAgree) {
     SelectOptions options;
     options.pose_count = 10;
-    options.enumeration = 0;
+    options.proof = 0;
     const Blocks candidates = test::random_blocks(30, 3, 5, 1);
     const Choice agreed = select_poses(candidates, options);
     EXPECT_EQ(agreed.starts_at_best, 5);
@@ -260,7 +260,7 @@ TEST(SelectByExchange, NeedsTheSameStartsForAnyNumberOfThreads) {
     SelectOptions options;
     options.pose_count = 14;
     options.kicks = 0;
-    options.enumeration = 0;
+    options.proof = 0;
     omp_set_num_threads(1);
     const Choice serial = select_poses(candidates, options);
     omp_set_num_threads(4);
@@ -276,7 +276,7 @@ TEST(SelectByExchange, TakesFewerStartsWhereEachTakesLong) {
     SelectOptions options;
     options.pose_count = 10;
     options.kicks = 0;
-    options.enumeration = 0;
+    options.proof = 0;
     EXPECT_EQ(select_poses(test::random_blocks(300, 12, 90, 1), options).starts, 3);
 }
 

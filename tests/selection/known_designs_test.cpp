@@ -61,6 +61,7 @@ double best_determinant_of_square(Index n) {
     SelectOptions options;
     options.pose_count = n;
     options.repeat_limit = n;
+    options.proof = 0;
     double best = 0;
     for (double step = 0.05; step > 1e-7; step /= 2) {
         const Choice plan = select_poses(quadratic_rows(points), options);

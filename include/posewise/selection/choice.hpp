@@ -33,7 +33,8 @@ struct Choice {
     std::uint64_t seed = 0;
     Index starts = 0;          ///< independent ones that ended; a stop cuts others short
     Index starts_at_best = 0;  ///< how many of them ended at this value
-    /// Of an optimal choice: how many the bound left open, all of which were tried.
+    /// Choices that no bound ruled out and that were tried: of an optimal choice all such. None:
+    /// branch and bound did not come so far.
     Index tried = 0;
     Ending ending = Ending::NotRun;
     /// Where the ending is NotIdentifiable, which directions stay open and what would close them,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "posewise/core/progress.hpp"
@@ -38,9 +39,10 @@ struct SelectOptions {
     /// Candidates searched; all are looked at in the last sweeps. 0: from 800 for large blocks to
     /// 5000 for small ones.
     Index shortlist = 0;
-    /// Most choices left open by the bound that are all tried, where factorising that many
-    /// information matrices takes about ten seconds of a CPU at most. 0: none.
-    Index enumeration = 10'000'000;
+    /// Seconds of a CPU, about, to spend on proving by branch and bound that no choice is better;
+    /// counted in operations, so that results do not depend on the machine. 0: none. Empty: 3, but
+    /// a tenth where that shows that they would not do.
+    std::optional<double> proof{};
     double gap = 1e-5;       ///< relative gap of the information function to end the relaxation at
     std::uint64_t seed = 1;  ///< start i draws from stream (seed, i)
     StopSignal stop{};       ///< ends the search with the best so far
@@ -51,7 +53,7 @@ struct SelectOptions {
 /// shortlist and the starts; block exchange with kicks (iterated local search) improves each start,
 /// over OpenMP threads whose number does not matter; last sweeps over all candidates end where no
 /// exchange improves (for O5 and parameters of interest: none of those estimated to be good, but
-/// all in the last sweeps). If the bound leaves few enough other choices they are tried, and the
+/// all in the last sweeps). Where branch and bound rules out or tries all others in time, the
 /// plan is optimal. Ends NotIdentifiable if all candidates together do not identify the parameters
 /// (naming the columns of the unseen directions), or if no start found K poses that do. Throws
 /// InputError if K is not in [1, candidates x repeats], if the limits leave fewer than K, or for

@@ -55,7 +55,8 @@ struct PlanRequest {
     Index group_limit = 0;              ///< most of one group; 0: any number
     std::vector<std::string> excluded;  ///< ids not to choose
     Index repeat_limit = 1;             ///< how often one candidate may be chosen
-    double least_distance = 0;  ///< rad, Euclidean over the turning joints, of any two chosen
+    double least_distance = 0;      ///< rad, Euclidean over the turning joints, of any two chosen
+    std::optional<double> proof{};  ///< as SelectOptions::proof
 
     // Of make_plan().
     std::vector<std::string> dropped;  ///< ids of the repaired plan that could not be reached
@@ -112,7 +113,7 @@ struct Plan {
     double searched_efficiency = 0;
 
     Index starts_at_best = 0;  ///< how many of the starts ended at this value
-    Index tried = 0;           ///< of an optimal choice: how many the bound left open, all tried
+    Index tried = 0;           ///< choices that no bound ruled out; of an optimal choice all such
     Ending ending = Ending::NotRun;
 
     /// What calibration will achieve: over the workspace, of choices over the candidates. Files
