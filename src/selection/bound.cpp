@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "../core/decompositions.hpp"
+#include "../core/elementary.hpp"
 #include "../core/sensitivities.hpp"
 #include "../criteria/information_function.hpp"
+#include "../criteria/spectral.hpp"
 #include "limits.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
@@ -53,8 +55,8 @@ double condition_bound(const Blocks& candidates, const SelectOptions& options, c
     Eigen::ArrayXd weak = VectorXd::Unit(lambda.size(), 0);
     Eigen::ArrayXd strong = VectorXd::Unit(lambda.size(), last);
     if (std::isfinite(p)) {
-        weak = (lambda[0] / lambda.array()).pow(p + 1);
-        strong = (lambda.array() / lambda[last]).pow(p - 1);
+        weak = powers(lambda[0] / lambda.array(), p + 1);
+        strong = powers(lambda.array() / lambda[last], p - 1);
     }
     const MatrixXd Z = weighted(weak);
     const MatrixXd Y = weighted(strong);
@@ -131,7 +133,7 @@ double upper_bound(const Blocks& candidates, const SelectOptions& options,
 double efficiency(Criterion criterion, double value, double bound, Index parameter_count) {
     if (!std::isfinite(value) || !std::isfinite(bound)) return 0;
     const double ratio = is_logarithm(criterion)
-                             ? std::exp((value - bound) / static_cast<double>(parameter_count))
+                             ? exponential((value - bound) / static_cast<double>(parameter_count))
                              : value / bound;
     return std::clamp(ratio, 0.0, 1.0);
 }
