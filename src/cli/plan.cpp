@@ -191,9 +191,12 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
     command.add_option("--pool", request.pool_count, "Candidates to draw")
         ->check(whole_number(1, 10000000))
         ->default_val(Index{20000});
-    command.add_option("--starts", request.starts, "Plans that are refined")
-        ->check(whole_number(1, 100000))
-        ->default_val(Index{16});
+    command
+        .add_option(
+            "--starts", request.starts,
+            "Plans that are refined before the best is kicked (default: until five agree, at "
+            "most 16)")
+        ->check(whole_number(1, 100000));
     add_search_options(command, arguments, "Of all draws (default: the campaign's)",
                        "<campaign>.poses.json");
     command.add_option("--csv", arguments.csv, "Write the configurations as CSV, too")
