@@ -104,7 +104,7 @@ Planning plan_with_progress(const io::CampaignFile& campaign, PlanningOptions& o
                             bool shows_progress) {
     ProgressLine line("planning", shows_progress);
     const ProgressNote note;
-    line(Progress{.total = options.starts}, "choosing from the pool");
+    line(Progress{.total = 1}, "choosing from the pool");
     options.progress = [&](const Progress& state) { line(state, note(state)); };
     return make_plan(campaign, options);
 }

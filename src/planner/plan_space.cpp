@@ -167,7 +167,7 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
     const Index limit = start_limit(options);
     std::vector<Refinement> results;
     std::exception_ptr first_error;
-    ProgressCounter counter(options.progress, limit);
+    ProgressCounter counter(options.progress, limit + 1);  // kicks are the last part
     const auto run = [&](Index start) {
         if (start > 0 && options.stop.is_set()) return;
         if (start == 0) {
@@ -303,6 +303,13 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     }
     planned.starts_at_best = count_at_best(results, options.stop);
     Refinement best = improve_with_kicks(problem, best_of(results));
+    if (options.progress) {
+        const Index parts = start_limit(options) + 1;
+        const double bound = planned.pool_choice.bound;
+        options.progress(
+            {parts, parts, best.value, bound,
+             efficiency(options.criterion, best.value, bound, interesting_count(problem))});
+    }
     RefineOptions finish;
     finish.stop = problem.options.stop;
     finish.sharpness = {256};

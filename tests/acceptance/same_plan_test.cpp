@@ -33,7 +33,9 @@ io::CampaignFile design(const std::string& name) {
 
 std::string chosen(Criterion criterion) {
     const auto campaign = design("fanuc_r2000ic_165f/campaign.yaml");
-    ChoiceOptions options{{.criterion = criterion, .pose_count = 8}};
+    ChoiceOptions options;
+    options.criterion = criterion;
+    options.pose_count = 8;
     options.starts = 2;
     return written(choose(campaign, random_candidates(campaign, 150, 1), options));
 }

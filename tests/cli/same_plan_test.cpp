@@ -11,9 +11,9 @@ using SamePlan = Program;
 const std::string older_cpu = "GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA";
 
 TEST_F(SamePlan, IsChosenByTheFunctionsOfAnOlderCpu) {
-    for (const std::string criterion : {"d", "o1", "o5", "e"}) {
+    for (const std::string criterion : {"d", "e"}) {
         const std::string command =
-            "select " + fanuc_design + " --random 200 -k 6 --starts 2 --criterion " + criterion;
+            "select " + fanuc_design + " --random 100 -k 6 --starts 2 --criterion " + criterion;
         run_well(command + " --out plan.json");
         run_well(command + " --out older.json", older_cpu);
         EXPECT_EQ(text_of("plan.json"), text_of("older.json")) << criterion;
@@ -22,13 +22,11 @@ TEST_F(SamePlan, IsChosenByTheFunctionsOfAnOlderCpu) {
 
 TEST_F(SamePlan, IsRefinedInACellByTheFunctionsOfAnOlderCpu) {
     const std::string command = "plan '" + std::string(POSEWISE_SOURCE_DIR) +
-                                "/designs/cell_demo/campaign.yaml' --poses 6 --pool 800 "
-                                "--starts 2 --workspace-poses 50 --criterion ";
-    for (const std::string criterion : {"d", "v"}) {
-        run_well(command + criterion + " --out plan.json");
-        run_well(command + criterion + " --out older.json", older_cpu);
-        EXPECT_EQ(text_of("plan.json"), text_of("older.json")) << criterion;
-    }
+                                "/designs/cell_demo/campaign.yaml' --poses 6 --pool 400 "
+                                "--starts 2 --workspace-poses 50";
+    run_well(command + " --out plan.json");
+    run_well(command + " --out older.json", older_cpu);
+    EXPECT_EQ(text_of("plan.json"), text_of("older.json"));
 }
 
 }  // namespace

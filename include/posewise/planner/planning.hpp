@@ -30,8 +30,8 @@ struct PlanOptions {
     Index bound_iterations = 30;  ///< of searched_bound at most; 0: no bound beyond the pool
     std::uint64_t seed = 1;       ///< start i draws from stream (seed, i)
     StopSignal stop{};            ///< ends the search with the best so far
-    ProgressCallback
-        progress{};  ///< of the starts; its efficiency is against the bound over the pool
+    ProgressCallback progress{};  ///< of the starts, then of the kicks; its efficiency is against
+                                  ///< the bound over the pool
 };
 
 /// A plan over continuous configurations.
