@@ -231,13 +231,14 @@ RowMatrixXd kick(const Problem& problem, const RowMatrixXd& plan, const MatrixXd
 }
 
 /// Kicks without gain to give up after: less where a refinement takes long, as it does with many
-/// poses and parameters, and with kinks ten times as long.
+/// poses and parameters, with kinks of the criterion and along constraints.
 Index patience(const Problem& problem) {
     const auto L = static_cast<double>(problem.space.parameter_count);
     const double work = L * L * static_cast<double>(problem.options.pose_count);
     const double each = std::clamp(1e5 / work, 0.25, 4.0);
-    const double smooth = is_smooth(problem.options.criterion) ? 1 : 0.25;
-    return static_cast<Index>(each * smooth * static_cast<double>(start_limit(problem.options)));
+    const bool is_quick = is_smooth(problem.options.criterion) && !problem.space.margin;
+    return static_cast<Index>(each * (is_quick ? 1 : 0.25) *
+                              static_cast<double>(start_limit(problem.options)));
 }
 
 /// Kicks the best plan and refines it again, some kicks at once, of which the best is kept, until
