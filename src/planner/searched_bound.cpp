@@ -107,6 +107,7 @@ double search_bound(const DesignSpace& space, const Objective& objective,
     anywhere.gap = 1e-6;
     anywhere.stop = stop;
     const auto K = static_cast<double>(options.pose_count);
+    if (space.margin) iterations = (iterations + 3) / 4;  // ten times as long along constraints
     Support support;
     for (Index i = 0; i < plan.rows(); ++i) support.add(space, plan.row(i).transpose());
     for (Index t = 0; t < iterations && !stop.is_set(); ++t) {
