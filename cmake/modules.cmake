@@ -5,6 +5,9 @@ set(posewise_slow_headers <Eigen/Dense> <algorithm> <cmath> <fmt/format.h> <func
 # all that is compiled here; what users of the library compile is theirs to decide.
 set(posewise_definitions EIGEN_DONT_PARALLELIZE)
 
+# Multiplication and addition are not fused: the same digits on CPUs that can and those that cannot.
+set(posewise_options -ffp-contract=off)
+
 # posewise_module(<name> <modules it may use>...)
 # An object library of src/<name>/*.cpp. Modules compile against the whole include tree; that they
 # include only what they may is tested (tests/layering_test.py), and each module's tests link only
@@ -19,6 +22,7 @@ function(posewise_module name)
     PRIVATE posewise_warnings OpenMP::OpenMP_CXX yaml-cpp nlohmann_json::nlohmann_json fmt::fmt
       MatIO::MatIO)
   target_compile_definitions(posewise_${name} PRIVATE ${posewise_definitions})
+  target_compile_options(posewise_${name} PRIVATE ${posewise_options})
   set_target_properties(posewise_${name} PROPERTIES
     UNITY_BUILD ${POSEWISE_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 6)
   if(BUILD_SHARED_LIBS)

@@ -106,7 +106,7 @@ Planning plan_with_progress(const io::CampaignFile& campaign, PlanningOptions& o
                             bool shows_progress) {
     ProgressLine line("planning", shows_progress);
     const ProgressNote note;
-    line(Progress{.total = options.starts}, "choosing from the pool");
+    line(Progress{.total = 1}, "choosing from the pool");
     options.progress = [&](const Progress& state) { line(state, note(state)); };
     return make_plan(campaign, options);
 }
@@ -193,9 +193,12 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
     command.add_option("--pool", request.pool_count, "Candidates to draw")
         ->check(whole_number(1, 10000000))
         ->default_val(Index{20000});
-    command.add_option("--starts", request.starts, "Plans that are refined")
-        ->check(whole_number(1, 100000))
-        ->default_val(Index{16});
+    command
+        .add_option(
+            "--starts", request.starts,
+            "Plans that are refined before the best is kicked (default: until five agree, at "
+            "most 16)")
+        ->check(whole_number(1, 100000));
     add_search_options(command, arguments, "Of all draws (default: the campaign's)",
                        "<campaign>.poses.json");
     command.add_option("--csv", arguments.csv, "Write the configurations as CSV, too")

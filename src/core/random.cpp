@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "elementary.hpp"
+
 namespace posewise {
 namespace {
 
@@ -30,7 +32,8 @@ double RandomStream::uniform(double lower, double upper) {
 double RandomStream::normal() {
     const double u = 1.0 - uniform();  // in (0, 1], so that log(u) is finite
     const double v = uniform();
-    return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * v);
+    return std::sqrt(-2.0 * detail::logarithm(u)) *
+           detail::sine_and_cosine(2.0 * std::numbers::pi * v).cosine;
 }
 
 Index RandomStream::index(Index count) {

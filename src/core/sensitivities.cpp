@@ -11,7 +11,8 @@
 namespace posewise::detail {
 namespace {
 
-/// Columns of F are padded to whole pairs of the widest vectors.
+/// Columns of F are padded to whole pairs of the widest vectors. Whatever the width, squares are
+/// summed in the order of the columns of the first of a pair.
 struct alignas(64) PaddedColumns {
     std::array<double, 16> of{};
 };
@@ -34,20 +35,20 @@ struct SquaredNorms {
     template <int tile, typename V>
     POSEWISE_INLINE void run_tile(Index first) const {
         constexpr int W = simd::width<V>;
-        constexpr int pairs = 16 / (2 * W);
+        constexpr int parts = 8 / W;
         const Index tiles = (parameters + 15) / 16;
         const double* b = rows + first * parameters;
         double norms[tile] = {};
         for (Index c = 0; c < tiles; ++c) {
-            for (int pair = 0; pair < pairs; ++pair) {
+            for (int part = 0; part < parts; ++part) {
                 V sums[tile][2] = {};
                 for (Index l = 16 * c; l < parameters; ++l) {
                     const double* entries = F[static_cast<std::size_t>(l * tiles + c)].of.data();
-                    const V* f = reinterpret_cast<const V*>(entries) + 2 * pair;
+                    const V* f = reinterpret_cast<const V*>(entries) + part;
 #pragma GCC unroll 4
                     for (int r = 0; r < tile; ++r) {
                         sums[r][0] += f[0] * b[r * parameters + l];
-                        sums[r][1] += f[1] * b[r * parameters + l];
+                        sums[r][1] += f[parts] * b[r * parameters + l];
                     }
                 }
                 for (int r = 0; r < tile; ++r) {

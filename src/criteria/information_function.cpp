@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../core/elementary.hpp"
 #include "prediction.hpp"
 #include "regular.hpp"
 
@@ -50,14 +51,14 @@ bool has_information_function(Criterion criterion) {
 
 double information_of_value(const Objective& objective, double value, Index parameter_count) {
     if (is_logarithm(objective.criterion)) {
-        return std::exp(value / static_cast<double>(interest_count(objective, parameter_count)));
+        return exponential(value / static_cast<double>(interest_count(objective, parameter_count)));
     }
     return is_root(objective.criterion) ? factor_of(objective) * value * value : value;
 }
 
 double value_of_information(const Objective& objective, double phi, Index parameter_count) {
     if (is_logarithm(objective.criterion)) {
-        return static_cast<double>(interest_count(objective, parameter_count)) * std::log(phi);
+        return static_cast<double>(interest_count(objective, parameter_count)) * logarithm(phi);
     }
     return is_root(objective.criterion) ? std::sqrt(phi / factor_of(objective)) : phi;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "../core/decompositions.hpp"
+#include "../core/elementary.hpp"
 #include "posewise/core/errors.hpp"
 #include "prediction.hpp"
 #include "regular.hpp"
@@ -14,7 +15,7 @@ namespace {
 constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
 
 double log_determinant(const Eigen::LLT<MatrixXd>& cholesky) {
-    return 2 * cholesky.matrixLLT().diagonal().array().log().sum();
+    return 2 * cholesky.matrixLLT().diagonal().unaryExpr(&logarithm).sum();
 }
 
 /// The same objective on a matrix without nuisance.

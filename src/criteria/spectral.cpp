@@ -2,7 +2,13 @@
 
 #include <cmath>
 
+#include "../core/elementary.hpp"
+
 namespace posewise::detail {
+
+Eigen::ArrayXd powers(const Eigen::ArrayXd& x, double exponent) {
+    return x.unaryExpr([exponent](double one) { return power(one, exponent); });
+}
 
 Sloped soft_least(const VectorXd& x, double p) {
     Sloped result{0, VectorXd::Zero(x.size())};
@@ -14,9 +20,9 @@ Sloped soft_least(const VectorXd& x, double p) {
         return result;
     }
     const Eigen::ArrayXd ratio = least / x.array();  // in (0, 1]
-    const double sum = ratio.pow(p).sum();
-    result.value = least * std::pow(sum, -1 / p);
-    result.slope = std::pow(sum, -(1 + 1 / p)) * ratio.pow(p + 1);
+    const double sum = powers(ratio, p).sum();
+    result.value = least * power(sum, -1 / p);
+    result.slope = power(sum, -(1 + 1 / p)) * powers(ratio, p + 1);
     return result;
 }
 
@@ -30,15 +36,15 @@ Sloped soft_largest(const VectorXd& x, double p) {
         return result;
     }
     const Eigen::ArrayXd ratio = x.array() / largest;
-    const double sum = ratio.pow(p).sum();
-    result.value = largest * std::pow(sum, 1 / p);
-    result.slope = std::pow(sum, 1 / p - 1) * ratio.pow(p - 1);
+    const double sum = powers(ratio, p).sum();
+    result.value = largest * power(sum, 1 / p);
+    result.slope = power(sum, 1 / p - 1) * powers(ratio, p - 1);
     return result;
 }
 
 double value_of_log_determinant(const Objective& objective, double log_determinant, Index L) {
     if (objective.criterion == Criterion::D) return log_determinant;
-    return std::exp(log_determinant / (2.0 * static_cast<double>(L))) /
+    return exponential(log_determinant / (2.0 * static_cast<double>(L))) /
            std::sqrt(static_cast<double>(objective.pose_count));
 }
 
@@ -54,9 +60,10 @@ Sloped smooth_criterion(const Objective& objective, const VectorXd& eigenvalues)
     }
     if (objective.criterion == Criterion::O5) {
         const double value = 1 / eigenvalues.array().rsqrt().sum();
-        return {value, 0.5 * value * value * eigenvalues.array().pow(-1.5)};
+        return {value, 0.5 * value * value * eigenvalues.array().rsqrt().cube()};
     }
-    const double value = value_of_log_determinant(objective, eigenvalues.array().log().sum(), L);
+    const double value =
+        value_of_log_determinant(objective, eigenvalues.unaryExpr(&logarithm).sum(), L);
     if (objective.criterion == Criterion::D) return {value, inverse};
     return {value, value / (2.0 * static_cast<double>(L)) * inverse};
 }

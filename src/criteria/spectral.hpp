@@ -10,6 +10,9 @@ struct Sloped {
     VectorXd slope;
 };
 
+/// Each to the power.
+Eigen::ArrayXd powers(const Eigen::ArrayXd& x, double exponent);
+
 /// (sum x^-p)^(-1/p) of positive numbers; the least itself for infinite p.
 Sloped soft_least(const VectorXd& x, double p);
 

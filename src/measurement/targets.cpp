@@ -10,32 +10,43 @@
 namespace posewise {
 namespace {
 
-/// The three rows of one target, filled through plain pointers because this is the hot loop of
-/// planning. A twist is six numbers: w, v.
-struct PointRows {
-    double* x;
-    double* y;
-    double* z;
+// The three rows of one target over all columns, through plain pointers that share nothing: these
+// are the hot loops of planning, and become vectors'. A twist is six numbers, w and v, `count`
+// apart.
 
-    PointRows(Eigen::Ref<RowMatrixXd> J, Index target)
-        : x(J.row(3 * target).data()),  // which may have no columns
-          y(J.row(3 * target + 1).data()),
-          z(J.row(3 * target + 2).data()) {}
+/// Rows become v + w cross point.
+void set_point_rows(const double* __restrict twist, Index count, Vector3d point,
+                    double* __restrict x, double* __restrict y, double* __restrict z) {
+    for (Index k = 0; k < count; ++k) {
+        const double wx = twist[k];
+        const double wy = twist[k + count];
+        const double wz = twist[k + 2 * count];
+        x[k] = twist[k + 3 * count] + (wy * point.z() - wz * point.y());
+        y[k] = twist[k + 4 * count] + (wz * point.x() - wx * point.z());
+        z[k] = twist[k + 5 * count] + (wx * point.y() - wy * point.x());
+    }
+}
 
-    /// Column k becomes v + w cross point.
-    void set(Index k, const double* twist, const Vector3d& point) {
-        x[k] = twist[3];
-        y[k] = twist[4];
-        z[k] = twist[5];
-        add_turn(k, twist, point);
+/// Adds w cross point to them.
+void add_turn(const double* __restrict twist, Index count, Vector3d point, double* __restrict x,
+              double* __restrict y, double* __restrict z) {
+    for (Index k = 0; k < count; ++k) {
+        const double wx = twist[k];
+        const double wy = twist[k + count];
+        const double wz = twist[k + 2 * count];
+        x[k] += wy * point.z() - wz * point.y();
+        y[k] += wz * point.x() - wx * point.z();
+        z[k] += wx * point.y() - wy * point.x();
     }
-    /// Adds w cross point to column k.
-    void add_turn(Index k, const double* twist, const Vector3d& point) {
-        x[k] += twist[1] * point.z() - twist[2] * point.y();
-        y[k] += twist[2] * point.x() - twist[0] * point.z();
-        z[k] += twist[0] * point.y() - twist[1] * point.x();
-    }
-};
+}
+
+/// Calls one of them with the rows of a target, which may have no columns.
+template <typename Fill>
+void fill_rows(const Fill& fill, const TwistMatrix& twists, const Vector3d& point, Index target,
+               Eigen::Ref<RowMatrixXd> J) {
+    fill(twists.data(), twists.cols(), point, J.row(3 * target).data(),
+         J.row(3 * target + 1).data(), J.row(3 * target + 2).data());
+}
 
 std::vector<Vector3d> values_of(const std::vector<std::optional<Vector3d>>& positions) {
     std::vector<Vector3d> values;
@@ -109,8 +120,7 @@ void Targets::differentiate(const Isometry3d& world_from_flange, const TwistMatr
     J_unknowns.setZero();
     for (Index j = 0; j < count(); ++j) {
         const Vector3d x = world_from_flange * position(j, unknowns);
-        PointRows rows(J_positions_parameters, j);
-        for (Index k = 0; k < twists.cols(); ++k) rows.set(k, &twists(0, k), x);
+        fill_rows(set_point_rows, twists, x, j, J_positions_parameters);
         for (Index axis = 0; axis < 3 && J_unknowns.cols() > 0; ++axis) {
             const Index index = unknown_index(j, axis);
             if (index < 0) continue;
@@ -128,11 +138,8 @@ void Targets::differentiate_along(const Isometry3d& world_from_flange, const Twi
     for (Index j = 0; j < count(); ++j) {
         const Vector3d x = world_from_flange * position(j, unknowns);
         const Vector3d velocity = velocity_of(x, direction);
-        PointRows rows(J_rate, j);
-        for (Index k = 0; k < twists.cols(); ++k) {
-            rows.set(k, &twist_rates(0, k), x);
-            rows.add_turn(k, &twists(0, k), velocity);
-        }
+        fill_rows(set_point_rows, twist_rates, x, j, J_rate);
+        fill_rows(add_turn, twists, velocity, j, J_rate);
         for (Index axis = 0; axis < 3 && J_unknowns.cols() > 0; ++axis) {
             const Index index = unknown_index(j, axis);
             if (index < 0) continue;

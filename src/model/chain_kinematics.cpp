@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "../core/elementary.hpp"
 #include "posewise/model/chain.hpp"
 #include "posewise/model/gravity_torque.hpp"
 
@@ -12,14 +13,14 @@ struct RunningProduct {
     Matrix3d R;
     Vector3d p;
 
-    void append(Motion motion, Axis axis, double amount) {
+    [[gnu::always_inline]] void append(Motion motion, Axis axis, double amount) {
         const auto a = static_cast<Index>(axis);
         if (motion == Motion::Translation) {
             p += amount * R.col(a);
             return;
         }
-        const double c = std::cos(amount);
-        const double s = std::sin(amount);
+        if (amount == 0) return;  // as many have that stand for an error only
+        const auto [s, c] = detail::sine_and_cosine(amount);
         const Index i = (a + 1) % 3;
         const Index j = (a + 2) % 3;
         const Vector3d column = R.col(i);
@@ -28,7 +29,7 @@ struct RunningProduct {
     }
 
     /// How what follows moves by a further amount along or about the axis.
-    Twist twist(Motion motion, Axis axis) const {
+    [[gnu::always_inline]] Twist twist(Motion motion, Axis axis) const {
         const Vector3d direction = R.col(static_cast<Index>(axis));
         Twist result;
         if (motion == Motion::Rotation) {
@@ -70,8 +71,8 @@ FunctionValue evaluate(const JointFunction& function, const VectorXd& q) {
     if (function.torque != nullptr) return {function.torque->value(q), 0, 0};
     const double u = sum_of(function.phase, function.joints, q);
     if (function.shape == JointFunction::Shape::Linear) return {u, 1, 0};
-    const double sine = std::sin(u);
-    return {sine, std::cos(u), -sine};
+    const auto [sine, cosine] = detail::sine_and_cosine(u);
+    return {sine, cosine, -sine};
 }
 
 /// E's amount; `next` is the number of the element's first error parameter, then after its last.

@@ -3,6 +3,8 @@
 #include <Eigen/SVD>
 #include <cmath>
 
+#include "../core/elementary.hpp"
+
 namespace posewise {
 namespace {
 
@@ -13,16 +15,18 @@ void add_fixed(std::vector<Element>& elements, Motion motion, Index axis, double
 }  // namespace
 
 Matrix3d rotation_from_rpy(const Vector3d& rpy) {
-    return (Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) *
-            Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
-            Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX()))
-        .toRotationMatrix();
+    return rotation_from_vector(rpy.z() * Vector3d::UnitZ()) *
+           rotation_from_vector(rpy.y() * Vector3d::UnitY()) *
+           rotation_from_vector(rpy.x() * Vector3d::UnitX());
 }
 
 Matrix3d rotation_from_vector(const Vector3d& vector) {
     const double angle = vector.norm();
     if (angle == 0) return Matrix3d::Identity();
-    return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
+    const auto [sine, cosine] = detail::sine_and_cosine(angle);
+    const Vector3d axis = vector / angle;
+    return cosine * Matrix3d::Identity() + sine * cross_matrix(axis) +
+           (1 - cosine) * axis * axis.transpose();
 }
 
 Vector3d vector_from_rotation(const Matrix3d& R) {
@@ -44,9 +48,9 @@ Matrix3d rotation_vector_rate(const Vector3d& vector) {
     double a = 0.5 - angle * angle / 24;
     double b = 1.0 / 6 - angle * angle / 120;
     if (angle > 1e-3) {
-        const double half = std::sin(angle / 2);
+        const double half = detail::sine_and_cosine(angle / 2).sine;
         a = 2 * half * half / (angle * angle);
-        b = (angle - std::sin(angle)) / (angle * angle * angle);
+        b = (angle - detail::sine_and_cosine(angle).sine) / (angle * angle * angle);
     }
     return Matrix3d::Identity() + a * X + b * X * X;
 }
@@ -59,10 +63,11 @@ Matrix3d cross_matrix(const Vector3d& vector) {
 
 Vector3d rpy_from_rotation(const Matrix3d& R) {
     const double cos_pitch = std::hypot(R(2, 1), R(2, 2));
-    const double roll = cos_pitch > 1e-15 ? std::atan2(R(2, 1), R(2, 2)) : 0;
+    const double roll = cos_pitch > 1e-15 ? detail::arc_tangent(R(2, 1), R(2, 2)) : 0;
     // Near upright the roll is mostly rounding; a yaw of what is left makes up for it.
     const Matrix3d rest = R * Eigen::AngleAxisd(-roll, Vector3d::UnitX());
-    return {roll, std::atan2(-R(2, 0), cos_pitch), std::atan2(-rest(0, 1), rest(1, 1))};
+    return {roll, detail::arc_tangent(-R(2, 0), cos_pitch),
+            detail::arc_tangent(-rest(0, 1), rest(1, 1))};
 }
 
 std::vector<Element> origin_elements(const Vector3d& xyz, const Vector3d& rpy) {
@@ -83,8 +88,8 @@ std::vector<Element> joint_elements(Motion motion, const Vector3d& axis, Index j
     const Index j = (k + 2) % 3;
     const double sign = axis[k] < 0 ? -1 : 1;
     // Ri(alpha) Rj(beta) e_k = sin(beta) e_i - sin(alpha) cos(beta) e_j + cos(alpha) cos(beta) e_k.
-    const double alpha = std::atan2(-sign * axis[j], sign * axis[k]);
-    const double beta = std::atan2(sign * axis[i], std::hypot(axis[j], axis[k]));
+    const double alpha = detail::arc_tangent(-sign * axis[j], sign * axis[k]);
+    const double beta = detail::arc_tangent(sign * axis[i], std::hypot(axis[j], axis[k]));
     std::vector<Element> elements;
     add_fixed(elements, Motion::Rotation, i, alpha);
     add_fixed(elements, Motion::Rotation, j, beta);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "../core/elementary.hpp"
 #include "../model/halton.hpp"
 #include "cell_check.hpp"
 
@@ -28,7 +29,7 @@ double azimuth_clearance(const Interval& interval, double azimuth) {
 
 /// Angle between two vectors, exact also where it is small; 0 if one has no length.
 double angle_between(const Vector3d& a, const Vector3d& b) {
-    return std::atan2(a.cross(b).norm(), a.dot(b));
+    return detail::arc_tangent(a.cross(b).norm(), a.dot(b));
 }
 
 }  // namespace
@@ -165,8 +166,8 @@ void Constraints::check_sight(const Posture& posture, ConstraintReport& report) 
             sight.normals.empty() ? infinity
                                   : sight.acceptance_half_angle -
                                         angle_between(tracker_R_flange * sight.normals[j], -point);
-        const double azimuth = std::atan2(point.y(), point.x());
-        const double elevation = std::atan2(point.z(), point.head<2>().norm());
+        const double azimuth = detail::arc_tangent(point.y(), point.x());
+        const double elevation = detail::arc_tangent(point.z(), point.head<2>().norm());
         std::array<double, kinds> of_target{interval_clearance(sight.range, point.norm()),
                                             azimuth_clearance(sight.azimuth, azimuth),
                                             interval_clearance(sight.elevation, elevation),

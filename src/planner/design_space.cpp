@@ -38,6 +38,8 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
         space.lower[joint] = space.upper[joint] = value;
     }
     space.least_joint_distance = constraints->cell().least_joint_distance;
+    const Cell& cell = constraints->cell();
+    if (!cell.sight && cell.target_boxes.empty() && cell.links.empty()) return space;
     space.margin = [constraints](const VectorXd& q) { return constraints->margin(q); };
     return space;
 }

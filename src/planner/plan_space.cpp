@@ -18,6 +18,11 @@ namespace posewise::detail {
 namespace {
 
 constexpr Index test_pose_limit = 500;
+constexpr Index most_starts = 16;     // where it is not stated
+constexpr Index agreeing_starts = 5;  // end the search
+constexpr Index kicks_at_once = 4;    // whatever the number of threads
+constexpr Index draws_a_pose = 30;    // of the pool, the most sensitive of which replaces a pose
+constexpr double same = 1e-6;         // relative to the value
 
 /// What the starts share.
 struct Problem {
@@ -96,6 +101,62 @@ RowMatrixXd choose_from_part(const Problem& problem, Index start) {
                       Eigen::all);
 }
 
+/// Of a start: whether it was stopped on its way, or before it.
+bool is_cut_short(Ending ending, const StopSignal& stop) {
+    return ending == Ending::Interrupted || ending == Ending::TimeLimit ||
+           (ending == Ending::NotRun && stop.is_set());
+}
+
+Index start_limit(const PlanOptions& options) {
+    return options.starts > 0 ? options.starts : most_starts;
+}
+
+/// The best start alone is made sharper and finished.
+RefineOptions rough_refinement(const PlanOptions& options, double tolerance) {
+    RefineOptions refine;
+    refine.kink_rounds = 0;
+    refine.tolerance = tolerance;
+    refine.sharpness = {4, 16, 64};
+    refine.stop = options.stop;
+    return refine;
+}
+
+Refinement& best_of(std::vector<Refinement>& results) {
+    return *std::max_element(results.begin(), results.end(),
+                             [](const auto& a, const auto& b) { return a.value < b.value; });
+}
+
+/// How many ended at the best of them.
+Index count_at_best(const std::vector<Refinement>& results, const StopSignal& stop) {
+    double best = -std::numeric_limits<double>::infinity();
+    for (const Refinement& result : results) best = std::max(best, result.value);
+    return std::count_if(results.begin(), results.end(), [&](const Refinement& result) {
+        return !is_cut_short(result.ending, stop) && std::isfinite(result.value) &&
+               best - result.value <= same * std::abs(best);
+    });
+}
+
+/// Whether more starts would find nothing else; where their number is stated, never.
+bool is_agreed(const std::vector<Refinement>& results, const PlanOptions& options) {
+    return options.starts == 0 && count_at_best(results, options.stop) >= agreeing_starts;
+}
+
+/// Information of held and planned poses.
+MatrixXd information_of(const Problem& problem, const RowMatrixXd& plan) {
+    const DesignSpace& space = problem.space;
+    MatrixXd M = problem.options.held.information;
+    if (M.size() == 0) M.setZero(space.parameter_count, space.parameter_count);
+    for (Index i = 0; i < plan.rows(); ++i) M += space.information(plan.row(i).transpose());
+    return M;
+}
+
+bool keeps_distance(const DesignSpace& space, const RowMatrixXd& others,
+                    const Eigen::RowVectorXd& q) {
+    return others.rows() == 0 ||
+           (others.rowwise() - q).cwiseAbs().rowwise().maxCoeff().minCoeff() >=
+               space.least_joint_distance;
+}
+
 /// The choice from the whole pool, which becomes `pool_choice`, and the refinements of all starts,
 /// of which it is the first; those whose choice identifies too little are left empty. That choice
 /// is made beside the other starts, since by G it takes as long as many of them.
@@ -103,15 +164,11 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
                                       Choice& pool_choice) {
     std::atomic<double> pool_bound = std::numeric_limits<double>::infinity();  // until it is made
     const PlanOptions& options = problem.options;
-    std::vector<Refinement> results(static_cast<std::size_t>(options.starts));
+    const Index limit = start_limit(options);
+    std::vector<Refinement> results;
     std::exception_ptr first_error;
-    ProgressCounter counter(options.progress, options.starts);
-    RefineOptions refine;
-    refine.kink_rounds = 0;  // the best start alone is made sharper and finished
-    refine.tolerance = 1e-6;
-    refine.sharpness = {4, 16, 64};
-    refine.stop = options.stop;
-    for_each_index(options.starts, [&](Index start) {
+    ProgressCounter counter(options.progress, limit + 1);  // kicks are the last part
+    const auto run = [&](Index start) {
         if (start > 0 && options.stop.is_set()) return;
         if (start == 0) {
             pool_choice = determined(select_poses(problem.blocks, select));
@@ -122,7 +179,8 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
             const RowMatrixXd chosen =
                 start == 0 ? RowMatrixXd(problem.pool(pool_choice.poses, Eigen::all))
                            : choose_from_part(problem, start);
-            result = refine_poses(problem.space, problem.objective, options.held, chosen, refine);
+            result = refine_poses(problem.space, problem.objective, options.held, chosen,
+                                  rough_refinement(options, 1e-6));
         } catch (const InputError&) {
             if (start == 0) first_error = std::current_exception();  // others may do better
         }
@@ -132,7 +190,12 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
             progress.efficiency = efficiency(options.criterion, progress.value, progress.bound,
                                              interesting_count(problem));
         });
-    });
+    };
+    for (Index first = 0; first < limit && !is_agreed(results, options); first += agreeing_starts) {
+        const Index count = std::min(agreeing_starts, limit - first);
+        results.resize(static_cast<std::size_t>(first + count));
+        for_each_index(count, [&](Index i) { run(first + i); });
+    }
     const bool is_any_usable = std::any_of(results.begin(), results.end(), [](const auto& result) {
         return std::isfinite(result.value);
     });
@@ -140,24 +203,75 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
     return results;
 }
 
-/// Of a start: whether it was stopped on its way, or before it.
-bool is_cut_short(Ending ending, const StopSignal& stop) {
-    return ending == Ending::Interrupted || ending == Ending::TimeLimit ||
-           (ending == Ending::NotRun && stop.is_set());
+/// The plan with one to three poses redrawn: each the most sensitive of some of the pool that keep
+/// their distance.
+RowMatrixXd kick(const Problem& problem, const RowMatrixXd& plan, const MatrixXd& Z,
+                 RandomStream& random) {
+    RowMatrixXd kicked = plan;
+    const Index most = std::min<Index>(3, plan.rows());
+    for (const Index at : random.subset(plan.rows(), 1 + random.index(most))) {
+        double largest = -std::numeric_limits<double>::infinity();
+        RowMatrixXd others(plan.rows() - 1, plan.cols());
+        others << kicked.topRows(at), kicked.bottomRows(plan.rows() - 1 - at);
+        for (Index draw = 0; draw < draws_a_pose; ++draw) {
+            const Index drawn = random.index(problem.pool.rows());
+            const auto block = problem.blocks[drawn];
+            const double sensitivity = (block * Z).cwiseProduct(block).sum();
+            if (sensitivity <= largest) continue;
+            const auto q = problem.pool.row(drawn);
+            if (!keeps_distance(problem.space, others, q) ||
+                !keeps_distance(problem.space, problem.options.held.configurations, q)) {
+                continue;
+            }
+            largest = sensitivity;
+            kicked.row(at) = q;
+        }
+    }
+    return kicked;
 }
 
-/// The best refinement's plan and information.
-void report(const Problem& problem, Refinement best, PlannedPoses& planned) {
-    const DesignSpace& space = problem.space;
-    planned.value = best.value;
-    planned.configurations = std::move(best.configurations);
-    planned.information = problem.options.held.information;
-    if (planned.information.size() == 0) {
-        planned.information.setZero(space.parameter_count, space.parameter_count);
+/// Kicks without gain to give up after: less where a refinement takes long, as it does with many
+/// poses and parameters, with kinks of the criterion and along constraints.
+Index patience(const Problem& problem) {
+    const auto L = static_cast<double>(problem.space.parameter_count);
+    const double work = L * L * static_cast<double>(problem.options.pose_count);
+    const double each = std::clamp(1e5 / work, 0.25, 4.0);
+    const bool is_quick = is_smooth(problem.options.criterion) && !problem.space.margin;
+    return static_cast<Index>(each * (is_quick ? 1 : 0.25) *
+                              static_cast<double>(start_limit(problem.options)));
+}
+
+/// Kicks the best plan and refines it again, some kicks at once, of which the best is kept, until
+/// many in a row, the more the more starts there may be, have gained nothing.
+Refinement improve_with_kicks(const Problem& problem, Refinement best) {
+    const PlanOptions& options = problem.options;
+    const RefineOptions rough = rough_refinement(options, 1e-4);
+    Objective softened = problem.objective;
+    if (!is_smooth(options.criterion)) softened.sharpness = 16;
+    const Index most_failures = patience(problem);
+    std::uint64_t stream = static_cast<std::uint64_t>(start_limit(options));
+    for (Index failures = kicks_at_once; failures <= most_failures && !options.stop.is_set();
+         failures += kicks_at_once) {
+        const MatrixXd Z = gradient(softened, information_of(problem, best.configurations));
+        std::vector<Refinement> found(kicks_at_once);
+        for_each_index(kicks_at_once, [&](Index i) {
+            RandomStream random(options.seed, stream + static_cast<std::uint64_t>(i));
+            try {
+                found[static_cast<std::size_t>(i)] =
+                    refine_poses(problem.space, problem.objective, options.held,
+                                 kick(problem, best.configurations, Z, random), rough);
+            } catch (const InputError&) {
+                // It identifies too little.
+            }
+        });
+        stream += static_cast<std::uint64_t>(kicks_at_once);
+        Refinement& better = best_of(found);
+        if (better.value <= best.value) continue;
+        if (better.value > best.value + same * std::abs(best.value)) failures = 0;
+        best.value = better.value;
+        best.configurations = std::move(better.configurations);
     }
-    for (Index i = 0; i < planned.configurations.rows(); ++i) {
-        planned.information += space.information(planned.configurations.row(i).transpose());
-    }
+    return best;
 }
 
 }  // namespace
@@ -174,8 +288,8 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
         test_poses = default_test_poses(blocks);
         options.test_poses = &test_poses;
     }
-    if (options.starts < 1) {
-        throw InputError("starts is " + std::to_string(options.starts) + ", must be at least 1");
+    if (options.starts < 0) {
+        throw InputError("starts is " + std::to_string(options.starts) + ", must not be negative");
     }
     SelectOptions select = select_options(space, pool, options);
     const Problem problem{space, pool, blocks, options, make_objective(blocks, select)};
@@ -183,32 +297,30 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     PlannedPoses planned;
     planned.criterion = options.criterion;
     planned.seed = options.seed;
-    const auto results = refine_starts(problem, select, planned.pool_choice);
-    Refinement best =
-        *std::max_element(results.begin(), results.end(),
-                          [](const auto& a, const auto& b) { return a.value < b.value; });
+    auto results = refine_starts(problem, select, planned.pool_choice);
     for (const Refinement& result : results) {
         planned.endings.push_back(result.ending);
-        if (is_cut_short(result.ending, problem.options.stop)) continue;
-        ++planned.starts;
-        const double behind = best.value - result.value;
-        if (behind <= 1e-6 * std::abs(best.value)) ++planned.starts_at_best;
+        if (!is_cut_short(result.ending, options.stop)) ++planned.starts;
+    }
+    planned.starts_at_best = count_at_best(results, options.stop);
+    Refinement best = improve_with_kicks(problem, best_of(results));
+    if (options.progress) {
+        const Index parts = start_limit(options) + 1;
+        const double bound = planned.pool_choice.bound;
+        options.progress(
+            {parts, parts, best.value, bound,
+             efficiency(options.criterion, best.value, bound, interesting_count(problem))});
     }
     RefineOptions finish;
     finish.stop = problem.options.stop;
     finish.sharpness = {256};
     best = refine_poses(space, problem.objective, options.held, best.configurations, finish);
-    report(problem, std::move(best), planned);
+    planned.value = best.value;
+    planned.configurations = best.configurations;
+    planned.information = information_of(problem, best.configurations);
     check_all_is_seen(space, planned.information);
-
-    // The relaxed optimum over the pool, with the smoothing it was found by, bounds best.
-    const Certificate& certificate = planned.pool_choice.certificate;
-    Objective relaxed = problem.objective;
-    relaxed.sharpness = certificate.sharpness;
-    planned.searched_bound =
-        search_bound(space, relaxed, options.held, options.pose_count,
-                     certificate.M.size() > 0 ? certificate.M : planned.information, pool,
-                     options.bound_iterations, problem.options.stop);
+    planned.searched_bound = search_bound(space, problem.objective, select, best.configurations,
+                                          pool, blocks, options.bound_iterations, options.stop);
     planned.efficiency = efficiency(options.criterion, planned.value, planned.searched_bound,
                                     interesting_count(problem));
     planned.is_interrupted = problem.options.stop.is_set();

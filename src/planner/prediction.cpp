@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/elementary.hpp"
 #include "../core/statistics.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
@@ -43,12 +44,12 @@ PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_err
         const double p = std::clamp(random.uniform(), 1e-12, 1 - 1e-12);
         const double square = detail::chi_squared_quantile(p, accuracy.degrees_of_freedom) /
                               accuracy.degrees_of_freedom;
-        const double model = std::pow(model_error_factor, random.normal());
+        const double model = detail::power(model_error_factor, random.normal());
         double growth = 1;
         if (accuracy.prior_share) {
-            const double sizes = std::pow(error_size_factor, random.normal());
-            growth = std::pow(sizes, *accuracy.prior_share) *
-                     std::pow(model_error > 0 ? model : 1, 1 - *accuracy.prior_share);
+            const double sizes = detail::power(error_size_factor, random.normal());
+            growth = detail::power(sizes, *accuracy.prior_share) *
+                     detail::power(model_error > 0 ? model : 1, 1 - *accuracy.prior_share);
         }
         one = total(square * growth * growth, model_error * model);
     }

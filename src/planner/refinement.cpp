@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/elementary.hpp"
 #include "../core/nlopt_adapter.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 /// What is maximised: D as it is, the others' logarithm, so that differences are relative.
 double merit(const Objective& objective, const MatrixXd& M) {
     const double value = evaluate(objective, M);
-    return is_logarithm(objective.criterion) || !std::isfinite(value) ? value : std::log(value);
+    return is_logarithm(objective.criterion) || !std::isfinite(value) ? value : logarithm(value);
 }
 
 /// The merit and the symmetric Z with d merit = trace(Z dM).
@@ -26,7 +27,7 @@ SlopedMerit sloped_merit(const Objective& objective, const MatrixXd& M) {
     merit.Z = gradient(objective, M, &merit.value);
     if (is_logarithm(objective.criterion) || !std::isfinite(merit.value)) return merit;
     merit.Z /= merit.value;
-    merit.value = std::log(merit.value);
+    merit.value = logarithm(merit.value);
     return merit;
 }
 
@@ -215,8 +216,9 @@ class Refiner {
 
 /// Values of the criterion for a merit.
 double value_of(const Objective& objective, double merit_value) {
-    return is_logarithm(objective.criterion) || !std::isfinite(merit_value) ? merit_value
-                                                                            : std::exp(merit_value);
+    return is_logarithm(objective.criterion) || !std::isfinite(merit_value)
+               ? merit_value
+               : exponential(merit_value);
 }
 
 void check_shape(const DesignSpace& space, const RowMatrixXd& start) {

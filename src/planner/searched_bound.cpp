@@ -4,36 +4,56 @@
 #include <cmath>
 #include <numeric>
 
+#include "../core/decompositions.hpp"
 #include "../core/nlopt_adapter.hpp"
 #include "../core/parallel.hpp"
+#include "../core/sensitivities.hpp"
 #include "../criteria/information_function.hpp"
+#include "../selection/relaxation.hpp"
 
 namespace posewise::detail {
 namespace {
 
-constexpr Index start_limit = 4000;  // looked at
-constexpr Index search_count = 12;   // followed uphill
+constexpr Index search_count = 24;  // followed uphill, of the pool and of the poses met
+constexpr double apart = 0.5;       // rad or m in some joint, at least
 
-double sensitivity(const DesignSpace& space, const VectorXd& q, const MatrixXd& Z) {
-    return Z.cwiseProduct(space.information(q)).sum();
+/// Poses met, with blocks that tell what the space does.
+struct Support {
+    RowMatrixXd poses;
+    Blocks blocks;
+
+    void add(const DesignSpace& space, const VectorXd& q) {
+        const auto eigen = eigen_decomposition(space.information(q));
+        const VectorXd& lambda = eigen.eigenvalues();
+        const Index rank = (lambda.array() > 1e-13 * lambda.maxCoeff()).count();
+        poses.conservativeResize(poses.rows() + 1, q.size());
+        poses.bottomRows(1) = q.transpose();
+        blocks.first_row.push_back(blocks.first_row.back() + rank);
+        blocks.matrix.conservativeResize(blocks.first_row.back(), lambda.size());
+        blocks.matrix.bottomRows(rank) = lambda.tail(rank).cwiseSqrt().asDiagonal() *
+                                         eigen.eigenvectors().rightCols(rank).transpose();
+    }
+};
+
+/// Whether q is so far from each of the poses in some joint.
+bool is_apart(const RowMatrixXd& poses, const Eigen::RowVectorXd& q, double distance) {
+    return poses.rows() == 0 ||
+           (poses.rowwise() - q).cwiseAbs().rowwise().maxCoeff().minCoeff() >= distance;
 }
 
-/// The starts of largest sensitivity, largest first.
-std::vector<Index> most_sensitive(const DesignSpace& space, const MatrixXd& Z,
-                                  const RowMatrixXd& starts) {
-    const Index count = std::min(starts.rows(), start_limit);
-    VectorXd values(count);
-    for_each_range(count, 64, [&](Index first, Index last) {
-        for (Index i = first; i < last; ++i) {
-            values[i] = sensitivity(space, starts.row(i).transpose(), Z);
-        }
-    });
-    std::vector<Index> order(static_cast<std::size_t>(count));
+/// The most sensitive poses that are apart, after those in `chosen`.
+void choose_starts(const RowMatrixXd& poses, const VectorXd& sensitivity, RowMatrixXd& chosen) {
+    std::vector<Index> order(static_cast<std::size_t>(poses.rows()));
     std::iota(order.begin(), order.end(), Index{0});
     std::stable_sort(order.begin(), order.end(),
-                     [&](Index a, Index b) { return values[a] > values[b]; });
-    order.resize(static_cast<std::size_t>(std::min(count, search_count)));
-    return order;
+                     [&](Index a, Index b) { return sensitivity[a] > sensitivity[b]; });
+    const Index enough = chosen.rows() + search_count;
+    for (const Index i : order) {
+        if (chosen.rows() == enough) return;
+        if (!is_apart(chosen, poses.row(i), apart)) continue;
+        chosen.conservativeResize(chosen.rows() + 1, poses.cols());
+        chosen.bottomRows(1) = poses.row(i);
+    }
 }
 
 /// Uphill from one start; where that leaves the feasible, along the constraint.
@@ -45,7 +65,7 @@ Maximum climb(const DesignSpace& space, const MatrixXd& Z, const VectorXd& start
     problem.margin = space.margin;
     problem.value = [&](const VectorXd& q, VectorXd* slope) {
         if (slope != nullptr) *slope = space.information_gradient(q, Z);
-        return sensitivity(space, q, Z);
+        return Z.cwiseProduct(space.information(q)).sum();
     };
     MaximiseOptions options;
     options.stop = stop;
@@ -58,34 +78,57 @@ Maximum climb(const DesignSpace& space, const MatrixXd& Z, const VectorXd& start
     return maximise(problem, best.x, options);
 }
 
+/// The maxima met by searches from the most sensitive poses.
+std::vector<Maximum> search_maxima(const DesignSpace& space, const MatrixXd& Z,
+                                   const RowMatrixXd& pool, const Blocks& blocks,
+                                   const Support& support, const StopSignal& stop) {
+    RowMatrixXd starts(0, pool.cols());
+    choose_starts(support.poses, sensitivities(support.blocks, Z), starts);
+    choose_starts(pool, sensitivities(blocks, Z), starts);
+    std::vector<Maximum> maxima(static_cast<std::size_t>(starts.rows()));
+    for_each_index(starts.rows(), [&](Index i) {
+        maxima[static_cast<std::size_t>(i)] = climb(space, Z, starts.row(i).transpose(), stop);
+    });
+    return maxima;
+}
+
 }  // namespace
 
-double search_bound(const DesignSpace& space, const Objective& objective, const HeldPoses& held,
-                    Index pose_count, const MatrixXd& M, const RowMatrixXd& starts,
-                    Index iterations, const StopSignal& stop) {
+double search_bound(const DesignSpace& space, const Objective& objective,
+                    const SelectOptions& options, const RowMatrixXd& plan, const RowMatrixXd& pool,
+                    const Blocks& blocks, Index iterations, const StopSignal& stop) {
     double bound = std::numeric_limits<double>::infinity();
     if (!has_information_function(objective.criterion)) return bound;
-    const auto K = static_cast<double>(pose_count);
-    MatrixXd H = held.information;
-    if (H.size() == 0) H.setZero(M.rows(), M.cols());
-    MatrixXd relaxed = M;
+    SelectOptions anywhere = options;  // a pose as often as may be: others are arbitrarily near
+    anywhere.repeat_limit = options.pose_count;
+    anywhere.excluded.clear();
+    anywhere.positions.resize(0, 0);
+    anywhere.least_distance = 0;
+    anywhere.gap = 1e-6;
+    anywhere.stop = stop;
+    const auto K = static_cast<double>(options.pose_count);
+    if (space.margin) iterations = (iterations + 3) / 4;  // ten times as long along constraints
+    Support support;
+    for (Index i = 0; i < plan.rows(); ++i) support.add(space, plan.row(i).transpose());
     for (Index t = 0; t < iterations && !stop.is_set(); ++t) {
-        if (!std::isfinite(evaluate(objective, relaxed))) break;
-        const MatrixXd Z = supporting_matrix(objective, relaxed);
-        const auto order = most_sensitive(space, Z, starts);
-        std::vector<Maximum> maxima(order.size());
-        for_each_index(static_cast<Index>(order.size()), [&](Index i) {
-            const auto s = static_cast<std::size_t>(i);
-            maxima[s] = climb(space, Z, starts.row(order[s]).transpose(), stop);
-        });
-        if (maxima.empty() || stop.is_set()) break;
-        const auto best =
-            std::max_element(maxima.begin(), maxima.end(),
-                             [](const Maximum& a, const Maximum& b) { return a.value < b.value; });
-        const double phi = Z.cwiseProduct(H).sum() + K * best->value;
-        bound = std::min(bound, value_of_information(objective, phi, M.rows()));
-        const double step = 1 / (K + static_cast<double>(t) + 1);
-        relaxed += step * (H + K * space.information(best->x) - relaxed);
+        const Certificate relaxed = relax(objective, support.blocks, anywhere).certificate;
+        Objective softened = objective;
+        softened.sharpness = relaxed.sharpness;
+        if (!std::isfinite(evaluate(softened, relaxed.M))) break;
+        const MatrixXd Z = supporting_matrix(softened, relaxed.M);
+        const double inside = sensitivities(support.blocks, Z).maxCoeff();
+        const std::vector<Maximum> maxima = search_maxima(space, Z, pool, blocks, support, stop);
+        if (stop.is_set()) break;
+        const double held = options.held.size() > 0 ? Z.cwiseProduct(options.held).sum() : 0;
+        double largest = inside;
+        for (const Maximum& maximum : maxima) {
+            largest = std::max(largest, maximum.value);
+            const bool is_new = maximum.value > (1 + 1e-6) * inside &&
+                                is_apart(support.poses, maximum.x.transpose(), 1e-4);
+            if (is_new) support.add(space, maximum.x);
+        }
+        bound = std::min(bound, value_of_information(objective, held + K * largest, Z.rows()));
+        if (largest <= (1 + 1e-5) * inside) break;
     }
     return bound;
 }

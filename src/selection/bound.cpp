@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/elementary.hpp"
 #include "../core/sensitivities.hpp"
 #include "../criteria/information_function.hpp"
 #include "objective_bound.hpp"
@@ -68,7 +69,7 @@ double upper_bound(const Blocks& candidates, const SelectOptions& options,
 double efficiency(Criterion criterion, double value, double bound, Index parameter_count) {
     if (!std::isfinite(value) || !std::isfinite(bound)) return 0;
     const double ratio = is_logarithm(criterion)
-                             ? std::exp((value - bound) / static_cast<double>(parameter_count))
+                             ? exponential((value - bound) / static_cast<double>(parameter_count))
                              : value / bound;
     return std::clamp(ratio, 0.0, 1.0);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "../core/elementary.hpp"
 #include "../core/parallel.hpp"
 #include "explorer.hpp"
 #include "objective_bound.hpp"
@@ -61,7 +62,7 @@ class Tree {
     /// Of all choices.
     double part_waiting() const {
         double part = 0;
-        for (const Part& one : waiting_) part += std::exp(log_size(setting_, one) - all_);
+        for (const Part& one : waiting_) part += exponential(log_size(setting_, one) - all_);
         return part;
     }
 

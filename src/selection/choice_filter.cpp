@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "../core/decompositions.hpp"
+#include "../core/elementary.hpp"
 #include "../core/simd.hpp"
 #include "../criteria/prediction.hpp"
 
@@ -308,7 +309,7 @@ std::array<bool, lane_width> ChoiceFilter::may_reach(double value, Batch& batch)
     for (std::size_t lane = 0; lane < static_cast<std::size_t>(batch.count); ++lane) {
         if (!(least.of[lane] > 0)) continue;
         for (Index i = nuisance_; test_ == Test::Determinant && i < L; ++i) {
-            sum.of[lane] += std::log(batch.M[static_cast<std::size_t>(packed(i, i))].of[lane]);
+            sum.of[lane] += logarithm(batch.M[static_cast<std::size_t>(packed(i, i))].of[lane]);
         }
         if (test_ == Test::Nuclear) {
             // Of x = 1 / s by Hoelder: sum x >= (sum x^2)^(3/2) / (sum x^4)^(1/2).

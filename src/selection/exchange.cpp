@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 
+#include "../core/elementary.hpp"
 #include "../core/parallel.hpp"
 #include "../core/progress_counter.hpp"
 #include "../core/sensitivities.hpp"
@@ -84,7 +85,7 @@ std::optional<ScoredPoses> make_random_start(const SearchProblem& problem,
                          static_cast<double>(problem.candidates.count());
     // Keys log(u) / w order a draw without replacement [Efraimidis, Spirakis 2006].
     VectorXd keys = relaxation.weights;
-    for (double& key : keys) key = std::log(1 - random.uniform()) / std::max(key, least);
+    for (double& key : keys) key = detail::logarithm(1 - random.uniform()) / std::max(key, least);
     std::vector<Index> poses = take_in_order(problem, by_decreasing(keys));
     if (static_cast<Index>(poses.size()) < problem.options.pose_count) return std::nullopt;
     return make_choice(problem, std::move(poses));

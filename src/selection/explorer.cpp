@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/elementary.hpp"
 #include "../criteria/information_function.hpp"
 #include "projected_gradient.hpp"
 
@@ -20,7 +21,7 @@ constexpr Index most_steps = 60;
 
 /// The logarithm of a ratio of criterion values; of D that of a parameter.
 double log_ratio(const Objective& objective, double a, double b, Index parameter_count) {
-    if (!is_logarithm(objective.criterion)) return std::log(a / b);
+    if (!is_logarithm(objective.criterion)) return logarithm(a / b);
     return (a - b) / static_cast<double>(interest_count(objective, parameter_count));
 }
 

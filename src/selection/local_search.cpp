@@ -135,7 +135,8 @@ double ruggedness(const SearchProblem& problem) {
     const double poses = static_cast<double>(problem.options.pose_count);
     const double needed = static_cast<double>(problem.candidates.parameter_count()) /
                           (poses * mean_rows(problem.candidates));
-    return 1 + 9 * std::pow(std::min(1.0, needed), 4);
+    const double square = std::min(1.0, needed * needed);
+    return 1 + 9 * square * square;
 }
 
 bool is_better(const Score& a, const Score& b) {

@@ -5,6 +5,7 @@
 
 #include "../core/decompositions.hpp"
 #include "../criteria/information_function.hpp"
+#include "../criteria/spectral.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -34,8 +35,8 @@ class ExtremePrices {
         Eigen::ArrayXd weak = VectorXd::Unit(lambda.size(), 0);
         Eigen::ArrayXd strong = VectorXd::Unit(lambda.size(), last);
         if (std::isfinite(p)) {
-            weak = (lambda[0] / lambda.array()).pow(p + 1);
-            strong = (lambda.array() / lambda[last]).pow(p - 1);
+            weak = powers(lambda[0] / lambda.array(), p + 1);
+            strong = powers(lambda.array() / lambda[last], p - 1);
         }
         const MatrixXd Z = weighted(weak);
         const MatrixXd Y = weighted(strong);

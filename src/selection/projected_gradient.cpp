@@ -5,6 +5,7 @@
 #include <deque>
 #include <numeric>
 
+#include "../core/elementary.hpp"
 #include "../criteria/information_function.hpp"
 
 namespace posewise::detail {
@@ -56,7 +57,7 @@ VectorXd project_on_capped_simplex(const VectorXd& point, const VectorXd& upper,
 
 double log_value(const Objective& objective, const MatrixXd& M) {
     const double value = evaluate(objective, M);
-    if (!is_logarithm(objective.criterion)) return value > 0 ? std::log(value) : value;
+    if (!is_logarithm(objective.criterion)) return value > 0 ? logarithm(value) : value;
     return value / static_cast<double>(interest_count(objective, M.rows()));
 }
 

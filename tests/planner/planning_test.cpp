@@ -146,9 +146,9 @@ TEST(PlanPoses, TellsItsProgressAndPassesOnWhatTheCallbackThrows) {
     std::vector<Progress> told;
     options.progress = [&](const Progress& progress) { told.push_back(progress); };
     const PlannedPoses plan = plan_poses(scene.space, scene.pool, scene.blocks, options);
-    ASSERT_EQ(told.size(), 3U);
-    EXPECT_EQ(told.back().done, 3);
-    EXPECT_EQ(told.back().total, 3);
+    ASSERT_EQ(told.size(), 4U);  // the last of the kicks
+    EXPECT_EQ(told.back().done, 4);
+    EXPECT_EQ(told.back().total, 4);
     EXPECT_NEAR(told.back().value, plan.value, 1e-3);
     EXPECT_EQ(told.back().bound, plan.pool_choice.bound);
 
@@ -203,6 +203,57 @@ TEST(PlanPoses, FocusOnTheRobotLeavesBaseAndTargetsAside) {
     EXPECT_GT(refined.value, evaluate(objective, whole.information) + 0.01);
 }
 
+/// A line measured at two places of [0, 1]: both ends are best, M = [2 1; 1 1].
+TEST(PlanPoses, EndsWhenFiveStartsAgreeAndBoundsWhatIsBest) {
+    DesignSpace space;
+    space.lower = VectorXd::Zero(1);
+    space.upper = VectorXd::Ones(1);
+    space.parameter_count = 2;
+    space.information = [](const VectorXd& q) -> MatrixXd {
+        const Eigen::Vector2d row(1, q[0]);
+        return row * row.transpose();
+    };
+    space.information_gradient = [](const VectorXd& q, const MatrixXd& Z) -> VectorXd {
+        return VectorXd::Constant(1, 2 * (Z(0, 1) + q[0] * Z(1, 1)));
+    };
+    RowMatrixXd pool(40, 1);
+    RowMatrixXd rows(40, 2);
+    for (Index i = 0; i < 40; ++i) {
+        pool(i, 0) = 0.3 + 0.01 * static_cast<double>(i);
+        rows.row(i) << 1, pool(i, 0);
+    }
+    PlanOptions options;
+    options.criterion = Criterion::D;
+    options.pose_count = 2;
+    const PlannedPoses plan = plan_poses(space, pool, make_equal_blocks(rows, 1), options);
+    EXPECT_EQ(plan.starts, 5);
+    EXPECT_EQ(plan.starts_at_best, 5);
+    EXPECT_NEAR(plan.value, 0, 1e-9);
+    EXPECT_NEAR(plan.searched_bound, 0, 1e-4);
+    EXPECT_LT(plan.pool_choice.bound, -0.5);
+    options.starts = 7;
+    EXPECT_EQ(plan_poses(space, pool, make_equal_blocks(rows, 1), options).starts, 7);
+}
+
+/// Without kicks the best of 16 starts has 303.455 from a pool of 20 000.
+TEST(PlanPoses, KicksReachWhatStartsDoNot) {
+    const Scene scene(1000);
+    PlanOptions options = scene.options(Criterion::D, 24, 6);
+    options.bound_iterations = 0;
+    EXPECT_GT(plan_poses(scene.space, scene.pool, scene.blocks, options).value, 303.46);
+}
+
+TEST(PlanPoses, TheSearchedBoundDoesNotDependOnThePool) {
+    std::vector<PlannedPoses> plans;
+    for (const Index size : {300, 3000}) {
+        const Scene scene(size);
+        plans.push_back(
+            plan_poses(scene.space, scene.pool, scene.blocks, scene.options(Criterion::D, 24, 1)));
+    }
+    EXPECT_GT(std::abs(plans[0].pool_choice.bound - plans[1].pool_choice.bound), 0.3);
+    EXPECT_NEAR(plans[0].searched_bound, plans[1].searched_bound, 0.05);
+}
+
 /// A parameter that poses hardly see passes as regular.
 TEST(PlanPoses, RefusesAPlanThatHardlySeesADirection) {
     Scene scene(300, 5);
@@ -234,7 +285,7 @@ TEST(PlanPoses, RefusesAPlanThatHardlySeesADirection) {
 
 TEST(PlanPoses, RefusesWhatItCannotPlan) {
     const Scene scene(100, 5);
-    PlanOptions options = scene.options(Criterion::D, 10, 0);
+    PlanOptions options = scene.options(Criterion::D, 10, -1);
     EXPECT_THROW(plan_poses(scene.space, scene.pool, scene.blocks, options), InputError);
     options.starts = 2;
     EXPECT_THROW(plan_poses(scene.space, fanuc_pool(7), scene.blocks, options), InputError);

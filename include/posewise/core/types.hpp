@@ -20,7 +20,8 @@ using RowMatrixXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen:
 /// x of the body moves by v + w cross x.
 using Twist = Eigen::Matrix<double, 6, 1>;
 
-/// Columns are twists, see Chain::differentiate().
-using TwistMatrix = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+/// Columns are twists, see Chain::differentiate(). By rows, so that loops over columns are
+/// vectors'.
+using TwistMatrix = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
 
 }  // namespace posewise

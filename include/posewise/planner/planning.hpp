@@ -24,12 +24,14 @@ struct PlanOptions {
     HeldPoses held;             ///< a prior, poses measured, or both
     Index held_pose_count = 0;  ///< poses measured; m of O1 is K more
 
-    Index starts = 16;           ///< plans that are refined; the first is the best of the pool
-    Index bound_iterations = 8;  ///< of searched_bound; 0: no bound over the continuous region
-    std::uint64_t seed = 1;      ///< start i draws from stream (seed, i)
-    StopSignal stop{};           ///< ends the search with the best so far
-    ProgressCallback
-        progress{};  ///< of the starts; its efficiency is against the bound over the pool
+    /// Plans that are refined; the first is the best of the pool. 0: until five of them agree, at
+    /// most 16. The more there may be, the more kicks of the best it takes to give up.
+    Index starts = 0;
+    Index bound_iterations = 30;  ///< of searched_bound at most; 0: no bound beyond the pool
+    std::uint64_t seed = 1;       ///< start i draws from stream (seed, i)
+    StopSignal stop{};            ///< ends the search with the best so far
+    ProgressCallback progress{};  ///< of the starts, then of the kicks; its efficiency is against
+                                  ///< the bound over the pool
 };
 
 /// A plan over continuous configurations.
@@ -46,15 +48,16 @@ struct PlannedPoses {
     double efficiency = 0;
     std::vector<Ending> endings;  ///< of each start; NotRun: it identified too little
     Index starts = 0;             ///< how many ended; a stop cuts others short
-    Index starts_at_best = 0;     ///< how many of them ended at the best met, to 1e-6 of it
+    Index starts_at_best = 0;     ///< how many of them ended at the best of them, to 1e-6 of it
     bool is_interrupted = false;  ///< stopped early by flag or time: the best so far
     std::uint64_t seed = 0;
 };
 
 /// K continuous poses in a cell, at nominal parameters: starts from selection on the pool (the
-/// first on all of it, the others on random parts), each refined continuously on one thread, the
-/// best finished. The result does not depend on the number of threads. Throws InputError as
-/// select_poses(), or if the pool has too few poses.
+/// first on all of it, the others on random parts), each refined continuously on one thread; the
+/// best is kicked (one to three poses redrawn from the pool, then all refined again) until kicks
+/// gain nothing, and finished. The result does not depend on the number of threads. Throws
+/// InputError as select_poses(), or if the pool has too few poses.
 PlannedPoses plan_poses(const Campaign& campaign, const Constraints& constraints, const Pool& pool,
                         double repeats, const PlanOptions& options);
 

@@ -12,7 +12,6 @@ struct PlanningOptions : PlanRequest {
     explicit PlanningOptions(Index poses = 0) {
         pose_count = poses;
         criterion = Criterion::V;
-        starts = 16;
         repeats = 1;
     }
     std::optional<Measurements> held;  ///< measured already: their information counts

@@ -1,0 +1,159 @@
+#include "elementary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace posewise::detail {
+namespace {
+
+// Approximations and constants of fdlibm [Sun Microsystems 1993], "freely distributable".
+
+constexpr double to_integer = 0x1.8p52;  // added and subtracted it rounds to the nearest one
+
+/// x + rest, at most pi/4 in magnitude, rest far below x.
+struct Reduced {
+    double x, rest;
+};
+
+double sine_near_zero(Reduced r) {
+    const double z = r.x * r.x;
+    const double v = z * r.x;
+    const double p = 8.33333333332248946124e-03 +
+                     z * (-1.98412698298579493134e-04 +
+                          z * (2.75573137070700676789e-06 +
+                               z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
+    return r.x - ((z * (0.5 * r.rest - v * p) - r.rest) - v * -1.66666666666666324348e-01);
+}
+
+double cosine_near_zero(Reduced r) {
+    const double z = r.x * r.x;
+    const double p =
+        z * (4.16666666666666019037e-02 +
+             z * (-1.38888888888741095749e-03 +
+                  z * (2.48015872894767294178e-05 +
+                       z * (-2.75573143513906633035e-07 +
+                            z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
+    const double half = 0.5 * z;
+    const double w = 1 - half;
+    return w + (((1 - w) - half) + (z * p - r.x * r.rest));
+}
+
+/// x less n pi/2, pi/2 being the sum of three parts, so that no digit of it cancels.
+Reduced less_right_angles(double x, double n) {
+    constexpr double part1 = 1.57079632673412561417e+00;
+    constexpr double part2 = 6.07710050630396597660e-11;
+    constexpr double rest2 = 2.02226624879595063154e-21;
+    const double first = x - n * part1;
+    const double second = n * part2;
+    const double difference = first - second;
+    const double rest = n * rest2 - ((first - difference) - second);
+    const double result = difference - rest;
+    return {result, (difference - result) - rest};
+}
+
+double arc_tangent_near_zero(double x) {
+    constexpr double a[11] = {
+        3.33333333333329318027e-01,  -1.99999999998764832476e-01, 1.42857142725034663711e-01,
+        -1.11111104054623557880e-01, 9.09088713343650656196e-02,  -7.69187620504482999495e-02,
+        6.66107313738753120669e-02,  -5.83357013379057348645e-02, 4.97687799461593236017e-02,
+        -3.65315727442169155270e-02, 1.62858201153657823623e-02};
+    const double z = x * x;
+    double p = a[10];
+    for (int k = 9; k >= 0; --k) p = a[k] + z * p;
+    return x * z * p;  // what it is less than x
+}
+
+/// Of x from 0 to 1.
+double arc_tangent_to_one(double x) {
+    if (x < 0.4375) return x - arc_tangent_near_zero(x);
+    // atan(x) = atan(c) + atan((x - c) / (1 + c x)), c = 1/2 or 1.
+    const bool is_below = x < 0.6875;
+    const double high = is_below ? 4.63647609000806093515e-01 : 7.85398163397448278999e-01;
+    const double low = is_below ? 2.26987774529616870924e-17 : 3.06161699786838301793e-17;
+    const double rest = is_below ? (2 * x - 1) / (2 + x) : (x - 1) / (x + 1);
+    return high - ((arc_tangent_near_zero(rest) - low) - rest);
+}
+
+}  // namespace
+
+SineCosine sine_and_cosine(double x) {
+    // Beyond, n times the first part of pi/2 is no longer exact; no joint turns so far.
+    if (!(std::abs(x) < 1e6)) return {std::sin(x), std::cos(x)};
+    const double n = (x * (2 * std::numbers::inv_pi) + to_integer) - to_integer;
+    const Reduced r = n == 0 ? Reduced{x, 0} : less_right_angles(x, n);
+    const double s = sine_near_zero(r);
+    const double c = cosine_near_zero(r);
+    switch (static_cast<long>(n) & 3) {
+        case 0:
+            return {s, c};
+        case 1:
+            return {c, -s};
+        case 2:
+            return {-s, -c};
+        default:
+            return {-c, s};
+    }
+}
+
+double logarithm(double x) {
+    if (!(x > 0) || std::isinf(x)) return std::log(x);
+    int k = 0;
+    double m = std::frexp(x, &k);  // in [1/2, 1)
+    if (m < std::numbers::sqrt2 / 2) {
+        m *= 2;
+        --k;
+    }
+    const double f = m - 1;
+    const double s = f / (2 + f);
+    const double z = s * s;
+    const double w = z * z;
+    const double even = w * (3.999999999940941908e-01 +
+                             w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01));
+    const double odd = z * (6.666666666666735130e-01 +
+                            w * (2.857142874366239149e-01 +
+                                 w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
+    const double half = 0.5 * f * f;
+    const double high = k * 6.93147180369123816490e-01;
+    const double low = k * 1.90821492927058770002e-10;
+    return high - ((half - (s * (half + even + odd) + low)) - f);
+}
+
+double exponential(double x) {
+    if (!(std::abs(x) < 708)) return std::exp(x);
+    const double k = (x * std::numbers::log2e + to_integer) - to_integer;
+    const double high = x - k * 6.93147180369123816490e-01;
+    const double low = k * 1.90821492927058770002e-10;
+    const double r = high - low;
+    const double t = r * r;
+    const double c =
+        r - t * (1.66666666666666019037e-01 +
+                 t * (-2.77777777770155933842e-03 +
+                      t * (6.61375632143793436117e-05 +
+                           t * (-1.65339022054652515390e-06 + t * 4.13813679705723846039e-08))));
+    return std::ldexp(1 - ((low - r * c / (2 - c)) - high), static_cast<int>(k));
+}
+
+double power(double x, double y) {
+    if (y == 0) return 1;
+    if (x == 0) return y > 0 ? 0 : std::numeric_limits<double>::infinity();
+    return exponential(y * logarithm(x));
+}
+
+double arc_tangent(double y, double x) {
+    const double rise = std::abs(y);
+    const double run = std::abs(x);
+    // Where both are 0 (signs of zeros count) or one is no number or infinite.
+    if (!(std::max(rise, run) > 0) || !std::isfinite(rise) || !std::isfinite(run)) {
+        return std::atan2(y, x);
+    }
+    constexpr double right = std::numbers::pi / 2;
+    constexpr double right_rest = 6.12323399573676603587e-17;
+    double angle = rise <= run ? arc_tangent_to_one(rise / run)
+                               : right - (arc_tangent_to_one(run / rise) - right_rest);
+    if (std::signbit(x)) angle = 2 * right - (angle - 2 * right_rest);
+    return std::copysign(angle, y);
+}
+
+}  // namespace posewise::detail
