@@ -67,7 +67,7 @@ Neighbourhood::Neighbourhood(const Objective& objective, const Blocks& candidate
         case Criterion::O5:
             break;
         default:
-            ritz_.emplace(objective, candidates, shortlist.members);
+            ritz_.emplace(objective, candidates, shortlist);
     }
 }
 
@@ -177,17 +177,19 @@ Index Neighbourhood::best_by_eigenvalues(Index removed, double value, const Occu
     const auto B = candidates_[removed];
     const MatrixXd remaining = M_ - B.transpose() * B;
     ritz_->remove(removed);
+    ritz_->ask(value);
     Index best = -1;
-    double best_value = value;
     const auto size = static_cast<Index>(shortlist_.members.size());
     for (Index position = 0; position < size && !stop_.is_set(); ++position) {
-        if (!ritz_->may_exceed(position, best_value)) continue;
-        if (!is_allowed(position, removed, occupancy)) continue;
+        if (!ritz_->may_exceed(position) || !is_allowed(position, removed, occupancy)) continue;
         const auto added = candidates_[shortlist_.members[static_cast<std::size_t>(position)]];
-        const double exchanged = evaluate(objective_, remaining + added.transpose() * added);
-        if (!(exchanged > best_value)) continue;
+        const MatrixXd M = remaining + added.transpose() * added;
+        if (!ritz_->may_exceed(position, M)) continue;
+        const double exchanged = evaluate(objective_, M);
+        if (!(exchanged > value)) continue;
         best = position;
-        best_value = exchanged;
+        value = exchanged;
+        ritz_->ask(value);
     }
     return best;
 }

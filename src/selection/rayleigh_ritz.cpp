@@ -5,54 +5,188 @@
 #include <cmath>
 
 #include "../core/decompositions.hpp"
+#include "../core/simd.hpp"
 #include "../criteria/information_function.hpp"
 
 namespace posewise::detail {
+namespace {
+
+constexpr double margin =
+    1e-9;  // relative, far above rounding, so that nothing better is ruled out
+
+constexpr int packed(int a, int b) { return a * (a + 1) / 2 + b; }
+
+/// For each candidate the lower triangle of (B U)^T B U, and |B v|^2; U and v are the columns of a
+/// row-major matrix.
+template <int columns>
+struct Compress {
+    static constexpr int triangle = columns * (columns - 1) / 2;
+    const LaneBlocks& blocks;
+    const double* U;
+    std::span<Lane> result;
+
+    template <typename V>
+    POSEWISE_INLINE void run() const {
+        for (Index g = 0; g < blocks.groups; ++g) {
+            for (int part = 0; part < lane_width / simd::width<V>; ++part) run_part<V>(g, part);
+        }
+    }
+
+    template <typename V>
+    POSEWISE_INLINE void run_part(Index g, int part) const {
+        constexpr int parts = lane_width / simd::width<V>;
+        const V* row =
+            reinterpret_cast<const V*>(blocks.entries.data() + g * blocks.rows * blocks.parameters);
+        V sums[triangle + 1] = {};
+        for (Index r = 0; r < blocks.rows; ++r, row += blocks.parameters * parts) {
+            V x[columns] = {};
+            for (Index l = 0; l < blocks.parameters; ++l) {
+                const V entry = row[l * parts + part];
+#pragma GCC unroll 16
+                for (int c = 0; c < columns; ++c) x[c] += entry * U[l * columns + c];
+            }
+#pragma GCC unroll 16
+            for (int a = 0; a + 1 < columns; ++a) {
+#pragma GCC unroll 16
+                for (int b = 0; b <= a; ++b) sums[packed(a, b)] += x[a] * x[b];
+            }
+            sums[triangle] += x[columns - 1] * x[columns - 1];
+        }
+        V* out = reinterpret_cast<V*>(result.data() + g * (triangle + 1)) + part;
+        for (int k = 0; k <= triangle; ++k) out[k * parts] = sums[k];
+    }
+};
+
+/// The least pivot of `remaining` + each compression - least I; not the least, but not positive, if
+/// one of those before it is not.
+template <int vectors>
+struct LeastPivots {
+    static constexpr int triangle = vectors * (vectors + 1) / 2;
+    const double* remaining;
+    std::span<const Lane> compressions;
+    std::span<const Lane> least;
+    std::span<Lane> result;
+
+    template <typename V>
+    POSEWISE_INLINE void run() const {
+        for (std::size_t g = 0; g < least.size(); ++g) {
+            for (int part = 0; part < lane_width / simd::width<V>; ++part) run_part<V>(g, part);
+        }
+    }
+
+    template <typename V>
+    POSEWISE_INLINE void run_part(std::size_t g, int part) const {
+        constexpr int parts = lane_width / simd::width<V>;
+        const V* in = reinterpret_cast<const V*>(&compressions[g * (triangle + 1)]) + part;
+        const V shift = *(reinterpret_cast<const V*>(&least[g]) + part);
+        V S[triangle];
+#pragma GCC unroll 36
+        for (int k = 0; k < triangle; ++k) S[k] = in[k * parts] + remaining[k];
+#pragma GCC unroll 8
+        for (int k = 0; k < vectors; ++k) S[packed(k, k)] -= shift;
+        V smallest = S[0];
+#pragma GCC unroll 8
+        for (int k = 0; k < vectors; ++k) {
+            const V pivot = S[packed(k, k)];
+            smallest = pivot < smallest ? pivot : smallest;
+            const V inverse = 1.0 / pivot;
+#pragma GCC unroll 8
+            for (int a = k + 1; a < vectors; ++a) {
+                const V factor = S[packed(a, k)] * inverse;
+#pragma GCC unroll 8
+                for (int b = k + 1; b <= a; ++b) S[packed(a, b)] -= factor * S[packed(b, k)];
+            }
+        }
+        *(reinterpret_cast<V*>(&result[g]) + part) = smallest;
+    }
+};
+
+}  // namespace
 
 RayleighRitz::RayleighRitz(const Objective& objective, const Blocks& candidates,
-                           const std::vector<Index>& members)
-    : objective_(objective),
-      candidates_(candidates),
-      members_(members),
-      compressions_(members.size()) {}
-
-bool RayleighRitz::has_condition() const {
-    return objective_.criterion == Criterion::O2 || objective_.criterion == Criterion::O4;
+                           const Shortlist& shortlist)
+    : objective_(objective), candidates_(candidates), shortlist_(shortlist) {
+    const std::size_t groups = (shortlist.members.size() + lane_width - 1) / lane_width;
+    compressions_.resize(groups * size);
+    least_.resize(groups);
+    pivots_.resize(groups);
 }
 
-RayleighRitz::Compression RayleighRitz::compress(Index candidate) const {
-    const auto B = candidates_[candidate];
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, Eigen::Dynamic, most_vectors>
-        BU = B * U_;
-    return {BU.transpose() * BU, has_condition() ? (B * v_).squaredNorm() : 0};
+RayleighRitz::Compression RayleighRitz::compress(const Eigen::Ref<const RowMatrixXd>& block) const {
+    const RowMatrixXd BU = block * U_;
+    const Eigen::Matrix<double, vectors, vectors> weak =
+        BU.leftCols<vectors>().transpose() * BU.leftCols<vectors>();
+    Compression result;
+    for (int a = 0; a < vectors; ++a) {
+        for (int b = 0; b <= a; ++b) result[packed(a, b)] = weak(a, b);
+    }
+    result[weak_size] = BU.col(vectors).squaredNorm();
+    return result;
+}
+
+void RayleighRitz::compress_members() {
+    if (shortlist_.lanes.rows > 0) {
+        return simd::run(Compress<vectors + 1>{shortlist_.lanes, U_.data(), compressions_});
+    }
+    for (std::size_t k = 0; k < shortlist_.members.size(); ++k) {
+        const Compression one = compress(candidates_[shortlist_.members[k]]);
+        for (std::size_t e = 0; e < size; ++e) {
+            compressions_[k / lane_width * size + e].of[k % lane_width] =
+                one[static_cast<Index>(e)];
+        }
+    }
 }
 
 void RayleighRitz::move_to(const MatrixXd& M) {
     const auto eigen = eigen_decomposition(M);
-    const Index q = std::min(most_vectors, M.rows());
-    U_ = eigen.eigenvectors().leftCols(q);
-    v_ = eigen.eigenvectors().rightCols<1>();
-    whole_ = {eigen.eigenvalues().head(q).asDiagonal(), eigen.eigenvalues()[M.rows() - 1]};
-    for (std::size_t k = 0; k < members_.size(); ++k) compressions_[k] = compress(members_[k]);
+    const Index count = std::min(vectors, M.rows());
+    U_ = RowMatrixXd::Zero(M.rows(), vectors + 1);
+    U_.leftCols(count) = eigen.eigenvectors().leftCols(count);
+    U_.col(vectors) = eigen.eigenvectors().rightCols<1>();
+    whole_.setZero();
+    for (int k = 0; k < vectors; ++k) {  // where there are fewer eigenvalues no pivot is small
+        whole_[packed(k, k)] =
+            k < count ? eigen.eigenvalues()[k] : std::numeric_limits<double>::infinity();
+    }
+    whole_[weak_size] = eigen.eigenvalues()[M.rows() - 1];
+    compress_members();
 }
 
 void RayleighRitz::remove(Index candidate) {
-    const Compression removed = compress(candidate);
-    remaining_ = {whole_.weak - removed.weak, whole_.strong - removed.strong};
+    remaining_ = whole_ - compress(candidates_[candidate]);
 }
 
-bool RayleighRitz::may_exceed(Index position, double value) const {
-    if (!(value > 0)) return true;
-    const Compression& added = compressions_[static_cast<std::size_t>(position)];
-    const double largest = remaining_.strong + added.strong;
-    const double least = objective_.criterion == Criterion::O2 ? value * value * largest
+double RayleighRitz::least_eigenvalue(double largest) const {
+    const double least = objective_.criterion == Criterion::O2 ? value_ * value_ * largest
                          : objective_.criterion == Criterion::O4
-                             ? value * std::sqrt(largest)
-                             : information_of_value(objective_, value, U_.rows());
-    Compressed shifted = remaining_.weak + added.weak;
-    shifted.diagonal().array() -= least;
-    if (!(shifted(0, 0) > 0)) return false;
-    return Eigen::LLT<Eigen::Ref<Compressed>>(shifted).info() == Eigen::Success;
+                             ? value_ * std::sqrt(largest)
+                             : information_of_value(objective_, value_, U_.rows());
+    return (1 - margin) * least;
+}
+
+void RayleighRitz::ask(double value) {
+    value_ = value;
+    if (!(value > 0)) return;
+    for (std::size_t g = 0; g < least_.size(); ++g) {
+        for (std::size_t k = 0; k < lane_width; ++k) {
+            least_[g].of[k] =
+                least_eigenvalue(remaining_[weak_size] + compressions_[g * size + weak_size].of[k]);
+        }
+    }
+    simd::run(LeastPivots<vectors>{remaining_.data(), compressions_, least_, pivots_});
+}
+
+bool RayleighRitz::may_exceed(Index position) const {
+    const auto at = static_cast<std::size_t>(position);
+    return !(value_ > 0) || pivots_[at / lane_width].of[at % lane_width] > 0;
+}
+
+bool RayleighRitz::may_exceed(Index position, const MatrixXd& exchanged) const {
+    if (!(value_ > 0)) return true;
+    const auto at = static_cast<std::size_t>(position);
+    MatrixXd shifted = exchanged;
+    shifted.diagonal().array() -= least_[at / lane_width].of[at % lane_width];
+    return Eigen::LLT<Eigen::Ref<MatrixXd>>(shifted).info() == Eigen::Success;
 }
 
 }  // namespace posewise::detail

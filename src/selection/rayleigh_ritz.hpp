@@ -3,44 +3,51 @@
 #include <vector>
 
 #include "../criteria/objective.hpp"
+#include "gains.hpp"
 
 namespace posewise::detail {
 
 /// Rules out exchanges for criteria of extreme eigenvalues (E, O3, O2, O4). With U the eigenvectors
 /// of M's least eigenvalues and v that of its largest, every M* has
 ///     lambda_min(M*) <= lambda_min(U^T M* U),   lambda_max(M*) >= v^T M* v;
-/// for M* one exchange from M both are cheap, and the first is nearly an equality.
+/// for M* one exchange from M both are cheap, eight candidates at a time, and the first is nearly
+/// an equality. What they leave is factorised: M* - t I is definite if lambda_min(M*) exceeds t.
 class RayleighRitz {
   public:
-    RayleighRitz(const Objective& objective, const Blocks& candidates,
-                 const std::vector<Index>& members);
+    RayleighRitz(const Objective& objective, const Blocks& candidates, const Shortlist& shortlist);
 
     void move_to(const MatrixXd& M);
     void remove(Index candidate);
-    /// Whether the member at this position may make the objective larger than `value` in the
-    /// removed candidate's place.
-    bool may_exceed(Index position, double value) const;
+    /// From now on about values larger than this one.
+    void ask(double value);
+    /// Whether the member at this position may make the objective larger in the removed
+    /// candidate's place.
+    bool may_exceed(Index position) const;
+    /// The same, surer, of what M becomes.
+    bool may_exceed(Index position, const MatrixXd& exchanged) const;
 
   private:
-    static constexpr Index most_vectors = 8;
-    using Compressed =
-        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_vectors, most_vectors>;
-    struct Compression {
-        Compressed weak;    // U^T B^T B U
-        double strong = 0;  // |B v|^2
-    };
+    static constexpr Index vectors = 8;
+    static constexpr Index weak_size = vectors * (vectors + 1) / 2;
+    static constexpr Index size = weak_size + 1;
+    /// Of one matrix: the lower triangle of U^T M U by rows, and v^T M v.
+    using Compression = Eigen::Matrix<double, size, 1>;
 
-    Compression compress(Index candidate) const;
-    bool has_condition() const;
+    Compression compress(const Eigen::Ref<const RowMatrixXd>& block) const;
+    void compress_members();
+    /// What lambda_min must exceed where lambda_max is no less than this.
+    double least_eigenvalue(double largest) const;
 
     const Objective& objective_;
     const Blocks& candidates_;
-    const std::vector<Index>& members_;
-    MatrixXd U_;
-    VectorXd v_;
-    std::vector<Compression> compressions_;
-    Compression whole_;      // of M
-    Compression remaining_;  // of M without the removed candidate
+    const Shortlist& shortlist_;
+    RowMatrixXd U_;  // parameters x 9: the weak eigenvectors, or zero, and v
+    Compression whole_;
+    Compression remaining_;           // of M without the removed candidate
+    std::vector<Lane> compressions_;  // of the members
+    double value_ = 0;
+    std::vector<Lane> least_;   // eigenvalue needed with each member
+    std::vector<Lane> pivots_;  // the least of each member's compression less what is needed
 };
 
 }  // namespace posewise::detail
