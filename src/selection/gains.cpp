@@ -1,6 +1,7 @@
 #include "gains.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace posewise::detail {
 namespace {
@@ -9,6 +10,8 @@ namespace {
 /// small a part of the information, what is cached is right to nine digits.
 constexpr int most_updates = 32;
 constexpr double largest_growth = 1e6;
+constexpr double variance_margin =
+    1e-7;  // relative, above what is lost, so that nothing better is ruled out
 
 }  // namespace
 
@@ -37,7 +40,6 @@ void Gains::factorise(const MatrixXd& M) {
     }
     root_ = cholesky_.solve(C_root_);
     slope_ = root_ * root_.transpose();
-    trace_ = root_.cwiseProduct(C_root_).sum();
 }
 
 void Gains::find_sensitivities() {
@@ -71,9 +73,6 @@ void Gains::exchange(const Eigen::Ref<const RowMatrixXd>& added, const MatrixXd&
         return move_to(M, C_root_);
     }
     // M'^-1 = W - T T^T and M'^-1 C M'^-1 = W C W - T S^T - S T^T.
-    const auto apply_W = [&](const MatrixXd& X) -> MatrixXd {
-        return cholesky_.solve(X) + P_ * (P_.transpose() * X);
-    };
     const MatrixXd WA = apply_W(added.transpose());
     const MatrixXd growth = MatrixXd::Identity(added.rows(), added.rows()) + added * WA;
     const MatrixXd T = growth.llt().matrixL().solve(WA.transpose()).transpose();
@@ -99,9 +98,12 @@ bool Gains::remove(const Eigen::Ref<const RowMatrixXd>& block) {
     if (is_determinant()) return true;
     // W C W - M^-1 C M^-1 = P Q^T + Q P^T with Q = M^-1 C P + P (P^T C P) / 2.
     const MatrixXd CP = C_ * P_;
-    remaining_trace_ = trace_ + CP.cwiseProduct(P_).sum();
     Q_ = cholesky_.solve(CP) + 0.5 * P_ * (P_.transpose() * CP);
     return true;
+}
+
+MatrixXd Gains::apply_W(const MatrixXd& X) const {
+    return cholesky_.solve(X) + P_ * (P_.transpose() * X);
 }
 
 double Gains::compute_plainly(Index position, const MatrixXd& W, const MatrixXd& WCW) const {
@@ -137,6 +139,28 @@ VectorXd Gains::compute(const std::vector<Index>& positions) {
                         .of[static_cast<std::size_t>(at % lane_width)];
     }
     return result;
+}
+
+std::vector<Index> Gains::keeping_below(double most, const std::vector<RowMatrixXd>& test_poses) {
+    std::vector<Index> open(shortlist_.members.size());
+    std::iota(open.begin(), open.end(), Index{0});
+    if (shortlist_.lanes.rows == 0 || !is_removal_accurate_) return open;
+    std::vector<Witness> witnesses;
+    for (const RowMatrixXd& pose : test_poses) {
+        const MatrixXd R = apply_W(pose.transpose());
+        const double variance = R.cwiseProduct(pose.transpose()).sum();
+        witnesses.push_back(make_witness(
+            shortlist_.lanes, R, variance * (1 - variance_margin) - most * (1 + variance_margin)));
+    }
+    std::stable_sort(witnesses.begin(), witnesses.end(), [](const Witness& a, const Witness& b) {
+        return a.least_fall > b.least_fall;
+    });
+    lane_spares(shortlist_.lanes, G_, P_, witnesses, gains_);
+    std::erase_if(open, [&](Index k) {
+        const auto at = static_cast<std::size_t>(k);
+        return !(gains_[at / lane_width].of[at % lane_width] > 0);
+    });
+    return open;
 }
 
 }  // namespace posewise::detail

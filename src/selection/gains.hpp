@@ -36,19 +36,19 @@ class Gains {
 
     /// Takes a block out. False where what is left is singular.
     bool remove(const Eigen::Ref<const RowMatrixXd>& block);
-    /// trace(C M^-1); 0 for determinants.
-    double trace() const { return trace_; }
-    /// trace(C W) without the removed block; 0 for determinants.
-    double remaining_trace() const { return remaining_trace_; }
-
     /// For the shortlisted positions asked for: the factor of the determinant, or by how much
     /// trace(C W) falls. Only after remove().
     VectorXd compute(const std::vector<Index>& positions);
+
+    /// The shortlisted positions with which the variance, trace(B0 M^-1 B0^T), of each of these
+    /// test poses may be below `most` in the removed block's place. Only after remove().
+    std::vector<Index> keeping_below(double most, const std::vector<RowMatrixXd>& test_poses);
 
   private:
     bool is_determinant() const { return C_.size() == 0; }
     void factorise(const MatrixXd& M);
     void find_sensitivities();
+    MatrixXd apply_W(const MatrixXd& X) const;
     double compute_plainly(Index position, const MatrixXd& W, const MatrixXd& WCW) const;
 
     const Blocks& candidates_;
@@ -65,9 +65,7 @@ class Gains {
     MatrixXd P_;
     MatrixXd Q_;  // W C W - M^-1 C M^-1 = P Q^T + Q P^T
     bool is_removal_accurate_ = false;
-    int updates_ = 0;   // since all was computed anew
-    double trace_ = 0;  // of C M^-1
-    double remaining_trace_ = 0;
+    int updates_ = 0;          // since all was computed anew
     std::vector<char> asked_;  // groups of candidates
     std::vector<Lane> gains_;
 };

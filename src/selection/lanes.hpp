@@ -59,4 +59,17 @@ void lane_traces(const LaneBlocks& blocks, const LaneGrams& G, const LaneGrams& 
                  const MatrixXd& P, const MatrixXd& Q, std::span<const char> asked,
                  std::span<Lane> result);
 
+/// A test pose B0 and by how much its variance, trace(B0 W B0^T), is to fall.
+struct Witness {
+    RowMatrixXd R;  ///< W B0^T in tiles as wide as the blocks are high, one after the other
+    double least_fall = 0;
+};
+Witness make_witness(const LaneBlocks& blocks, const MatrixXd& R, double least_fall);
+
+/// What is to spare with each candidate: the least, over the witnesses, of trace((I + G_i + X_i
+/// X_i^T)^-1 Y_i Y_i^T) - least_fall with Y_i = B_i R; not the least, but not positive, where a
+/// witness before it rules out the candidate.
+void lane_spares(const LaneBlocks& blocks, const LaneGrams& G, const MatrixXd& P,
+                 std::span<const Witness> witnesses, std::span<Lane> result);
+
 }  // namespace posewise::detail

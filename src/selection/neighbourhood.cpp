@@ -11,7 +11,7 @@
 namespace posewise::detail {
 namespace {
 
-constexpr Index witness_count = 32;
+constexpr Index witness_count = 16;  // of each M
 
 /// The test poses predicted worst, the worst first.
 std::vector<RowMatrixXd> worst_predicted(const Blocks& test_poses, const MatrixXd& M) {
@@ -62,7 +62,7 @@ Neighbourhood::Neighbourhood(const Objective& objective, const Blocks& candidate
             C_root_ = root_of(objective.mean_test_information);
             break;
         case Criterion::G:
-            ranking_ = Ranking::Ceiling;
+            ranking_ = Ranking::Witnesses;
             break;
         case Criterion::O5:
             break;
@@ -72,23 +72,25 @@ Neighbourhood::Neighbourhood(const Objective& objective, const Blocks& candidate
 }
 
 MatrixXd Neighbourhood::make_C_root(const MatrixXd& M) const {
-    if (ranking_ == Ranking::Exact) return C_root_;
-    if (ranking_ == Ranking::Ceiling) return witnesses_.front().transpose();
+    if (ranking_ != Ranking::Estimate) return C_root_;
     return M * root_of(gradient(objective_, M));
 }
 
 void Neighbourhood::move_to(const MatrixXd& M) {
     M_ = M;
     if (ritz_) return ritz_->move_to(M);
-    if (objective_.criterion == Criterion::G) {
+    if (ranking_ == Ranking::Witnesses) {
         witnesses_ = worst_predicted(*objective_.test_poses, M);
     }
     gains_.move_to(M, make_C_root(M));
 }
 
 void Neighbourhood::exchange(Index added, const MatrixXd& M) {
-    if (ranking_ != Ranking::Exact) return move_to(M);
+    if (ritz_ || ranking_ == Ranking::Estimate) return move_to(M);
     M_ = M;
+    if (ranking_ == Ranking::Witnesses) {
+        witnesses_ = worst_predicted(*objective_.test_poses, M);
+    }
     gains_.exchange(candidates_[added], M);
 }
 
@@ -98,7 +100,7 @@ bool Neighbourhood::is_allowed(Index position, Index removed, const Occupancy& o
 }
 
 std::vector<Index> Neighbourhood::promising(Index removed, const Occupancy& occupancy) const {
-    // The objective (or its ceiling, equal to it at M) is concave: it grows only towards what is
+    // The objective is concave: it grows only towards what is
     // more sensitive than what is removed.
     const double least = gains_.sensitivity_of(candidates_[removed]);
     std::vector<Index> positions;
@@ -150,22 +152,17 @@ Index Neighbourhood::best_by_gains(Index removed, double value, const Occupancy&
     std::vector<Ranked> ranked = rank(positions);
     if (ranked.empty()) return -1;
     if (ranking_ == Ranking::Exact) return ranked.front().position;
-    // Where hardly anything is left without the removed pose, gains have lost their digits.
-    const bool is_ceiling =
-        ranking_ == Ranking::Ceiling && gains_.remaining_trace() < 1e6 * gains_.trace();
     const MatrixXd remaining = M_ - B.transpose() * B;
     Index best = -1;
     double best_value = value;
     Index evaluated = 0;
     for (; !ranked.empty() && !stop_.is_set(); ranked.pop_back()) {
-        const auto [position, gain] = ranked.front();
-        if (is_ceiling && 1 / (gains_.remaining_trace() - gain) <= best_value) break;
-        if (ranking_ == Ranking::Estimate && evaluated++ == most_evaluated_) break;
+        const Index position = ranked.front().position;
+        if (evaluated++ == most_evaluated_) break;
         std::pop_heap(ranked.begin(), ranked.end());
         const auto added = candidates_[shortlist_.members[static_cast<std::size_t>(position)]];
         const MatrixXd M = remaining + added.transpose() * added;
-        const double exchanged = ranking_ == Ranking::Ceiling ? worst_prediction(M, best_value)
-                                                              : evaluate(objective_, M);
+        const double exchanged = evaluate(objective_, M);
         if (!(exchanged > best_value)) continue;
         best = position;
         best_value = exchanged;
@@ -194,9 +191,27 @@ Index Neighbourhood::best_by_eigenvalues(Index removed, double value, const Occu
     return best;
 }
 
+Index Neighbourhood::best_by_witnesses(Index removed, double value, const Occupancy& occupancy) {
+    const auto B = candidates_[removed];
+    if (!gains_.remove(B)) return -1;
+    const MatrixXd remaining = M_ - B.transpose() * B;
+    Index best = -1;
+    for (const Index position : gains_.keeping_below(1 / value, witnesses_)) {
+        if (stop_.is_set()) break;
+        if (!is_allowed(position, removed, occupancy)) continue;
+        const auto added = candidates_[shortlist_.members[static_cast<std::size_t>(position)]];
+        const double exchanged = worst_prediction(remaining + added.transpose() * added, value);
+        if (!(exchanged > value)) continue;
+        best = position;
+        value = exchanged;
+    }
+    return best;
+}
+
 Index Neighbourhood::best_replacement(Index removed, double value, const Occupancy& occupancy) {
-    return ritz_ ? best_by_eigenvalues(removed, value, occupancy)
-                 : best_by_gains(removed, value, occupancy);
+    if (ritz_) return best_by_eigenvalues(removed, value, occupancy);
+    if (ranking_ == Ranking::Witnesses) return best_by_witnesses(removed, value, occupancy);
+    return best_by_gains(removed, value, occupancy);
 }
 
 }  // namespace posewise::detail

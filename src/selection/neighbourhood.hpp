@@ -35,7 +35,7 @@ class Neighbourhood {
     Index best_replacement(Index removed, double value, const Occupancy& occupancy);
 
   private:
-    enum class Ranking { Exact, Ceiling, Estimate };
+    enum class Ranking { Exact, Witnesses, Estimate };
     struct Ranked {
         Index position;
         double gain;
@@ -50,6 +50,7 @@ class Neighbourhood {
     /// As a heap, the largest gain first.
     std::vector<Ranked> rank(const std::vector<Index>& positions);
     Index best_by_gains(Index removed, double value, const Occupancy& occupancy);
+    Index best_by_witnesses(Index removed, double value, const Occupancy& occupancy);
     Index best_by_eigenvalues(Index removed, double value, const Occupancy& occupancy);
     bool is_allowed(Index position, Index removed, const Occupancy& occupancy) const;
     /// G of M; 0 where it is not above `value`.

@@ -11,7 +11,7 @@
 namespace posewise::detail {
 namespace {
 
-constexpr double margin =
+constexpr double ritz_margin =
     1e-9;  // relative, far above rounding, so that nothing better is ruled out
 
 constexpr int packed(int a, int b) { return a * (a + 1) / 2 + b; }
@@ -161,7 +161,7 @@ double RayleighRitz::least_eigenvalue(double largest) const {
                          : objective_.criterion == Criterion::O4
                              ? value_ * std::sqrt(largest)
                              : information_of_value(objective_, value_, U_.rows());
-    return (1 - margin) * least;
+    return (1 - ritz_margin) * least;
 }
 
 void RayleighRitz::ask(double value) {

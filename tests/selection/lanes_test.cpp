@@ -59,10 +59,9 @@ TEST(Lanes, GainsMatchTheirDefinitionForEveryHeight) {
 VectorXd everything_known(Gains& gains, const Blocks& candidates) {
     const Index count = candidates.count();
     EXPECT_TRUE(gains.remove(candidates[0]));
-    VectorXd known(2 * count + 2);
+    VectorXd known(2 * count);
     known.head(count) = gains.compute(indices_below(count));
     for (Index i = 0; i < count; ++i) known[count + i] = gains.sensitivity(i);
-    known.tail(2) << gains.trace(), gains.remaining_trace();
     return known;
 }
 
@@ -89,6 +88,38 @@ TEST(Gains, AreTheSameByUpdatesAsFromTheStart) {
                 EXPECT_NEAR(found[k], expected[k], 1e-9 * std::abs(expected[k]))
                     << rows << ' ' << k;
             }
+        }
+    }
+}
+
+TEST(Gains, RuleOutExactlyWhatPredictsATestPoseTooBadly) {
+    constexpr Index L = 15;
+    for (const Index rows : {1, 3, 9, 13}) {  // 13: no kernel, nothing is ruled out
+        const Blocks candidates = test::random_blocks(41, rows, L, 1);
+        const Blocks test_poses = test::random_blocks(5, 4, L, 2);  // lower and higher than those
+        const Shortlist shortlist = make_shortlist(candidates, indices_below(41));
+        const MatrixXd M = information(candidates, indices_below(20));
+        Gains gains(candidates, shortlist);
+        gains.move_to(M, MatrixXd());
+        ASSERT_TRUE(gains.remove(candidates[3]));
+        const MatrixXd remaining = M - candidates[3].transpose() * candidates[3];
+        VectorXd worst = VectorXd::Zero(41);
+        std::vector<RowMatrixXd> poses;
+        for (Index t = 0; t < 5; ++t) poses.emplace_back(test_poses[t]);
+        for (Index i = 0; i < 41; ++i) {
+            const MatrixXd W = (remaining + candidates[i].transpose() * candidates[i])
+                                   .llt()
+                                   .solve(MatrixXd::Identity(L, L));
+            for (const RowMatrixXd& B0 : poses) {
+                worst[i] = std::max(worst[i], (B0 * W * B0.transpose()).trace());
+            }
+        }
+        for (const double most : {worst.minCoeff() * 1.001, worst.mean(), worst.maxCoeff() * 1.1}) {
+            std::vector<Index> expected;
+            for (Index i = 0; i < 41; ++i) {
+                if (rows > 12 || worst[i] < most) expected.push_back(i);
+            }
+            EXPECT_EQ(gains.keeping_below(most, poses), expected) << rows;
         }
     }
 }
