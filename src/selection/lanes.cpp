@@ -321,9 +321,13 @@ Index lane_height(const Blocks& candidates) {
 }
 
 LaneBlocks make_lane_blocks(const Blocks& candidates, std::span<const Index> chosen) {
+    const Index rows = lane_height(candidates);
+    return rows == 0 ? LaneBlocks{} : make_lane_blocks(candidates, chosen, rows);
+}
+
+LaneBlocks make_lane_blocks(const Blocks& candidates, std::span<const Index> chosen, Index rows) {
     LaneBlocks blocks;
-    blocks.rows = lane_height(candidates);
-    if (blocks.rows == 0) return blocks;
+    blocks.rows = rows;
     blocks.parameters = candidates.parameter_count();
     const auto count = static_cast<Index>(chosen.size());
     blocks.groups = (count + lane_width - 1) / lane_width;

@@ -17,7 +17,7 @@ constexpr Index lane_width = 8;
 /// Blocks of some candidates in lanes: entry (row, parameter) of eight candidates is one Lane.
 /// Lower blocks are padded with zero rows, missing candidates with zero blocks.
 struct LaneBlocks {
-    Index rows = 0;  ///< of every block: one of lane_heights
+    Index rows = 0;  ///< of every block: one of lane_heights where a kernel needs it
     Index parameters = 0;
     Index groups = 0;  ///< of eight candidates
     std::vector<Lane> entries;
@@ -31,6 +31,8 @@ Index lane_height(const Blocks& candidates);
 
 /// As high as the highest of all candidates; nothing (rows 0) if that is too high for any kernel.
 LaneBlocks make_lane_blocks(const Blocks& candidates, std::span<const Index> chosen);
+/// With so many rows, at least those of each of the chosen.
+LaneBlocks make_lane_blocks(const Blocks& candidates, std::span<const Index> chosen, Index rows);
 
 /// Symmetric rows x rows matrices of each candidate, lower triangles in lanes.
 using LaneGrams = std::vector<Lane>;

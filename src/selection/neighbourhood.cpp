@@ -65,6 +65,9 @@ Neighbourhood::Neighbourhood(const Objective& objective, const Blocks& candidate
             ranking_ = Ranking::Witnesses;
             break;
         case Criterion::O5:
+            for (const Index member : shortlist.members) {
+                largest_block_ = std::max(largest_block_, candidates[member].squaredNorm());
+            }
             break;
         default:
             ritz_.emplace(objective, candidates, shortlist);
@@ -73,11 +76,15 @@ Neighbourhood::Neighbourhood(const Objective& objective, const Blocks& candidate
 
 MatrixXd Neighbourhood::make_C_root(const MatrixXd& M) const {
     if (ranking_ != Ranking::Estimate) return C_root_;
-    return M * root_of(gradient(objective_, M));
+    const MatrixXd slope = gradient(objective_, M);
+    const Eigen::LLT<MatrixXd> cholesky(slope);  // fails where there is nuisance
+    if (cholesky.info() == Eigen::Success) return M * MatrixXd(cholesky.matrixL());
+    return M * root_of(slope);
 }
 
 void Neighbourhood::move_to(const MatrixXd& M) {
     M_ = M;
+    root_from_ = 0;
     if (ritz_) return ritz_->move_to(M);
     if (ranking_ == Ranking::Witnesses) {
         witnesses_ = worst_predicted(*objective_.test_poses, M);
@@ -154,20 +161,58 @@ Index Neighbourhood::best_by_gains(Index removed, double value, const Occupancy&
     if (ranking_ == Ranking::Exact) return ranked.front().position;
     const MatrixXd remaining = M_ - B.transpose() * B;
     Index best = -1;
-    double best_value = value;
-    Index evaluated = 0;
-    for (; !ranked.empty() && !stop_.is_set(); ranked.pop_back()) {
-        const Index position = ranked.front().position;
-        if (evaluated++ == most_evaluated_) break;
-        std::pop_heap(ranked.begin(), ranked.end());
-        const auto added = candidates_[shortlist_.members[static_cast<std::size_t>(position)]];
-        const MatrixXd M = remaining + added.transpose() * added;
-        const double exchanged = evaluate(objective_, M);
-        if (!(exchanged > best_value)) continue;
-        best = position;
-        best_value = exchanged;
+    std::vector<Index> batch;
+    for (Index left = most_evaluated_; left > 0 && !ranked.empty() && !stop_.is_set();
+         left -= lane_width) {
+        batch.clear();
+        for (Index k = 0; k < std::min(left, lane_width) && !ranked.empty(); ++k) {
+            std::pop_heap(ranked.begin(), ranked.end());
+            batch.push_back(ranked.back().position);
+            ranked.pop_back();
+        }
+        const std::vector<double> exchanged = evaluate_exchanges(remaining, value, batch);
+        const auto largest = std::max_element(exchanged.begin(), exchanged.end());
+        if (!(*largest > value)) continue;
+        best = batch[static_cast<std::size_t>(largest - exchanged.begin())];
+        value = *largest;
     }
     return best;
+}
+
+std::vector<double> Neighbourhood::evaluate_exchanges(const MatrixXd& remaining, double value,
+                                                      std::span<const Index> positions) {
+    if (objective_.criterion == Criterion::O5 && objective_.nuisance.empty() && value > 0) {
+        return evaluate_in_lanes(remaining, value, positions);
+    }
+    std::vector<double> values;
+    for (const Index position : positions) {
+        const auto added = candidates_[shortlist_.members[static_cast<std::size_t>(position)]];
+        values.push_back(evaluate(objective_, remaining + added.transpose() * added));
+    }
+    return values;
+}
+
+std::vector<double> Neighbourhood::evaluate_in_lanes(const MatrixXd& remaining, double value,
+                                                     std::span<const Index> positions) {
+    std::vector<Index> candidates;
+    Index rows = 0;
+    for (const Index position : positions) {
+        const Index candidate = shortlist_.members[static_cast<std::size_t>(position)];
+        candidates.push_back(candidate);
+        rows = std::max(rows, candidates_[candidate].rows());
+    }
+    if (!(root_from_ <= value && value <= 1.1 * root_from_)) {
+        // A sum of lambda^(-1/2) below 1 / value has every lambda above value^2.
+        root_from_ = value;
+        root_ = make_inverse_root(value * value, M_.trace() + largest_block_);
+    }
+    const auto traces =
+        RootTraces(remaining, root_).compute(make_lane_blocks(candidates_, candidates, rows));
+    std::vector<double> values;
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+        values.push_back(1 / traces[k / lane_width].of[k % lane_width]);
+    }
+    return values;
 }
 
 Index Neighbourhood::best_by_eigenvalues(Index removed, double value, const Occupancy& occupancy) {

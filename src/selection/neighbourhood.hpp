@@ -1,12 +1,14 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "../criteria/objective.hpp"
 #include "gains.hpp"
 #include "limits.hpp"
 #include "posewise/core/progress.hpp"
 #include "rayleigh_ritz.hpp"
+#include "root_traces.hpp"
 
 namespace posewise::detail {
 
@@ -49,6 +51,12 @@ class Neighbourhood {
     std::vector<Index> promising(Index removed, const Occupancy& occupancy) const;
     /// As a heap, the largest gain first.
     std::vector<Ranked> rank(const std::vector<Index>& positions);
+    /// The objective with each of these positions in the removed candidate's place, in order. Of O5
+    /// nine digits, and only of what exceeds `value`; the others do not.
+    std::vector<double> evaluate_exchanges(const MatrixXd& remaining, double value,
+                                           std::span<const Index> positions);
+    std::vector<double> evaluate_in_lanes(const MatrixXd& remaining, double value,
+                                          std::span<const Index> positions);
     Index best_by_gains(Index removed, double value, const Occupancy& occupancy);
     Index best_by_witnesses(Index removed, double value, const Occupancy& occupancy);
     Index best_by_eigenvalues(Index removed, double value, const Occupancy& occupancy);
@@ -68,7 +76,10 @@ class Neighbourhood {
     Gains gains_;
     MatrixXd C_root_;                     // where it does not depend on M
     std::vector<RowMatrixXd> witnesses_;  // for G
-    std::optional<RayleighRitz> ritz_;    // for E, O3, O2 and O4
+    InverseRoot root_;                    // for O5, of values from `root_from_` on
+    double root_from_ = 0;
+    double largest_block_ = 0;          // trace(B^T B)
+    std::optional<RayleighRitz> ritz_;  // for E, O3, O2 and O4
 };
 
 }  // namespace posewise::detail
