@@ -1,73 +1,11 @@
 #include "lanes.hpp"
 
 #include <algorithm>
-#include <cassert>
-#include <limits>
 
-#include "../core/simd.hpp"
+#include "lane_kernels.hpp"
 
 namespace posewise::detail {
 namespace {
-
-/// The lower triangle's entry (a, b), b <= a.
-constexpr int packed(int a, int b) { return a * (a + 1) / 2 + b; }
-constexpr int packed_size(int rows) { return rows * (rows + 1) / 2; }
-
-template <typename V>
-POSEWISE_INLINE const V& at(const Lane* lane, int part) {
-    return *(reinterpret_cast<const V*>(lane) + part);
-}
-template <typename V>
-POSEWISE_INLINE V& at(Lane* lane, int part) {
-    return *(reinterpret_cast<V*>(lane) + part);
-}
-
-/// X = B P for one group: R x R vectors. P is row-major, zero beyond its first `depth` rows. Rows
-/// of B (`parameters` long) are taken in tiles whose accumulators fit the registers.
-template <int R, typename V>
-POSEWISE_INLINE void multiply(const Lane* B, int part, const double* P, Index parameters,
-                              Index depth, V (&X)[R][R]) {
-    constexpr int tile = simd::width<V> < 8 ? 1 : R % 3 == 0 && R < 12 ? 3 : R % 2 == 0 ? 2 : 1;
-    for (int a = 0; a < R; a += tile) {
-        V sum[tile][R] = {};
-        for (Index l = 0; l < depth; ++l) {
-            const double* p = P + l * R;
-#pragma GCC unroll 4
-            for (int t = 0; t < tile; ++t) {
-                const V b = at<V>(B + (a + t) * parameters + l, part);
-#pragma GCC unroll 12
-                for (int c = 0; c < R; ++c) sum[t][c] += b * p[c];
-            }
-        }
-        for (int t = 0; t < tile; ++t) {
-            for (int c = 0; c < R; ++c) X[a + t][c] = sum[t][c];
-        }
-    }
-}
-
-/// S += X Y^T (lower triangle).
-template <int R, typename V>
-POSEWISE_INLINE void add_product(const V (&X)[R][R], const V (&Y)[R][R], V (&S)[packed_size(R)]) {
-    for (int a = 0; a < R; ++a) {
-        for (int b = 0; b <= a; ++b) {
-            V sum = S[packed(a, b)];
-#pragma GCC unroll 12
-            for (int c = 0; c < R; ++c) sum += X[a][c] * Y[b][c];
-            S[packed(a, b)] = sum;
-        }
-    }
-}
-
-template <int R, typename V>
-POSEWISE_INLINE void load(const LaneGrams& G, Index group, int part, V (&S)[packed_size(R)]) {
-    const Lane* gram = G.data() + group * packed_size(R);
-    for (int k = 0; k < packed_size(R); ++k) S[k] = at<V>(gram + k, part);
-}
-template <int R, typename V>
-POSEWISE_INLINE void store(const V (&S)[packed_size(R)], Index group, int part, LaneGrams& G) {
-    Lane* gram = G.data() + group * packed_size(R);
-    for (int k = 0; k < packed_size(R); ++k) at<V>(gram + k, part) = S[k];
-}
 
 /// G += sign X X^T and, where there is an H, H += sign (X Y^T + Y X^T). P and Q are zero beyond
 /// their first `depth` rows.
@@ -208,107 +146,6 @@ struct Traces {
     }
 };
 
-/// I + G + X X^T = L D L^T once, then Y's rows eliminated by it for one test pose after the other,
-/// until one falls too little by every candidate of a group.
-template <int R>
-struct LeastSpares {
-    const LaneBlocks& blocks;
-    const LaneGrams& G;
-    const double* P;
-    std::span<const Witness> witnesses;
-    std::span<Lane> result;
-
-    template <typename V>
-    POSEWISE_INLINE void run() const {
-        for (Index g = 0; g < blocks.groups; ++g) {
-            for (int part = 0; part < lane_width / simd::width<V>; ++part) run_part<V>(g, part);
-        }
-    }
-
-    template <typename V>
-    POSEWISE_INLINE void run_part(Index g, int part) const {
-        const Lane* B = blocks.entries.data() + g * R * blocks.parameters;
-        V X[R][R];
-        V S[packed_size(R)];
-        V inverse[R];
-        multiply<R, V>(B, part, P, blocks.parameters, blocks.parameters, X);
-        load<R, V>(G, g, part, S);
-        add_product<R, V>(X, X, S);
-        factorise<V>(S, inverse);
-        V least = {};
-        least += std::numeric_limits<double>::infinity();
-        for (const Witness& witness : witnesses) {
-            V spare = {};
-            spare -= witness.least_fall;
-            for (Index first = 0; first < witness.R.cols(); first += R) {
-                multiply<R, V>(B, part, witness.R.data() + first * blocks.parameters,
-                               blocks.parameters, blocks.parameters, X);
-                add_solved_squares<V>(S, inverse, X, spare);
-            }
-            least = spare < least ? spare : least;
-            bool is_open = false;
-            for (int k = 0; k < simd::width<V>; ++k) is_open |= least[k] > 0;
-            if (!is_open) break;
-        }
-        at<V>(&result[static_cast<std::size_t>(g)], part) = least;
-    }
-
-    /// I + S = L D L^T: L below S's diagonal, D^-1 apart.
-    template <typename V>
-    POSEWISE_INLINE static void factorise(V (&S)[packed_size(R)], V (&inverse)[R]) {
-        for (int k = 0; k < R; ++k) {
-            inverse[k] = 1.0 / (S[packed(k, k)] + 1.0);
-            for (int a = k + 1; a < R; ++a) {
-                const V factor = S[packed(a, k)] * inverse[k];
-                for (int b = k + 1; b <= a; ++b) S[packed(a, b)] -= factor * S[packed(b, k)];
-            }
-            for (int a = k + 1; a < R; ++a) S[packed(a, k)] *= inverse[k];
-        }
-    }
-
-    /// total += trace(Y^T (I + S)^-1 Y); Y is overwritten.
-    template <typename V>
-    POSEWISE_INLINE static void add_solved_squares(const V (&S)[packed_size(R)],
-                                                   const V (&inverse)[R], V (&Y)[R][R], V& total) {
-        for (int k = 0; k < R; ++k) {
-            V squares = {};
-            for (int c = 0; c < R; ++c) squares += Y[k][c] * Y[k][c];
-            total += squares * inverse[k];
-            for (int a = k + 1; a < R; ++a) {
-                for (int c = 0; c < R; ++c) Y[a][c] -= S[packed(a, k)] * Y[k][c];
-            }
-        }
-    }
-};
-
-/// Calls `visit` with the height as a constant.
-template <typename Visit>
-void with_height(Index rows, const Visit& visit) {
-    switch (rows) {
-        case 1:
-            return visit(std::integral_constant<int, 1>{});
-        case 2:
-            return visit(std::integral_constant<int, 2>{});
-        case 3:
-            return visit(std::integral_constant<int, 3>{});
-        case 6:
-            return visit(std::integral_constant<int, 6>{});
-        case 9:
-            return visit(std::integral_constant<int, 9>{});
-        default:
-            assert(rows == 12);
-            return visit(std::integral_constant<int, 12>{});
-    }
-}
-
-/// Columns first .. first + width - 1 of F as a row-major matrix, padded with zero columns.
-RowMatrixXd column_tile(const MatrixXd& F, Index first, Index width) {
-    RowMatrixXd tile = RowMatrixXd::Zero(F.rows(), width);
-    const Index count = std::min(width, F.cols() - first);
-    tile.leftCols(count) = F.middleCols(first, count);
-    return tile;
-}
-
 }  // namespace
 
 Index lane_height(const Blocks& candidates) {
@@ -397,24 +234,6 @@ void lane_traces(const LaneBlocks& blocks, const LaneGrams& G, const LaneGrams& 
     const RowMatrixXd other = column_tile(Q, 0, blocks.rows);
     with_height(blocks.rows, [&](auto R) {
         simd::run(Traces<R>{blocks, G, H, tile.data(), other.data(), asked, result});
-    });
-}
-
-Witness make_witness(const LaneBlocks& blocks, const MatrixXd& R, double least_fall) {
-    const Index tiles = (R.cols() + blocks.rows - 1) / blocks.rows;
-    Witness witness{RowMatrixXd(R.rows(), tiles * blocks.rows), least_fall};
-    for (Index t = 0; t < tiles; ++t) {
-        Eigen::Map<RowMatrixXd>(witness.R.data() + t * R.rows() * blocks.rows, R.rows(),
-                                blocks.rows) = column_tile(R, t * blocks.rows, blocks.rows);
-    }
-    return witness;
-}
-
-void lane_spares(const LaneBlocks& blocks, const LaneGrams& G, const MatrixXd& P,
-                 std::span<const Witness> witnesses, std::span<Lane> result) {
-    const RowMatrixXd tile = column_tile(P, 0, blocks.rows);
-    with_height(blocks.rows, [&](auto R) {
-        simd::run(LeastSpares<R>{blocks, G, tile.data(), witnesses, result});
     });
 }
 

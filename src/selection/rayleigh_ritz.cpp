@@ -5,16 +5,14 @@
 #include <cmath>
 
 #include "../core/decompositions.hpp"
-#include "../core/simd.hpp"
 #include "../criteria/information_function.hpp"
+#include "lane_kernels.hpp"
 
 namespace posewise::detail {
 namespace {
 
 constexpr double ritz_margin =
     1e-9;  // relative, far above rounding, so that nothing better is ruled out
-
-constexpr int packed(int a, int b) { return a * (a + 1) / 2 + b; }
 
 /// For each candidate the lower triangle of (B U)^T B U, and |B v|^2; U and v are the columns of a
 /// row-major matrix.
