@@ -219,7 +219,7 @@ def check_verify():
     pathlib.Path("wrong.json").write_text(json.dumps(wrong))
     out, said = run("verify", "wrong.json", "--json", code=1)
     found = {one["name"]: one["is_right"] for one in parse(out, "verify")["findings"]}
-    expect(not found["value"] and found["bound"], found)
+    expect(not found["value"] and found["poses"], found)
     expect(said == run("verify", "wrong.json", code=1)[1], said)
 
 
@@ -282,7 +282,7 @@ def check_writers():
     """Each word that those who write documents know is in the manual, and each key of the manual theirs:
     those of cases that are not met here, too."""
     sources = "".join((ROOT / "src/io" / f"{name}.cpp").read_text() for name in (
-        "json", "json_reports", "plan_file", "estimate_file", "parameters_json", "doubts_json",
+        "json", "json_reports", "plan_file", "estimate_file", "parameters_json", "doubts_json", "robot_statement",
         "weights_file"))
     sources = re.sub(r"#include.*", "", sources)
     manual = (ROOT / "designs/json.md").read_text()

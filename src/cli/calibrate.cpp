@@ -149,7 +149,8 @@ void calibrate(const CalibrateArguments& arguments, const CommonOptions& common)
         options.earlier =
             Earlier{read_usable_estimate(arguments.from, file, arguments.is_forced),
                     arguments.from_is_prior,
-                    {arguments.drift_mm / mm_per_m, arguments.drift_mrad / mrad_per_rad},
+                    {arguments.drift_mm / mm_per_m, arguments.drift_offset_mrad / mrad_per_rad,
+                     arguments.drift_mrad / mrad_per_rad},
                     has_moved("base"),
                     has_moved("targets")};
     }

@@ -94,10 +94,15 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
         ->check(real_number(1e-6, 1e3))
         ->capture_default_str()
         ->needs(as_prior);
-    command.add_option("--drift-mrad", arguments.drift_mrad, "The same of angles")
-        ->check(real_number(1e-6, 1e3))
-        ->capture_default_str()
-        ->needs(as_prior);
+    for (const auto& [name, value, what] :
+         {std::tuple{"--drift-offset-mrad", &arguments.drift_offset_mrad,
+                     "The same of offsets of joints"},
+          std::tuple{"--drift-mrad", &arguments.drift_mrad, "The same of other angles"}}) {
+        command.add_option(name, *value, what)
+            ->check(real_number(1e-6, 1e3))
+            ->capture_default_str()
+            ->needs(as_prior);
+    }
     command
         .add_option("--only", options.only,
                     "With --from: identify base,targets and, if named, robot or errors of it; the "

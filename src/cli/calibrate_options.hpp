@@ -29,8 +29,9 @@ struct CalibrateArguments {
     std::string from;
     bool from_is_prior = false;
     std::vector<std::string> moved;
-    double drift_mm = 0.05;
-    double drift_mrad = 0.1;
+    double drift_mm = 0.02;
+    double drift_offset_mrad = 0.1;
+    double drift_mrad = 0.02;
     CalibrationOptions options;  ///< with the numbers that are options as they are
 };
 

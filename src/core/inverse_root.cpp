@@ -1,5 +1,6 @@
 #include "inverse_root.hpp"
 
+#include <algorithm>
 #include <boost/math/special_functions/ellint_1.hpp>
 #include <boost/math/special_functions/jacobi_elliptic.hpp>
 #include <cmath>
@@ -13,6 +14,8 @@ using InDouble = boost::math::policies::policy<boost::math::policies::promote_do
 }  // namespace
 
 InverseRoot make_inverse_root(double least, double largest) {
+    constexpr double least_part = 1e-14;  // below, rounding of the modulus decides
+    least = std::max(least, least_part * largest);
     const double modulus = std::sqrt(1 - least / largest);
     const double period = boost::math::ellint_1(modulus, InDouble());
     // The error is exp(-2 pi^2 nodes / (log(largest / least) + 3)).

@@ -32,11 +32,9 @@ Json joints_statement(const Chain& robot, const std::vector<JointTerm>& terms) {
 Json term_statement(const Chain& robot, const ErrorTerm& term) {
     const JointFunction& f = term.function;
     Json json = {{"name", term.parameter}};
+    if (term.kind == TermKind::Gravity) return json;  // in proportion to the payload, which changes
     if (f.shape == JointFunction::Shape::Torque) {
-        // The torque of known weights may change with the payload, and its value with it.
-        if (term.kind == TermKind::Torque) {
-            json["value"] = f.torque->value(comparison_configuration(robot));
-        }
+        json["value"] = f.torque->value(comparison_configuration(robot));
         return json;
     }
     const bool is_linear = f.shape == JointFunction::Shape::Linear;

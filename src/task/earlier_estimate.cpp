@@ -35,8 +35,12 @@ MatrixXd drifted(const Campaign& campaign, const Earlier& earlier) {
     MatrixXd covariance = earlier.estimate.covariance;
     const Index begin = base_parameter_count(campaign);
     for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
-        const bool is_angle = campaign.robot.parameter_element(k).motion == Motion::Rotation;
-        const double drift = is_angle ? earlier.drift.angle : earlier.drift.length;
+        const Element& element = campaign.robot.parameter_element(k);
+        const bool is_offset =
+            !element.joints.empty() && campaign.robot.parameter_term(k) == nullptr;
+        const double drift = element.motion == Motion::Translation ? earlier.drift.length
+                             : is_offset                           ? earlier.drift.offset
+                                                                   : earlier.drift.angle;
         covariance(begin + k, begin + k) += drift * drift;
     }
     return covariance;

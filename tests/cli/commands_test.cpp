@@ -115,8 +115,9 @@ TEST_F(Commands, CalibrateJudgesOnAnotherFile) {
 }
 
 TEST_F(Commands, TwoStepSaysThatItDidNotConverge) {
-    const std::string text =
-        run_well("calibrate " + input_ + "--method two-step --max-iterations 3");
+    const Outcome outcome = run("calibrate " + input_ + "--method two-step --max-iterations 3");
+    const std::string& text = outcome.out;
+    EXPECT_EQ(outcome.code, 3);
     EXPECT_NE(text.find("two-step: iteration limit after 3 iterations; this is not the optimum"),
               std::string::npos)
         << text;

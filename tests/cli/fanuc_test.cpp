@@ -75,7 +75,7 @@ TEST_F(Fanuc, HasNoOutliers) {
 
 TEST_F(Fanuc, TwoStepComesNearTheSameOptimumAndSaysSo) {
     const std::string text =
-        run_well("calibrate " + csv_ + "--method two-step --max-iterations 200 --folds 0");
+        run("calibrate " + csv_ + "--method two-step --max-iterations 200 --folds 0").out;
     EXPECT_LE(number_behind(text, "distance RMS", 2), 0.1378);
     EXPECT_GE(number_behind(text, "distance RMS", 2), 0.1362);
     EXPECT_NE(text.find("two-step: iteration limit after 200"), std::string::npos);

@@ -250,7 +250,7 @@ TEST_F(Select, RefusesMeasurementsOfAnotherRobot) {
     expect_input_error("select " + fanuc_design + " -m s.csv --augment other.csv -k 8", words);
     expect_input_error("study " + fanuc_design + " -m other.csv", words);
     const Outcome calibrated = run("calibrate " + fanuc_design + " -m other.csv");
-    EXPECT_EQ(calibrated.code, 0);
+    EXPECT_EQ(calibrated.code, 3);
     EXPECT_EQ(calibrated.err.find("posewise: warning: " + words), 0U) << calibrated.err;
     // A robot that may be far from nominal, as its campaign says, is no other.
     write_text("rough.yaml", other.replace(other.find("length_mm: 1,"), 13, "length_mm: 300,"));

@@ -66,7 +66,7 @@ class Suspicions : public Program {
 
     /// The warnings of a calibration.
     std::string warnings_of(const std::string& arguments) const {
-        const Outcome outcome = run("calibrate " + arguments + " --folds 0");
+        const Outcome outcome = run("calibrate " + arguments + " --folds 0 --force");
         EXPECT_EQ(outcome.code, 0) << outcome.err;
         return outcome.err;
     }

@@ -14,7 +14,7 @@ class Verify : public Program {
     void SetUp() override {
         Program::SetUp();
         run_well("simulate " + fanuc_design + " --truth 7 --seed 3 --poses 40 -o s.csv");
-        run_well("select " + fanuc_design + " -m s.csv -k 10 --starts 3 --exclude 0,1 -o p.json");
+        run_well("select " + fanuc_design + " -m s.csv -k 10 --starts 3 --proof 0 --exclude 0,1 -o p.json");
     }
 
     /// Verifies the plan changed by `edit` and expects it found wrong, with `words` on standard
@@ -84,13 +84,6 @@ TEST_F(Verify, SaysWhichNumberWasEdited) {
     expect_found([](Json& plan) { plan["criterion"] = "a"; }, "value:      stated", "value");
     expect_found([](Json& plan) { plan["value"] = nullptr; }, "value:      stated -inf", "value");
     expect_found([](Json& plan) { plan["bound"] = nullptr; }, "bound:      stated inf", "bound");
-    expect_found(
-        [](Json& plan) {
-            plan["bound"] = plan["value"];
-            plan["efficiency"] = 1;
-            plan["search"]["stop_reason"] = "optimal";
-        },
-        "bound:      stated", "efficiency");
 }
 
 TEST_F(Verify, NoticesEditedPoses) {

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 
-MOST_LINES = 10
+MOST_LINES = 11
 NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 COMMANDS = {
     "calibrate": ["calibrate campaign.yaml -m measurements.csv"],

@@ -22,8 +22,9 @@ std::string_view method_name(CalibrationMethod method);
 
 /// By how much a robot's errors may have changed since it was calibrated, standard deviations.
 struct Drift {
-    double length = 5e-5;  ///< m; 1 m of steel grows so much by 4 K
-    double angle = 1e-4;   ///< rad
+    double length = 2e-5;  ///< m
+    double offset = 1e-4;  ///< of joints that turn, rad
+    double angle = 2e-5;   ///< all others, rad
 };
 
 /// An earlier estimate of the same robot, where identification starts.

@@ -2,6 +2,7 @@
 #include <posewise/posewise.hpp>
 using namespace posewise;
 int main() {
+    fix_cache_sizes();  // the digits of the program
     const auto campaign = io::read_campaign("campaign.yaml");
     const auto measured = io::read_measurements("measurements.csv", campaign);
     const Plan best = choose(campaign, measured_candidates(measured), {{.pose_count = 12}});
