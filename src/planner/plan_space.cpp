@@ -230,12 +230,12 @@ RowMatrixXd kick(const Problem& problem, const RowMatrixXd& plan, const MatrixXd
     return kicked;
 }
 
-/// Kicks without gain to give up after: less where a refinement takes long, as it does with many
-/// poses and parameters, with kinks of the criterion and along constraints.
+/// Kicks without gain to give up after: some for each pose, fewer where a refinement takes long, as
+/// it does with many poses and parameters, with kinks of the criterion and along constraints.
 Index patience(const Problem& problem) {
     const auto L = static_cast<double>(problem.space.parameter_count);
-    const double work = L * L * static_cast<double>(problem.options.pose_count);
-    const double each = std::clamp(1e5 / work, 0.25, 4.0);
+    const auto K = static_cast<double>(problem.options.pose_count);
+    const double each = std::max(0.25, std::min({1e5 / (L * L * K), K / 6, 4.0}));
     const bool is_quick = is_smooth(problem.options.criterion) && !problem.space.margin;
     return static_cast<Index>(each * (is_quick ? 1 : 0.25) *
                               static_cast<double>(start_limit(problem.options)));

@@ -104,7 +104,7 @@ double search_bound(const DesignSpace& space, const Objective& objective,
     anywhere.excluded.clear();
     anywhere.positions.resize(0, 0);
     anywhere.least_distance = 0;
-    anywhere.gap = 1e-6;
+    anywhere.gap = 1e-5;
     anywhere.stop = stop;
     const auto K = static_cast<double>(options.pose_count);
     if (space.margin) iterations = (iterations + 3) / 4;  // ten times as long along constraints
@@ -128,7 +128,7 @@ double search_bound(const DesignSpace& space, const Objective& objective,
             if (is_new) support.add(space, maximum.x);
         }
         bound = std::min(bound, value_of_information(objective, held + K * largest, Z.rows()));
-        if (largest <= (1 + 1e-5) * inside) break;
+        if (largest <= (1 + 1e-4) * inside) break;
     }
     return bound;
 }
