@@ -194,10 +194,8 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
         ->check(whole_number(1, 10000000))
         ->default_val(Index{20000});
     command
-        .add_option(
-            "--starts", request.starts,
-            "Plans that are refined before the best is kicked (default: until five agree, at "
-            "most 16)")
+        .add_option("--starts", request.starts,
+                    "Plans refined before the best is kicked (default: until five agree, 1 to 16)")
         ->check(whole_number(1, 100000));
     add_search_options(command, arguments, "Of all draws (default: the campaign's)",
                        "<campaign>.poses.json");

@@ -14,7 +14,8 @@ class Verify : public Program {
     void SetUp() override {
         Program::SetUp();
         run_well("simulate " + fanuc_design + " --truth 7 --seed 3 --poses 40 -o s.csv");
-        run_well("select " + fanuc_design + " -m s.csv -k 10 --starts 3 --proof 0 --exclude 0,1 -o p.json");
+        run_well("select " + fanuc_design +
+                 " -m s.csv -k 10 --starts 3 --proof 0 --exclude 0,1 -o p.json");
     }
 
     /// Verifies the plan changed by `edit` and expects it found wrong, with `words` on standard
