@@ -6,8 +6,8 @@
 
 #include "../core/decompositions.hpp"
 #include "../core/elementary.hpp"
-#include "../core/simd.hpp"
 #include "../criteria/prediction.hpp"
+#include "lane_kernels.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -15,12 +15,13 @@ namespace {
 constexpr double margin = 1e-6;  // relative, far above the rounding of regular matrices
 constexpr double witness_sharpness = 16;
 
-constexpr Index packed(Index a, Index b) { return a * (a + 1) / 2 + b; }
-
+/// Entry k of the lanes is at k * parts<V> behind this.
 template <typename V>
 POSEWISE_INLINE V* in(std::vector<Lane>& lanes, int part) {
-    return reinterpret_cast<V*>(lanes.data()) + part;
+    return &at<V>(lanes.data(), part);
 }
+template <typename V>
+constexpr int parts = lane_width / simd::width<V>;
 
 /// Factorises M in place, the pivots on the diagonal; their least over all columns.
 struct Factorise {
@@ -29,14 +30,7 @@ struct Factorise {
     Lane& least;
 
     template <typename V>
-    POSEWISE_INLINE void run() const {
-        for (int part = 0; part < parts<V>; ++part) run_part<V>(part);
-    }
-    template <typename V>
-    static constexpr int parts = lane_width / simd::width<V>;
-
-    template <typename V>
-    POSEWISE_INLINE void run_part(int part) const {
+    POSEWISE_INLINE void run_part(Index, int part) const {
         V* const m = in<V>(M, part);
         V smallest = m[0];
         for (Index k = 0; k < size; ++k) {
@@ -52,98 +46,83 @@ struct Factorise {
             }
             for (Index i = k + 1; i < size; ++i) m[packed(i, k) * parts<V>] *= inverse;
         }
-        *(reinterpret_cast<V*>(&least) + part) = smallest;
+        at<V>(&least, part) = smallest;
     }
 };
 
-/// root = L^-1 T in place; the sum of its squares over the pivots.
-struct SolveRoot {
+/// A root T of what is summed up, M factorised.
+struct Root {
     Index size;
     Index first;  // rows before it are zero
     std::vector<Lane>& M;
     std::vector<Lane>& root;
     Lane& sum;
+};
 
+/// root = L^-1 T in place; the sum of its squares over the pivots.
+struct SolveRoot : Root {
     template <typename V>
-    POSEWISE_INLINE void run() const {
-        constexpr int parts = lane_width / simd::width<V>;
-        for (int part = 0; part < parts; ++part) {
-            V* const m = in<V>(M, part);
-            V* const y = in<V>(root, part);
-            V total = {};
-            for (Index k = first; k < size; ++k) {
-                const V* const solved = y + packed(k, 0) * parts;
-                V squares = {};
-                for (Index j = first; j <= k; ++j) squares += solved[j * parts] * solved[j * parts];
-                total += squares / m[packed(k, k) * parts];
-                for (Index i = k + 1; i < size; ++i) {
-                    V* const row = y + packed(i, 0) * parts;
-                    const V factor = m[packed(i, k) * parts];
-                    for (Index j = first; j <= k; ++j) row[j * parts] -= factor * solved[j * parts];
-                }
+    POSEWISE_INLINE void run_part(Index, int part) const {
+        V* const m = in<V>(M, part);
+        V* const y = in<V>(root, part);
+        V total = {};
+        for (Index k = first; k < size; ++k) {
+            const V* const solved = y + packed(k, 0) * parts<V>;
+            V squares = {};
+            for (Index j = first; j <= k; ++j)
+                squares += solved[j * parts<V>] * solved[j * parts<V>];
+            total += squares / m[packed(k, k) * parts<V>];
+            for (Index i = k + 1; i < size; ++i) {
+                V* const row = y + packed(i, 0) * parts<V>;
+                const V factor = m[packed(i, k) * parts<V>];
+                for (Index j = first; j <= k; ++j)
+                    row[j * parts<V>] -= factor * solved[j * parts<V>];
             }
-            *(reinterpret_cast<V*>(&sum) + part) = total;
         }
+        at<V>(&sum, part) = total;
     }
 };
 
 /// The sum of squares of all entries of the inverse, from what SolveRoot left.
-struct SquareInverse {
-    Index size;
-    Index first;
-    std::vector<Lane>& M;
-    std::vector<Lane>& root;
-    Lane& sum;
-
+struct SquareInverse : Root {
     template <typename V>
-    POSEWISE_INLINE void run() const {
-        constexpr int parts = lane_width / simd::width<V>;
-        for (int part = 0; part < parts; ++part) {
-            const V* const m = in<V>(M, part);
-            const V* const y = in<V>(root, part);
-            V total = {};
-            for (Index a = first; a < size; ++a) {
-                for (Index b = first; b <= a; ++b) {
-                    V product = {};
-                    for (Index j = first; j <= b; ++j) {
-                        product += y[packed(a, j) * parts] * y[packed(b, j) * parts];
-                    }
-                    const double times = a == b ? 1 : 2;
-                    total += times * product * product /
-                             (m[packed(a, a) * parts] * m[packed(b, b) * parts]);
+    POSEWISE_INLINE void run_part(Index, int part) const {
+        const V* const m = in<V>(M, part);
+        const V* const y = in<V>(root, part);
+        V total = {};
+        for (Index a = first; a < size; ++a) {
+            for (Index b = first; b <= a; ++b) {
+                V product = {};
+                for (Index j = first; j <= b; ++j) {
+                    product += y[packed(a, j) * parts<V>] * y[packed(b, j) * parts<V>];
                 }
+                const double times = a == b ? 1 : 2;
+                total += times * product * product /
+                         (m[packed(a, a) * parts<V>] * m[packed(b, b) * parts<V>]);
             }
-            *(reinterpret_cast<V*>(&sum) + part) = total;
         }
+        at<V>(&sum, part) = total;
     }
 };
 
 /// The sum of the products of the entries of R = D^-1/2 L^-1, from what SolveRoot left, and of Q.
 /// The pivots of M are replaced by their inverse roots.
-struct NuclearProduct {
-    Index size;
-    Index first;
+struct NuclearProduct : Root {
     const std::vector<double>& Q;  // packed
-    std::vector<Lane>& M;
-    std::vector<Lane>& root;
-    Lane& sum;
 
     template <typename V>
-    POSEWISE_INLINE void run() const {
-        constexpr int parts = lane_width / simd::width<V>;
-        for (int part = 0; part < parts; ++part) {
-            const V* const m = in<V>(M, part);
-            const V* const y = in<V>(root, part);
-            V total = {};
-            for (Index i = first; i < size; ++i) {
-                V product = {};
-                for (Index j = first; j <= i; ++j) {
-                    product += Q[static_cast<std::size_t>(packed(i, j))] * y[packed(i, j) * parts];
-                }
-                total += product * m[packed(i, i) * parts];
+    POSEWISE_INLINE void run_part(Index, int part) const {
+        const V* const m = in<V>(M, part);
+        const V* const y = in<V>(root, part);
+        V total = {};
+        for (Index i = first; i < size; ++i) {
+            V product = {};
+            for (Index j = first; j <= i; ++j) {
+                product += Q[static_cast<std::size_t>(packed(i, j))] * y[packed(i, j) * parts<V>];
             }
-            *(reinterpret_cast<V*>(&sum) + part) = total;
+            total += product * m[packed(i, i) * parts<V>];
         }
+        at<V>(&sum, part) = total;
     }
 };
 
@@ -279,8 +258,7 @@ void ChoiceFilter::invert_pivots(Batch& batch) const {
 
 bool ChoiceFilter::may_reach(double value, double sum) const {
     if (test_ == Test::Shift) return true;
-    if (test_ == Test::Trace) return 1 / sum >= value * (1 - margin);
-    if (test_ == Test::Nuclear) return 1 / sum >= value * (1 - margin);
+    if (test_ != Test::Determinant) return 1 / sum >= value * (1 - margin);
     const Index interest = static_cast<Index>(order_.size()) - nuisance_;
     const double reached = value_of_log_determinant(objective_, sum, interest);
     return reached >= value - margin * std::max(1.0, std::abs(value));
@@ -293,16 +271,17 @@ std::array<bool, lane_width> ChoiceFilter::may_reach(double value, Batch& batch)
     Lane sum;
     Lane squares;
     Lane fourth;
-    simd::run(Factorise{L, batch.M, least});
+    run_on_lanes(1, Factorise{L, batch.M, least});
     if (!root_.empty()) {
         for (std::size_t k = 0; k < root_.size(); ++k) batch.root[k].of.fill(root_[k]);
         const Index first = objective_.test_poses == nullptr ? nuisance_ : 0;
-        simd::run(SolveRoot{L, first, batch.M, batch.root, sum});
+        const Root root{L, first, batch.M, batch.root, sum};
+        run_on_lanes(1, SolveRoot{root});
         if (test_ == Test::Nuclear) {
-            simd::run(SquareInverse{L, first, batch.M, batch.root, fourth});
+            run_on_lanes(1, SquareInverse{{L, first, batch.M, batch.root, fourth}});
             squares = sum;
             invert_pivots(batch);
-            simd::run(NuclearProduct{L, first, polar_, batch.M, batch.root, sum});
+            run_on_lanes(1, NuclearProduct{root, polar_});
         }
     }
     std::array<bool, lane_width> result{};

@@ -10,8 +10,28 @@ namespace posewise::detail {
 
 // What the kernels of lanes share.
 
+/// Runs `kernel.run_part<V>(group, part)` for every group of lanes and every vector of one.
+template <typename Kernel>
+struct EachPart {
+    Index groups;
+    const Kernel& kernel;
+
+    template <typename V>
+    POSEWISE_INLINE void run() const {
+        for (Index g = 0; g < groups; ++g) {
+            for (int part = 0; part < lane_width / simd::width<V>; ++part) {
+                kernel.template run_part<V>(g, part);
+            }
+        }
+    }
+};
+template <typename Kernel>
+void run_on_lanes(Index groups, const Kernel& kernel) {
+    simd::run(EachPart<Kernel>{groups, kernel});
+}
+
 /// The lower triangle's entry (a, b), b <= a.
-constexpr int packed(int a, int b) { return a * (a + 1) / 2 + b; }
+constexpr Index packed(Index a, Index b) { return a * (a + 1) / 2 + b; }
 constexpr int packed_size(int rows) { return rows * (rows + 1) / 2; }
 
 template <typename V>

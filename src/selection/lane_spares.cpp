@@ -16,13 +16,6 @@ struct LeastSpares {
     std::span<Lane> result;
 
     template <typename V>
-    POSEWISE_INLINE void run() const {
-        for (Index g = 0; g < blocks.groups; ++g) {
-            for (int part = 0; part < lane_width / simd::width<V>; ++part) run_part<V>(g, part);
-        }
-    }
-
-    template <typename V>
     POSEWISE_INLINE void run_part(Index g, int part) const {
         const Lane* B = blocks.entries.data() + g * R * blocks.parameters;
         V X[R][R];
@@ -94,7 +87,7 @@ void lane_spares(const LaneBlocks& blocks, const LaneGrams& G, const MatrixXd& P
                  std::span<const Witness> witnesses, std::span<Lane> result) {
     const RowMatrixXd tile = column_tile(P, 0, blocks.rows);
     with_height(blocks.rows, [&](auto R) {
-        simd::run(LeastSpares<R>{blocks, G, tile.data(), witnesses, result});
+        run_on_lanes(blocks.groups, LeastSpares<R>{blocks, G, tile.data(), witnesses, result});
     });
 }
 

@@ -20,13 +20,6 @@ struct UpdateGrams {
     LaneGrams* H;
 
     template <typename V>
-    POSEWISE_INLINE void run() const {
-        for (Index g = 0; g < blocks.groups; ++g) {
-            for (int part = 0; part < lane_width / simd::width<V>; ++part) run_part<V>(g, part);
-        }
-    }
-
-    template <typename V>
     POSEWISE_INLINE void run_part(Index g, int part) const {
         const Lane* B = blocks.entries.data() + g * R * blocks.parameters;
         V X[R][R];
@@ -59,15 +52,8 @@ struct Determinants {
     std::span<Lane> result;
 
     template <typename V>
-    POSEWISE_INLINE void run() const {
-        for (Index g = 0; g < blocks.groups; ++g) {
-            if (asked[static_cast<std::size_t>(g)] == 0) continue;
-            for (int part = 0; part < lane_width / simd::width<V>; ++part) run_part<V>(g, part);
-        }
-    }
-
-    template <typename V>
     POSEWISE_INLINE void run_part(Index g, int part) const {
+        if (asked[static_cast<std::size_t>(g)] == 0) return;
         V X[R][R];
         V S[packed_size(R)];
         multiply<R, V>(blocks.entries.data() + g * R * blocks.parameters, part, P,
@@ -105,15 +91,8 @@ struct Traces {
     std::span<Lane> result;
 
     template <typename V>
-    POSEWISE_INLINE void run() const {
-        for (Index g = 0; g < blocks.groups; ++g) {
-            if (asked[static_cast<std::size_t>(g)] == 0) continue;
-            for (int part = 0; part < lane_width / simd::width<V>; ++part) run_part<V>(g, part);
-        }
-    }
-
-    template <typename V>
     POSEWISE_INLINE void run_part(Index g, int part) const {
+        if (asked[static_cast<std::size_t>(g)] == 0) return;
         const Lane* B = blocks.entries.data() + g * R * blocks.parameters;
         V X[R][R];
         V Y[R][R];
@@ -190,7 +169,8 @@ LaneGrams make_grams(const LaneBlocks& blocks, const MatrixXd& F) {
             const RowMatrixXd P = column_tile(F, first, R);
             Index depth = P.rows();
             while (depth > 0 && P.row(depth - 1).isZero(0)) --depth;
-            simd::run(UpdateGrams<R>{blocks, P.data(), nullptr, depth, 1, G, nullptr});
+            run_on_lanes(blocks.groups,
+                         UpdateGrams<R>{blocks, P.data(), nullptr, depth, 1, G, nullptr});
         }
     });
     return G;
@@ -201,8 +181,8 @@ void update_grams(const LaneBlocks& blocks, const MatrixXd& P, const MatrixXd& Q
     const RowMatrixXd tile = column_tile(P, 0, blocks.rows);
     const RowMatrixXd other = column_tile(Q, 0, blocks.rows);
     with_height(blocks.rows, [&](auto R) {
-        simd::run(UpdateGrams<R>{blocks, tile.data(), other.data(), P.rows(), sign, G,
-                                 H.empty() ? nullptr : &H});
+        run_on_lanes(blocks.groups, UpdateGrams<R>{blocks, tile.data(), other.data(), P.rows(),
+                                                   sign, G, H.empty() ? nullptr : &H});
     });
 }
 
@@ -223,7 +203,7 @@ void lane_determinants(const LaneBlocks& blocks, const LaneGrams& G, const Matri
                        std::span<const char> asked, std::span<Lane> result) {
     const RowMatrixXd tile = column_tile(P, 0, blocks.rows);
     with_height(blocks.rows, [&](auto R) {
-        simd::run(Determinants<R>{blocks, G, tile.data(), asked, result});
+        run_on_lanes(blocks.groups, Determinants<R>{blocks, G, tile.data(), asked, result});
     });
 }
 
@@ -233,7 +213,8 @@ void lane_traces(const LaneBlocks& blocks, const LaneGrams& G, const LaneGrams& 
     const RowMatrixXd tile = column_tile(P, 0, blocks.rows);
     const RowMatrixXd other = column_tile(Q, 0, blocks.rows);
     with_height(blocks.rows, [&](auto R) {
-        simd::run(Traces<R>{blocks, G, H, tile.data(), other.data(), asked, result});
+        run_on_lanes(blocks.groups,
+                     Traces<R>{blocks, G, H, tile.data(), other.data(), asked, result});
     });
 }
 

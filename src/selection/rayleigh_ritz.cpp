@@ -24,22 +24,13 @@ struct Compress {
     std::span<Lane> result;
 
     template <typename V>
-    POSEWISE_INLINE void run() const {
-        for (Index g = 0; g < blocks.groups; ++g) {
-            for (int part = 0; part < lane_width / simd::width<V>; ++part) run_part<V>(g, part);
-        }
-    }
-
-    template <typename V>
     POSEWISE_INLINE void run_part(Index g, int part) const {
-        constexpr int parts = lane_width / simd::width<V>;
-        const V* row =
-            reinterpret_cast<const V*>(blocks.entries.data() + g * blocks.rows * blocks.parameters);
+        const Lane* row = blocks.entries.data() + g * blocks.rows * blocks.parameters;
         V sums[triangle + 1] = {};
-        for (Index r = 0; r < blocks.rows; ++r, row += blocks.parameters * parts) {
+        for (Index r = 0; r < blocks.rows; ++r, row += blocks.parameters) {
             V x[columns] = {};
             for (Index l = 0; l < blocks.parameters; ++l) {
-                const V entry = row[l * parts + part];
+                const V entry = at<V>(row + l, part);
 #pragma GCC unroll 16
                 for (int c = 0; c < columns; ++c) x[c] += entry * U[l * columns + c];
             }
@@ -50,8 +41,8 @@ struct Compress {
             }
             sums[triangle] += x[columns - 1] * x[columns - 1];
         }
-        V* out = reinterpret_cast<V*>(result.data() + g * (triangle + 1)) + part;
-        for (int k = 0; k <= triangle; ++k) out[k * parts] = sums[k];
+        Lane* const out = result.data() + g * (triangle + 1);
+        for (int k = 0; k <= triangle; ++k) at<V>(out + k, part) = sums[k];
     }
 };
 
@@ -66,20 +57,12 @@ struct LeastPivots {
     std::span<Lane> result;
 
     template <typename V>
-    POSEWISE_INLINE void run() const {
-        for (std::size_t g = 0; g < least.size(); ++g) {
-            for (int part = 0; part < lane_width / simd::width<V>; ++part) run_part<V>(g, part);
-        }
-    }
-
-    template <typename V>
-    POSEWISE_INLINE void run_part(std::size_t g, int part) const {
-        constexpr int parts = lane_width / simd::width<V>;
-        const V* in = reinterpret_cast<const V*>(&compressions[g * (triangle + 1)]) + part;
-        const V shift = *(reinterpret_cast<const V*>(&least[g]) + part);
+    POSEWISE_INLINE void run_part(Index g, int part) const {
+        const Lane* const compression = compressions.data() + g * (triangle + 1);
+        const V shift = at<V>(least.data() + g, part);
         V S[triangle];
 #pragma GCC unroll 36
-        for (int k = 0; k < triangle; ++k) S[k] = in[k * parts] + remaining[k];
+        for (int k = 0; k < triangle; ++k) S[k] = at<V>(compression + k, part) + remaining[k];
 #pragma GCC unroll 8
         for (int k = 0; k < vectors; ++k) S[packed(k, k)] -= shift;
         V smallest = S[0];
@@ -95,7 +78,7 @@ struct LeastPivots {
                 for (int b = k + 1; b <= a; ++b) S[packed(a, b)] -= factor * S[packed(b, k)];
             }
         }
-        *(reinterpret_cast<V*>(&result[g]) + part) = smallest;
+        at<V>(result.data() + g, part) = smallest;
     }
 };
 
@@ -124,7 +107,8 @@ RayleighRitz::Compression RayleighRitz::compress(const Eigen::Ref<const RowMatri
 
 void RayleighRitz::compress_members() {
     if (shortlist_.lanes.rows > 0) {
-        return simd::run(Compress<vectors + 1>{shortlist_.lanes, U_.data(), compressions_});
+        return run_on_lanes(shortlist_.lanes.groups,
+                            Compress<vectors + 1>{shortlist_.lanes, U_.data(), compressions_});
     }
     for (std::size_t k = 0; k < shortlist_.members.size(); ++k) {
         const Compression one = compress(candidates_[shortlist_.members[k]]);
@@ -171,7 +155,8 @@ void RayleighRitz::ask(double value) {
                 least_eigenvalue(remaining_[weak_size] + compressions_[g * size + weak_size].of[k]);
         }
     }
-    simd::run(LeastPivots<vectors>{remaining_.data(), compressions_, least_, pivots_});
+    run_on_lanes(std::ssize(least_),
+                 LeastPivots<vectors>{remaining_.data(), compressions_, least_, pivots_});
 }
 
 bool RayleighRitz::may_exceed(Index position) const {

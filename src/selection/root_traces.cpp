@@ -2,15 +2,12 @@
 
 #include <cmath>
 
-#include "../core/simd.hpp"
+#include "lane_kernels.hpp"
 
 namespace posewise::detail {
 namespace {
 
 constexpr Index tile = 4;  // inverses at a time
-
-/// Where row i of a lower triangle begins.
-constexpr Index row_of(Index i) { return i * (i + 1) / 2; }
 
 /// One group of candidates. `work` has room for the triangle, two vectors and the squares beside
 /// the tridiagonal's diagonal.
@@ -34,7 +31,7 @@ struct RootTrace {
     template <typename V>
     POSEWISE_INLINE void run() const {
         V* const room = reinterpret_cast<V*>(work.data());
-        V* const after = room + row_of(size);
+        V* const after = room + packed(size, 0);
         const Vectors<V> vectors{room, after, after + size, after + 2 * size};
         for (int part = 0; part < lane_width / simd::width<V>; ++part) {
             add_blocks<V>(part, vectors);
@@ -50,13 +47,13 @@ struct RootTrace {
     template <typename V>
     POSEWISE_INLINE void add_blocks(int part, const Vectors<V>& to) const {
         constexpr int parts = lane_width / simd::width<V>;
-        for (Index k = 0; k < row_of(size); ++k) to.triangle[k] = V{} + M[k];
+        for (Index k = 0; k < packed(size, 0); ++k) to.triangle[k] = V{} + M[k];
         const V* b = reinterpret_cast<const V*>(blocks.entries.data() +
                                                 group * blocks.rows * blocks.parameters) +
                      part;
         for (Index r = 0; r < blocks.rows; ++r, b += size * parts) {
             for (Index i = 0; i < size; ++i) {
-                V* const row = to.triangle + row_of(i);
+                V* const row = to.triangle + packed(i, 0);
                 const V factor = b[i * parts];
                 for (Index j = 0; j <= i; ++j) row[j] += factor * b[j * parts];
             }
@@ -66,7 +63,7 @@ struct RootTrace {
     /// Makes all entries of row i zero but those beside the diagonal.
     template <typename V>
     POSEWISE_INLINE void reflect(Index i, const Vectors<V>& a) const {
-        const V* const x = a.triangle + row_of(i);
+        const V* const x = a.triangle + packed(i, 0);
         V squares = {};
         for (Index j = 0; j < i; ++j) squares += x[j] * x[j];
         a.squares[i] = squares;
@@ -82,7 +79,7 @@ struct RootTrace {
         const V inverse = 1.0 / (squares + (last < 0.0 ? -last : last) * norm + 1e-300);
         V product = {};
         for (Index j = 0; j < i; ++j) {
-            const V* const row = a.triangle + row_of(j);
+            const V* const row = a.triangle + packed(j, 0);
             const V v = a.v[j];
             V sum = row[j] * v;
             for (Index k = 0; k < j; ++k) {
@@ -98,7 +95,7 @@ struct RootTrace {
         product *= 0.5 * inverse;
         for (Index j = 0; j < i; ++j) a.p[j] -= product * a.v[j];
         for (Index j = 0; j < i; ++j) {
-            V* const row = a.triangle + row_of(j);
+            V* const row = a.triangle + packed(j, 0);
             const V v = a.v[j];
             const V p = a.p[j];
             for (Index k = 0; k <= j; ++k) row[k] -= v * a.p[k] + p * a.v[k];
@@ -124,7 +121,7 @@ struct RootTrace {
                 sum[t] += relative;
                 if (i == size) continue;
                 const V removed = a.squares[i] * inverse;
-                pivot[t] = a.triangle[row_of(i) + i] + shift[t] - removed;
+                pivot[t] = a.triangle[packed(i, 0) + i] + shift[t] - removed;
                 slope[t] = relative * removed + 1.0;
             }
         }
@@ -147,7 +144,7 @@ RootTraces::RootTraces(const MatrixXd& M, const InverseRoot& root) : size_(M.row
 }
 
 std::vector<Lane> RootTraces::compute(const LaneBlocks& blocks) const {
-    std::vector<Lane> work(static_cast<std::size_t>(row_of(size_) + 3 * size_));
+    std::vector<Lane> work(static_cast<std::size_t>(packed(size_, 0) + 3 * size_));
     std::vector<Lane> traces(static_cast<std::size_t>(blocks.groups));
     for (Index g = 0; g < blocks.groups; ++g) {
         simd::run(RootTrace{blocks, g, size_, M_.data(), root_, work,
