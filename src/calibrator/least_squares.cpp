@@ -69,51 +69,44 @@ void weigh_targets(const IdentificationProblem& problem, RowMatrixXd& seen) {
 ParameterUnits::ParameterUnits(const Campaign& campaign)
     : scale_(parameter_scale(campaign)), begin_(prior_begin(campaign)) {
     if (!campaign.prior) return;
-    root_ = cholesky(campaign.prior->covariance);
-    if (root_.rows() != prior_count(campaign)) {
+    const Index count = prior_count(campaign);
+    const MatrixXd root = cholesky(campaign.prior->covariance);
+    if (root.rows() != count) {
         throw InputError(
             "the prior is of other parameters, or its covariance not positive definite");
     }
+    units_ = scale_.asDiagonal();
+    units_.block(begin_, begin_, count, count) = root;
 }
 
 VectorXd ParameterUnits::prior_coordinates(const Campaign& campaign,
                                            const Parameters& parameters) const {
     const Index count = prior_count(campaign);
-    if (root_.size() == 0) return parameters.robot.cwiseQuotient(scale_.segment(begin_, count));
-    return root_.triangularView<Eigen::Lower>().solve(
-        step_between(campaign, campaign.prior->mean, parameters).segment(begin_, count));
+    if (units_.size() == 0) return parameters.robot.cwiseQuotient(scale_.segment(begin_, count));
+    return units_.block(begin_, begin_, count, count)
+        .triangularView<Eigen::Lower>()
+        .solve(step_between(campaign, campaign.prior->mean, parameters).segment(begin_, count));
 }
 
 VectorXd ParameterUnits::step(const VectorXd& d) const {
-    VectorXd step = scale_.cwiseProduct(d);
-    if (root_.size() > 0) {
-        step.segment(begin_, root_.rows()) =
-            root_.triangularView<Eigen::Lower>() * d.segment(begin_, root_.rows());
-    }
-    return step;
+    if (units_.size() == 0) return scale_.cwiseProduct(d);
+    return units_ * d;
 }
 
 void ParameterUnits::scale_columns(Eigen::Ref<RowMatrixXd> J) const {
-    if (root_.size() == 0) {
+    if (units_.size() == 0) {
         J *= scale_.asDiagonal();
-        return;
+    } else {
+        J *= units_;
     }
-    const RowMatrixXd by_robot = J.middleCols(begin_, root_.rows()) * root_;
-    J *= scale_.asDiagonal();
-    J.middleCols(begin_, root_.rows()) = by_robot;
 }
 
 void ParameterUnits::unscale(MatrixXd& covariance) const {
-    const Index count = root_.rows();
-    const MatrixXd rows = root_ * covariance.middleRows(begin_, count);
-    covariance.array() *= (scale_ * scale_.transpose()).array();
-    if (count == 0) return;
-    VectorXd others = scale_;
-    others.segment(begin_, count).setOnes();
-    covariance.middleRows(begin_, count) = rows * others.asDiagonal();
-    covariance.middleCols(begin_, count) = covariance.middleRows(begin_, count).transpose();
-    covariance.block(begin_, begin_, count, count) =
-        rows.middleCols(begin_, count) * root_.transpose();
+    if (units_.size() == 0) {
+        covariance.array() *= (scale_ * scale_.transpose()).array();
+    } else {
+        covariance = units_ * covariance * units_.transpose();
+    }
 }
 
 std::string describe_unseen_target(const Campaign& campaign, const Measurements& measurements) {

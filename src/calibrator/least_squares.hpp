@@ -32,8 +32,8 @@ class ParameterUnits {
 
   private:
     VectorXd scale_;
-    Index begin_;    ///< of those that have a prior
-    MatrixXd root_;  ///< lower, of an earlier calibration's covariance; empty without
+    Index begin_;     ///< of those that have a prior
+    MatrixXd units_;  ///< where there is an earlier calibration: parameters by coordinates
 };
 
 /// The measured means and what every linearisation of them shares.

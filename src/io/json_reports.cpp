@@ -42,11 +42,10 @@ Json joint_terms_to_json(const std::vector<JointTerm>& terms, const Chain& robot
 
 Json element_to_json(const Element& element, const Chain& robot) {
     const AmountUnits& units = units_of(element.motion);
-    const char kind = element.motion == Motion::Rotation ? 'R' : 'T';
     Json parameters = Json::array();
     if (!element.parameter.empty()) parameters.push_back(element.parameter);
     for (const ErrorTerm& term : element.terms) parameters.push_back(term.parameter);
-    return {{"transform", std::string{kind, "xyz"[static_cast<std::size_t>(element.axis)]}},
+    return {{"transform", transform_name(element)},
             {"nominal_" + std::string(units.reading), units.to_reading(element.value)},
             {"joints", joint_terms_to_json(element.joints, robot)},
             {"parameters", std::move(parameters)}};

@@ -44,8 +44,7 @@ Json term_statement(const Chain& robot, const ErrorTerm& term) {
 }
 
 Json element_statement(const Chain& robot, const Element& element) {
-    Json json = {{"motion", std::string(element.motion == Motion::Rotation ? "R" : "T") +
-                                static_cast<char>('x' + static_cast<int>(element.axis))}};
+    Json json = {{"motion", transform_name(element)}};
     if (element.value != 0)
         json["amount" + si_suffix(element.motion == Motion::Rotation)] = element.value;
     if (!element.joints.empty()) json["joints"] = joints_statement(robot, element.joints);

@@ -44,14 +44,9 @@ std::string to_json(const ApproximateDesign& design) {
     return detail::json_text(design_to_json(design));
 }
 
-void check_weights_path(const std::string& path) {
-    if (path.ends_with(".csv") || path.ends_with(".json")) return;
-    throw input_error_at({path}, "must end in .csv or .json");
-}
-
 void write_weights(const std::string& path, const ApproximateDesign& design) {
-    check_weights_path(path);
     if (path.ends_with(".json")) return detail::write_json(path, design_to_json(design));
+    if (!path.ends_with(".csv")) throw input_error_at({path}, "must end in .csv or .json");
     std::string text = "config,weight\n";
     for (const auto& [id, weight] : design.weights) {
         fmt::format_to(std::back_inserter(text), "{},{}\n", detail::csv_field(id), weight);

@@ -79,6 +79,11 @@ std::vector<Index> element_owners(const Chain& chain) {
     return owners;
 }
 
+std::string transform_name(const Element& element) {
+    return {element.motion == Motion::Rotation ? 'R' : 'T',
+            "xyz"[static_cast<std::size_t>(element.axis)]};
+}
+
 Chain without_parameters(const Chain& chain) {
     std::vector<Element> elements = chain.elements();
     for (Element& element : elements) {

@@ -44,6 +44,11 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
     return space;
 }
 
+bool is_apart(const RowMatrixXd& poses, const Eigen::RowVectorXd& q, double distance) {
+    return poses.rows() == 0 ||
+           (poses.rowwise() - q).cwiseAbs().rowwise().maxCoeff().minCoeff() >= distance;
+}
+
 void check_all_is_seen(const DesignSpace& space, const MatrixXd& M) {
     // A plan that leaves a direction less sure than so many expected errors is no plan.
     constexpr double largest_deviation = 1000;

@@ -35,6 +35,9 @@ struct DesignSpace {
 DesignSpace make_design_space(const Campaign& campaign, const Parameters& parameters,
                               double repeats = 1, const Constraints* constraints = nullptr);
 
+/// Whether q differs from each of the poses by so much in some joint (rad or m).
+bool is_apart(const RowMatrixXd& poses, const Eigen::RowVectorXd& q, double distance);
+
 /// Throws InputError that names a parameter direction which M sees by rounding only, or much less
 /// than is expected of its errors; a criterion's value does not tell.
 void check_all_is_seen(const DesignSpace& space, const MatrixXd& M);

@@ -71,10 +71,10 @@ SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
         select.least_distance =
             space.least_joint_distance * std::sqrt(static_cast<double>(pool.cols()));
         const RowMatrixXd& held = options.held.configurations;
-        for (Index i = 0; i < pool.rows() && held.rows() > 0; ++i) {
-            const double nearest =
-                (held.rowwise() - pool.row(i)).cwiseAbs().rowwise().maxCoeff().minCoeff();
-            if (nearest < space.least_joint_distance) select.excluded.push_back(i);
+        for (Index i = 0; i < pool.rows(); ++i) {
+            if (!is_apart(held, pool.row(i), space.least_joint_distance)) {
+                select.excluded.push_back(i);
+            }
         }
     }
     return select;
@@ -150,13 +150,6 @@ MatrixXd information_of(const Problem& problem, const RowMatrixXd& plan) {
     return M;
 }
 
-bool keeps_distance(const DesignSpace& space, const RowMatrixXd& others,
-                    const Eigen::RowVectorXd& q) {
-    return others.rows() == 0 ||
-           (others.rowwise() - q).cwiseAbs().rowwise().maxCoeff().minCoeff() >=
-               space.least_joint_distance;
-}
-
 /// The choice from the whole pool, which becomes `pool_choice`, and the refinements of all starts,
 /// of which it is the first; those whose choice identifies too little are left empty. That choice
 /// is made beside the other starts, since by G it takes as long as many of them.
@@ -219,8 +212,9 @@ RowMatrixXd kick(const Problem& problem, const RowMatrixXd& plan, const MatrixXd
             const double sensitivity = (block * Z).cwiseProduct(block).sum();
             if (sensitivity <= largest) continue;
             const auto q = problem.pool.row(drawn);
-            if (!keeps_distance(problem.space, others, q) ||
-                !keeps_distance(problem.space, problem.options.held.configurations, q)) {
+            const double least = problem.space.least_joint_distance;
+            if (!is_apart(others, q, least) ||
+                !is_apart(problem.options.held.configurations, q, least)) {
                 continue;
             }
             largest = sensitivity;

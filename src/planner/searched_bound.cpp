@@ -35,12 +35,6 @@ struct Support {
     }
 };
 
-/// Whether q is so far from each of the poses in some joint.
-bool is_apart(const RowMatrixXd& poses, const Eigen::RowVectorXd& q, double distance) {
-    return poses.rows() == 0 ||
-           (poses.rowwise() - q).cwiseAbs().rowwise().maxCoeff().minCoeff() >= distance;
-}
-
 /// The most sensitive poses that are apart, after those in `chosen`.
 void choose_starts(const RowMatrixXd& poses, const VectorXd& sensitivity, RowMatrixXd& chosen) {
     std::vector<Index> order(static_cast<std::size_t>(poses.rows()));

@@ -46,12 +46,10 @@ Table element_table(const Chain& robot) {
     Table table{{"no", "transform", "nominal", "", "joint", "error parameter"}, {}};
     for (const Element& element : robot.elements()) {
         const AmountUnits& units = units_of(element.motion);
-        const char kind = element.motion == Motion::Rotation ? 'R' : 'T';
-        const char axis = "xyz"[static_cast<std::size_t>(element.axis)];
-        table.rows.push_back(
-            {std::to_string(table.rows.size() + 1), fmt::format("{}{}", kind, axis),
-             format_short(units.to_reading(element.value), 9), std::string(units.reading),
-             format_terms(element.joints, robot), format_parameters(element)});
+        table.rows.push_back({std::to_string(table.rows.size() + 1), transform_name(element),
+                              format_short(units.to_reading(element.value), 9),
+                              std::string(units.reading), format_terms(element.joints, robot),
+                              format_parameters(element)});
     }
     return table;
 }

@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <cmath>
 
+#include "../criteria/prediction.hpp"
 #include "../selection/bound.hpp"
 #include "../selection/objective_bound.hpp"
 #include "../selection/relaxation.hpp"
@@ -24,21 +24,6 @@ std::vector<WeightedCandidate> list_weights(const ChoiceProblem& problem, const 
     return list;
 }
 
-/// Held information and that of each candidate times its weight.
-MatrixXd weighted_information(const ChoiceProblem& problem, const VectorXd& weights) {
-    std::vector<Index> used;
-    for (Index i = 0; i < weights.size(); ++i) {
-        if (weights[i] > 0) used.push_back(i);
-    }
-    Blocks blocks = take(problem.blocks, used);
-    for (std::size_t k = 0; k < used.size(); ++k) {
-        blocks.matrix.middleRows(blocks.first_row[k],
-                                 blocks.first_row[k + 1] - blocks.first_row[k]) *=
-            std::sqrt(weights[used[k]]);
-    }
-    return detail::held_information(problem.blocks, problem.options) + information(blocks);
-}
-
 ApproximateDesign weigh(ChoiceProblem& problem, const ChoiceOptions& options) {
     if (!options.groups.empty() || options.least_distance > 0) {
         throw InputError(
@@ -55,7 +40,9 @@ ApproximateDesign weigh(ChoiceProblem& problem, const ChoiceOptions& options) {
     design.request = problem.request;
     design.candidate_count = problem.blocks.count();
     design.weights = list_weights(problem, relaxation.weights);
-    design.value = evaluate(objective, weighted_information(problem, relaxation.weights));
+    design.value =
+        evaluate(objective, detail::held_information(problem.blocks, stated) +
+                                detail::weighted_information(problem.blocks, relaxation.weights));
     design.bound = std::max(relaxation.bound, design.value);
     design.efficiency = detail::efficiency(
         stated.criterion, design.value, design.bound,

@@ -253,7 +253,7 @@ std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& e
         const bool is_angle = campaign.robot.parameter_element(k).motion == Motion::Rotation;
         faults.push_back(fmt::format("{}{} is {} {}, {} times the size expected of it", what,
                                      estimate.names[static_cast<std::size_t>(robot_begin + k)],
-                                     detail::format_short(1e3 * value, 4), is_angle ? "mrad" : "mm",
+                                     detail::format_short(1e3 * value, 4), units_of(is_angle).error,
                                      detail::format_short(times, 2)));
     };
     for (Index k = 0; k < estimate.parameters.robot.size(); ++k) {

@@ -81,6 +81,9 @@ struct Element {
     bool has_functions() const { return !terms.empty() || !known_terms.empty(); }
 };
 
+/// "Tx" .. "Rz".
+std::string transform_name(const Element& element);
+
 /// A joint with its limits in rad (revolute) or m (prismatic).
 struct Joint {
     std::string name;
