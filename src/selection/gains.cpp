@@ -6,10 +6,11 @@
 namespace posewise::detail {
 namespace {
 
-/// Digits that updates may lose: with this many of them in a row, each by a removal that leaves so
-/// small a part of the information, what is cached is right to nine digits.
+/// Digits that updates may lose: with this many of them in a row, each by a removal that leaves at
+/// least such a part of the information, what is cached is right to nine digits.
 constexpr int most_updates = 32;
-constexpr double largest_growth = 1e6;
+constexpr double least_left_by_updates = 1e-6;
+constexpr double singular = 1e-13;  // of the information in some direction, left by a removal
 constexpr double variance_margin =
     1e-7;  // relative, above what is lost, so that nothing better is ruled out
 
@@ -27,20 +28,7 @@ Gains::Gains(const Blocks& candidates, const Shortlist& shortlist)
       asked_(static_cast<std::size_t>(shortlist.lanes.groups)),
       gains_(asked_.size()) {}
 
-double Gains::sensitivity_of(const Eigen::Ref<const RowMatrixXd>& block) const {
-    return (block * slope_).cwiseProduct(block).sum();
-}
-
-void Gains::factorise(const MatrixXd& M) {
-    M_ = M;
-    cholesky_.compute(M);
-    if (is_determinant()) {
-        slope_ = cholesky_.solve(MatrixXd::Identity(M.rows(), M.cols()));
-        return;
-    }
-    root_ = cholesky_.solve(C_root_);
-    slope_ = root_ * root_.transpose();
-}
+MatrixXd Gains::identity() const { return MatrixXd::Identity(cholesky_.rows(), cholesky_.cols()); }
 
 void Gains::find_sensitivities() {
     const auto count = static_cast<Index>(shortlist_.members.size());
@@ -48,22 +36,23 @@ void Gains::find_sensitivities() {
         sensitivity_ = gram_traces(shortlist_.lanes, is_determinant() ? G_ : H_).head(count);
         return;
     }
+    const MatrixXd root = is_determinant() ? MatrixXd(cholesky_.matrixU().solve(identity()))
+                                           : MatrixXd(cholesky_.solve(C_root_));
     sensitivity_.resize(count);
     for (Index k = 0; k < count; ++k) {
-        sensitivity_[k] =
-            sensitivity_of(candidates_[shortlist_.members[static_cast<std::size_t>(k)]]);
+        const auto block = candidates_[shortlist_.members[static_cast<std::size_t>(k)]];
+        sensitivity_[k] = (block * root).squaredNorm();
     }
 }
 
 void Gains::move_to(const MatrixXd& M, const MatrixXd& C_root) {
     C_root_ = C_root;
     C_ = C_root * C_root.transpose();
-    factorise(M);
+    cholesky_.compute(M);
     updates_ = 0;
     if (shortlist_.lanes.rows > 0) {
-        const MatrixXd identity = MatrixXd::Identity(M.rows(), M.cols());
-        G_ = make_grams(shortlist_.lanes, cholesky_.matrixU().solve(identity));
-        if (!is_determinant()) H_ = make_grams(shortlist_.lanes, root_);
+        G_ = make_grams(shortlist_.lanes, cholesky_.matrixU().solve(identity()));
+        if (!is_determinant()) H_ = make_grams(shortlist_.lanes, cholesky_.solve(C_root_));
     }
     find_sensitivities();
 }
@@ -83,18 +72,20 @@ void Gains::exchange(const Eigen::Ref<const RowMatrixXd>& added, const MatrixXd&
     }
     update_grams(shortlist_.lanes, P_, Q_, 1, G_, H_);
     update_grams(shortlist_.lanes, T, S, -1, G_, H_);
-    factorise(M);
+    cholesky_.compute(M);
     find_sensitivities();
 }
 
 bool Gains::remove(const Eigen::Ref<const RowMatrixXd>& block) {
-    const Eigen::LLT<MatrixXd> remaining(M_ - block.transpose() * block);
-    if (remaining.info() != Eigen::Success) return false;
-    const MatrixXd WB = remaining.solve(block.transpose());
-    const Eigen::LLT<MatrixXd> growth(MatrixXd::Identity(block.rows(), block.rows()) + block * WB);
-    P_ = growth.matrixL().solve(WB.transpose()).transpose();
-    is_removal_accurate_ =
-        growth.matrixLLT().diagonal().array().square().maxCoeff() < largest_growth;
+    const MatrixXd Z = cholesky_.solve(block.transpose());
+    removed_sensitivity_ = is_determinant() ? block.cwiseProduct(Z.transpose()).sum()
+                                            : (C_root_.transpose() * Z).squaredNorm();
+    const Eigen::LLT<MatrixXd> left(MatrixXd::Identity(block.rows(), block.rows()) - block * Z);
+    if (left.info() != Eigen::Success) return false;
+    const double least_left = left.matrixLLT().diagonal().array().square().minCoeff();
+    if (least_left < singular) return false;
+    P_ = left.matrixL().solve(Z.transpose()).transpose();
+    is_removal_accurate_ = least_left > least_left_by_updates;
     if (is_determinant()) return true;
     // W C W - M^-1 C M^-1 = P Q^T + Q P^T with Q = M^-1 C P + P (P^T C P) / 2.
     const MatrixXd CP = C_ * P_;
@@ -118,8 +109,7 @@ double Gains::compute_plainly(Index position, const MatrixXd& W, const MatrixXd&
 VectorXd Gains::compute(const std::vector<Index>& positions) {
     VectorXd result(static_cast<Index>(positions.size()));
     if (shortlist_.lanes.rows == 0) {
-        const MatrixXd W =
-            cholesky_.solve(MatrixXd::Identity(M_.rows(), M_.cols())) + P_ * P_.transpose();
+        const MatrixXd W = cholesky_.solve(identity()) + P_ * P_.transpose();
         const MatrixXd WCW = is_determinant() ? MatrixXd() : W * C_ * W;
         for (Index k = 0; k < result.size(); ++k) {
             result[k] = compute_plainly(positions[static_cast<std::size_t>(k)], W, WCW);

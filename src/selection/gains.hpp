@@ -15,7 +15,7 @@ Shortlist make_shortlist(const Blocks& candidates, std::vector<Index> members);
 
 /// What exchanges of one pose do to the determinant of M, or to trace(C M^-1), by block updates of
 /// the inverse, eight candidates at a time. With W = (M - B^T B)^-1 after removing block B, W =
-/// M^-1 + P P^T where P = W B^T U^-T and U U^T = I + B W B^T. Candidate i multiplies the
+/// M^-1 + P P^T where P = M^-1 B^T U^-T and U U^T = I - B M^-1 B^T. Candidate i multiplies the
 /// determinant by det(I + B_i W B_i^T) and lowers trace(C W) by trace((I + B_i W B_i^T)^-1 B_i W C
 /// W B_i^T); what does not depend on B is cached.
 class Gains {
@@ -32,7 +32,8 @@ class Gains {
 
     /// By M's slope, trace(B_i slope B_i^T): that of log det M, or of -trace(C M^-1).
     double sensitivity(Index position) const { return sensitivity_[position]; }
-    double sensitivity_of(const Eigen::Ref<const RowMatrixXd>& block) const;
+    /// That of the removed block. Only after remove().
+    double removed_sensitivity() const { return removed_sensitivity_; }
 
     /// Takes a block out. False where what is left is singular.
     bool remove(const Eigen::Ref<const RowMatrixXd>& block);
@@ -46,9 +47,9 @@ class Gains {
 
   private:
     bool is_determinant() const { return C_.size() == 0; }
-    void factorise(const MatrixXd& M);
     void find_sensitivities();
     MatrixXd apply_W(const MatrixXd& X) const;
+    MatrixXd identity() const;
     double compute_plainly(Index position, const MatrixXd& W, const MatrixXd& WCW) const;
 
     const Blocks& candidates_;
@@ -56,12 +57,10 @@ class Gains {
     MatrixXd C_root_;
     MatrixXd C_;
     Eigen::LLT<MatrixXd> cholesky_;  // of M
-    MatrixXd M_;
-    MatrixXd root_;         // M^-1 C_root
-    MatrixXd slope_;        // M^-1, or M^-1 C M^-1
     LaneGrams G_;           // B_i M^-1 B_i^T
     LaneGrams H_;           // B_i M^-1 C M^-1 B_i^T
     VectorXd sensitivity_;  // of the shortlist's members
+    double removed_sensitivity_ = 0;
     MatrixXd P_;
     MatrixXd Q_;  // W C W - M^-1 C M^-1 = P Q^T + Q P^T
     bool is_removal_accurate_ = false;

@@ -109,7 +109,7 @@ bool Neighbourhood::is_allowed(Index position, Index removed, const Occupancy& o
 std::vector<Index> Neighbourhood::promising(Index removed, const Occupancy& occupancy) const {
     // The objective is concave: it grows only towards what is
     // more sensitive than what is removed.
-    const double least = gains_.sensitivity_of(candidates_[removed]);
+    const double least = gains_.removed_sensitivity();
     std::vector<Index> positions;
     const auto size = static_cast<Index>(shortlist_.members.size());
     for (Index position = 0; position < size; ++position) {
@@ -154,8 +154,9 @@ double Neighbourhood::worst_prediction(const MatrixXd& M, double value) {
 
 Index Neighbourhood::best_by_gains(Index removed, double value, const Occupancy& occupancy) {
     const auto B = candidates_[removed];
+    if (!gains_.remove(B)) return -1;
     const std::vector<Index> positions = promising(removed, occupancy);
-    if (positions.empty() || !gains_.remove(B)) return -1;
+    if (positions.empty()) return -1;
     std::vector<Ranked> ranked = rank(positions);
     if (ranked.empty()) return -1;
     if (ranking_ == Ranking::Exact) return ranked.front().position;
