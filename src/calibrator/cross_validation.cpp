@@ -4,10 +4,9 @@
 #include <utility>
 
 #include "../core/parallel.hpp"
-#include "../core/products.hpp"
 #include "../core/progress_counter.hpp"
-#include "least_squares.hpp"
 #include "model_error.hpp"
+#include "normal_equations.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -16,27 +15,13 @@ namespace {
 
 using detail::IdentificationProblem;
 using detail::LinearisedSystem;
+using detail::Metric;
+using detail::NormalEquations;
 
 std::vector<Index> fold_members(Index count, Index folds, Index fold) {
     std::vector<Index> members;
     for (Index i = fold; i < count; i += folds) members.push_back(i);
     return members;
-}
-
-/// |J d - r|^2 = d^T M d - 2 g^T d + squares.
-struct NormalEquations {
-    MatrixXd M;  ///< lower half
-    VectorXd g;
-    double squares;
-};
-
-NormalEquations normal_equations(const IdentificationProblem& problem,
-                                 const LinearisedSystem& system) {
-    const Index measured = system.J.rows() - problem.prior_count();
-    NormalEquations equations{detail::gram(system.J.topRows(measured)),
-                              system.J.transpose() * system.r, system.r.squaredNorm()};
-    equations.M.diagonal().segment(problem.prior_begin(), problem.prior_count()).array() += 1;
-    return equations;
 }
 
 /// Every configuration linearised at the same parameters, so that what is left without some of them
@@ -56,8 +41,8 @@ class Linearisation {
         for (const Index i : configurations) {
             const auto k = static_cast<std::size_t>(i);
             const Index rows = first_row_[k + 1] - first_row_[k];
-            const MatrixXd J = system_.J.middleRows(first_row_[k], rows);
-            const auto r = system_.r.segment(first_row_[k], rows);
+            const MatrixXd J = system_.J().middleRows(first_row_[k], rows);
+            const auto r = system_.r().segment(first_row_[k], rows);
             others.M.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose(), -1);
             others.g -= J.transpose() * r;
             others.squares -= r.squaredNorm();
@@ -69,36 +54,6 @@ class Linearisation {
     LinearisedSystem system_;
     NormalEquations all_;
     std::vector<Index> first_row_{0};
-};
-
-/// Inverse of a symmetric positive definite M, its rows and columns first scaled to a diagonal
-/// of 1.
-class Metric {
-  public:
-    explicit Metric(const MatrixXd& M)
-        : inverse_norms_(M.diagonal().cwiseSqrt().cwiseInverse()),
-          L_(detail::cholesky(inverse_norms_.asDiagonal() * M * inverse_norms_.asDiagonal())) {}
-
-    /// Whether its columns are so far from dependent that rounding of M, which squares them, does
-    /// not matter.
-    bool is_regular() const {
-        constexpr double least_singular_value = 1e-6;
-        const Index size = inverse_norms_.size();
-        if (L_.rows() < size) return false;
-        const auto identity = RowMatrixXd::Identity(size, size);
-        return detail::solve_lower(L_, identity).norm() * least_singular_value < 1;
-    }
-
-    VectorXd solve(const VectorXd& g) const {
-        VectorXd d = inverse_norms_.cwiseProduct(g);
-        L_.triangularView<Eigen::Lower>().solveInPlace(d);
-        L_.transpose().triangularView<Eigen::Upper>().solveInPlace(d);
-        return inverse_norms_.cwiseProduct(d);
-    }
-
-  private:
-    VectorXd inverse_norms_;
-    MatrixXd L_;  ///< empty where M is not positive definite
 };
 
 /// Identifications without some configurations each.

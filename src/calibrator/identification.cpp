@@ -6,31 +6,57 @@
 
 #include "../core/decompositions.hpp"
 #include "../measurement/noise.hpp"
-#include "least_squares.hpp"
 #include "model_error.hpp"
+#include "normal_equations.hpp"
 #include "posewise/core/errors.hpp"
 #include "robust.hpp"
 
 namespace posewise {
 namespace {
 
-/// The step of minimal |R d - c|^2 + damping |D d|^2, D the column norms [Marquardt 1963].
-VectorXd damped_step(const detail::Triangle& triangle, double damping) {
-    const Index size = triangle.R.cols();
-    MatrixXd stacked(2 * size, size);
-    stacked.topRows(size) = triangle.R;
-    stacked.bottomRows(size) =
-        (std::sqrt(damping) * triangle.R.colwise().norm()).transpose().asDiagonal();
-    VectorXd right = VectorXd::Zero(2 * size);
-    right.head(size) = triangle.c;
-    return detail::solve_least_squares(std::move(stacked), right);
-}
+/// A linearised system as steps are taken from it: in information form unless its columns are so
+/// nearly dependent that rounding would matter.
+class Steps {
+  public:
+    Steps(const detail::IdentificationProblem& problem, const detail::LinearisedSystem& system)
+        : equations_(normal_equations(problem, system)), metric_(equations_.M) {
+        if (!metric_.is_regular()) triangle_ = triangularise(system);
+    }
+
+    /// What a full step could take off the sum of squares.
+    double gain() const {
+        return triangle_ ? triangle_->c.squaredNorm()
+                         : equations_.g.dot(metric_.solve(equations_.g));
+    }
+
+    /// The step of minimal |J d - r|^2 + damping |D d|^2, D the column norms [Marquardt 1963].
+    VectorXd damped(double damping) const {
+        if (!triangle_) {
+            MatrixXd M = equations_.M;
+            M.diagonal() *= 1 + damping;
+            return detail::Metric(M).solve(equations_.g);
+        }
+        const Index size = triangle_->R.cols();
+        MatrixXd stacked(2 * size, size);
+        stacked.topRows(size) = triangle_->R;
+        stacked.bottomRows(size) =
+            (std::sqrt(damping) * triangle_->R.colwise().norm()).transpose().asDiagonal();
+        VectorXd right = VectorXd::Zero(2 * size);
+        right.head(size) = triangle_->c;
+        return detail::solve_least_squares(std::move(stacked), right);
+    }
+
+  private:
+    detail::NormalEquations equations_;
+    detail::Metric metric_;
+    std::optional<detail::Triangle> triangle_;
+};
 
 struct LevenbergMarquardt {
     detail::IdentificationProblem& problem;
     const LevenbergMarquardtOptions& options;
     Estimate& estimate;
-    std::optional<detail::Triangle> triangle{};  ///< at the estimate, if it is known
+    std::optional<detail::LinearisedSystem> system{};  ///< at the estimate, if it is known
     double cost = total_loss(problem, estimate.parameters);
     double damping = 1e-6;
     bool has_constant_noise = detail::has_constant_noise(problem.campaign);
@@ -50,23 +76,23 @@ struct LevenbergMarquardt {
     /// One accepted step, or an ending.
     void iterate() {
         if (deviations_open > 0) follow_deviation();
-        triangle = triangularise(linearise(problem, estimate.parameters));
-        const double gain = triangle->c.squaredNorm();  // what a full step could
+        system = linearise(problem, estimate.parameters);
+        const Steps steps(problem, *system);
+        const double gain = steps.gain();
         if (gain <= converged_below(problem, options.relative_tolerance, cost)) {
             if (deviations_open == 0) estimate.ending = Ending::Converged;
             return;
         }
         for (; damping < 1e12; damping *= 10) {
-            const VectorXd step = damped_step(*triangle, damping);
-            const Parameters moved =
-                advance(problem.campaign, estimate.parameters, problem.units.step(step));
+            const Parameters moved = advance(problem.campaign, estimate.parameters,
+                                             problem.units.step(steps.damped(damping)));
             // Where noise depends on the pose a step is judged with that before it: the fixed
             // point of reweighted least squares is where no such step is left.
             const double moved_cost =
                 total_loss(problem, moved, has_constant_noise ? nullptr : &estimate.parameters);
             if (moved_cost < cost) {
                 estimate.parameters = moved;
-                triangle.reset();
+                system.reset();
                 cost = has_constant_noise ? moved_cost : total_loss(problem, moved);
                 damping = std::max(damping / 100, 1e-15);
                 return;
@@ -77,9 +103,9 @@ struct LevenbergMarquardt {
     }
 };
 
-/// The triangle where it ends.
-detail::Triangle search(detail::IdentificationProblem& problem,
-                        const LevenbergMarquardtOptions& options, Estimate& estimate) {
+/// The system where it ends.
+detail::LinearisedSystem search(detail::IdentificationProblem& problem,
+                                const LevenbergMarquardtOptions& options, Estimate& estimate) {
     LevenbergMarquardt steps{problem, options, estimate};
     while (estimate.ending == Ending::NotRun) {
         if (estimate.iterations >= options.iteration_limit) {
@@ -90,8 +116,7 @@ detail::Triangle search(detail::IdentificationProblem& problem,
         if (estimate.ending == Ending::NotRun) steps.iterate();
         if (estimate.ending == Ending::NotRun) ++estimate.iterations;
     }
-    return steps.triangle ? std::move(*steps.triangle)
-                          : triangularise(linearise(problem, estimate.parameters));
+    return steps.system ? std::move(*steps.system) : linearise(problem, estimate.parameters);
 }
 
 /// Whether their model errors are the same within 5 %: parameters and deviations depend on them far
@@ -111,7 +136,7 @@ Estimate identify(const Campaign& campaign, const Measurements& measurements,
     Estimate estimate = begin_estimate(problem, start);
     problem.loss = detail::complete_loss(options.loss, campaign);
     if (estimate.ending == Ending::NotIdentifiable) return estimate;
-    detail::Triangle triangle = search(problem, options, estimate);
+    detail::LinearisedSystem system = search(problem, options, estimate);
     if (options.finds_model_error && detail::is_model_error_open(campaign)) {
         bool stays = false;
         for (int round = 0; round < 4 && !stays && estimate.ending == Ending::Converged; ++round) {
@@ -119,10 +144,10 @@ Estimate identify(const Campaign& campaign, const Measurements& measurements,
             stays = is_alike(found, better);
             found = better;  // problem refers to it
             estimate.ending = Ending::NotRun;
-            triangle = search(problem, options, estimate);
+            system = search(problem, options, estimate);
         }
     }
-    finish(problem, triangle, estimate);
+    finish(problem, triangularise(system), estimate);
     return estimate;
 }
 

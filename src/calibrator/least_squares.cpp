@@ -143,8 +143,7 @@ std::string describe_missing_equations(const IdentificationProblem& problem) {
 LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters) {
     const Campaign& campaign = problem.campaign;
     const Index size = problem.units.size();
-    LinearisedSystem system{RowMatrixXd(problem.equation_count(), size),
-                            VectorXd(problem.equation_count())};
+    LinearisedSystem system{RowMatrixXd(problem.equation_count(), size + 1)};
     // The residual is whitened with the Jacobian.
     RowMatrixXd augmented(campaign.sensor->row_count(), size + 1);
     FlangeMotion motion;
@@ -158,19 +157,28 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
             campaign.sensor->predict(motion.world_from_flange, parameters.sensor));
         RowMatrixXd seen = whiten_equations(problem, i, motion, parameters, augmented);
         weigh_targets(problem, seen);
-        system.J.middleRows(row, seen.rows()) = seen.leftCols(size);
-        system.r.segment(row, seen.rows()) = seen.col(size);
+        system.augmented.middleRows(row, seen.rows()) = seen;
         row += seen.rows();
     }
-    problem.units.scale_columns(system.J.topRows(row));
-    if (problem.prior_count() > 0) {
-        system.J.bottomRows(problem.prior_count()).setZero();
-        system.J.block(row, problem.prior_begin(), problem.prior_count(), problem.prior_count())
-            .setIdentity();
-        system.r.tail(problem.prior_count()) =
-            -problem.units.prior_coordinates(campaign, parameters);
+    problem.units.scale_columns(system.augmented.topLeftCorner(row, size));
+    const Index count = problem.prior_count();
+    if (count > 0) {
+        auto prior = system.augmented.bottomRows(count);
+        prior.setZero();
+        prior.middleCols(problem.prior_begin(), count).setIdentity();
+        prior.col(size) = -problem.units.prior_coordinates(campaign, parameters);
     }
     return system;
+}
+
+/// Of the flange's motion what the noise needs.
+void place_flange(const Campaign& campaign, const Parameters& parameters, const VectorXd& q,
+                  FlangeMotion& motion) {
+    if (campaign.joint_repeatability.size() > 0) {
+        differentiate_flange(campaign, parameters, q, motion);
+    } else {
+        motion.world_from_flange = world_from_flange(campaign, parameters, q);
+    }
 }
 
 VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters& parameters,
@@ -182,12 +190,12 @@ VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters
     VectorXd q(campaign.robot.configuration_size());
     for (Index i = 0; i < problem.means.configuration_count(); ++i) {
         q = problem.means.configurations.row(i).transpose();
-        differentiate_flange(campaign, parameters, q, motion);
+        place_flange(campaign, parameters, q, motion);
         const VectorXd r = campaign.sensor->deviation(
             problem.means.observations.row(i).transpose(),
             campaign.sensor->predict(motion.world_from_flange, parameters.sensor));
         const Parameters& of_noise = noise_at != nullptr ? *noise_at : parameters;
-        if (noise_at != nullptr) differentiate_flange(campaign, of_noise, q, motion);
+        if (noise_at != nullptr) place_flange(campaign, of_noise, q, motion);
         const VectorXd of_pose =
             target_lengths(problem, whiten_equations(problem, i, motion, of_noise, r));
         lengths.segment(count, of_pose.size()) = of_pose;
@@ -217,11 +225,9 @@ double converged_below(const IdentificationProblem& problem, double relative_tol
 }
 
 Triangle triangularise(const LinearisedSystem& system) {
-    const Index size = system.J.cols();
-    MatrixXd augmented(system.J.rows(), size + 1);
-    augmented << system.J, system.r;
-    const MatrixXd R = triangular_factor(std::move(augmented));
-    return {R.topLeftCorner(size, size), R.col(size).head(size), system.r.squaredNorm()};
+    const Index size = system.J().cols();
+    const MatrixXd R = triangular_factor(system.augmented);
+    return {R.topLeftCorner(size, size), R.col(size).head(size), system.r().squaredNorm()};
 }
 
 MatrixXd invert_triangle(const MatrixXd& R) {

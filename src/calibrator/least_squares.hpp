@@ -9,8 +9,10 @@ namespace posewise::detail {
 /// |J d - r|^2 over the scaled step d, rows = equations: observations, then the prior's. The rows
 /// of a target are multiplied by the square root of its weight under the loss.
 struct LinearisedSystem {
-    RowMatrixXd J;  ///< equations x L
-    VectorXd r;     ///< observed means minus predicted
+    RowMatrixXd augmented;  ///< equations x (L + 1): J, then r
+
+    auto J() const { return augmented.leftCols(augmented.cols() - 1); }
+    auto r() const { return augmented.col(augmented.cols() - 1); }  ///< observed less predicted
 };
 
 /// The coordinates that identification works in: parameters in expected errors, those that have a

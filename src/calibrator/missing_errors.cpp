@@ -67,7 +67,7 @@ double missing_errors(const IdentificationProblem& problem, const Parameters& pa
         }
     }
     MatrixXd augmented(std::ssize(rows), std::ssize(order) + 1);
-    augmented << system.J(rows, order), system.r(rows);
+    augmented << system.J()(rows, order), system.r()(rows);
     const MatrixXd R = triangular_factor(std::move(augmented));
     const auto C = R.block(common, common, std::min(missing, R.rows() - common), missing);
     const VectorXd r = R.col(common + missing).tail(R.rows() - common);

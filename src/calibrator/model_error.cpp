@@ -114,20 +114,19 @@ class PredictiveScore {
             for (Index k = 0; k < covariance.rows(); ++k) {
                 covariance(k, k) += squares[of_pose.is_angle[static_cast<std::size_t>(k)] ? 1 : 0];
             }
-            const MatrixXd L = cholesky_factor(covariance);
-            system.log_deviations += L.diagonal().array().log().sum();
-            L.triangularView<Eigen::Lower>().solveInPlace(whitened);
+            system.log_deviations += detail::whiten(covariance, whitened);
             system.augmented.middleRows(row, whitened.rows()) = whitened;
             row += whitened.rows();
         }
         const auto B = system.augmented.leftCols(size_);
-        MatrixXd M = gram(B);
+        const MatrixXd all = gram(system.augmented);
+        MatrixXd M = all.topLeftCorner(size_, size_);
         M.diagonal().segment(prior_begin_, prior_errors_.size()).array() += 1;
         const MatrixXd L = cholesky(M);
         if (L.rows() < size_) return system;
         const auto r = system.augmented.col(size_);
         RowMatrixXd sides(size_, row_count_ + 1);
-        sides << B.transpose(), B.transpose() * r;
+        sides << B.transpose(), all.row(size_).head(size_).transpose();
         sides.col(row_count_).segment(prior_begin_, prior_errors_.size()) -= prior_errors_;
         const RowMatrixXd solved = solve_lower(L, sides);
         system.V = solved.leftCols(row_count_);
@@ -192,9 +191,10 @@ class PredictiveScore {
 };
 
 /// Where the smooth function `f` is largest: uphill from `x` in steps that grow, then by parabolas
-/// through the best three points, until they move it by less than 1 %.
+/// through the best three points, until they move it by less than 1 %. That place and the value
+/// there.
 template <typename Function>
-double climb(const Function& f, double x) {
+std::pair<double, double> climb(const Function& f, double x) {
     constexpr double tolerance = 0.01;
     constexpr double step = 0.5;
     std::array<double, 3> at{x - step, x, x + step};
@@ -227,19 +227,19 @@ double climb(const Function& f, double x) {
             value[side] = reached;
         }
     }
-    return at[1];
+    return {at[1], value[1]};
 }
 
-/// log of the root of what exp(2 x) is on average where exp(f) is the density of x, by its maximum:
+/// log of the root of what exp(2 x) is on average where exp(f) is the density of x, by its maximum,
+/// `highest` at x:
 /// with few poses larger numbers remain possible, the more as the density is skew, and count.
 /// Adaptive Gauss-Hermite quadrature with five points [Liu & Pierce 1994].
 template <typename Function>
-double average(const Function& f, double x) {
+double average(const Function& f, double x, double highest) {
     constexpr double step = 0.25;
     const double least_curvature = 1 / (log_factor * log_factor);
     constexpr std::array<std::pair<double, double>, 2> nodes_and_weights{
         {{1.3556261799742659, 0.2220759220056126}, {2.8569700138728056, 0.0112574113277207}}};
-    const double highest = f(x);
     if (!std::isfinite(highest)) return x;
     const double curvature = (2 * highest - f(x - step) - f(x + step)) / (step * step);
     const double deviation = 1 / std::sqrt(std::max(least_curvature, curvature));
@@ -281,8 +281,9 @@ Campaign find_model_error(const IdentificationProblem& problem, const Parameters
                 moved[kind] = x;
                 return score(moved, kind);
             };
-            errors[kind] = climb(along, errors[kind]);
-            if (sweep + 1 == sweeps) averages[kind] = average(along, errors[kind]);
+            const auto [most_probable, highest] = climb(along, errors[kind]);
+            errors[kind] = most_probable;
+            if (sweep + 1 == sweeps) averages[kind] = average(along, most_probable, highest);
         }
     }
     Campaign found = expected;

@@ -40,12 +40,13 @@ Parameters cycle(const detail::IdentificationProblem& problem, const Split& spli
     if (split.robot > 0) {
         const detail::LinearisedSystem system = linearise(problem, parameters);
         const VectorXd step = detail::solve_least_squares(
-            MatrixXd(system.J.middleCols(split.base, split.robot)), system.r);
+            MatrixXd(system.J().middleCols(split.base, split.robot)), VectorXd(system.r()));
         parameters = advance(problem.campaign, parameters,
                              problem.units.step(split.robot_step(alpha * step)));
     }
     const detail::LinearisedSystem system = linearise(problem, parameters);
-    const VectorXd step = detail::solve_least_squares(split.base_and_targets(system.J), system.r);
+    const VectorXd step =
+        detail::solve_least_squares(split.base_and_targets(system.J()), VectorXd(system.r()));
     return advance(problem.campaign, parameters,
                    problem.units.step(split.base_and_target_step(step)));
 }

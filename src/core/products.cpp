@@ -128,25 +128,27 @@ struct Factorise {
 };
 
 /// X = L^-1 X; minus L is column-major with the reciprocals of L's diagonal on its own, X
-/// row-major, `columns` wide.
+/// row-major, `columns` wide, and with `is_lower` zero above its diagonal.
 struct SolveLower {
     const double* minus_L;
     Index size;
     double* X;
     Index columns;
+    bool is_lower = false;
 
     template <typename V>
     POSEWISE_INLINE void run() const {
         for (Index c = 0; c < columns; c += 2 * simd::width<V>) {
-            for (Index i = 0; i < size; i += tile_rows) solve_tile<V>(i, c);
+            const Index first = is_lower ? c : 0;
+            for (Index i = first; i < size; i += tile_rows) solve_tile<V>(first, i, c);
         }
     }
 
     template <typename V>
-    POSEWISE_INLINE void solve_tile(Index i, Index c) const {
+    POSEWISE_INLINE void solve_tile(Index first, Index i, Index c) const {
         V sums[tile_rows][2];
         load(X + i * columns + c, columns, sums);
-        for (Index j = 0; j < i; ++j) {
+        for (Index j = first; j < i; ++j) {
             add_multiples<V>(minus_L + j * size + i, X + j * columns + c, sums);
         }
 #pragma GCC unroll 4
@@ -163,6 +165,15 @@ struct SolveLower {
         store(sums, X + i * columns + c, columns);
     }
 };
+
+/// What SolveLower takes for L.
+MatrixXd as_divisor(const MatrixXd& L) {
+    const Index size = padded(L.rows(), tile_rows);
+    MatrixXd minus_L = MatrixXd::Identity(size, size);
+    minus_L.topLeftCorner(L.rows(), L.rows()) = -L;
+    minus_L.diagonal().head(L.rows()) = L.diagonal().cwiseInverse();
+    return minus_L;
+}
 
 }  // namespace
 
@@ -191,14 +202,18 @@ MatrixXd cholesky(const MatrixXd& M) {
 }
 
 RowMatrixXd solve_lower(const MatrixXd& L, const Eigen::Ref<const RowMatrixXd>& B) {
-    const Index size = padded(L.rows(), tile_rows);
-    MatrixXd minus_L = MatrixXd::Identity(size, size);
-    minus_L.topLeftCorner(L.rows(), L.rows()) = -L;
-    minus_L.diagonal().head(L.rows()) = L.diagonal().cwiseInverse();
-    RowMatrixXd X = RowMatrixXd::Zero(size, padded(B.cols(), most_columns));
+    const MatrixXd minus_L = as_divisor(L);
+    RowMatrixXd X = RowMatrixXd::Zero(minus_L.rows(), padded(B.cols(), most_columns));
     X.topLeftCorner(B.rows(), B.cols()) = B;
-    simd::run(SolveLower{minus_L.data(), size, X.data(), X.cols()});
+    simd::run(SolveLower{minus_L.data(), minus_L.rows(), X.data(), X.cols()});
     return X.topLeftCorner(B.rows(), B.cols());
+}
+
+RowMatrixXd invert_lower(const MatrixXd& L) {
+    const MatrixXd minus_L = as_divisor(L);
+    RowMatrixXd X = RowMatrixXd::Identity(minus_L.rows(), padded(L.cols(), most_columns));
+    simd::run(SolveLower{minus_L.data(), minus_L.rows(), X.data(), X.cols(), true});
+    return X.topLeftCorner(L.rows(), L.cols());
 }
 
 }  // namespace posewise::detail

@@ -17,4 +17,7 @@ MatrixXd cholesky(const MatrixXd& M);
 /// L^-1 B, L the lower half of a square matrix.
 RowMatrixXd solve_lower(const MatrixXd& L, const Eigen::Ref<const RowMatrixXd>& B);
 
+/// L^-1, L the lower half of a square matrix.
+RowMatrixXd invert_lower(const MatrixXd& L);
+
 }  // namespace posewise::detail

@@ -206,7 +206,7 @@ Isometry3d world_from_flange(const Campaign& campaign, const Parameters& paramet
 void differentiate_flange(const Campaign& campaign, const Parameters& parameters,
                           const VectorXd& configuration, FlangeMotion& motion) {
     campaign.robot.differentiate(parameters.world_from_base, configuration, parameters.robot,
-                                 motion);
+                                 motion, campaign.joint_repeatability.size() > 0);
     drop_known_of_base(campaign, motion.twists);
 }
 

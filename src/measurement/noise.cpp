@@ -118,14 +118,15 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
     return covariance_rate;
 }
 
-void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows) {
+double whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows) {
     const auto variances = covariance.diagonal().array();
     if (covariance.isDiagonal(0) && (variances > 0).all()) {
         rows.array().colwise() *= variances.rsqrt();
-        return;
+        return variances.log().sum() / 2;
     }
     const MatrixXd L = cholesky_factor(covariance);
     L.triangularView<Eigen::Lower>().solveInPlace(rows);
+    return L.diagonal().array().log().sum();
 }
 
 RowMatrixXd whiten_seen(const Campaign& campaign, const FlangeMotion& motion,

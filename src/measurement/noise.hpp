@@ -36,8 +36,8 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
                               double repeats);
 
 /// Multiplies `rows` from the left by L^-1, where covariance = L L^T (Cholesky): errors with this
-/// covariance become independent with variance 1. Throws as cholesky_factor().
-void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows);
+/// covariance become independent with variance 1. Returns log det L. Throws as cholesky_factor().
+double whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows);
 
 /// Of `rows`, one for each number of an observation, those of the targets seen, whitened by the
 /// mean_covariance() of target j over repeats[j] observations (0: not seen).

@@ -89,9 +89,10 @@ double amount_of(const Element& element, const VectorXd& q, const VectorXd& para
     return amount;
 }
 
-/// f(q); adds to the joints' twists what `coefficient` times it moves.
+/// f(q); adds to the joints' twists, if there are any, what `coefficient` times it moves.
 double add_function(const JointFunction& function, double coefficient, const VectorXd& q,
                     const Twist& twist, FlangeMotion& motion) {
+    if (motion.joint_twists.cols() == 0) return evaluate(function, q).value;
     if (function.torque != nullptr) {
         const TorqueShare share = function.torque->evaluate(q);
         motion.joint_twists += coefficient * twist * share.gradient.transpose();
@@ -187,9 +188,9 @@ Isometry3d Chain::base_from_flange(const VectorXd& q, const VectorXd& parameters
 /// error parameter.
 template <typename Visit>
 void Chain::walk(const Isometry3d& world_from_base, const VectorXd& q, const VectorXd& parameters,
-                 FlangeMotion& motion, const Visit& visit) const {
+                 FlangeMotion& motion, bool by_joints, const Visit& visit) const {
     motion.twists.resize(6, 6 + parameter_count());
-    motion.joint_twists.setZero(6, joint_count());
+    motion.joint_twists.setZero(6, by_joints ? joint_count() : 0);
     const Vector3d base = world_from_base.translation();
     for (Index axis = 0; axis < 3; ++axis) {
         const Vector3d unit = Vector3d::Unit(axis);
@@ -205,8 +206,10 @@ void Chain::walk(const Isometry3d& world_from_base, const VectorXd& q, const Vec
         if (next > first || !element.joints.empty() || element.has_functions()) {
             const Twist twist = product.twist(element.motion, element.axis);
             if (next > first) motion.twists.col(6 + first) = twist;
-            for (const JointTerm& term : element.joints) {
-                motion.joint_twists.col(term.joint) += term.coefficient * twist;
+            if (by_joints) {
+                for (const JointTerm& term : element.joints) {
+                    motion.joint_twists.col(term.joint) += term.coefficient * twist;
+                }
             }
             if (element.has_functions()) {
                 amount += add_terms(element, q, parameters, twist, next, motion);
@@ -237,8 +240,9 @@ std::vector<Isometry3d> Chain::base_from_links(const VectorXd& q,
 }
 
 void Chain::differentiate(const Isometry3d& world_from_base, const VectorXd& q,
-                          const VectorXd& parameters, FlangeMotion& motion) const {
-    walk(world_from_base, q, parameters, motion, [](const Element&, const Twist&, Index) {});
+                          const VectorXd& parameters, FlangeMotion& motion, bool by_joints) const {
+    walk(world_from_base, q, parameters, motion, by_joints,
+         [](const Element&, const Twist&, Index) {});
 }
 
 void Chain::differentiate_twice(const Isometry3d& world_from_base, const VectorXd& q,
@@ -264,7 +268,7 @@ void Chain::differentiate_twice(const Isometry3d& world_from_base, const VectorX
         const Index next = element.parameter.empty() ? first : first + 1;
         add_term_rates(element, q, parameters, twist, next, motion.joint_twists, rates);
     };
-    walk(world_from_base, q, parameters, motion, visit);
+    walk(world_from_base, q, parameters, motion, true, visit);
 }
 
 }  // namespace posewise

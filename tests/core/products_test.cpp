@@ -23,6 +23,8 @@ TEST(Products, AreThoseOfEigen) {
             const RowMatrixXd X = solve_lower(L, A.transpose());
             ASSERT_EQ(X.cols(), rows);
             EXPECT_LE((lower(L) * X - A.transpose()).norm(), 1e-14 * (1 + A.norm()));
+            const auto identity = RowMatrixXd::Identity(size, size);
+            EXPECT_EQ(invert_lower(L), solve_lower(L, identity));
         }
     }
 }

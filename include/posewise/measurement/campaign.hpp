@@ -133,7 +133,8 @@ VectorXd step_between(const Campaign& campaign, const Parameters& from, const Pa
 Isometry3d world_from_flange(const Campaign& campaign, const Parameters& parameters,
                              const VectorXd& configuration);
 
-/// Chain::differentiate() at these parameters; of the base's twists only those of parameters.
+/// Chain::differentiate() at these parameters; of the base's twists only those of parameters, those
+/// by joints only where their repeatability is stated, as its noise needs them.
 void differentiate_flange(const Campaign& campaign, const Parameters& parameters,
                           const VectorXd& configuration, FlangeMotion& motion);
 

@@ -168,8 +168,10 @@ class Chain {
     /// Flange pose in the world and its twist by every parameter, in one pass over the elements:
     /// a rotation contributes (axis; origin cross axis), a translation (0; axis), both read off
     /// the running product. `motion` is resized at need only, so a reused one costs no allocation.
+    /// Without `by_joints` its joint_twists have no columns.
     void differentiate(const Isometry3d& world_from_base, const VectorXd& q,
-                       const VectorXd& parameters, FlangeMotion& motion) const;
+                       const VectorXd& parameters, FlangeMotion& motion,
+                       bool by_joints = true) const;
 
     /// The same, and rates[j] by joint j. The twist of an element changes only with the elements
     /// before it, by the Lie bracket of theirs with it; the base's columns do not change. As
@@ -187,7 +189,7 @@ class Chain {
 
     template <typename Visit>
     void walk(const Isometry3d& world_from_base, const VectorXd& q, const VectorXd& parameters,
-              FlangeMotion& motion, const Visit& visit) const;
+              FlangeMotion& motion, bool by_joints, const Visit& visit) const;
 
     std::vector<Joint> joints_;
     std::vector<Element> elements_;
