@@ -26,10 +26,10 @@ The estimate is what calibrate --out wrote. Every file is read back before it ta
 flange must be within 1e-9 m of the robot's at 1000 configurations.
 
 None of these forms can have errors that depend on the configuration (gravity, harmonics). With such
-errors in the estimate the geometry is written that is nearest over the workspace (--workspace; else the
-limits, and the cell if the campaign has one): that of least squares of the targets' positions, as if it were
-calibrated there, base and targets along with it. What is lost is printed. --geometry estimate
-writes the estimate's own geometry, for a program that adds the other errors itself.
+errors in the estimate the geometry is written that is nearest over the workspace (--workspace; else
+the limits, and the cell if the campaign has one): that of least squares of the targets' positions,
+as if it were calibrated there, base and targets along with it. What is lost is printed. --geometry
+estimate writes the estimate's own geometry, for a program that adds the other errors itself.
 
 The URDF is the one the campaign's robot comes from, and stays as it is (names, order, comments,
 layout) but for the numbers of joint origins between base link and tip link. The base as the
