@@ -276,6 +276,20 @@ def check_export():
     table = pathlib.Path("out.yaml").read_text()
     expect(all(close(row["a_mm"], float(a), 12) for row, a in
                zip(document["dh"], re.findall(r"a_mm: ([-+.e\d]+)", table), strict=True)), "export: dh")
+    expect(document["geometry"] == "estimate" and document["lost"]["estimate"]["rms_mm"] == 0, document["lost"])
+    expect([file["path"] for file in document["read_back"]] == ["out.urdf", "out.yaml"], document["read_back"])
+
+    campaign = (ROOT / "designs/ur10/campaign.yaml").read_text()
+    campaign = campaign.replace("  elements:", "  gravity: true\n  elements:").replace(
+        "  kind: poses\n", "  kind: poses\n  tool: {position_mm: [0, 0, 50], rpy_deg: [0, 0, 0]}\n")
+    pathlib.Path("ur.yaml").write_text(campaign + "base: {position_mm: [2000, 0, 0], rpy_deg: [0, 0, 90]}\n")
+    run("simulate", "ur.yaml", "-k", 30, "-o", "ur.csv")
+    run("calibrate", "ur.yaml", "-m", "ur.csv", "-o", "ur.json")
+    document, text = both("export", "ur.yaml", "ur.json", "--ur-kinematics", "k.yaml")
+    expect(document["geometry"] == "nearest", document["geometry"])
+    expect(close(document["lost"]["nearest"]["rms_mm"], number_behind(text, "nearest"), 3), "export: lost")
+    expect(close(document["ur_kinematics"][2]["position_m"][0],
+                 number_behind(pathlib.Path("k.yaml").read_text(), "forearm:\n    x: "), 12), "export: frames")
 
 
 def check_writers():

@@ -105,14 +105,39 @@ class SignalDelay {
     std::array<struct sigaction, signals.size()> before_{};
 };
 
-/// A name beside the file that no other writer uses; short, since the file's own may be as long as
-/// names can be.
-std::string temporary_name(const std::string& path) {
-    static std::atomic<unsigned> count{0};
-    const std::string name =
-        ".posewise." + std::to_string(::getpid()) + "." + std::to_string(count++) + ".tmp";
-    return (fs::path(path).parent_path() / name).string();
-}
+/// A file beside the one to write, under a name that no other writer uses (short, since the file's
+/// own may be as long as names can be); removed unless it was renamed.
+class Temporary {
+  public:
+    explicit Temporary(const std::string& path) {
+        static std::atomic<unsigned> count{0};
+        const std::string name =
+            ".posewise." + std::to_string(::getpid()) + "." + std::to_string(count++) + ".tmp";
+        name_ = (fs::path(path).parent_path() / name).string();
+    }
+    ~Temporary() {
+        if (exists_) ::unlink(name_.c_str());
+    }
+    Temporary(const Temporary&) = delete;
+    Temporary& operator=(const Temporary&) = delete;
+
+    const std::string& name() const { return name_; }
+
+    bool write(const std::string& content) {
+        const FileDescriptor file(name_, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC);
+        exists_ = file.is_open();
+        return exists_ && file.write(content) && file.sync();
+    }
+
+    bool rename_to(const std::string& path) {
+        exists_ = ::rename(name_.c_str(), path.c_str()) != 0;
+        return !exists_;
+    }
+
+  private:
+    std::string name_;
+    bool exists_ = false;
+};
 
 /// Where a path leads: a link is followed, so that the file it names is replaced, not the link.
 std::string follow_link(const std::string& path) {
@@ -132,6 +157,11 @@ std::string follow_link(const std::string& path) {
 }  // namespace
 
 void write_file(const std::string& path, const std::string& content) {
+    write_file(path, content, {});
+}
+
+void write_file(const std::string& path, const std::string& content,
+                const std::function<void(const std::string& temporary)>& check) {
     const std::string target = follow_link(path);
     std::error_code error;
     const fs::file_status status = fs::status(target, error);
@@ -139,26 +169,16 @@ void write_file(const std::string& path, const std::string& content) {
         throw input_error_at({path}, "is a directory; must be the name of a file to write");
     }
     if (fs::exists(status) && !fs::is_regular_file(status)) {  // a pipe or device: not replaceable
+        if (check) throw input_error_at({path}, "cannot be read back; must be a file");
         const FileDescriptor file(target, O_WRONLY | O_CLOEXEC);
         if (!file.is_open() || !file.write(content)) throw failure(path, "cannot be written");
         return;
     }
     const SignalDelay delay;
-    const std::string temporary = temporary_name(target);
-    {
-        const FileDescriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC);
-        if (!file.is_open()) throw failure(path, "cannot be written");
-        if (!file.write(content) || !file.sync()) {
-            const InputError problem = failure(path, "cannot be written");
-            ::unlink(temporary.c_str());
-            throw problem;
-        }
-    }
-    if (::rename(temporary.c_str(), target.c_str()) != 0) {
-        const InputError problem = failure(path, "cannot be replaced");
-        ::unlink(temporary.c_str());
-        throw problem;
-    }
+    Temporary temporary(target);
+    if (!temporary.write(content)) throw failure(path, "cannot be written");
+    if (check) check(temporary.name());
+    if (!temporary.rename_to(target)) throw failure(path, "cannot be replaced");
 }
 
 std::string read_file(const std::string& path, std::size_t most) {

@@ -57,14 +57,20 @@ std::string joint_text(const Chain& chain, const DhRow& row, Index own) {
 std::string make_dh_text(const Chain& chain, const std::vector<DhRow>& rows) {
     std::vector<bool> has_row(chain.joints().size(), false);
     std::string text =
-        "robot:\n  dh:\n    convention: standard   # RotZ(theta) TransZ(d) TransX(a) RotX(alpha)\n"
-        "    rows:\n";
+        "robot:\n  dh:\n"
+        "    # RotZ(theta) TransZ(d) TransX(a) RotX(alpha); where the next axis is nearly "
+        "parallel\n"
+        "    # RotZ(theta) TransX(a) RotX(alpha) RotY(beta) (Hayati)\n"
+        "    convention: standard\n    rows:\n";
     for (const DhRow& row : rows) {
         const auto number = [](Motion motion, double si) { return in_file_unit(motion, si); };
-        const std::string amounts =
+        std::string amounts =
             fmt::format("a_mm: {}, alpha_deg: {}, d_mm: {}, theta_deg: {}",
                         number(Motion::Translation, row.a), number(Motion::Rotation, row.alpha),
                         number(Motion::Translation, row.d), number(Motion::Rotation, row.theta));
+        if (row.beta != 0) {
+            amounts += fmt::format(", beta_deg: {}", number(Motion::Rotation, row.beta));
+        }
         if (row.joints.empty()) {
             fmt::format_to(std::back_inserter(text), "      - {{{}}}\n", amounts);
             continue;

@@ -9,8 +9,8 @@ namespace posewise::detail {
 namespace {
 
 std::vector<std::string> row_keys() {
-    std::vector<std::string> keys{"joint",      "kind",          "drive",        "a_<length>",
-                                  "d_<length>", "alpha_<angle>", "theta_<angle>"};
+    std::vector<std::string> keys{"joint",      "kind",          "drive",         "a_<length>",
+                                  "d_<length>", "alpha_<angle>", "theta_<angle>", "beta_<angle>"};
     keys.insert(keys.end(), joint_keys.begin(), joint_keys.end());
     return keys;
 }
@@ -53,7 +53,16 @@ RowText read_row_text(const YamlValue& value) {
 class TableUnits {
   public:
     double read(const RowText& row, std::string_view key) {
-        const YamlMeasure measure = row.map.require_measure(key);
+        return to_si(row.map.require_measure(key));
+    }
+    /// 0 if it is not stated.
+    double read_optional(const RowText& row, std::string_view key) {
+        const auto measure = row.map.find_measure(key);
+        return measure ? to_si(*measure) : 0;
+    }
+
+  private:
+    double to_si(const YamlMeasure& measure) {
         const Unit*& unit = measure.unit->quantity == Quantity::Angle ? angle_ : length_;
         if (unit == nullptr) unit = measure.unit;
         if (unit != measure.unit) {
@@ -64,7 +73,6 @@ class TableUnits {
         return measure.to_si();
     }
 
-  private:
     const Unit* angle_ = nullptr;
     const Unit* length_ = nullptr;
 };
@@ -127,9 +135,17 @@ RobotSection read_dh(const YamlValue& value) {
     std::vector<double> repeatability;
     std::vector<Element> elements;
     for (const RowText& text : rows) {
-        DhRow row{units.read(text, "a"), units.read(text, "alpha"),
-                  units.read(text, "d"), units.read(text, "theta"),
-                  text.motion,           {}};
+        DhRow row{units.read(text, "a"),
+                  units.read(text, "alpha"),
+                  units.read(text, "d"),
+                  units.read(text, "theta"),
+                  text.motion,
+                  {},
+                  units.read_optional(text, "beta")};
+        if (const auto beta = text.map.find_measure("beta"); beta && is_modified) {
+            throw beta->value.error(
+                "is stated in a table of the modified convention; only the standard one has it");
+        }
         if (text.joint) {
             row.joints = read_drive(text, static_cast<Index>(joints.size()), parser);
             joints.push_back(read_limited_joint(text.map, text.joint->text(), text.motion));

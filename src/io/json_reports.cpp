@@ -222,8 +222,21 @@ Json dh_row_to_json(const DhRow& row, const Chain& robot) {
             {"alpha_deg", to_degrees(row.alpha)},
             {"d_mm", mm_per_m * row.d},
             {"theta_deg", to_degrees(row.theta)},
+            {"beta_deg", to_degrees(row.beta)},
             {"drives", row.motion == Motion::Rotation ? "theta" : "d"},
             {"joints", joint_terms_to_json(row.joints, robot)}};
+}
+
+Json loss_to_json(const Geometry& geometry) {
+    return {{"rms_mm", mm_per_m * geometry.lost.rms},
+            {"largest_mm", mm_per_m * geometry.lost.largest}};
+}
+
+Json read_back_to_json(const ReadBack& file) {
+    return {{"path", file.path},
+            {"position_m", file.difference.position},
+            {"orientation_rad", file.difference.orientation},
+            {"configurations", file.difference.configuration_count}};
 }
 
 }  // namespace
@@ -315,17 +328,24 @@ std::string to_json(const CorrectedPoses& poses, const Campaign& campaign) {
     return detail::json_text(document);
 }
 
-std::string to_json(const ExportedRobot& robot, const Campaign& campaign,
-                    const Parameters& parameters) {
+std::string to_json(const ExportedRobot& robot, const Campaign& campaign) {
+    const Geometry& written = robot.written();
     Json document = detail::make_document("export", report_format);
     document["campaign"] = campaign.name;
-    document["base"] = detail::base_to_json(parameters.world_from_base);
+    document["geometry"] = robot.is_nearest ? "nearest" : "estimate";
+    document["lost"]["estimate"] = loss_to_json(robot.estimated);
+    if (robot.nearest) document["lost"]["nearest"] = loss_to_json(*robot.nearest);
+    document["base"] = detail::base_to_json(written.world_from_base);
+    document["targets_m"] = make_list(
+        written.targets, [](const Vector3d& target) { return detail::vector_to_json(target); });
     if (robot.urdf) document["urdf"] = urdf_to_json(*robot.urdf);
     if (!robot.dh.empty()) {
         document["dh"] = make_list(
             robot.dh, [&](const DhRow& row) { return dh_row_to_json(row, campaign.robot); });
     }
+    if (robot.frames) document["ur_kinematics"] = make_list(*robot.frames, detail::base_to_json);
     document["not_exported"] = robot.terms;
+    document["read_back"] = make_list(robot.read_back, read_back_to_json);
     return detail::json_text(document);
 }
 

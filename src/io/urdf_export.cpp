@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "posewise/model/error_terms.hpp"
 #include "posewise/model/transforms.hpp"
 #include "urdf_tree.hpp"
 
@@ -173,14 +174,10 @@ std::vector<std::string> errors_after_last_joint(const Chain& robot, const Vecto
     return names;
 }
 
-/// Names of the terms that are not zero.
-std::vector<std::string> terms_of(const Chain& robot, const VectorXd& parameters) {
-    std::vector<std::string> names;
-    for (Index k = 0; k < robot.parameter_count(); ++k) {
-        const ErrorTerm* const term = robot.parameter_term(k);
-        if (term != nullptr && parameters[k] != 0) names.push_back(term->parameter);
-    }
-    return names;
+/// The robot of the file, whatever limits that states.
+Chain nominal_chain(std::vector<UrdfJoint> joints) {
+    for (UrdfJoint& joint : joints) joint.limits = Interval{-1, 1};
+    return make_chain({{}, "", std::move(joints)});
 }
 
 }  // namespace
@@ -193,11 +190,11 @@ CalibratedUrdf make_calibrated_urdf(const UrdfSource& source, const Chain& robot
     std::vector<UrdfJoint> joints;
     for (const xml_node joint : path.joints) joints.push_back(read_urdf_joint(document, joint));
 
-    const auto nominal = constants_of(robot, VectorXd::Zero(robot.parameter_count()));
+    const auto nominal = constants_of(nominal_chain(joints), VectorXd());
     const auto calibrated = constants_of(robot, parameters);
     CalibratedUrdf result;
     std::vector<Edit> edits;
-    check_same_robot(joints, nominal.size(), source);
+    check_same_robot(joints, calibrated.size(), source);
     const auto corrections = correct_origins(joints, nominal, calibrated);
     for (const auto& [k, change] : corrections) {
         if (change.isApprox(Isometry3d::Identity(), unchanged)) continue;
@@ -209,7 +206,7 @@ CalibratedUrdf make_calibrated_urdf(const UrdfSource& source, const Chain& robot
     if (corrections.size() < nominal.size()) {
         result.not_expressed = errors_after_last_joint(robot, parameters);
     }
-    result.terms = terms_of(robot, parameters);
+    result.terms = active_terms(robot, parameters);
     result.text = apply(document.content(), std::move(edits));
     return result;
 }

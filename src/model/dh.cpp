@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "driven_axes.hpp"
+
 namespace posewise {
 namespace {
 
@@ -21,6 +23,10 @@ Element link_translation(const DhRow& row) { return {Motion::Translation, Axis::
 
 Element link_rotation(const DhRow& row) { return {Motion::Rotation, Axis::X, row.alpha, {}, ""}; }
 
+Element parallel_rotation(const DhRow& row) {
+    return {Motion::Rotation, Axis::Y, row.beta, {}, ""};
+}
+
 std::vector<Element> without_idle(std::vector<Element> elements) {
     std::erase_if(elements, [](const Element& element) {
         return element.value == 0 && element.joints.empty();
@@ -30,35 +36,32 @@ std::vector<Element> without_idle(std::vector<Element> elements) {
 
 // ---- A chain as rows ----
 
-struct Line {
-    Vector3d point;
-    Vector3d direction;
-};
-
-/// A driven element: where its axis is at joint values zero.
-struct DrivenAxis {
-    Line line;
-    Motion motion;
-    std::vector<JointTerm> joints;
-};
-
-Isometry3d transform_of(const Element& element, double amount) {
-    const Vector3d axis = Vector3d::Unit(static_cast<Index>(element.axis));
-    if (element.motion == Motion::Rotation) return Isometry3d(Eigen::AngleAxisd(amount, axis));
-    return Isometry3d(Eigen::Translation3d(amount * axis));
-}
-
 Isometry3d transform_of(const DhRow& row) {
     return Eigen::AngleAxisd(row.theta, Vector3d::UnitZ()) * Eigen::Translation3d(row.a, 0, row.d) *
-           Eigen::AngleAxisd(row.alpha, Vector3d::UnitX());
+           Eigen::AngleAxisd(row.alpha, Vector3d::UnitX()) *
+           Eigen::AngleAxisd(row.beta, Vector3d::UnitY());
+}
+
+/// To the point where a line (direction u through p) meets the xy plane, z turned into its
+/// direction [Hayati 1983].
+DhRow row_to_nearly_parallel(const Vector3d& p, const Vector3d& u) {
+    const Vector3d origin = p - p.z() / u.z() * u;
+    DhRow row;
+    row.a = std::hypot(origin.x(), origin.y());
+    row.theta = row.a > 0 ? std::atan2(origin.y(), origin.x()) : 0;
+    const Vector3d turned = Eigen::AngleAxisd(-row.theta, Vector3d::UnitZ()) * u;
+    row.alpha = std::atan2(-turned.y(), turned.z());
+    row.beta = std::atan2(turned.x(), std::hypot(turned.y(), turned.z()));
+    return row;
 }
 
 /// The row from a frame to the nearest one whose z axis is the line.
-DhRow row_to(const Isometry3d& frame, const Line& line) {
-    constexpr double parallel = 1e-8;  // rad; nearer, rounding of a far d is worse
+DhRow row_to(const Isometry3d& frame, const detail::Line& line) {
+    constexpr double parallel = 1e-12;  // rad; what is nearer is rounding
     const Vector3d u = frame.linear().transpose() * line.direction;
     const Vector3d p = frame.inverse() * line.point;
     const double sine = std::hypot(u.x(), u.y());
+    if (sine >= parallel && sine < detail::nearly_parallel) return row_to_nearly_parallel(p, u);
     DhRow row;
     row.alpha = std::atan2(sine < parallel ? 0 : sine, u.z());
     if (sine < parallel) {
@@ -75,46 +78,29 @@ DhRow row_to(const Isometry3d& frame, const Line& line) {
     return row;
 }
 
-/// Axes of the driven elements and the flange, at joint values zero.
-std::pair<std::vector<DrivenAxis>, Isometry3d> axes_of(const Chain& chain,
-                                                       const VectorXd& parameters) {
-    std::vector<DrivenAxis> axes;
-    Isometry3d frame = Isometry3d::Identity();
-    Index next = 0;
-    for (const Element& element : chain.elements()) {
-        if (!element.joints.empty()) {
-            const Vector3d direction = frame.linear().col(static_cast<Index>(element.axis));
-            axes.push_back({{frame.translation(), direction}, element.motion, element.joints});
-        }
-        const double error = element.parameter.empty() ? 0 : parameters[next++];
-        next += static_cast<Index>(element.terms.size());
-        frame = frame * transform_of(element, element.value + error);
-    }
-    return {axes, frame};
-}
-
 bool is_idle(const DhRow& row) {
-    return row.a == 0 && row.alpha == 0 && row.d == 0 && row.theta == 0;
+    return row.a == 0 && row.alpha == 0 && row.d == 0 && row.theta == 0 && row.beta == 0;
 }
 
 }  // namespace
 
 std::vector<DhRow> dh_rows(const Chain& chain, const VectorXd& parameters) {
-    const auto [axes, flange] = axes_of(chain, parameters);
+    const auto [axes, flange] = detail::find_driven_axes(chain, parameters);
     std::vector<DhRow> rows;
     Isometry3d frame = Isometry3d::Identity();
     const auto add = [&](DhRow row) {
         frame = frame * transform_of(row);
         rows.push_back(std::move(row));
     };
-    DhRow base = row_to(frame, axes.front().line);
+    DhRow base = row_to(frame, axes.front().line());
     if (!is_idle(base)) add(base);
     for (std::size_t k = 0; k < axes.size(); ++k) {
-        const Line next = k + 1 < axes.size() ? axes[k + 1].line
-                                              : Line{flange.translation(), flange.linear().col(2)};
+        const detail::Line next = k + 1 < axes.size()
+                                      ? axes[k + 1].line()
+                                      : detail::Line{flange.translation(), flange.linear().col(2)};
         DhRow row = row_to(frame, next);
-        row.motion = axes[k].motion;
-        row.joints = axes[k].joints;
+        row.motion = axes[k].element->motion;
+        row.joints = axes[k].element->joints;
         add(std::move(row));
     }
     const Isometry3d rest = frame.inverse() * flange;
@@ -126,8 +112,8 @@ std::vector<DhRow> dh_rows(const Chain& chain, const VectorXd& parameters) {
 }
 
 std::vector<Element> dh_elements(const DhRow& row) {
-    return without_idle(
-        {joint_rotation(row), joint_translation(row), link_translation(row), link_rotation(row)});
+    return without_idle({joint_rotation(row), joint_translation(row), link_translation(row),
+                         link_rotation(row), parallel_rotation(row)});
 }
 
 std::vector<Element> mdh_elements(const DhRow& row) {

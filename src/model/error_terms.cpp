@@ -285,4 +285,22 @@ Chain with_axis_tilt(const Chain& chain, const std::vector<double>& orders,
     return chain.with_elements(std::move(elements));
 }
 
+std::vector<std::string> active_terms(const Chain& chain, const VectorXd& parameters) {
+    std::vector<std::string> names;
+    for (Index k = 0; k < chain.parameter_count(); ++k) {
+        const ErrorTerm* const term = chain.parameter_term(k);
+        if (term != nullptr && parameters[k] != 0) names.push_back(term->parameter);
+    }
+    return names;
+}
+
+Chain without_terms(const Chain& chain) {
+    std::vector<Element> elements = chain.elements();
+    for (Element& element : elements) {
+        element.terms.clear();
+        element.known_terms.clear();
+    }
+    return chain.with_elements(std::move(elements));
+}
+
 }  // namespace posewise

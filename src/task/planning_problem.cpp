@@ -12,11 +12,11 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "workspace.hpp"
 
 namespace posewise::detail {
 namespace {
 
-constexpr Index draws_per_workspace_pose = 20;
 /// New poses keep so far from those that could not be reached (some joint, rad).
 constexpr double distance_from_dropped = to_radians(5);
 
@@ -108,21 +108,11 @@ void hold_kept(PlanningProblem& problem, const Plan& repaired) {
 
 // ---- Where it matters ----
 
-RowMatrixXd draw_configurations(const Campaign& campaign, const PlanRequest& request) {
-    Cell cell = campaign.cell;
-    cell.sight.reset();  // the robot works where the tracker sees nothing, too
-    if (const auto& box = request.workspace_box_mm; !box.empty()) {
-        cell.target_boxes = {{Vector3d(box[0], box[1], box[2]) / mm_per_m,
-                              Vector3d(box[3], box[4], box[5]) / mm_per_m}};
-    }
-    const Index count = request.workspace_count;
-    try {
-        const Pool pool = make_pool(Constraints(campaign, std::move(cell)),
-                                    draws_per_workspace_pose * count, request.seed + 1);
-        return pool.configurations.topRows(std::min(count, pool.configurations.rows()));
-    } catch (const InputError& error) {
-        throw InputError(std::string("workspace: ") + error.what());
-    }
+std::optional<Box> workspace_box(const PlanRequest& request) {
+    const auto& box = request.workspace_box_mm;
+    if (box.empty()) return std::nullopt;
+    return Box{Vector3d(box[0], box[1], box[2]) / mm_per_m,
+               Vector3d(box[3], box[4], box[5]) / mm_per_m};
 }
 
 }  // namespace
@@ -167,9 +157,12 @@ void count_new_poses(PlanningProblem& problem) {
 }
 
 void draw_workspace(PlanningProblem& problem, const PlanningOptions& options) {
-    const RowMatrixXd workspace = options.workspace.rows() > 0
-                                      ? options.workspace
-                                      : draw_configurations(problem.campaign, problem.request);
+    const PlanRequest& request = problem.request;
+    const RowMatrixXd workspace =
+        options.workspace.rows() > 0
+            ? options.workspace
+            : workspace_configurations(problem.campaign, workspace_box(request),
+                                       request.workspace_count, request.seed + 1);
     problem.workspace_count = workspace.rows();
     problem.prediction = make_prediction_blocks(problem.campaign, problem.campaign.nominal,
                                                 workspace, problem.request.workspace_target - 1);

@@ -49,5 +49,20 @@ TEST_F(Ur10, SaysThatTheOrderOfTheQuaternionIsWrong) {
     EXPECT_NE(outcome.err.find("is qw the real part"), std::string::npos) << outcome.err;
 }
 
+/// Its axes 2, 3 and 4 are parallel to within 2 mrad: common normals are up to 1 km away.
+TEST_F(Ur10, IsExportedWithLinksAsLongAsTheyAre) {
+    write_text("c.yaml", design_);
+    run_well("calibrate c.yaml --folds 0 -o e.json -m '" + csv_ + "'");
+    const std::string text = run_well("export c.yaml e.json --dh d.yaml --ur-kinematics k.yaml");
+    EXPECT_NE(text.find("rows 2, 3: RotZ(theta) TransX(a) RotX(alpha) RotY(beta) (Hayati)"),
+              std::string::npos)
+        << text;
+    EXPECT_LT(number_behind(text, "k.yaml read back: the flange is within"), 1e-12);
+    const std::string frames = text_of("k.yaml");
+    EXPECT_NE(frames.find("  upper_arm:\n    x: 0.000"), std::string::npos) << frames;
+    EXPECT_NE(frames.find("  forearm:\n    x: -0.6132"), std::string::npos) << frames;
+    EXPECT_NE(text_of("d.yaml").find("joint: q3, a_mm: 572.1"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace posewise::testing

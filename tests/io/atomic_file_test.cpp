@@ -51,6 +51,23 @@ TEST(WriteFile, WritesToAPipeThatHasNoPlaceInAnyFolder) {
     for (const int end : ends) ::close(end);
 }
 
+TEST(WriteFile, WritesOnlyWhatPassesACheck) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("a.txt", "old");
+    const auto refuse = [](const std::string& written) {
+        EXPECT_EQ(read_file(written), "new");
+        throw InputError("not this");
+    };
+    EXPECT_EQ(input_error_of([&] { write_file(path, "new", refuse); }), "not this");
+    EXPECT_EQ(read_file(path), "old");
+    EXPECT_EQ(folder.file_count(), 1U);
+    write_file(path, "new", [](const std::string&) {});
+    EXPECT_EQ(read_file(path), "new");
+    EXPECT_EQ(folder.file_count(), 1U);
+    EXPECT_EQ(input_error_of([&] { write_file("/dev/null", "new", refuse); }),
+              "/dev/null: cannot be read back; must be a file");
+}
+
 TEST(WriteFile, RefusesAFolder) {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder.path("a"));

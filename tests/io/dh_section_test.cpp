@@ -88,6 +88,22 @@ TEST(DhSection, ConventionsAgreeOnOneRobot) {
     }
 }
 
+TEST(DhSection, MayTurnAboutYOfTheStandardConvention) {
+    const std::string rows =
+        "    - {joint: q1, a_mm: 300, alpha_deg: 0, d_mm: 0, theta_deg: 0, beta_deg: 30, "
+        "limits_deg: [-90, 90]}\n";
+    const Chain robot = read(campaign_of(rows)).declared_robot;
+    const Isometry3d expected =
+        Eigen::Translation3d(0.3, 0, 0) * Eigen::AngleAxisd(30 * degree, Vector3d::UnitY());
+    EXPECT_TRUE(robot.base_from_flange(VectorXd::Zero(1), VectorXd()).isApprox(expected, 1e-14));
+    EXPECT_EQ(input_error_of([&] { read(campaign_of(rows, "modified")); }),
+              "campaign.yaml:6:77: robot.dh.rows[1].beta_deg is stated in a table of the modified "
+              "convention; only the standard one has it");
+    const std::string other = testing::replaced(rows, "beta_deg: 30", "beta_rad: 0.5");
+    EXPECT_NE(input_error_of([&] { read(campaign_of(other)); }).find("must be one unit"),
+              std::string::npos);
+}
+
 TEST(DhSection, TellsWhatIsWrongAndWhere) {
     const std::string number = ", which is not a number; must be a finite number without unit";
     const std::string like = " is no sum of joints; must be like '-q3 + 0.5*q2'";

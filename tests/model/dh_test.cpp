@@ -98,6 +98,16 @@ TEST(DhElements, OfAFixedRowHaveNoJoint) {
     EXPECT_EQ(dh_elements(row).size(), 4U);
 }
 
+TEST(DhElements, OfNearlyParallelAxesTurnAboutYLast) {
+    DhRow row{0.1, 0.2, 0, 0.4, Motion::Rotation, {{0, 1.0}}};
+    const Matrix4d without = pose_of(dh_elements(row), 0.3);
+    row.beta = 0.25;
+    Matrix4d about_y = Matrix4d::Identity();
+    about_y.topLeftCorner<3, 3>() =
+        Eigen::AngleAxisd(row.beta, Vector3d::UnitY()).toRotationMatrix();
+    EXPECT_TRUE(pose_of(dh_elements(row), 0.3).isApprox(without * about_y, 1e-14));
+}
+
 /// The rows as a chain of the same joints.
 Chain chain_of(const Chain& chain, const std::vector<DhRow>& rows) {
     std::vector<Element> elements;
@@ -119,13 +129,37 @@ TEST(DhRows, MoveTheFlangeExactlyAsTheChainDoes) {
             const Chain again = chain_of(chain, rows);
             for (int i = 0; i < 20; ++i) {
                 const VectorXd q = random_vector(stream, chain.joint_count(), 2);
-                // Nearly parallel axes meet far away: d of 1e3 m and more, with its rounding.
-                const double far = size == 0 ? 1e-14 : 1e-11;
                 EXPECT_LT((again.base_from_flange(q, VectorXd()).matrix() -
                            chain.base_from_flange(q, errors).matrix())
                               .norm(),
-                          100 * far);
+                          1e-12);
             }
+        }
+    }
+}
+
+/// Of a UR, whose axes 2, 3 and 4 are parallel but for their errors.
+TEST(DhRows, OfAxesThatAreNearlyParallelHaveNoFarOffsets) {
+    const Chain chain = complete_model(ur_type());
+    for (const double size : {1e-11, 1e-8, 1e-5, 1e-3, 0.05}) {
+        RandomStream stream(78);
+        const VectorXd errors = random_vector(stream, chain.parameter_count(), size);
+        const auto rows = dh_rows(chain, errors);
+        for (const DhRow& row : rows) {
+            EXPECT_LT(std::hypot(row.a, row.d), 1) << size;
+            EXPECT_TRUE(row.beta == 0 || row.d == 0) << "one of them says it";
+        }
+        EXPECT_NE(rows[1].beta, 0) << size;
+        EXPECT_NE(rows[2].beta, 0) << size;
+        EXPECT_EQ(rows[0].beta, 0) << "of axes that cross";
+        const Chain again = chain_of(chain, rows);
+        for (int i = 0; i < 20; ++i) {
+            const VectorXd q = random_vector(stream, chain.joint_count(), 2);
+            EXPECT_LT((again.base_from_flange(q, VectorXd()).matrix() -
+                       chain.base_from_flange(q, errors).matrix())
+                          .norm(),
+                      1e-13)
+                << size;
         }
     }
 }

@@ -4,12 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "posewise/io/robot_files.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/model/dh.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/correction.hpp"
+#include "posewise/task/geometry.hpp"
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"
 #include "posewise/task/study.hpp"
@@ -54,13 +56,26 @@ std::string to_json(const Simulation& simulation, const Campaign& campaign);
 
 std::string to_json(const CorrectedPoses& poses, const Campaign& campaign);
 
+/// A file that was written, as it was read back.
+struct ReadBack {
+    std::string path;
+    FlangeDifference difference;
+};
+
 /// A calibrated robot in forms that others read.
 struct ExportedRobot {
+    /// Error terms that are not zero, which none of the forms can have.
+    std::vector<std::string> terms;
+    Geometry estimated;               ///< without them
+    std::optional<Geometry> nearest;  ///< nothing: there are none
+    bool is_nearest = false;          ///< that one is written
     std::optional<CalibratedUrdf> urdf;
     std::vector<DhRow> dh;           ///< empty: not asked for
-    std::vector<std::string> terms;  ///< error terms that are not zero, which neither can have
+    std::optional<UrFrames> frames;  ///< of a UR
+    std::vector<ReadBack> read_back;
+
+    const Geometry& written() const { return is_nearest ? *nearest : estimated; }
 };
-std::string to_json(const ExportedRobot& robot, const Campaign& campaign,
-                    const Parameters& parameters);
+std::string to_json(const ExportedRobot& robot, const Campaign& campaign);
 
 }  // namespace posewise::io

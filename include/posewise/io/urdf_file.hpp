@@ -88,9 +88,9 @@ struct CalibratedUrdf {
 };
 
 /// The URDF that predicts the pose of the tip link as `robot` does with error parameters
-/// `parameters`, its error terms left out. `robot` is make_chain() of the source, with error
-/// parameters. Each constant transform between two moving joints goes into the origin of the second
-/// one, that after the last into the first fixed joint there.
+/// `parameters`, its error terms left out. `robot` moves as make_chain() of the source does, with
+/// error parameters or other amounts. Each constant transform between two moving joints goes into
+/// the origin of the second one, that after the last into the first fixed joint there.
 CalibratedUrdf make_calibrated_urdf(const UrdfSource& source, const Chain& robot,
                                     const VectorXd& parameters);
 

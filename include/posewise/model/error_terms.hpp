@@ -6,7 +6,7 @@
 #include "posewise/model/chain.hpp"
 #include "posewise/model/gravity_torque.hpp"
 
-/// Error terms that every robot of a kind has, made from its axes.
+/// Error terms that every robot of a kind has, made from its axes; and a robot without any.
 namespace posewise {
 
 /// The function in words: "sin(q2-q3)", "cos(2q4)", "lin(q3)" for a linear one, with the phase in
@@ -80,5 +80,11 @@ Chain with_harmonics(const Chain& chain, const std::vector<double>& orders,
 /// `q4.Ry.cos(2q4)`. Throws InputError as with_harmonics() does.
 Chain with_axis_tilt(const Chain& chain, const std::vector<double>& orders,
                      const std::vector<Index>& joints = {});
+
+/// Names of the error terms whose parameters are not zero.
+std::vector<std::string> active_terms(const Chain& chain, const VectorXd& parameters);
+
+/// The robot with nothing that depends on the configuration but its joints.
+Chain without_terms(const Chain& chain);
 
 }  // namespace posewise

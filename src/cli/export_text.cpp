@@ -1,0 +1,140 @@
+#include "export_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "../core/format.hpp"
+#include "../core/text.hpp"
+#include "common.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/model/transforms.hpp"
+
+namespace posewise::cli {
+namespace {
+
+std::string describe_position(const Vector3d& p) {
+    return fmt::format("{} {} {}", detail::format_mm(p.x()), detail::format_mm(p.y()),
+                       detail::format_mm(p.z()));
+}
+
+std::string describe_base(const Isometry3d& world_from_base) {
+    const Vector3d rpy = rpy_from_rotation(world_from_base.linear());
+    return fmt::format("position {} mm, roll pitch yaw {} {} {} deg",
+                       describe_position(world_from_base.translation()),
+                       detail::format_fixed(to_degrees(rpy.x()), 5),
+                       detail::format_fixed(to_degrees(rpy.y()), 5),
+                       detail::format_fixed(to_degrees(rpy.z()), 5));
+}
+
+/// What no geometry can have, and what is lost with it.
+void print_loss(const io::ExportedRobot& robot) {
+    if (robot.terms.empty()) return;
+    print(fmt::format("\nnot in the geometry, since they depend on the configuration: {}\n",
+                      fmt::join(robot.terms, " ")));
+    detail::Table table{{"geometry", "RMS/mm", "largest/mm"}, {}};
+    const auto add = [&](const char* name, const PositionLoss& lost) {
+        table.rows.push_back({name, detail::format_mm(lost.rms), detail::format_mm(lost.largest)});
+    };
+    add("nearest", robot.nearest->lost);
+    add("estimate", robot.estimated.lost);
+    print_section("Lost without them, at the targets over the workspace", table);
+    print(robot.is_nearest ? "written is the nearest (--geometry estimate: the other)\n"
+                           : "written is the estimate's (--geometry nearest: the other)\n");
+}
+
+void print_places(const Geometry& geometry, const std::string& base) {
+    print(fmt::format("\nnot part of the robot: {} ({}), and the targets in the flange frame", base,
+                      describe_base(geometry.world_from_base)));
+    const char* separator = ": ";
+    for (const Vector3d& target : geometry.targets) {
+        print(separator + describe_position(target));
+        separator = "; ";
+    }
+    print(" mm\n");
+}
+
+detail::Table change_table(const io::CalibratedUrdf& urdf) {
+    detail::Table table{{"joint", "moved by/mm", "turned by/mrad"}, {}};
+    for (const io::OriginChange& change : urdf.changes) {
+        table.rows.push_back({detail::escape_controls(change.joint),
+                              detail::format_mm(change.translation),
+                              detail::format_fixed(mrad_per_rad * change.rotation, 4)});
+    }
+    return table;
+}
+
+void print_urdf(const io::CalibratedUrdf& urdf, const io::CampaignFile& file,
+                const std::string& path) {
+    print(fmt::format("{}: {} with the origins of {} joints changed is in {}\n", file.name,
+                      detail::escape_controls(file.urdf->path), urdf.changes.size(),
+                      detail::escape_controls(path)));
+    print_section("Origins", change_table(urdf));
+    if (urdf.not_expressed.empty()) return;
+    print(
+        fmt::format("\nnot in the URDF: {} act behind the last joint, where no fixed joint is "
+                    "that could take them\n",
+                    fmt::join(urdf.not_expressed, " ")));
+}
+
+void print_dh(const std::vector<DhRow>& rows, const io::CampaignFile& file,
+              const std::string& path) {
+    print(
+        fmt::format("{}: the calibrated robot in {} rows is in {}: RotZ(theta) TransZ(d) "
+                    "TransX(a) RotX(alpha)\n",
+                    file.name, rows.size(), detail::escape_controls(path)));
+    std::vector<std::size_t> parallel;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (rows[k].beta != 0) parallel.push_back(k + 1);
+    }
+    if (parallel.empty()) return;
+    print(
+        fmt::format("{} {}: RotZ(theta) TransX(a) RotX(alpha) RotY(beta) (Hayati), since the "
+                    "next axis is nearly parallel\n",
+                    parallel.size() == 1 ? "row" : "rows", fmt::join(parallel, ", ")));
+}
+
+void print_frames(const io::CampaignFile& file, const std::string& path) {
+    print(
+        fmt::format("{}: the calibrated robot as kinematics of ur_description, from its "
+                    "base_link_inertia to its tool0, is in {}\n",
+                    file.name, detail::escape_controls(path)));
+}
+
+}  // namespace
+
+void warn_of(const io::ExportedRobot& robot, const ExportPaths& paths) {
+    constexpr double far = 10;  // m
+    for (std::size_t k = 0; k < robot.dh.size(); ++k) {
+        const double offset = std::max(std::abs(robot.dh[k].d), std::abs(robot.dh[k].a));
+        if (offset < far) continue;
+        print_warning(fmt::format("{}: row {} has an offset of {} m; do not round it", paths.dh,
+                                  k + 1, detail::format_short(offset, 4)));
+    }
+    if (robot.frames && robot.frames->front()(0, 0) < 0) {
+        print_warning(paths.ur_kinematics +
+                      ": the shoulder is turned by more than 90 deg; the robot must begin at "
+                      "base_link_inertia, not at base_link");
+    }
+}
+
+void print_export(const io::ExportedRobot& robot, const io::CampaignFile& file,
+                  const ExportPaths& paths) {
+    if (robot.urdf) print_urdf(*robot.urdf, file, paths.urdf);
+    if (!robot.dh.empty()) print_dh(robot.dh, file, paths.dh);
+    if (robot.frames) print_frames(file, paths.ur_kinematics);
+    print_loss(robot);
+    print_places(robot.written(), file.urdf && robot.urdf ? "where the instrument sees base link " +
+                                                                detail::quote(file.urdf->base_link)
+                                                          : "where the instrument sees the base");
+    for (const io::ReadBack& written : robot.read_back) {
+        print(
+            fmt::format("{} read back: the flange is within {:.1e} m and {:.1e} rad at {} "
+                        "configurations\n",
+                        detail::escape_controls(written.path), written.difference.position,
+                        written.difference.orientation, written.difference.configuration_count));
+    }
+}
+
+}  // namespace posewise::cli

@@ -1,0 +1,230 @@
+#include "posewise/task/geometry.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "../core/decompositions.hpp"
+#include "../model/sampling.hpp"
+#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/sensors.hpp"
+#include "posewise/model/error_terms.hpp"
+#include "workspace.hpp"
+
+namespace posewise {
+namespace {
+
+using namespace detail;
+
+/// An error as large as is expected must bring the positions this much nearer to be worth it, m
+/// RMS.
+constexpr double change_weight = 1e-6;
+
+RowMatrixXd draw_workspace(const Campaign& campaign, const Parameters& found,
+                           const GeometryOptions& options) {
+    if (options.workspace.rows() > 0) {
+        for (Index i = 0; i < options.workspace.rows(); ++i) {
+            campaign.robot.check_configuration(options.workspace.row(i).transpose());
+        }
+        return options.workspace;
+    }
+    const Index count = options.configuration_count;
+    if (!campaign.robot.torques().empty()) {  // which no cell knows
+        return random_configurations(campaign.robot, count, options.seed);
+    }
+    Campaign placed = campaign;
+    placed.nominal = found;
+    placed.nominal.robot.setZero();
+    placed.has_nominal_base = placed.has_nominal_targets = true;
+    return workspace_configurations(placed, std::nullopt, count, options.seed);
+}
+
+std::vector<Vector3d> target_positions(const Campaign& campaign, const Parameters& parameters) {
+    std::vector<Vector3d> positions;
+    const Targets& targets = campaign.sensor->targets();
+    for (Index target = 0; target < targets.count(); ++target) {
+        positions.push_back(targets.position(target, parameters.sensor));
+    }
+    return positions;
+}
+
+/// Of points on the flange, in the world: 3 coordinates of each at each configuration.
+VectorXd predict_positions(const Campaign& campaign, const Parameters& parameters,
+                           const std::vector<Vector3d>& points, const RowMatrixXd& configurations) {
+    VectorXd positions(3 * configurations.rows() * std::ssize(points));
+    Index row = 0;
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        const Isometry3d flange =
+            world_from_flange(campaign, parameters, configurations.row(i).transpose());
+        for (const Vector3d& point : points) {
+            positions.segment<3>(row) = flange * point;
+            row += 3;
+        }
+    }
+    return positions;
+}
+
+PositionLoss loss_of(const VectorXd& difference) {
+    const VectorXd distances = difference.reshaped(3, difference.size() / 3).colwise().norm();
+    return {std::sqrt(distances.squaredNorm() / static_cast<double>(distances.size())),
+            distances.maxCoeff()};
+}
+
+/// Points on the flange as a sensor that knows some of their coordinates, and all of these.
+struct FlangePoints {
+    std::vector<Vector3d> positions;  ///< m
+    std::vector<std::array<bool, 3>> is_known;
+
+    /// The unknown ones, in the sensor's order.
+    VectorXd unknowns(const Targets& targets) const {
+        VectorXd values(targets.unknown_count());
+        for (Index point = 0; point < targets.count(); ++point) {
+            for (Index axis = 0; axis < 3; ++axis) {
+                const Index k = targets.unknown_index(point, axis);
+                if (k >= 0) values[k] = positions[static_cast<std::size_t>(point)][axis];
+            }
+        }
+        return values;
+    }
+};
+
+/// What is fitted: the targets, with points beside them if they are few.
+FlangePoints fitted_points(const Campaign& campaign, const Parameters& found) {
+    constexpr double lever = 0.1;  // m
+    const Targets& targets = campaign.sensor->targets();
+    FlangePoints points{target_positions(campaign, found), {}};
+    for (Index target = 0; target < targets.count(); ++target) {
+        auto& is_known = points.is_known.emplace_back();
+        for (Index axis = 0; axis < 3; ++axis) {
+            is_known[static_cast<std::size_t>(axis)] = targets.unknown_index(target, axis) < 0;
+        }
+    }
+    if (targets.count() < 3) {
+        for (Index axis = 0; axis < 3; ++axis) {
+            points.positions.emplace_back(points.positions.front() + lever * Vector3d::Unit(axis));
+            points.is_known.push_back(points.is_known.front());
+        }
+    }
+    return points;
+}
+
+/// The robot with the constant errors found as parts of its elements, but for those behind the last
+/// joint: they are the targets' as long as these are unknown.
+Chain with_constant_errors(const Chain& robot, const VectorXd& errors) {
+    const Element* last_driven = nullptr;
+    for (const Element& element : robot.elements()) {
+        if (!element.joints.empty()) last_driven = &element;
+    }
+    std::vector<bool> is_known;
+    for (Index k = 0; k < robot.parameter_count(); ++k) {
+        is_known.push_back(robot.parameter_term(k) == nullptr &&
+                           &robot.parameter_element(k) <= last_driven);
+    }
+    return without_parameters(without_terms(with_known_errors(robot, errors, is_known)));
+}
+
+/// The campaign whose calibration on the positions of `points` is the nearest geometry; its nominal
+/// parameters are those found.
+Campaign geometric_campaign(const Campaign& campaign, const Parameters& found,
+                            const FlangePoints& points) {
+    Campaign geometric = with_robot(campaign, with_constant_errors(campaign.robot, found.robot));
+    geometric.prior.reset();
+    geometric.joint_repeatability.resize(0);
+    geometric.spread = population_spread(geometric.robot);
+    geometric.sensor = std::make_shared<PointSensor>(Targets(points.positions, points.is_known),
+                                                     PointNoise(IsotropicNoise{change_weight}));
+    geometric.nominal.world_from_base = found.world_from_base;
+    geometric.nominal.sensor = points.unknowns(geometric.sensor->targets());
+    geometric.has_nominal_base = geometric.has_nominal_targets = true;
+    geometric = with_robot(geometric, irreducible_model(geometric));
+    geometric.nominal.robot = VectorXd::Zero(geometric.robot.parameter_count());
+    return geometric;
+}
+
+/// Least squares: |J d - r|^2 of a step d, rows: positions, changes of the robot's errors.
+struct Equations {
+    MatrixXd J;
+    VectorXd r;
+};
+
+Equations equations(const Campaign& geometric, const Parameters& parameters,
+                    const RowMatrixXd& configurations, const VectorXd& wanted) {
+    const Blocks blocks = make_position_blocks(geometric, parameters, configurations);
+    const Index rows = blocks.matrix.rows();
+    const Index begin = base_parameter_count(geometric);
+    const Index count = geometric.robot.parameter_count();
+    Equations system{MatrixXd::Zero(rows + count, blocks.matrix.cols()), VectorXd(rows + count)};
+    const double weight = change_weight * std::sqrt(static_cast<double>(rows) / 3);
+    const VectorXd weights =
+        weight * parameter_scale(geometric).segment(begin, count).cwiseInverse();
+    system.J.topRows(rows) = blocks.matrix;
+    system.J.bottomRows(count).middleCols(begin, count).diagonal() = weights;
+    system.r << wanted - predict_positions(geometric, parameters,
+                                           target_positions(geometric, parameters), configurations),
+        -weights.cwiseProduct(parameters.robot);
+    return system;
+}
+
+/// Gauss-Newton from what was found: the model is nearly linear over the errors of a robot.
+Parameters fit(const Campaign& geometric, const RowMatrixXd& configurations,
+               const VectorXd& wanted) {
+    constexpr Index iteration_limit = 20;
+    constexpr double tolerance = 1e-9;  // relative fall of the sum of squares
+    Parameters best = geometric.nominal;
+    Equations system = equations(geometric, best, configurations, wanted);
+    for (Index k = 0; k < iteration_limit; ++k) {
+        const Parameters next = advance(geometric, best, solve_least_squares(system.J, system.r));
+        Equations moved = equations(geometric, next, configurations, wanted);
+        const double before = system.r.squaredNorm();
+        if (moved.r.squaredNorm() < before) {
+            best = next;
+            system = std::move(moved);
+        }
+        if (system.r.squaredNorm() >= (1 - tolerance) * before) break;
+    }
+    return best;
+}
+
+}  // namespace
+
+Geometry estimated_geometry(const Campaign& campaign, const Parameters& found,
+                            const GeometryOptions& options) {
+    std::vector<Index> constants;
+    for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
+        if (campaign.robot.parameter_term(k) == nullptr) constants.push_back(k);
+    }
+    Geometry geometry{without_terms(campaign.robot),
+                      found.robot(constants),
+                      found.world_from_base,
+                      target_positions(campaign, found),
+                      {}};
+    const RowMatrixXd configurations = draw_workspace(campaign, found, options);
+    const Parameters constant{found.world_from_base, geometry.errors, found.sensor};
+    geometry.lost = loss_of(predict_positions(with_robot(campaign, geometry.robot), constant,
+                                              geometry.targets, configurations) -
+                            predict_positions(campaign, found, geometry.targets, configurations));
+    return geometry;
+}
+
+Geometry nearest_geometry(const Campaign& campaign, const Parameters& found,
+                          const GeometryOptions& options) {
+    const RowMatrixXd configurations = draw_workspace(campaign, found, options);
+    const FlangePoints points = fitted_points(campaign, found);
+    const Campaign geometric = geometric_campaign(campaign, found, points);
+    const Parameters nearest =
+        fit(geometric, configurations,
+            predict_positions(campaign, found, points.positions, configurations));
+    Geometry geometry{geometric.robot,
+                      nearest.robot,
+                      nearest.world_from_base,
+                      target_positions(geometric, nearest),
+                      {}};
+    const std::vector<Vector3d> targets = target_positions(campaign, found);
+    geometry.targets.resize(targets.size());
+    geometry.lost =
+        loss_of(predict_positions(geometric, nearest, geometry.targets, configurations) -
+                predict_positions(campaign, found, targets, configurations));
+    return geometry;
+}
+
+}  // namespace posewise

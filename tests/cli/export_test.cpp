@@ -1,0 +1,56 @@
+#include "program.hpp"
+
+/// What export warns of and refuses; urdf_test, irb120_test and ur10_test have what it writes.
+namespace posewise::testing {
+namespace {
+
+class Export : public Program {
+  protected:
+    void calibrate(const std::string& campaign) const {
+        write_text("c.yaml", campaign);
+        run_well("simulate c.yaml -k 30 -o m.csv");
+        run_well("calibrate c.yaml -m m.csv --folds 0 -o e.json");
+    }
+
+    const std::string base_ = "base: {position_mm: [2000, 0, 0], rpy_deg: [0, 0, 90]}\n";
+};
+
+/// Axes 0.11 rad and 2 m apart: their common normal is 18 m away.
+TEST_F(Export, WarnsOfFarOffsetsAndLeavesNothingWhereOneFormIsRefused) {
+    calibrate(R"(name: skew
+robot:
+  errors: geometric
+  joints: {q1: {limits_deg: [-90, 90]}, q2: {limits_deg: [-90, 90]}, q3: {limits_deg: [-90, 90]}}
+  elements: [Rz q1, Ty 2000 mm, Rx 0.11 rad, Rz q2, Tx 500 mm, Ry q3, Tz 300 mm]
+sensor:
+  kind: points
+  sigma_mm: 0.01
+  targets: {position_mm: [[100, 0, 0], [0, 100, 0], [0, 0, 100]]}
+)" + base_);
+    const Outcome outcome = run("export c.yaml e.json --dh d.yaml");
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_EQ(outcome.err.rfind("posewise: warning: d.yaml: row 1 has an offset of 17.97 m;", 0),
+              0U)
+        << outcome.err;
+    std::filesystem::remove(folder_ / "d.yaml");
+    expect_input_error("export c.yaml e.json --dh d.yaml --ur-kinematics k.yaml",
+                       "c.yaml: frames of a UR are those of six joints that turn");
+    expect_input_error("export c.yaml e.json --dh /dev/null", "cannot be read back");
+}
+
+TEST_F(Export, WarnsOfAURThatBeginsAtTheWrongLink) {
+    std::string design =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/ur10/campaign.yaml") + base_;
+    design.insert(design.find("    - Rz q1"), "    - Rz 180 deg\n");
+    design.insert(design.find("  sigma_mm"),
+                  "  tool: {position_mm: [0, 0, 50], rpy_deg: [0, 0, 0]}\n");
+    calibrate(design);
+    const Outcome outcome = run("export c.yaml e.json --ur-kinematics k.yaml");
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.err.find("must begin at base_link_inertia, not at base_link"),
+              std::string::npos)
+        << outcome.err;
+}
+
+}  // namespace
+}  // namespace posewise::testing
