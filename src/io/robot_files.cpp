@@ -51,16 +51,11 @@ VectorXd without(const Chain& robot, VectorXd errors, const std::vector<std::str
     return errors;
 }
 
-/// The chain of a file that is as complete as its robot's limits are.
-Chain read_urdf_chain(const UrdfSource& source, const Chain& robot) {
-    UrdfRobot read = read_urdf(source);
-    auto joint = robot.joints().begin();
-    for (UrdfJoint& stated : read.joints) {
-        if (stated.kind == UrdfJointKind::Fixed || joint == robot.joints().end()) continue;
-        stated.limits = Interval{joint->lower, joint->upper};
-        ++joint;
-    }
-    return make_chain(read);
+/// Whatever limits the file states.
+Chain read_urdf_chain(const UrdfSource& source) {
+    UrdfRobot robot = read_urdf(source);
+    for (UrdfJoint& joint : robot.joints) joint.limits = Interval{-1, 1};
+    return make_chain(robot);
 }
 
 Chain read_dh_robot(const std::string& path) {
@@ -92,11 +87,10 @@ std::string ur_text(const std::string& title, const UrFrames& frames) {
 FlangeDifference write_calibrated_urdf(const std::string& path, const CalibratedUrdf& urdf,
                                        const UrdfSource& source, const Chain& robot,
                                        const VectorXd& errors) {
-    return write_robot(
-        path, urdf.text, robot, without(robot, errors, urdf.not_expressed),
-        [&](const std::string& written) {
-            return read_urdf_chain({written, source.base_link, source.tip_link}, robot);
-        });
+    return write_robot(path, urdf.text, robot, without(robot, errors, urdf.not_expressed),
+                       [&](const std::string& written) {
+                           return read_urdf_chain({written, source.base_link, source.tip_link});
+                       });
 }
 
 FlangeDifference write_dh(const std::string& path, const std::string& title,
