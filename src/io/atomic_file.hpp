@@ -2,14 +2,23 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace posewise::detail {
 
-/// Writes a whole file or nothing: to a temporary beside it, then renamed. A link is
-/// followed. Throws InputError if the place cannot be written.
+struct FileContent {
+    std::string path;
+    std::string content;
+};
+
+/// Writes whole files, all or none: each to a temporary beside it, then all are renamed. A link is
+/// followed, a file that is replaced keeps its permissions. Throws InputError if a place cannot be
+/// written.
+void write_files(const std::vector<FileContent>& files);
 void write_file(const std::string& path, const std::string& content);
 
-/// The content of a file. Throws InputError if it cannot be read or has more than `most` bytes.
+/// The content of a file. Throws InputError if it cannot be read or has more than `most` bytes, of
+/// a device more than 1 MiB.
 std::string read_file(const std::string& path, std::size_t most = std::size_t{1} << 30);
 
 }  // namespace posewise::detail
