@@ -14,6 +14,7 @@
 #include "posewise/io/plan_file.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/io/weights_file.hpp"
+#include "posewise/measurement/exclusion.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/report/reports.hpp"
