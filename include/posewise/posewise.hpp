@@ -15,6 +15,7 @@
 #include "posewise/io/robot_files.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/io/weights_file.hpp"
+#include "posewise/measurement/exclusion.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/report/reports.hpp"

@@ -137,6 +137,7 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
     std::vector<RowMatrixXd> samples(fold_count);
     std::vector<RowMatrixXd> means(fold_count);
     RowMatrixXd distances = RowMatrixXd::Zero(count, measurements.is_seen.cols());
+    RowMatrixXd angles = distances;
     std::vector<std::string> failures(fold_count);
     detail::ProgressCounter counter(progress, folds);
     const Folds identifications(campaign, measurements, start, options);
@@ -152,6 +153,7 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
             means[f] = mean_residuals(campaign, estimate.parameters, judged);
             distances(held_out, Eigen::all) =
                 squared_distances(campaign, estimate.parameters, judged);
+            angles(held_out, Eigen::all) = squared_angles(campaign, estimate.parameters, judged);
         }
         counter.count();
     });
@@ -164,7 +166,7 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
         }
         return make_metrics(all, campaign.sensor->lengths_per_target());
     };
-    CrossValidation result{folds, join(samples), join(means), distances, {}};
+    CrossValidation result{folds, join(samples), join(means), distances, angles, {}};
     std::copy_if(failures.begin(), failures.end(), std::back_inserter(result.failures),
                  [](const std::string& failure) { return !failure.empty(); });
     return result;

@@ -54,21 +54,40 @@ RowMatrixXd mean_residuals(const Campaign& campaign, const Parameters& parameter
     return residuals(campaign, parameters, mean_measurements(*campaign.sensor, measurements));
 }
 
-RowMatrixXd squared_distances(const Campaign& campaign, const Parameters& parameters,
-                              const Measurements& measurements) {
+namespace {
+
+/// Of some columns of the means' residuals, configurations x targets; 0 where a target was not
+/// seen.
+RowMatrixXd squares_of(const Campaign& campaign, const Parameters& parameters,
+                       const Measurements& measurements, Index first, Index count) {
     const Measurements means = mean_measurements(*campaign.sensor, measurements);
     const RowMatrixXd r = residuals(campaign, parameters, means);
-    const Index lengths = campaign.sensor->lengths_per_target();
-    const Index width = campaign.sensor->rows_per_target();
     RowMatrixXd squares = RowMatrixXd::Zero(means.is_seen.rows(), means.is_seen.cols());
     Index row = 0;
     for (Index i = 0; i < squares.rows(); ++i) {
         for (Index j = 0; j < squares.cols(); ++j) {
-            if (means.is_seen(i, j))
-                squares(i, j) = r.row(row++).head(lengths > 0 ? lengths : width).squaredNorm();
+            if (!means.is_seen(i, j)) continue;
+            squares(i, j) = r.row(row++).segment(first, count).squaredNorm();
         }
     }
     return squares;
+}
+
+}  // namespace
+
+RowMatrixXd squared_distances(const Campaign& campaign, const Parameters& parameters,
+                              const Measurements& measurements) {
+    const Sensor& sensor = *campaign.sensor;
+    const Index count =
+        sensor.has_lengths() ? sensor.lengths_per_target() : sensor.rows_per_target();
+    return squares_of(campaign, parameters, measurements, 0, count);
+}
+
+RowMatrixXd squared_angles(const Campaign& campaign, const Parameters& parameters,
+                           const Measurements& measurements) {
+    const Index lengths = campaign.sensor->lengths_per_target();
+    return squares_of(campaign, parameters, measurements, lengths,
+                      campaign.sensor->rows_per_target() - lengths);
 }
 
 Metrics make_metrics(const RowMatrixXd& residuals, Index length_count) {

@@ -89,7 +89,10 @@ std::vector<Outlier> find_outliers(const IdentificationProblem& problem,
     const Measurements& means = problem.means;
     const VectorXd lengths = residual_lengths(problem, parameters);
     const RowMatrixXd distances = residuals(problem.campaign, parameters, means);
-    const double farthest = outlier_length(problem.campaign.sensor->rows_per_target());
+    const Sensor& sensor = *problem.campaign.sensor;
+    const double farthest = outlier_length(sensor.rows_per_target());
+    const Index lengths_end =
+        sensor.has_lengths() ? sensor.lengths_per_target() : sensor.rows_per_target();
     std::vector<Outlier> outliers;
     Index row = 0;
     for (Index i = 0; i < means.configuration_count(); ++i) {
@@ -98,7 +101,8 @@ std::vector<Outlier> find_outliers(const IdentificationProblem& problem,
             const double u = lengths[row] / problem.deviation;
             if (u > farthest) {
                 outliers.push_back({i, means.ids[static_cast<std::size_t>(i)], j,
-                                    distances.row(row).norm(), u, problem.loss.weight(u)});
+                                    distances.row(row).head(lengths_end).norm(), u,
+                                    problem.loss.weight(u)});
             }
             ++row;
         }

@@ -32,6 +32,7 @@ Finds base and targets from nothing, then identifies all parameters together, an
   - the strongest correlations: what these poses can hardly tell apart.
 What did not converge, or has errors a hundred times their expected size, or residuals of hundreds of
 standard deviations, is printed and not written, with exit code 3; --force writes it, marked.
+With --exclude it leaves out configurations by their ids and samples (7:2), and the estimate records it.
 With --plan the calibration sees only the plan's configurations and is judged on the others too.
 With --predict it says what to expect at configurations that need not be measured, as one reading
 there would find it: RMS, 95 %, and each one's in --predict-out (config,parameters_mm,left_over_mm,
@@ -140,8 +141,8 @@ void calibrate(const CalibrateArguments& arguments, const CommonOptions& common)
                    arguments.predict, arguments.from},
                   {arguments.out, arguments.predict_out}, common);
     const io::CampaignFile file = read_with_prior(paths.campaign, arguments.prior);
-    const Measurements measured = read_measured(paths.measurements, file);
     CalibrationOptions options = make_options(arguments, file.seed);
+    const Measurements measured = read_measured_without(options.excluded, paths.measurements, file);
     if (!arguments.from.empty()) {
         const auto has_moved = [&](const char* part) {
             return std::ranges::find(arguments.moved, part) != arguments.moved.end();
@@ -154,7 +155,8 @@ void calibrate(const CalibrateArguments& arguments, const CommonOptions& common)
                     has_moved("base"),
                     has_moved("targets")};
     }
-    if (!arguments.plan.empty()) options.used = find_planned(measured, arguments.plan);
+    if (!arguments.plan.empty())
+        options.used = find_planned(measured, arguments.plan, options.excluded);
     std::optional<Measurements> validation;
     if (!arguments.validate.empty()) validation = read_measured(arguments.validate, file);
     options.validation = validation ? &*validation : nullptr;

@@ -1,6 +1,7 @@
 #include "calibrate_options.hpp"
 
 #include "estimates.hpp"
+#include "measured.hpp"
 #include "options.hpp"
 
 namespace posewise::cli {
@@ -9,6 +10,7 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     CalibrationOptions& options = arguments.options;
     command.add_option("--plan", arguments.plan, "Use only the configurations of this plan file")
         ->check(file_name());
+    add_exclude_option(command, options.excluded);
     command.add_option("--method", arguments.method, "lm, two-step or global")
         ->check(CLI::IsMember({"lm", "two-step", "global"}))
         ->capture_default_str();

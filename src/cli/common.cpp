@@ -82,9 +82,11 @@ void check_same_pose(const Measurements& measurements, Index i, const PlannedPos
 
 }  // namespace
 
-std::vector<Index> find_planned(const Measurements& measurements, const std::string& plan_path) {
+std::vector<Index> find_planned(const Measurements& measurements, const std::string& plan_path,
+                                const std::vector<std::string>& excluded) {
     std::vector<Index> planned;
     for (const PlannedPose& pose : io::read_plan(plan_path).poses) {
+        if (std::ranges::find(excluded, pose.id) != excluded.end()) continue;
         const auto found = std::find(measurements.ids.begin(), measurements.ids.end(), pose.id);
         if (found == measurements.ids.end()) {
             throw InputError(plan_path + ": configuration '" + pose.id +
@@ -93,6 +95,7 @@ std::vector<Index> find_planned(const Measurements& measurements, const std::str
         planned.push_back(found - measurements.ids.begin());
         check_same_pose(measurements, planned.back(), pose, plan_path);
     }
+    if (planned.empty()) throw InputError(plan_path + ": all poses of the plan are excluded");
     return planned;
 }
 

@@ -26,8 +26,10 @@ CLI::Validator criterion_check();
 /// --digits: significant digits of what is printed as text.
 void add_digits_option(CLI::App& command, int& digits);
 
-/// Indices of the configurations a plan file asks for. Throws InputError if one is not there.
-std::vector<Index> find_planned(const Measurements& measurements, const std::string& plan_path);
+/// Indices of the configurations a plan file asks for, but for those excluded. Throws InputError if
+/// another one is not there.
+std::vector<Index> find_planned(const Measurements& measurements, const std::string& plan_path,
+                                const std::vector<std::string>& excluded);
 
 /// Everything is printed to standard output through these two.
 void print(const std::string& text);

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "../io/text.hpp"
+
 namespace posewise::cli {
 namespace {
 
@@ -49,6 +51,20 @@ void check_folder(const std::string& path) {
 
 }  // namespace
 
+namespace {
+
+/// A plan or an estimate holds the names of the files that it was made from.
+void check_names(const std::vector<std::string>& inputs) {
+    for (const std::string& input : inputs) {
+        if (detail::find_not_utf8(input) == std::string::npos) continue;
+        throw input_error_at({input},
+                             "its name is not UTF-8, and would stand in the file written; must be "
+                             "UTF-8 (or plain ASCII)");
+    }
+}
+
+}  // namespace
+
 void check_outputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs,
                    const CommonOptions& common) {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
@@ -58,6 +74,7 @@ void check_outputs(const std::vector<std::string>& inputs, const std::vector<std
             throw input_error_at({path}, "is a folder; must be the name of a file");
         }
         if (path.empty()) continue;
+        if (path.ends_with(".json")) check_names(inputs);
         if (common.json && is_standard_output(path)) {
             throw input_error_at(
                 {path}, "is standard output, which with --json holds one document; must be a file");

@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "common.hpp"
@@ -26,17 +27,20 @@ is read: these errors at once, in this proportion, are known only to 1.2 % of th
 struct IndicesArguments {
     InputPaths paths;
     std::string plan;
+    std::vector<std::string> excluded;
+    std::optional<bool> prior;
     Index directions = 3;
     int digits = 6;
 };
 
 Measurements read_input(const IndicesArguments& arguments, const io::CampaignFile& file) {
-    const auto all = read_measured(arguments.paths.measurements, file);
-    return arguments.plan.empty() ? all : take(all, find_planned(all, arguments.plan));
+    const auto& excluded = arguments.excluded;
+    const auto all = read_measured_without(excluded, arguments.paths.measurements, file);
+    return arguments.plan.empty() ? all : take(all, find_planned(all, arguments.plan, excluded));
 }
 
 void print_indices(const IndicesArguments& arguments, const CommonOptions& common) {
-    const auto file = io::read_campaign(arguments.paths.campaign);
+    const auto file = read_with_prior(arguments.paths.campaign, arguments.prior);
     const Measurements measurements = read_input(arguments, file);
     const Rating rating = compute_from(arguments.paths.measurements, [&] {
         return rate(file, measurements, arguments.directions);
@@ -55,6 +59,8 @@ void add_indices(CLI::App& program, const CommonOptions& common) {
     add_measurements_option(*command, arguments->paths);
     command->add_option("--plan", arguments->plan, "Only the configurations of this plan file")
         ->check(file_name());
+    add_exclude_option(*command, arguments->excluded);
+    add_prior_option(*command, arguments->prior, ": told beside what is measured");
     command->add_option("--directions", arguments->directions, "How many weak directions to name")
         ->check(whole_number(0, 1000))
         ->capture_default_str();

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -114,6 +115,7 @@ void inspect_urdf(const InspectArguments& arguments, const CommonOptions& common
         throw input_error_at({written}, "exists already; must be a new file");
     }
     const io::UrdfRobot robot = io::read_urdf({urdf, arguments.base_link, arguments.tip_link});
+    std::ranges::for_each(io::describe_doubts(robot), print_warning);
     const std::string path = written.empty() ? urdf : written;
     const std::string text = io::make_campaign_text(robot, path);
     const io::CampaignFile file = io::parse_campaign(text, path);
@@ -125,9 +127,19 @@ void inspect_urdf(const InspectArguments& arguments, const CommonOptions& common
     }
 }
 
+/// Base and targets that are measured elsewhere than stated.
+void warn_of_places(const std::string& path, const io::CampaignFile& file,
+                    const Measurements& measurements) {
+    const Parameters registered = register_base_and_targets(file, measurements).parameters;
+    if (find_misfit(file, measurements, registered)) return;  // that is said of the directions
+    const std::string words = describe_places(find_place_doubts(file, registered));
+    if (!words.empty()) print_warning(path + ": " + words);
+}
+
 void inspect(const InspectArguments& arguments, const CommonOptions& common) {
     if (is_urdf(arguments)) return inspect_urdf(arguments, common);
     const io::CampaignFile file = io::read_campaign(arguments.file);
+    std::ranges::for_each(file.warnings, print_warning);
     std::vector<detail::SignPattern> patterns;
     if (!arguments.measurements.empty()) {
         const Measurements measurements = io::read_measurements(arguments.measurements, file);
@@ -136,6 +148,7 @@ void inspect(const InspectArguments& arguments, const CommonOptions& common) {
             if (!signs.undetermined.empty()) throw InputError(signs.undetermined);
             return std::move(signs.patterns);
         });
+        warn_of_places(arguments.measurements, file, measurements);
     }
     print_campaign(file, patterns, common);
 }

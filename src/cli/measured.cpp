@@ -4,6 +4,8 @@
 
 #include "common.hpp"
 #include "files.hpp"
+#include "options.hpp"
+#include "posewise/measurement/exclusion.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
@@ -44,6 +46,21 @@ Measurements read_measured(const std::string& path, const io::CampaignFile& file
     Measurements measured = io::read_measurements(path, file);
     warn_beyond_limits(path, file, measured.configurations, measured.ids);
     return measured;
+}
+
+Measurements read_measured_without(const std::vector<std::string>& excluded,
+                                   const std::string& path, const io::CampaignFile& file) {
+    const Measurements all = read_measured(path, file);
+    Measurements measured = compute_from(path, [&] { return leave_out(all, excluded); });
+    const std::vector<Index> still = find_still_joints(file, measured.configurations);
+    if (!still.empty()) print_warning(path + ": " + describe_still_joints(file, still));
+    return measured;
+}
+
+void add_exclude_option(CLI::App& command, std::vector<std::string>& excluded) {
+    add_ids_option(command, "--exclude", excluded,
+                   "Leave out these configurations (ids, by commas) and samples (7:2 is the second "
+                   "sample of 7)");
 }
 
 io::Configurations read_unlimited(const std::string& path, const io::CampaignFile& file) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "posewise/io/measurements_file.hpp"
 
@@ -19,6 +21,12 @@ std::string describe_unused_planning(const io::CampaignFile& campaign);
 /// io::read_measurements(). Configurations beyond the joint limits are taken, since they were
 /// measured; a warning on standard error says so.
 Measurements read_measured(const std::string& path, const io::CampaignFile& file);
+
+/// The same less what was excluded by hand, leave_out(); a warning names joints that never move.
+Measurements read_measured_without(const std::vector<std::string>& excluded,
+                                   const std::string& path, const io::CampaignFile& file);
+/// --exclude, as leave_out() takes it.
+void add_exclude_option(CLI::App& command, std::vector<std::string>& excluded);
 
 /// io::read_program(), with the same warning.
 io::Configurations read_unlimited(const std::string& path, const io::CampaignFile& file);

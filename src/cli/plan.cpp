@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "../core/format.hpp"
+#include "../core/text.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
@@ -99,7 +100,7 @@ void print_planning(const Planning& planning, const io::CampaignFile& campaign,
               : format_other_counts(counts, planning.campaign));
     print(format_deviations(plan));
     print(fmt::format("\n{}plan:        {}\n", describe_planned(campaign, plan.request.repeats),
-                      out));
+                      detail::escape_controls(out)));
 }
 
 Planning plan_with_progress(const io::CampaignFile& campaign, PlanningOptions& options,
@@ -126,11 +127,8 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     if (!sources.repaired.empty()) options.repaired = io::read_plan(sources.repaired);
     options.stop = stop;
     const Planning planning = plan_with_progress(campaign, options, arguments.progress);
-    io::write_plan(out, planning.plan);
+    io::write_plan(out, planning.plan, arguments.csv, planning.campaign);
     interrupted.reset();
-    if (!arguments.csv.empty()) {
-        io::write_configurations_csv(arguments.csv, planning.campaign, planning.plan.poses);
-    }
     print_planning(planning, campaign, out, common);
 }
 

@@ -18,7 +18,7 @@ Blocks read_blocks(const PlanSources& sources, const std::string& path) {
 Candidates read_candidates(const std::string& path, CandidateKind kind,
                            const io::CampaignFile& campaign) {
     if (kind == CandidateKind::Measurements) {
-        return measured_candidates(read_measured(path, campaign));
+        return measured_candidates(read_measured_without({}, path, campaign));
     }
     auto [ids, joints, is_seen] = io::read_configurations(path, campaign);
     return {kind, std::move(ids), std::move(joints), is_seen.cast<double>(), std::nullopt};

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "../core/text.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
@@ -94,10 +95,10 @@ void print_design(const ApproximateDesign& design, const SelectArguments& argume
 
 void print_plan(const Plan& plan, const SelectArguments& arguments, const ChoiceInputs& inputs,
                 const std::string& out, const CommonOptions& common) {
-    print(common.json
-              ? io::to_json(plan, out)
-              : format_choice(plan, arguments.digits) +
-                    describe_robot(inputs, plan.request.repeats) + "plan:       " + out + '\n');
+    print(common.json ? io::to_json(plan, out)
+                      : format_choice(plan, arguments.digits) +
+                            describe_robot(inputs, plan.request.repeats) +
+                            "plan:       " + detail::escape_controls(out) + '\n');
     note_interrupt(plan.ending, "plan is");
 }
 

@@ -62,7 +62,7 @@ void study(const StudyArguments& arguments, const CommonOptions& common) {
     check_outputs({paths.campaign, paths.measurements}, {arguments.csv, arguments.plot}, common);
     const std::vector<io::CampaignFile> files = read_files(arguments);
     const io::CampaignFile& file = files.front();
-    const auto measurements = read_measured(paths.measurements, file);
+    const auto measurements = read_measured_without(arguments.excluded, paths.measurements, file);
     StudyOptions options = arguments.options;
     options.seed = arguments.seed.value_or(file.seed);
     options.criteria = arguments.criteria;

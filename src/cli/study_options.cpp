@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "../core/text.hpp"
+#include "measured.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -67,6 +68,7 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
             arguments.criteria = parse_names(text, "--criteria", "d,a", parse_criterion);
         },
         "Criteria to choose by, such as v,d,o1 (default: the campaign's, else v)");
+    add_exclude_option(command, arguments.excluded);
     command
         .add_option("--random", arguments.options.random_subsets, "Random subsets per pose count")
         ->check(whole_number(0, 1000000))

@@ -16,6 +16,7 @@ namespace posewise::cli {
 struct StudyArguments {
     std::optional<bool> prior;
     InputPaths paths;
+    std::vector<std::string> excluded;
     std::vector<Criterion> criteria;
     std::vector<io::ErrorModel> models;
     double least_distance_deg = 0;

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "../io/atomic_file.hpp"
+#include "../io/signal_delay.hpp"
 #include "../report/plot.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -36,24 +37,35 @@ class ScratchFolder {
     fs::path path_;
 };
 
+/// A path as a shell takes it for one argument, whatever is in it.
+std::string quote_for_shell(const std::string& path) {
+    std::string quoted = "'";
+    for (const char c : path.starts_with('/') ? path : "./" + path) {
+        quoted += c == '\'' ? "'\\''" : std::string(1, c);
+    }
+    return quoted + "'";
+}
+
 /// Leaves the script for the user, unless a file has its name already. What to do with it.
 std::string leave_script(const std::string& script, const std::string& image_path) {
     const std::string path = image_path + ".gnuplot";
     if (fs::exists(fs::symlink_status(path))) return "";
     detail::write_file(path, script);
-    return "; its script is left, try: gnuplot " + path;
+    return "; its script is left, try: gnuplot " + quote_for_shell(path);
 }
 
 }  // namespace
 
 void draw_plot(const std::string& image_path, const std::vector<Study>& studies) {
+    const detail::SignalDelay delay;
     const ScratchFolder folder;
     const std::string image = folder.path_of("image" + fs::path(image_path).extension().string());
     const std::string script = folder.path_of("script.gnuplot");
     detail::write_file(script, detail::study_plot_script(studies, image));
     try {
-        detail::run_gnuplot(script);
+        detail::run_gnuplot(script, detail::SignalDelay::has_come);
     } catch (const InputError& error) {
+        if (detail::SignalDelay::has_come()) return;  // it ends the program
         throw input_error_at(
             {image_path},
             std::string("the plot was not drawn, ") + error.what() +

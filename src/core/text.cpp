@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -27,6 +28,20 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
+/// Whether a terminal shows it where it stands: no control character, none that turns the order of
+/// others round, no line end, no byte that is no UTF-8.
+bool is_shown(std::string_view character) {
+    const auto byte = static_cast<unsigned char>(character[0]);
+    if (character.size() == 1) return byte >= 0x20 && byte < 0x7f;
+    if (character.size() == 2 && byte == 0xC2) return character[1] >= '\xA0';
+    using namespace std::string_view_literals;
+    constexpr std::array hidden{
+        "\xD8\x9C"sv,     "\xE2\x80\x8E"sv, "\xE2\x80\x8F"sv, "\xE2\x80\xA8"sv, "\xE2\x80\xA9"sv,
+        "\xE2\x80\xAA"sv, "\xE2\x80\xAB"sv, "\xE2\x80\xAC"sv, "\xE2\x80\xAD"sv, "\xE2\x80\xAE"sv,
+        "\xE2\x81\xA6"sv, "\xE2\x81\xA7"sv, "\xE2\x81\xA8"sv, "\xE2\x81\xA9"sv};
+    return std::ranges::find(hidden, character) == hidden.end();
+}
+
 /// The longest beginning of at most `most` bytes that ends with a whole character.
 std::string_view cut(std::string_view text, std::size_t most) {
     if (text.size() <= most) return text;
@@ -40,11 +55,15 @@ std::string_view cut(std::string_view text, std::size_t most) {
 std::string escape_controls(std::string_view text) {
     constexpr const char* digits = "0123456789abcdef";
     std::string escaped;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte >= 0x20 && byte != 0x7f) {
-            escaped += c;
-        } else {
+    while (!text.empty()) {
+        const std::string_view character = text.substr(0, character_length(text));
+        text.remove_prefix(character.size());
+        if (is_shown(character)) {
+            escaped += character;
+            continue;
+        }
+        for (const char c : character) {
+            const auto byte = static_cast<unsigned char>(c);
             escaped += {'\\', 'x', digits[byte / 16], digits[byte % 16]};
         }
     }

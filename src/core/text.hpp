@@ -9,7 +9,8 @@
 /// Words of messages.
 namespace posewise::detail {
 
-/// Text with every control character as \xNN, so that it stays one line and harms no terminal.
+/// Text with every control character (C0, C1, those of writing direction) and whatever is not UTF-8
+/// as \xNN, so that it stays one line and harms no terminal.
 std::string escape_controls(std::string_view text);
 
 /// What a user wrote, for a message: in quotes, controls escaped, cut after about 60 bytes (at

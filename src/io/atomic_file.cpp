@@ -4,15 +4,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <mutex>
+#include <memory>
+#include <optional>
 
 #include "posewise/core/errors.hpp"
+#include "signal_delay.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -47,6 +48,14 @@ class FileDescriptor {
 
     bool sync() const { return ::fsync(fd_) == 0; }
 
+    /// Takes over who may do what with a file; whose it is as far as the user may say so.
+    bool take_permissions(const std::string& path) const {
+        struct stat before {};
+        if (::stat(path.c_str(), &before) != 0) return true;  // there is none
+        [[maybe_unused]] const int ignored = ::fchown(fd_, before.st_uid, before.st_gid);
+        return ::fchmod(fd_, before.st_mode & 0777) == 0;
+    }
+
     /// Reads to the end, or until there is more than `most`.
     bool read(std::string& content, std::size_t most) const {
         char buffer[1 << 16];
@@ -63,81 +72,14 @@ class FileDescriptor {
     int fd_;
 };
 
-/// While one lives, signals that end a program wait, so that no temporary file is left behind. Not
-/// by a mask, which holds for one thread only: another one would take the signal.
-class SignalDelay {
-  public:
-    SignalDelay() : lock_(mutex_) {
-        struct sigaction delay {};
-        delay.sa_handler = note;
-        delay.sa_flags = SA_RESTART;
-        for (std::size_t k = 0; k < signals.size(); ++k) {
-            has_come_[k] = false;
-            ::sigaction(signals[k], nullptr, &before_[k]);
-            if (before_[k].sa_handler != SIG_IGN) ::sigaction(signals[k], &delay, nullptr);
-        }
-    }
-    ~SignalDelay() {
-        for (std::size_t k = 0; k < signals.size(); ++k) {
-            ::sigaction(signals[k], &before_[k], nullptr);
-        }
-        for (std::size_t k = 0; k < signals.size(); ++k) {
-            if (has_come_[k]) ::raise(signals[k]);
-        }
-    }
-    SignalDelay(const SignalDelay&) = delete;
-    SignalDelay& operator=(const SignalDelay&) = delete;
-
-  private:
-    static constexpr std::array signals{SIGINT, SIGTERM, SIGHUP};
-
-    static void note(int signal) {
-        for (std::size_t k = 0; k < signals.size(); ++k) {
-            if (signals[k] == signal) has_come_[k] = true;
-        }
-    }
-
-    static inline std::mutex mutex_;  // what is done with a signal is of the whole program
-    static inline std::array<std::atomic<bool>, signals.size()> has_come_{};
-    static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
-
-    std::lock_guard<std::mutex> lock_;
-    std::array<struct sigaction, signals.size()> before_{};
-};
-
-/// A file beside the one to write, under a name that no other writer uses (short, since the file's
-/// own may be as long as names can be); removed unless it was renamed.
-class Temporary {
-  public:
-    explicit Temporary(const std::string& path) {
-        static std::atomic<unsigned> count{0};
-        const std::string name =
-            ".posewise." + std::to_string(::getpid()) + "." + std::to_string(count++) + ".tmp";
-        name_ = (fs::path(path).parent_path() / name).string();
-    }
-    ~Temporary() {
-        if (exists_) ::unlink(name_.c_str());
-    }
-    Temporary(const Temporary&) = delete;
-    Temporary& operator=(const Temporary&) = delete;
-
-    const std::string& name() const { return name_; }
-
-    bool write(const std::string& content) {
-        const FileDescriptor file(name_, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC);
-        exists_ = file.is_open();
-        return exists_ && file.write(content) && file.sync();
-    }
-
-    bool rename_to(const std::string& path) {
-        exists_ = ::rename(name_.c_str(), path.c_str()) != 0;
-        return !exists_;
-    }
-
-  private:
-    std::string name_;
-    bool exists_ = false;
-};
+/// A name beside the file that no other writer uses; short, since the file's own may be as long as
+/// names can be.
+std::string temporary_name(const std::string& path) {
+    static std::atomic<unsigned> count{0};
+    const std::string name =
+        ".posewise." + std::to_string(::getpid()) + "." + std::to_string(count++) + ".tmp";
+    return (fs::path(path).parent_path() / name).string();
+}
 
 /// Where a path leads: a link is followed, so that the file it names is replaced, not the link.
 std::string follow_link(const std::string& path) {
@@ -154,31 +96,107 @@ std::string follow_link(const std::string& path) {
     return follow_link((fs::path(path).parent_path() / fs::read_symlink(path)).string());
 }
 
-}  // namespace
+/// A file on its way to its place: written beside it and, unless it is put there, gone again.
+class PendingFile {
+  public:
+    PendingFile(const FileContent& file) : path_(file.path), target_(follow_link(file.path)) {
+        open();
+        if (file_->write(file.content) && file_->take_permissions(target_) && file_->sync()) return;
+        const InputError problem = failure(path_, "cannot be written");
+        ::unlink(temporary_.c_str());
+        throw problem;
+    }
+    ~PendingFile() {
+        if (!is_placed_) ::unlink(temporary_.c_str());
+        if (has_backup_) ::unlink(backup().c_str());
+    }
+    PendingFile(const PendingFile&) = delete;
+    PendingFile& operator=(const PendingFile&) = delete;
 
-void write_file(const std::string& path, const std::string& content) {
-    write_file(path, content, {});
-}
+    const std::string& temporary() const { return temporary_; }
 
-void write_file(const std::string& path, const std::string& content,
-                const std::function<void(const std::string& temporary)>& check) {
-    const std::string target = follow_link(path);
+    void place() {
+        has_backup_ = ::link(target_.c_str(), backup().c_str()) == 0;
+        is_new_ = !has_backup_ && errno == ENOENT;
+        if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+            throw failure(path_, "cannot be replaced");
+        }
+        is_placed_ = true;
+    }
+
+    /// What was there is there again.
+    void take_back() {
+        if (!is_placed_) return;
+        if (is_new_) ::unlink(target_.c_str());
+        if (has_backup_ && ::rename(backup().c_str(), target_.c_str()) == 0) has_backup_ = false;
+    }
+
+  private:
+    /// Under a name that is free: in containers every program is process 1.
+    void open() {
+        constexpr int most_tries = 10000;
+        for (int k = 0; k < most_tries; ++k) {
+            temporary_ = temporary_name(target_);
+            file_.emplace(temporary_, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC);
+            if (file_->is_open()) return;
+            if (errno != EEXIST) break;
+        }
+        throw failure(path_, "cannot be written");
+    }
+
+    std::string backup() const { return temporary_ + '~'; }
+
+    std::string path_;
+    std::string target_;
+    std::string temporary_;
+    std::optional<FileDescriptor> file_;
+    bool is_placed_ = false;
+    bool has_backup_ = false;
+    bool is_new_ = false;
+};
+
+/// Not replaceable: a pipe or device.
+bool is_special(const std::string& path) {
     std::error_code error;
-    const fs::file_status status = fs::status(target, error);
+    const fs::file_status status = fs::status(follow_link(path), error);
     if (fs::is_directory(status)) {
         throw input_error_at({path}, "is a directory; must be the name of a file to write");
     }
-    if (fs::exists(status) && !fs::is_regular_file(status)) {  // a pipe or device: not replaceable
-        if (check) throw input_error_at({path}, "cannot be read back; must be a file");
-        const FileDescriptor file(target, O_WRONLY | O_CLOEXEC);
-        if (!file.is_open() || !file.write(content)) throw failure(path, "cannot be written");
-        return;
-    }
+    return fs::exists(status) && !fs::is_regular_file(status);
+}
+
+}  // namespace
+
+void write_files(const std::vector<FileContent>& files) {
     const SignalDelay delay;
-    Temporary temporary(target);
-    if (!temporary.write(content)) throw failure(path, "cannot be written");
-    if (check) check(temporary.name());
-    if (!temporary.rename_to(target)) throw failure(path, "cannot be replaced");
+    std::vector<std::unique_ptr<PendingFile>> pending;
+    std::vector<const FileContent*> special;
+    for (const FileContent& file : files) {
+        if (is_special(file.path)) {
+            if (file.check)
+                throw input_error_at({file.path}, "cannot be read back; must be a file");
+            special.push_back(&file);
+        } else {
+            pending.push_back(std::make_unique<PendingFile>(file));
+            if (file.check) file.check(pending.back()->temporary());
+        }
+    }
+    try {
+        for (const auto& file : pending) file->place();
+    } catch (const InputError&) {
+        for (const auto& file : pending) file->take_back();
+        throw;
+    }
+    for (const FileContent* const file : special) {
+        const FileDescriptor descriptor(follow_link(file->path), O_WRONLY | O_CLOEXEC);
+        if (!descriptor.is_open() || !descriptor.write(file->content)) {
+            throw failure(file->path, "cannot be written");
+        }
+    }
+}
+
+void write_file(const std::string& path, const std::string& content, const FileCheck& check) {
+    write_files({{path, content, check}});
 }
 
 std::string read_file(const std::string& path, std::size_t most) {
@@ -186,6 +204,8 @@ std::string read_file(const std::string& path, std::size_t most) {
     if (fs::is_directory(path, error)) {
         throw input_error_at({path}, "is a directory; must be a file");
     }
+    constexpr std::size_t most_of_device = std::size_t{1} << 20;  // /dev/zero never ends
+    if (fs::is_character_file(path, error)) most = std::min(most, most_of_device);
     const FileDescriptor file(path, O_RDONLY | O_CLOEXEC);
     std::string content;
     if (!file.is_open() || !file.read(content, most)) throw failure(path, "cannot be read");

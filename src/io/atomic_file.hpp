@@ -3,19 +3,27 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace posewise::detail {
 
-/// Writes a whole file or nothing: to a temporary beside it, then renamed. A link is
-/// followed. Throws InputError if the place cannot be written.
-void write_file(const std::string& path, const std::string& content);
+/// Looks at a temporary, whole and at this path, and throws unless it may take its place.
+using FileCheck = std::function<void(const std::string& temporary)>;
 
-/// The same if the temporary, whole and at the path that `check` is given, passes: what `check`
-/// throws is thrown, and nothing is written. Throws InputError for a pipe or a device.
-void write_file(const std::string& path, const std::string& content,
-                const std::function<void(const std::string& temporary)>& check);
+struct FileContent {
+    std::string path;
+    std::string content;
+    FileCheck check = {};
+};
 
-/// The content of a file. Throws InputError if it cannot be read or has more than `most` bytes.
+/// Writes whole files, all or none: each to a temporary beside it, then all are renamed. A link is
+/// followed, a file that is replaced keeps its permissions. Throws InputError if a place cannot be
+/// written or, a pipe or a device, not be checked, and what a check throws.
+void write_files(const std::vector<FileContent>& files);
+void write_file(const std::string& path, const std::string& content, const FileCheck& check = {});
+
+/// The content of a file. Throws InputError if it cannot be read or has more than `most` bytes, of
+/// a device more than 1 MiB.
 std::string read_file(const std::string& path, std::size_t most = std::size_t{1} << 30);
 
 }  // namespace posewise::detail

@@ -153,6 +153,7 @@ CampaignFile parse(const std::string& content, const std::string& path,
     file.declared_robot = robot.declared;
     file.error_model = robot.error_model;
     file.urdf = robot.urdf;
+    file.warnings = robot.warnings;
     campaign.joint_repeatability = robot.joint_repeatability;
     const detail::SensorSection sensor = read_sensor(map.require("sensor"));
     campaign.sensor = sensor.sensor;

@@ -16,6 +16,7 @@ struct RobotSection {
     Vector3d gravity = -Vector3d::UnitZ();  ///< its direction in the base frame
     VectorXd joint_repeatability;           ///< rad or m; empty if not stated
     std::optional<io::UrdfSource> urdf;     ///< where the robot comes from
+    std::vector<std::string> warnings;      ///< of the URDF
     VectorXd speed;                         ///< of the joints, rad/s or m/s; empty if not stated
 };
 /// "stated", "geometric" or "full".

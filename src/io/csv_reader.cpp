@@ -29,6 +29,9 @@ std::string_view trim_row(std::string_view row) {
 
 CsvReader::CsvReader(const std::string& path) : path_(path), content_(read_file(path)) {
     if (content_.starts_with("\xEF\xBB\xBF")) content_.erase(0, 3);
+    if (content_.starts_with("\xFF\xFE") || content_.starts_with("\xFE\xFF")) {
+        throw input_error_at({path}, "is UTF-16; must be UTF-8 (or plain ASCII)");
+    }
     const bool has_returns = content_.find('\r') < content_.find_last_not_of('\r');
     if (has_returns && content_.find('\n') == std::string::npos) {
         throw input_error_at({path}, "has line ends of CR only; must be of LF or CR LF");

@@ -40,6 +40,23 @@ Json planes_to_json(const std::vector<PlaneDoubt>& planes) {
     return json;
 }
 
+const char* unit_name(PlaceDoubt::Unit unit) {
+    if (unit == PlaceDoubt::Unit::AsRead) return "as read";
+    return unit == PlaceDoubt::Unit::Metres ? "m" : "mm";
+}
+
+Json places_to_json(const std::vector<PlaceDoubt>& places) {
+    Json json = Json::array();
+    for (const PlaceDoubt& place : places) {
+        json.push_back({{"what", place.name},
+                        {"stated_mm", vector_to_json(mm_per_m * place.stated)},
+                        {"measured_mm", vector_to_json(mm_per_m * place.found)},
+                        {"unit", unit_name(place.unit)}});
+        if (!place.exchanged_with.empty()) json.back()["exchanged_with"] = place.exchanged_with;
+    }
+    return json;
+}
+
 Json sizes_to_json(const std::vector<SizeDoubt>& sizes) {
     Json json = Json::array();
     for (const SizeDoubt& size : sizes) {
@@ -70,6 +87,7 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
                           {"planes", planes_to_json(misfit->planes)}};
     }
     if (!doubts.planes.empty()) json["planes"] = planes_to_json(doubts.planes);
+    if (!doubts.places.empty()) json["places"] = places_to_json(doubts.places);
     if (doubts.gross_error) json["gross_error_mm"] = mm_per_m * *doubts.gross_error;
     if (const auto& doubt = doubts.orientations) {
         json["orientations"] = {{"rms_deg", to_degrees(doubt->rms)},
@@ -87,6 +105,7 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
                                   {"fitting" + unit, mm_per_m * size->fitting}};
     }
     if (doubts.residual_ratio) json["residual_ratio"] = *doubts.residual_ratio;
+    if (doubts.small_residuals) json["small_residuals"] = *doubts.small_residuals;
     if (doubts.missing_errors) json["missing_errors"] = *doubts.missing_errors;
     for (const Index joint : doubts.negative_compliances) {
         json["negative_compliances"].push_back(campaign.robot.joint(joint).name);

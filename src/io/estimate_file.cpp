@@ -116,6 +116,16 @@ Json expected_to_json(const Calibration& calibration) {
     return json;
 }
 
+Json without_outliers_to_json(const WithoutOutliers& others, const std::string& unit) {
+    Json json = {{"fit_means_rms" + unit, mm * others.fit_rms}};
+    if (others.held_out_rms) json["held_out_means_rms" + unit] = mm * *others.held_out_rms;
+    if (others.fit_angle_rms) json["fit_means_rms_mrad"] = 1e3 * *others.fit_angle_rms;
+    if (others.held_out_angle_rms) {
+        json["held_out_means_rms_mrad"] = 1e3 * *others.held_out_angle_rms;
+    }
+    return json;
+}
+
 Json accuracy_to_json(const Calibration& calibration) {
     Json accuracy = {{"nominal", metrics_to_json(calibration.nominal)},
                      {"fit", metrics_to_json(calibration.estimate.fit)},
@@ -130,14 +140,16 @@ Json accuracy_to_json(const Calibration& calibration) {
     accuracy["expected"] = expected_to_json(calibration);
     if (calibration.left_out) accuracy["left_out"] = metrics_to_json(*calibration.left_out);
     if (calibration.validation) accuracy["validation"] = metrics_to_json(*calibration.validation);
+    if (const auto& moved = calibration.moved) {
+        accuracy["moved_before_validation"] = {{"base_mm", mm * moved->base},
+                                               {"targets_mm", mm * moved->targets}};
+    }
     if (!calibration.predicted.empty()) {
         accuracy["predicted"] = predictions_to_json(calibration.predicted);
     }
     if (const auto& others = calibration.without_outliers) {
-        accuracy["without_outliers"] = {{"fit_means_rms_mm", mm * others->fit_rms}};
-        if (others->held_out_rms) {
-            accuracy["without_outliers"]["held_out_means_rms_mm"] = mm * *others->held_out_rms;
-        }
+        accuracy["without_outliers"] = without_outliers_to_json(
+            *others, detail::error_suffix(!calibration.campaign.sensor->has_lengths()));
     }
     return accuracy;
 }
@@ -211,6 +223,7 @@ Json estimate_to_json(const Calibration& calibration, const std::string& measure
     document["campaign"] = campaign.name;
     document["measurements"] = measurements;
     document["measured"] = measured_to_json(calibration.measured);
+    if (!calibration.excluded.empty()) document["excluded"] = calibration.excluded;
     document["method"] = method_name(calibration.method);
     document["ending"] = ending_name(estimate.ending);
     if (!calibration.faults.empty()) document["faults"] = calibration.faults;

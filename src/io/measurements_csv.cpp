@@ -71,7 +71,8 @@ class RowReader {
         if (count == columns_.size()) return;
         throw input_error_at(
             csv_.locate(std::min(count, columns_.size())),
-            fmt::format("row has {} fields; must have {} as the header", count, columns_.size()));
+            fmt::format("row has {} fields; must have {} as the header{}", count, columns_.size(),
+                        count > columns_.size() ? "; are there decimal commas?" : ""));
     }
 
     void read_field(std::size_t field) {

@@ -204,6 +204,18 @@ Json report_to_json(const Plan& plan, const std::string& path) {
     return document;
 }
 
+std::string configurations_text(const Campaign& campaign, const std::vector<PlannedPose>& poses) {
+    std::string text =
+        fmt::format("config{},{}\n", detail::joint_header(campaign), detail::visible_targets);
+    const Index targets = campaign.sensor->target_count();
+    for (const PlannedPose& pose : poses) {
+        fmt::format_to(std::back_inserter(text), "{}{},{}\n", detail::csv_field(pose.id),
+                       detail::joint_cells(campaign, pose.configuration),
+                       target_numbers(seen_targets(pose.targets, targets)));
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string to_json(const Plan& plan, const std::string& path) {
@@ -233,17 +245,17 @@ void write_plan(const std::string& path, const Plan& plan) {
     detail::write_json(path, plan_to_json(plan, path));
 }
 
+void write_plan(const std::string& path, const Plan& plan, const std::string& csv_path,
+                const Campaign& campaign) {
+    std::vector<detail::FileContent> files{
+        {path, detail::json_text(plan_to_json(plan, path), path)}};
+    if (!csv_path.empty()) files.push_back({csv_path, configurations_text(campaign, plan.poses)});
+    detail::write_files(files);
+}
+
 void write_configurations_csv(const std::string& path, const Campaign& campaign,
                               const std::vector<PlannedPose>& poses) {
-    std::string text =
-        fmt::format("config{},{}\n", detail::joint_header(campaign), detail::visible_targets);
-    const Index targets = campaign.sensor->target_count();
-    for (const PlannedPose& pose : poses) {
-        fmt::format_to(std::back_inserter(text), "{}{},{}\n", detail::csv_field(pose.id),
-                       detail::joint_cells(campaign, pose.configuration),
-                       target_numbers(seen_targets(pose.targets, targets)));
-    }
-    detail::write_file(path, text);
+    detail::write_file(path, configurations_text(campaign, poses));
 }
 
 }  // namespace posewise::io

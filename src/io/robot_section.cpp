@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <numbers>
 
 #include "element_notation.hpp"
 #include "robot_parts.hpp"
@@ -37,9 +40,38 @@ void check_quantity(const YamlMeasure& measure, Motion motion) {
                               "; must be in " + list_words(unit_names(quantity_of(motion))));
 }
 
+constexpr double full_turn = 2 * std::numbers::pi;
+
+/// Degrees read as rad, by the look of them.
+void check_turns(const YamlMeasure& limits, const VectorXd& values) {
+    constexpr double most_turns = 5;
+    const double turns = values.cwiseAbs().maxCoeff() / full_turn;
+    if (turns <= most_turns) return;
+    throw limits.value.error(fmt::format(
+        "reaches {:.3g} turns; must be within five either way{}", turns,
+        limits.unit->name == "rad" ? ": are they degrees? Then the key is limits_deg" : ""));
+}
+
+/// Rad read as degrees, by the look of them: no robot turns so little in every joint.
+void check_has_room(const YamlValue& robot, const Chain& chain) {
+    constexpr double least = full_turn * std::numbers::pi / 180;  // a turn in rad, read as degrees
+    double largest = 0;
+    for (Index j = 0; j < chain.joint_count(); ++j) {
+        if (chain.joint(j).motion != Motion::Rotation) continue;
+        const Joint& joint = chain.joints()[static_cast<std::size_t>(j)];
+        largest = std::max({largest, -joint.lower, joint.upper});
+    }
+    if (largest == 0 || largest > least) return;
+    throw robot.error(fmt::format(
+        "has no joint that turns beyond {:.3g} deg; must have room to turn: are the limits rad? "
+        "Then their key is limits_rad",
+        largest * 180 / std::numbers::pi));
+}
+
 Joint to_joint(const YamlMeasure& limits, const std::string& name, Motion motion) {
     check_quantity(limits, motion);
     const VectorXd values = limits.list_to_si(2);
+    if (motion == Motion::Rotation) check_turns(limits, values);
     if (values[0] >= values[1]) {
         throw limits.value.error("is not in order; the lower limit must come first");
     }
@@ -156,6 +188,7 @@ RobotSection read_robot(const YamlValue& value, std::optional<io::ErrorModel> er
     const YamlMap robot(value, {"joints", "elements", "dh", "urdf", "base_link", "tip_link",
                                 "errors", "gravity", "harmonics", "axis_tilt", "compliance"});
     RobotSection section = read_described(robot, find_description(value, robot));
+    check_has_room(value, section.declared);
     section.error_model = errors ? *errors : find_error_model(robot, section.declared.elements());
     add_stated_terms(robot, section);
     if (section.joint_repeatability.isZero(0)) section.joint_repeatability.resize(0);

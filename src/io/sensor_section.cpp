@@ -20,10 +20,11 @@ Vector3d generic_target(std::size_t index) {
     return {along, 0.15 * std::cos(golden_angle * turns), 0.15 * std::sin(golden_angle * turns)};
 }
 
+constexpr std::size_t most_targets = 1000;
+
 std::vector<Vector3d> generic_targets(const YamlValue& count) {
-    constexpr std::uint64_t most = 1000;
     const std::uint64_t number = count.natural_number();
-    if (number < 1 || number > most) {
+    if (number < 1 || number > most_targets) {
         throw count.error("is " + std::to_string(number) + "; must be from 1 to 1000");
     }
     std::vector<Vector3d> targets;
@@ -31,12 +32,37 @@ std::vector<Vector3d> generic_targets(const YamlValue& count) {
     return targets;
 }
 
+/// No two reflectors fit into a millimetre; metres read as millimetres do.
+void check_apart(const YamlMeasure& positions, const std::vector<Vector3d>& stated,
+                 const std::string& of_what) {
+    constexpr double least = 1e-3;  // m
+    for (std::size_t k = 0; k < stated.size(); ++k) {
+        for (std::size_t i = 0; i < k; ++i) {
+            const double distance = (stated[k] - stated[i]).norm();
+            if (distance >= least) continue;
+            throw positions.value.error(
+                fmt::format("puts {0}s {1} and {2} at one place, {3:.3g} mm apart; must be places "
+                            "of their own{4}",
+                            of_what, i + 1, k + 1, 1e3 * distance,
+                            positions.unit->name != "m" && distance > 0
+                                ? ": are they in m? Then the key is position_m"
+                                : ""));
+        }
+    }
+}
+
 std::vector<Vector3d> stated_positions(const YamlMeasure& positions, const std::string& of_what) {
+    const std::vector<YamlValue> items = positions.value.list();
+    if (items.empty()) throw positions.value.error("is empty; must list at least one " + of_what);
+    if (items.size() > most_targets) {
+        throw positions.value.error(
+            fmt::format("lists {} {}s; must be at most {}", items.size(), of_what, most_targets));
+    }
     std::vector<Vector3d> stated;
-    for (const YamlValue& item : positions.value.list()) {
+    for (const YamlValue& item : items) {
         stated.push_back(YamlMeasure{item, positions.unit}.vector_to_si());
     }
-    if (stated.empty()) throw positions.value.error("is empty; must list at least one " + of_what);
+    check_apart(positions, stated, of_what);
     return stated;
 }
 

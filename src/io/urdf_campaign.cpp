@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <numbers>
 
 #include "../core/text.hpp"
 #include "json.hpp"
@@ -30,12 +31,23 @@ std::string quote_for_yaml(const std::string& text) {
     }
 }
 
+/// Room for a joint that has no limits, until its user states them.
+Interval limits_of(const UrdfJoint& joint) {
+    if (joint.limits) return *joint.limits;
+    if (joint_motion(joint) == Motion::Translation) return {0, 1};
+    return {-std::numbers::pi, std::numbers::pi};
+}
+
 std::string joint_line(const UrdfJoint& joint) {
     const AmountUnits& units = units_of(joint_motion(joint));
+    const Interval limits = limits_of(joint);
+    const bool is_continuous = joint.kind == UrdfJointKind::Continuous;
     return fmt::format("    {}: {{limits_{}: [{:.9g}, {:.9g}]}}{}\n", chain_joint_name(joint.name),
-                       units.reading, units.to_reading(joint.limits->lower),
-                       units.to_reading(joint.limits->upper),
-                       joint.kind == UrdfJointKind::Continuous ? "  # continuous in the URDF" : "");
+                       units.reading, units.to_reading(limits.lower),
+                       units.to_reading(limits.upper),
+                       !joint.limits   ? "  # FILL IN: none in the URDF"
+                       : is_continuous ? "  # continuous in the URDF"
+                                       : "");
 }
 
 constexpr const char* rest = R"(
@@ -55,7 +67,9 @@ spread: {length_mm: 1, angle_mrad: 1}    # expected size of the robot's errors
 }  // namespace
 
 std::string make_campaign_text(const UrdfRobot& robot, const std::string& path) {
-    make_chain(robot);  // throws if there is none
+    UrdfRobot limited = robot;
+    for (UrdfJoint& joint : limited.joints) joint.limits = limits_of(joint);
+    make_chain(limited);  // throws if there is none
     const fs::path urdf = robot.source.path;
     std::string text =
         "# A campaign for posewise. What is marked FILL IN is not known from the URDF.\n";
@@ -67,7 +81,7 @@ std::string make_campaign_text(const UrdfRobot& robot, const std::string& path) 
     text +=
         "  # Limits of the URDF. FILL IN: narrower ones where the cell needs them.\n  joints:\n";
     for (const UrdfJoint& joint : robot.joints) {
-        if (joint.kind != UrdfJointKind::Fixed) text += joint_line(joint);
+        if (is_driven(joint)) text += joint_line(joint);
     }
     return text + rest;
 }

@@ -44,13 +44,17 @@ std::vector<Isometry3d> constants_of(const Chain& robot, const VectorXd& paramet
     return constants;
 }
 
-/// The turn of a joint's frame that puts its axis on a coordinate axis; see joint_elements().
+/// The turn of a joint's frame that puts its axis on a coordinate axis, see joint_elements(), and
+/// what a mimic moves by where the joint that it mimics is at zero.
 Isometry3d alignment_of(const UrdfJoint& joint) {
     std::vector<Element> elements = joint_elements(joint_motion(joint), joint.axis, 0);
     const auto driven = std::find_if(elements.begin(), elements.end(), [](const Element& element) {
         return !element.joints.empty();
     });
-    elements.erase(driven, elements.end());
+    elements.erase(driven + 1, elements.end());
+    const double sign = elements.back().joints.front().coefficient;
+    elements.back().joints.clear();
+    elements.back().value = joint.mimic ? sign * joint.mimic->offset : 0;
     return product_of(elements, VectorXd());
 }
 

@@ -13,19 +13,63 @@ namespace {
 using namespace detail;
 using pugi::xml_node;
 
-void check_joint_count(const UrdfRobot& robot) {
-    const auto count = static_cast<std::size_t>(
-        std::count_if(robot.joints.begin(), robot.joints.end(),
-                      [](const UrdfJoint& joint) { return joint.kind != UrdfJointKind::Fixed; }));
-    const std::string ends = "base link " + quote(robot.source.base_link) + " and tip link " +
-                             quote(robot.source.tip_link);
-    if (count == 0) {
-        throw input_error_at({robot.source.path}, "has no joint that moves between " + ends);
+constexpr const char* no_limits =
+    " has no limits that leave it room; must have, here or in a campaign under robot.joints";
+
+std::string ends_of(const UrdfSource& source) {
+    return "base link " + quote(source.base_link) + " and tip link " + quote(source.tip_link);
+}
+
+[[noreturn]] void refuse_so_many(const UrdfSource& source, std::size_t count, const char* rule) {
+    throw input_error_at({source.path}, "has " + std::to_string(count) + " joints between " +
+                                            ends_of(source) + "; " + rule);
+}
+
+/// The joint of the chain that moves it; nothing if it mimics none on the way.
+std::optional<Index> find_driver(const UrdfRobot& robot, const UrdfJoint& joint) {
+    Index index = 0;
+    for (const UrdfJoint& other : robot.joints) {
+        if (!is_driven(other)) continue;
+        if (joint.mimic ? other.name == joint.mimic->joint : &other == &joint) return index;
+        ++index;
     }
-    if (count > most_joints || robot.joints.size() > most_elements) {
-        throw input_error_at({robot.source.path}, "has " + std::to_string(robot.joints.size()) +
-                                                      " joints between " + ends +
-                                                      "; at most 100 of them may move");
+    return std::nullopt;
+}
+
+/// What a joint that moves does, as the elements it drives.
+std::vector<Element> driven_elements(const UrdfRobot& robot, const UrdfJoint& joint) {
+    std::vector<Element> elements =
+        joint_elements(joint_motion(joint), joint.axis, *find_driver(robot, joint));
+    if (!joint.mimic) return elements;
+    for (Element& element : elements) {
+        if (element.joints.empty()) continue;
+        const double sign = element.joints.front().coefficient;
+        element.value = sign * joint.mimic->offset;
+        element.joints.front().coefficient = sign * joint.mimic->factor;
+    }
+    return elements;
+}
+
+void check_joint_count(const UrdfRobot& robot) {
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(robot.joints, io::is_driven));
+    if (count == 0) {
+        throw input_error_at({robot.source.path},
+                             "has no joint that moves between " + ends_of(robot.source));
+    }
+    if (count > most_joints) {
+        refuse_so_many(robot.source, robot.joints.size(), "at most 100 of them may move");
+    }
+}
+
+/// A mimic moves as a joint on the way does, or its place is not known.
+void check_mimics(const UrdfRobot& robot) {
+    for (const UrdfJoint& joint : robot.joints) {
+        if (!joint.mimic || find_driver(robot, joint)) continue;
+        throw input_error_at(
+            joint.location,
+            "joint " + quote(joint.name) + " mimics " + quote(joint.mimic->joint) +
+                ", which is no joint between " + ends_of(robot.source) +
+                " that moves by itself; choose links that hold both or neither, or make it fixed");
     }
 }
 
@@ -37,11 +81,30 @@ UrdfRobot read_urdf(const UrdfSource& source) {
     UrdfRobot robot;
     robot.source = path.source;
     robot.name = escape_controls(document.root().attribute("name").value());
+    if (path.joints.size() > most_elements) {
+        refuse_so_many(path.source, path.joints.size(), "must be at most 1000");
+    }
     for (const xml_node joint : path.joints) {
         robot.joints.push_back(read_urdf_joint(document, joint));
     }
     check_joint_count(robot);
+    check_mimics(robot);
     return robot;
+}
+
+bool is_driven(const UrdfJoint& joint) {
+    return joint.kind != UrdfJointKind::Fixed && !joint.mimic;
+}
+
+std::vector<std::string> describe_doubts(const UrdfRobot& robot) {
+    std::vector<std::string> sentences;
+    for (const UrdfJoint& joint : robot.joints) {
+        sentences.insert(sentences.end(), joint.warnings.begin(), joint.warnings.end());
+        if (!is_driven(joint) || joint.limits) continue;
+        sentences.emplace_back(
+            input_error_at(joint.location, "joint " + quote(joint.name) + no_limits).what());
+    }
+    return sentences;
 }
 
 Motion joint_motion(const UrdfJoint& joint) {
@@ -65,12 +128,10 @@ Chain make_chain(const UrdfRobot& robot) {
     for (const UrdfJoint& joint : robot.joints) {
         append(origin_elements(joint.xyz, joint.rpy));
         if (joint.kind == UrdfJointKind::Fixed) continue;
-        append(joint_elements(joint_motion(joint), joint.axis, static_cast<Index>(joints.size())));
+        append(driven_elements(robot, joint));
+        if (joint.mimic) continue;
         if (!joint.limits) {
-            throw input_error_at(joint.location,
-                                 "joint " + quote(joint.name) +
-                                     " has no limits that leave it room; must have, here or in a "
-                                     "campaign under robot.joints");
+            throw input_error_at(joint.location, "joint " + quote(joint.name) + no_limits);
         }
         joints.push_back({chain_joint_name(joint.name), joint.limits->lower, joint.limits->upper});
     }
@@ -84,7 +145,7 @@ Chain make_chain(const UrdfRobot& robot) {
 VectorXd joint_speeds(const UrdfRobot& robot) {
     std::vector<double> speeds;
     for (const UrdfJoint& joint : robot.joints) {
-        if (joint.kind == UrdfJointKind::Fixed) continue;
+        if (!is_driven(joint)) continue;
         if (joint.speed == 0) return {};
         speeds.push_back(joint.speed);
     }

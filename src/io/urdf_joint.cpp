@@ -26,11 +26,7 @@ class JointReader {
             joint.rpy = read_vector(origin, "rpy").value_or(joint.rpy);
         }
         if (joint.kind == io::UrdfJointKind::Fixed) return joint;
-        if (element_.child("mimic")) {
-            throw error(element_,
-                        "mimics another joint; only joints that move by themselves can "
-                        "be part of the chain");
-        }
+        read_mimic(joint);
         read_axis(joint);
         read_limit(joint);
         return joint;
@@ -56,15 +52,22 @@ class JointReader {
         }
     }
 
-    xml_node find(const char* name, const std::vector<std::string>& attributes) const {
+    /// Throws for an unknown attribute; where `warnings` are taken only for a misspelt one.
+    xml_node find(const char* name, const std::vector<std::string>& attributes,
+                  std::vector<std::string>* warnings = nullptr) const {
         const xml_node found = find_child(document_, element_, name);
         for (const pugi::xml_attribute attribute : found.attributes()) {
             const std::string stated = attribute.name();
             if (std::find(attributes.begin(), attributes.end(), stated) != attributes.end()) {
                 continue;
             }
-            throw error(found, std::string("has ") + name + " with unknown attribute " +
-                                   quote(stated) + "; " + suggest(stated, attributes));
+            const std::string what =
+                std::string("has ") + name + " with unknown attribute " + quote(stated);
+            const std::string advice = suggest(stated, attributes);
+            if (warnings == nullptr || advice.starts_with("did you mean")) {
+                throw error(found, what + "; " + advice);
+            }
+            warnings->push_back(error(found, what + ", which is left out").what());
         }
         return found;
     }
@@ -79,11 +82,12 @@ class JointReader {
         if (word == "prismatic") return io::UrdfJointKind::Prismatic;
         const std::vector<std::string> known{"revolute", "continuous", "prismatic", "fixed"};
         const bool has_many_freedoms = word == "floating" || word == "planar";
-        throw error(element_, "is of type " + quote(word) +
-                                  (has_many_freedoms
-                                       ? ", which moves in several ways at once; must be one of " +
-                                             list_words(known)
-                                       : "; " + suggest(word, known)));
+        throw error(
+            element_,
+            "is of type " + quote(word) +
+                (has_many_freedoms ? ", which moves in several ways at once; must be one of " +
+                                         list_words(known) + ", or not between base and tip link"
+                                   : "; " + suggest(word, known)));
     }
 
     std::optional<Vector3d> read_vector(xml_node element, const char* attribute) const {
@@ -102,24 +106,54 @@ class JointReader {
         joint.axis = direction.normalized();
     }
 
+    void read_mimic(io::UrdfJoint& joint) const {
+        const xml_node mimic = find("mimic", {"joint", "multiplier", "offset"});
+        if (!mimic) return;
+        const std::string subject = "joint " + quote(name_);
+        joint.mimic = io::UrdfMimic{mimic.attribute("joint").value()};
+        if (joint.mimic->joint.empty()) throw error(mimic, "has a <mimic> without joint");
+        joint.mimic->factor = read_number(document_, mimic, "multiplier", subject).value_or(1);
+        if (joint.mimic->factor == 0) {
+            throw error(mimic, "has multiplier 0; must move, or be of type fixed");
+        }
+        joint.mimic->offset = read_number(document_, mimic, "offset", subject).value_or(0);
+    }
+
+    /// 0 if it is not stated. Files write huge numbers for none.
+    double read_limit_number(xml_node limit, const char* attribute) const {
+        const pugi::xml_attribute stated = limit.attribute(attribute);
+        if (!stated) return 0;
+        const ParsedNumber number = parse_number(stated.value());
+        if (number.ok()) return number.value;
+        return read_number(document_, limit, attribute, "joint " + quote(name_)).value_or(0);
+    }
+
     void read_limit(io::UrdfJoint& joint) const {
-        const xml_node limit = find("limit", {"lower", "upper", "effort", "velocity",
-                                              "acceleration", "deceleration", "jerk"});
-        const auto read = [&](const char* attribute) {
-            if (!limit) return 0.0;
-            return read_number(document_, limit, attribute, "joint " + quote(name_)).value_or(0);
-        };
-        joint.speed = read("velocity");
+        constexpr double none = 1e3;  // rad or m, or a second of it: what is more is no limit
+        const xml_node limit =
+            find("limit",
+                 {"lower", "upper", "effort", "velocity", "acceleration", "deceleration", "jerk"},
+                 &joint.warnings);
+        joint.speed = read_limit_number(limit, "velocity");
         if (joint.speed < 0) throw error(limit, "has a negative velocity; must be positive");
-        joint.limits = Interval{read("lower"), read("upper")};
+        if (joint.speed > none) joint.speed = 0;
+        const Interval stated{read_limit_number(limit, "lower"), read_limit_number(limit, "upper")};
+        if (stated.lower > stated.upper) {
+            throw error(limit, "has limits that are not in order; lower must be below upper");
+        }
+        const double largest = std::max(-stated.lower, stated.upper);
+        const bool is_revolute = joint.kind == io::UrdfJointKind::Revolute;
+        if (is_revolute && largest > none) joint.kind = io::UrdfJointKind::Continuous;
         if (joint.kind == io::UrdfJointKind::Continuous) {
             joint.limits = Interval{-std::numbers::pi, std::numbers::pi};
-        } else if (joint.limits->lower > joint.limits->upper) {
-            throw error(limit, "has limits that are not in order; lower must be below upper");
-        } else if (joint.limits->lower == joint.limits->upper) {
-            joint.limits.reset();
+        } else if (is_revolute && largest > most_turns * 2 * std::numbers::pi) {
+            throw error(limit, "has limits beyond five turns; must be rad: are they degrees?");
+        } else if (stated.lower < stated.upper && largest <= none) {
+            joint.limits = stated;
         }
     }
+
+    static constexpr double most_turns = 5;  // either way: no robot's joint turns farther
 
     const XmlDocument& document_;
     const xml_node element_;

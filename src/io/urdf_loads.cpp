@@ -55,6 +55,12 @@ std::vector<Load> read_urdf_loads(const UrdfSource& source) {
     for (std::size_t k = 0; k < path.links.size(); ++k) {
         if (k > 0) {
             const UrdfJoint joint = read_urdf_joint(document, path.joints[k - 1]);
+            if (joint.mimic) {
+                throw input_error_at(joint.location,
+                                     "joint " + quote(joint.name) +
+                                         " is a mimic; masses of a robot that has one must be "
+                                         "stated under robot.compliance.links");
+            }
             if (joint.kind != UrdfJointKind::Fixed) {
                 ++moving;
                 in_frame.setIdentity();

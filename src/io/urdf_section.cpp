@@ -14,17 +14,19 @@ std::string resolve(const YamlValue& path) {
     return (folder / path.text()).lexically_normal().string();
 }
 
+/// Empty: the reader finds it.
 std::string read_link_name(const YamlMap& robot, const char* key) {
-    const YamlValue link = robot.require(key);
-    if (link.text().empty()) throw link.error("is empty; must be the name of a link");
-    return link.text();
+    const auto link = robot.find(key);
+    if (!link) return "";
+    if (link->text().empty()) throw link->error("is empty; must be the name of a link");
+    return link->text();
 }
 
 /// The joints that move, by the names the campaign calls them.
 std::vector<io::UrdfJoint*> moving_joints(io::UrdfRobot& robot) {
     std::vector<io::UrdfJoint*> joints;
     for (io::UrdfJoint& joint : robot.joints) {
-        if (joint.kind != io::UrdfJointKind::Fixed) joints.push_back(&joint);
+        if (io::is_driven(joint)) joints.push_back(&joint);
     }
     return joints;
 }
@@ -61,6 +63,10 @@ RobotSection read_urdf_robot(const YamlMap& map) {
         }
     }
     section.declared = make_chain(robot);
+    for (const io::UrdfJoint& joint : robot.joints) {
+        section.warnings.insert(section.warnings.end(), joint.warnings.begin(),
+                                joint.warnings.end());
+    }
     section.urdf = robot.source;
     section.speed = joint_speeds(robot);
     return section;

@@ -226,6 +226,9 @@ InputError YamlMap::missing(const std::vector<std::string>& alternatives) const 
 
 YamlValue parse_yaml(const std::string& content, const std::string& path) {
     check_utf8(content, path);
+    if (content.find('\r') < content.size() - 1 && content.find('\n') == std::string::npos) {
+        throw input_error_at({path}, "has line ends of CR only; must be of LF or CR LF");
+    }
     std::vector<YAML::Node> documents;
     try {
         documents = YAML::LoadAll(content);

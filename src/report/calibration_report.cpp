@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +32,11 @@ std::string describe_measured(const Calibration& calibration) {
                     detail::count_of(measured.configurations, "configuration"),
                     detail::count_of(measured.samples, "sample"),
                     detail::count_of(parameter_count(calibration.campaign), "parameter"));
+    if (!calibration.excluded.empty()) {
+        text += "excluded: " +
+                detail::escape_controls(fmt::format("{}", fmt::join(calibration.excluded, ", "))) +
+                '\n';
+    }
     if (measured.readings_seen < measured.readings) {
         text += fmt::format("{} of {} {} are missing: targets that were not seen\n",
                             measured.readings - measured.readings_seen, measured.readings,
@@ -161,12 +167,18 @@ std::string format_accuracy(const Calibration& calibration) {
 
 std::string count_outliers(Index count) { return detail::count_of(count, "outlier"); }
 
-std::string format_without_outliers(const WithoutOutliers& others) {
-    std::string text = fmt::format("without them: means {} mm", detail::format_mm(others.fit_rms));
+std::string format_without_outliers(const WithoutOutliers& others, bool is_angle) {
+    const auto one = [is_angle](double rms, const std::optional<double>& angle) {
+        std::string text = detail::format_error(rms, is_angle);
+        return angle ? text + " and " + detail::format_error(*angle, true) : text;
+    };
+    std::string text = "without them: means " + one(others.fit_rms, others.fit_angle_rms);
     if (others.held_out_rms) {
-        text += fmt::format(", held-out means {} mm", detail::format_mm(*others.held_out_rms));
+        text += ", held-out means " + one(*others.held_out_rms, others.held_out_angle_rms);
     }
-    return text + " (distance RMS)\n";
+    return text + (others.fit_angle_rms ? " (RMS of distances and of orientations)\n"
+                   : is_angle           ? " (RMS)\n"
+                                        : " (distance RMS)\n");
 }
 
 std::string format_outliers(const Calibration& calibration) {
@@ -178,7 +190,8 @@ std::string format_outliers(const Calibration& calibration) {
         detail::format_short(estimate.loss.width, 4), count_outliers(count));
     if (count == 0) return text;
     if (calibration.without_outliers) {
-        text += format_without_outliers(*calibration.without_outliers);
+        text += format_without_outliers(*calibration.without_outliers,
+                                        !calibration.campaign.sensor->has_lengths());
     }
     text +=
         format_section("Outliers, farthest first", detail::outlier_table(estimate, outliers_shown));
@@ -231,75 +244,6 @@ std::string format_parameters(const Calibration& calibration, bool has_all) {
                           detail::correlation_table(calibration.estimate, correlations_shown));
 }
 
-const char* advise(OrientationSense sense) {
-    switch (sense) {
-        case OrientationSense::AsRead:
-            break;
-        case OrientationSense::Inverted:
-            return "inverted: the quaternions look conjugate, turn round the signs of qx, qy and "
-                   "qz";
-        case OrientationSense::RealPartLast:
-            return "with the last number of each quaternion as its real part: name the columns qx, "
-                   "qy, qz, qw";
-    }
-    return "";
-}
-
-std::string describe_orientations(const OrientationDoubt& doubt) {
-    const std::string text =
-        fmt::format("the nominal robot misses the orientations by {} deg (RMS)",
-                    detail::format_short(to_degrees(doubt.rms), 3));
-    if (doubt.sense == OrientationSense::AsRead) {
-        return text +
-               "; is qw the real part of the quaternion, are roll, pitch and yaw about the fixed "
-               "axes x, y and z?";
-    }
-    return text + fmt::format(", but by {} deg {}",
-                              detail::format_short(to_degrees(doubt.rms_in_sense), 2),
-                              advise(doubt.sense));
-}
-
-/// A prior holds values back.
-std::string describe_sizes(const std::vector<SizeDoubt>& sizes, bool has_prior) {
-    std::string words;
-    for (const SizeDoubt& size : sizes) {
-        words += (words.empty() ? "" : ", ") + size.parameter + " (";
-        if (has_prior) words += detail::format_error(size.value, size.is_angle) + ", ";
-        words += detail::format_short(size.times, 3) + " times)";
-    }
-    if (has_prior) {
-        return "beyond three times the expected size, which holds them back: " + words +
-               "; are sign, unit and nominal value in the campaign right? If so, state a larger "
-               "size in spread";
-    }
-    return fmt::format(
-        "far above the expected size: {}; are sign, unit and nominal value in the campaign right, "
-        "and do the poses tell them apart? If so, state their size in spread",
-        words);
-}
-
-std::string describe_model_errors(const std::vector<ModelErrorDoubt>& errors) {
-    std::string words;
-    for (const ModelErrorDoubt& error : errors) {
-        words += fmt::format("{}{}, {} times what is expected", words.empty() ? "" : " and ",
-                             detail::format_error(error.value, error.is_angle),
-                             detail::format_short(error.times, 3));
-    }
-    return "the model error found is " + words +
-           ": error terms are missing (errors: full has most), the nominal robot is another, or "
-           "points are grossly wrong (try --loss cauchy)";
-}
-
-std::string describe_held_back(const HeldBackSize& size) {
-    const bool is_angle = size.held.is_angle;
-    return fmt::format(
-        "the size learned for spread.{}_{}, {}, holds its errors back, the one stated is too "
-        "small: "
-        "{} would fit",
-        size.held.key, units_of(is_angle).error, detail::format_error(size.held.size, is_angle),
-        detail::format_error(size.fitting, is_angle));
-}
-
 }  // namespace
 
 std::string format(const Calibration& calibration, bool has_all_parameters) {
@@ -325,40 +269,6 @@ std::string format(const ModelSelection& selection) {
                 ? "; no set could be judged\n"
                 : "; recommended: the smallest set within one standard error of the best\n";
     return text + '\n';
-}
-
-std::vector<std::string> describe_doubts(const Calibration& calibration,
-                                         const std::string& measurements) {
-    const Doubts& doubts = calibration.doubts;
-    const std::string at = measurements.empty() ? "" : measurements + ": ";
-    std::vector<std::string> sentences;
-    if (doubts.misfit) {
-        sentences.push_back(at + describe_misfit(calibration.campaign, *doubts.misfit));
-    }
-    if (!doubts.planes.empty()) sentences.push_back(at + describe_planes(doubts.planes));
-    if (doubts.gross_error) {
-        sentences.push_back(fmt::format(
-            "{}the nominal robot misses the {} by {} m (RMS); if some are grossly wrong, try "
-            "--loss cauchy",
-            at, calibration.campaign.sensor->words().readings,
-            detail::format_short(*doubts.gross_error, 3)));
-    }
-    if (doubts.orientations) sentences.push_back(at + describe_orientations(*doubts.orientations));
-    if (!doubts.sizes.empty()) {
-        sentences.push_back(describe_sizes(doubts.sizes, calibration.campaign.spread.is_prior));
-    }
-    if (!doubts.model_errors.empty()) {
-        sentences.push_back(describe_model_errors(doubts.model_errors));
-    }
-    if (doubts.held_back) sentences.push_back(describe_held_back(*doubts.held_back));
-    return sentences;
-}
-
-std::string describe(const BeyondLimits& beyond, const std::vector<std::string>& ids) {
-    return fmt::format(
-        "{} of {} configurations are beyond the campaign's joint limits, the first is {}: {}",
-        beyond.count, ids.size(), detail::quote(ids[static_cast<std::size_t>(beyond.first)]),
-        beyond.violation);
 }
 
 }  // namespace posewise

@@ -61,9 +61,8 @@ std::string format_shortfalls(const CorrectedPoses& poses) {
         const std::string why = describe_shortfall(poses.robot, correction);
         if (why.empty() || ++count > most) continue;
         const PoseError& left = correction.residual;
-        table.rows.push_back({detail::escape_controls(poses.ids[i]),
-                              detail::format_mm(left.position), detail::format_mm(left.orientation),
-                              why});
+        table.rows.push_back({poses.ids[i], detail::format_mm(left.position),
+                              detail::format_mm(left.orientation), why});
     }
     if (count == 0) return "";
     std::string text = format_section(

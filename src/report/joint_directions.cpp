@@ -54,7 +54,9 @@ std::string describe_joint_directions(const Campaign& campaign,
                 ? ""
                 : fmt::format(", otherwise by {} mm at least", format_mm(alike_end->distance_rms));
         return fmt::format(
-            "joint directions: as stated{}; the registered robot misses the {} by {} mm (RMS){}\n",
+            "joint directions: as stated{}; the registered robot misses the {} by {} mm (RMS of "
+            "the "
+            "means of up to 60 configurations; calibrate's nominal is of all samples){}\n",
             others, campaign.sensor->words().readings, format_mm(stated.distance_rms), otherwise);
     }
     Table table{{"reversed joints", "RMS/mm"}, {}};

@@ -186,7 +186,7 @@ Table pose_table(const Plan& plan) {
 std::string describe_ids(const Plan& plan) {
     std::string ids;
     for (const PlannedPose& pose : plan.poses) {
-        ids += (ids.empty() ? "" : " ") + pose.id;
+        ids += (ids.empty() ? "" : " ") + detail::escape_controls(pose.id);
         if (pose.times > 1) ids += fmt::format(" (x{})", pose.times);
     }
     return ids;
@@ -228,7 +228,7 @@ std::string format(const ApproximateDesign& design, int digits) {
     const PlanRequest& request = design.request;
     Table table{{"candidate", "weight"}, {}};
     for (const auto& [id, weight] : design.weights) {
-        table.rows.push_back({detail::escape_controls(id), detail::format_short(weight, digits)});
+        table.rows.push_back({id, detail::format_short(weight, digits)});
     }
     return fmt::format(
                "weights:    of {} of {}, for {}\ncriterion:  {}\nvalue:      {}\n"

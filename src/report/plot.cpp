@@ -27,6 +27,11 @@ std::string quote(const std::string& text) {
     return quoted + "'";
 }
 
+/// A name that begins with "|" would be a program to run.
+std::string plain_path(const std::string& path) {
+    return path.starts_with('/') ? path : "./" + path;
+}
+
 bool ends_with_any_case(const std::string& path, const std::string& ending) {
     return path.size() > ending.size() &&
            std::equal(ending.rbegin(), ending.rend(), path.rbegin(), [](char a, char b) {
@@ -201,9 +206,9 @@ std::string study_plot_script(const std::vector<Study>& studies, const std::stri
         "set border 3 lc rgb '#5f6b77'\nset grid ytics lc rgb '#dfe3e8'\n"
         "set offsets graph 0.02, graph 0.02\nset key top right reverse Left\n"
         "{}{}\nset output\n",
-        terminal(image_path), quote(image_path), quote(first.campaign), count_axis(first.rows),
-        format_short(axis.lower), format_short(axis.upper), axis.format_ticks(), drawing.data,
-        drawing.clauses);
+        terminal(image_path), quote(plain_path(image_path)), quote(first.campaign),
+        count_axis(first.rows), format_short(axis.lower), format_short(axis.upper),
+        axis.format_ticks(), drawing.data, drawing.clauses);
 }
 
 }  // namespace posewise::detail

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <functional>
 #include <string>
 
 #include "posewise/task/study.hpp"
@@ -19,7 +21,8 @@ void check_image_path(const std::string& path);
 std::string study_plot_script(const std::vector<Study>& studies, const std::string& image_path);
 
 /// Runs gnuplot on a script file, not through a shell. Throws InputError if gnuplot is absent or
-/// fails.
-void run_gnuplot(const std::string& script_path);
+/// fails, or is ended because it takes longer than `limit` or `is_stopped` says so.
+void run_gnuplot(const std::string& script_path, const std::function<bool()>& is_stopped = {},
+                 std::chrono::milliseconds limit = std::chrono::seconds(60));
 
 }  // namespace posewise::detail

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "../core/text.hpp"
+
 namespace posewise::detail {
 namespace {
 
@@ -49,7 +51,11 @@ std::string format_row(const std::vector<std::string>& row, const std::vector<Co
 
 }  // namespace
 
-std::string format_table(const Table& table) {
+std::string format_table(const Table& stated) {
+    Table table = stated;
+    for (auto& row : table.rows) {
+        for (std::string& cell : row) cell = escape_controls(cell);
+    }
     const auto columns = measure(table);
     std::vector<std::string> rule;
     for (const Column& column : columns) rule.emplace_back(column.width, '-');

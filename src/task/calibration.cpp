@@ -1,6 +1,8 @@
 #include "posewise/task/calibration.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "../core/progress_counter.hpp"
 #include "earlier_estimate.hpp"
@@ -125,10 +127,17 @@ std::optional<WithoutOutliers> judge_without_outliers(const Work& work, const Ca
         return std::sqrt(is_judged.select(squares, 0).sum() /
                          static_cast<double>(is_judged.count()));
     };
+    const Sensor& sensor = *work.campaign.sensor;
+    const bool has_both = sensor.has_lengths() && sensor.has_angles();
+    const bool is_held_out = result.held_out && result.held_out->failures.empty();
     WithoutOutliers others{rms(squared_distances(work.campaign, estimate.parameters, work.used)),
                            std::nullopt};
-    if (result.held_out && result.held_out->failures.empty()) {
-        others.held_out_rms = rms(result.held_out->squared_distances);
+    if (has_both) {
+        others.fit_angle_rms = rms(squared_angles(work.campaign, estimate.parameters, work.used));
+    }
+    if (is_held_out) others.held_out_rms = rms(result.held_out->squared_distances);
+    if (is_held_out && has_both) {
+        others.held_out_angle_rms = rms(result.held_out->squared_angles);
     }
     return others;
 }
@@ -187,22 +196,50 @@ void calibrate_with(Work& work, Calibration& result) {
 }
 
 /// The estimate with base and targets identified anew.
-Parameters refit(const Work& work, const Calibration& result, const Measurements& others) {
+Registration find_refit(const Work& work, const Calibration& result, const Measurements& others) {
     const VectorXd& robot = result.estimate.parameters.robot;
     const std::vector<bool> all(static_cast<std::size_t>(robot.size()), true);
     const Campaign held =
         with_robot(result.campaign, with_known_errors(result.campaign.robot, robot, all));
-    const Registration registration = register_base_and_targets(held, others);
-    const Estimate found = registration.is_determined()
-                               ? identify(held, others, registration.parameters, work.beside())
-                               : Estimate{};
-    const std::string& undetermined =
-        registration.is_determined() ? found.undetermined : registration.undetermined;
-    if (!undetermined.empty())
-        throw InputError("base and targets of the validation: " + undetermined);
-    Parameters refitted = found.parameters;
-    refitted.robot = robot;
+    Registration refitted = register_base_and_targets(held, others);
+    if (refitted.is_determined()) {
+        Estimate found = identify(held, others, refitted.parameters, work.beside());
+        refitted = {std::move(found.parameters), std::move(found.undetermined)};
+    }
+    refitted.parameters.robot = robot;
     return refitted;
+}
+
+Parameters refit(const Work& work, const Calibration& result, const Measurements& others) {
+    Registration refitted = find_refit(work, result, others);
+    if (refitted.is_determined()) return std::move(refitted.parameters);
+    throw InputError("base and targets of the validation: " + refitted.undetermined);
+}
+
+/// Nothing unless the validation is off by far more than is expected there, and fits with base and
+/// targets identified anew.
+std::optional<Moved> find_moved(const Work& work, const Calibration& result) {
+    constexpr double plain = 5;
+    const double off = result.validation->rms();
+    if (off <= plain * result.expected_validation->total()) return std::nullopt;
+    const Measurements& others = *work.options.validation;
+    const Parameters& before = result.estimate.parameters;
+    const Registration registration = find_refit(work, result, others);
+    if (!registration.is_determined()) return std::nullopt;
+    const Parameters& refitted = registration.parameters;
+    const Metrics left = make_metrics(residuals(work.whole, refitted, others),
+                                      work.whole.sensor->lengths_per_target());
+    if (plain * left.rms() > off) return std::nullopt;
+    const Targets& targets = work.whole.sensor->targets();
+    Moved moved;
+    moved.base =
+        (refitted.world_from_base.translation() - before.world_from_base.translation()).norm();
+    for (Index k = 0; k < targets.count(); ++k) {
+        const double distance =
+            (targets.position(k, refitted.sensor) - targets.position(k, before.sensor)).norm();
+        moved.targets = std::max(moved.targets, distance);
+    }
+    return moved;
 }
 
 }  // namespace
@@ -247,6 +284,7 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
     result.campaign = campaign;
     result.method = options.method;
     result.measured = count_measured(used);
+    result.excluded = options.excluded;
     calibrate_with(work, result);
     if (!result.is_identified()) return result;
     const auto judge_on = [&](const Parameters& parameters, const Measurements& others) {
@@ -266,6 +304,7 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
         result.validation = judge_on(parameters, *options.validation);
         result.expected_validation =
             expected_error(result.campaign, result.estimate, *options.validation);
+        if (!options.refits_validation) result.moved = find_moved(work, result);
     }
     if (options.predicted.rows() > 0) {
         result.predicted = predict_errors(result.campaign, result.estimate, options.predicted);

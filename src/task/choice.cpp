@@ -36,7 +36,10 @@ std::vector<PlannedPose> poses_of(const ChoiceProblem& problem, const std::vecto
 Plan solve(ChoiceProblem& problem, const ChoiceOptions& options) {
     problem.options.stop = options.stop;
     problem.options.progress = options.progress;
-    const Choice choice = determined(select_poses(problem.blocks, problem.options));
+    const PlanSources& sources = problem.request.sources;
+    const std::string& name = sources.candidates.empty() ? sources.campaign : sources.candidates;
+    const Choice choice = detail::compute_from(
+        name, [&] { return determined(select_poses(problem.blocks, problem.options)); });
     Plan plan;
     plan.poses = poses_of(problem, choice.poses);
     plan.request = problem.request;
@@ -122,8 +125,10 @@ Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_
 
 Plan choose(const Campaign& campaign, const Candidates& candidates, const ChoiceOptions& options) {
     if (campaign.spread.is_prior) {  // else selection says if they are too few
-        detail::check_enough_poses(campaign, options.pose_count,
-                                   options.held ? options.held->configuration_count() : 0);
+        detail::compute_from(options.sources.campaign, [&] {
+            detail::check_enough_poses(campaign, options.pose_count,
+                                       options.held ? options.held->configuration_count() : 0);
+        });
     }
     ChoiceProblem problem =
         detail::state_choice(campaign, candidates, options, options.stop.with_half_the_time());

@@ -115,6 +115,18 @@ std::optional<double> find_residual_ratio(const Estimate& estimate) {
     return ratio;
 }
 
+std::optional<double> find_small_residuals(const Campaign& campaign, const Estimate& estimate) {
+    constexpr double other_unit = 0.02;
+    constexpr double large_model_error = 5e-3;  // m
+    if (estimate.degrees_of_freedom <= 0) return std::nullopt;
+    const double found = campaign.model_error > large_model_error
+                             ? std::min(1.0, estimate.model_error / campaign.model_error)
+                             : 1;
+    const double ratio = found * std::sqrt(estimate.variance_factor);
+    if (ratio >= other_unit) return std::nullopt;
+    return ratio;
+}
+
 std::vector<SizeDoubt> find_size_doubts(const Campaign& campaign, const Estimate& estimate) {
     const VectorXd& errors = estimate.parameters.robot;
     const Index robot_begin = base_parameter_count(campaign);
@@ -185,6 +197,16 @@ std::optional<BeyondLimits> find_beyond_limits(const Campaign& campaign,
     return beyond;
 }
 
+std::vector<Index> find_still_joints(const Campaign& campaign, const RowMatrixXd& configurations) {
+    constexpr double still = 1e-6;  // rad or m
+    std::vector<Index> joints;
+    for (Index j = 0; j < campaign.robot.joint_count() && configurations.rows() > 1; ++j) {
+        const auto q = configurations.col(j);
+        if (q.maxCoeff() - q.minCoeff() <= still) joints.push_back(j);
+    }
+    return joints;
+}
+
 std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& measured,
                                   const Parameters& registered) {
     if (!campaign.sensor->has_lengths()) return std::nullopt;  // of angles it is not known
@@ -211,6 +233,9 @@ void check_is_of_robot(const Campaign& campaign, const Measurements& measured,
     if (!registration.is_determined()) return;
     const auto misfit = find_misfit(campaign, measured, registration.parameters);
     if (misfit) throw InputError(describe_misfit(campaign, *misfit));
+    std::vector<PlaceDoubt> places = find_place_doubts(campaign, registration.parameters);
+    std::erase_if(places, [](const auto& doubt) { return doubt.unit == PlaceDoubt::Unit::AsRead; });
+    if (!places.empty()) throw InputError(describe_places(places));
 }
 
 std::string describe_planes(const std::vector<PlaneDoubt>& planes) {
@@ -267,7 +292,10 @@ Doubts find_doubts(const Campaign& campaign, const Measurements& measured,
                    const Parameters& registered, const Metrics& nominal) {
     Doubts doubts;
     doubts.misfit = find_misfit(campaign, measured, registered);
-    if (!doubts.misfit) doubts.planes = find_plane_doubts(campaign, measured);
+    if (!doubts.misfit) {
+        doubts.planes = find_plane_doubts(campaign, measured);
+        doubts.places = find_place_doubts(campaign, registered);
+    }
     if (nominal.distance_rms > gross_distance) doubts.gross_error = nominal.distance_rms;
     if (campaign.sensor->has_orientation() && nominal.orientation_rms > gross_angle) {
         doubts.orientations = OrientationDoubt{nominal.orientation_rms};
@@ -281,6 +309,7 @@ void add_doubts(const Campaign& campaign, const Measurements& measured, const Es
     doubts.sizes = find_size_doubts(campaign, estimate);
     doubts.model_errors = find_model_error_doubts(campaign, estimate);
     doubts.residual_ratio = find_residual_ratio(estimate);
+    doubts.small_residuals = find_small_residuals(campaign, estimate);
     doubts.missing_errors = find_missing_errors(campaign, measured, estimate);
     doubts.negative_compliances = find_negative_compliances(campaign, estimate);
 }

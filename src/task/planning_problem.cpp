@@ -153,7 +153,8 @@ void count_new_poses(PlanningProblem& problem) {
                                      count, kept, problem.request.sources.repaired));
     }
     problem.search.pose_count = count - kept;
-    check_enough_poses(problem.campaign, count, problem.measured_count);
+    compute_from(problem.request.sources.campaign,
+                 [&] { check_enough_poses(problem.campaign, count, problem.measured_count); });
 }
 
 void draw_workspace(PlanningProblem& problem, const PlanningOptions& options) {

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <chrono>
+
 #include "program.hpp"
 
 /// What must not happen whatever the user types: a file lost, a message that is not one line.
@@ -82,11 +85,119 @@ TEST_F(BadInput, AnInterruptEndsAStudyAtOnceWithoutFiles) {
     EXPECT_EQ(file_count(), files);
 }
 
+TEST_F(BadInput, ASignalWhileGnuplotHangsLeavesNothing) {
+    std::filesystem::create_directory(folder_ / "tmp");
+    const std::string path = with_program("gnuplot", "touch reached; exec sleep 1000\n");
+    const auto files = file_count();
+    for (const std::string signal : {"INT", "TERM"}) {
+        const Outcome outcome = run(
+            "study c.yaml -m s.csv --poses 8 --random 2 --plot a.svg",
+            "TMPDIR=\"$PWD/tmp\" " + path + " timeout --preserve-status -k 20 -s " + signal + " 8");
+        EXPECT_NE(outcome.code, 0) << signal;
+        EXPECT_TRUE(std::filesystem::remove(folder_ / "reached")) << signal;
+        EXPECT_TRUE(std::filesystem::is_empty(folder_ / "tmp")) << signal;
+        EXPECT_EQ(file_count(), files) << signal;
+    }
+}
+
+TEST_F(BadInput, TheScriptOfAPlotRunsNoProgram) {
+    const std::string path = with_program("gnuplot", "exit 3\n");
+    const Outcome outcome =
+        run("study c.yaml -m s.csv --poses 8 --random 2 --plot '|touch x;.svg'", path);
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("; its script is left, try: gnuplot './|touch x;.svg.gnuplot'\n"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_NE(text_of("|touch x;.svg.gnuplot").find("set output './|touch x;.svg'\n"),
+              std::string::npos);
+}
+
+TEST_F(BadInput, EncodingsAreNamed) {
+    const auto utf16 = [](const std::string& text) {
+        std::string wide = "\xFF\xFE";
+        for (const char c : text) wide += {c, '\0'};
+        return wide;
+    };
+    const auto with_returns = [](std::string text) {
+        std::replace(text.begin(), text.end(), '\n', '\r');
+        return text;
+    };
+    write_text("wide.csv", utf16(text_of("s.csv")));
+    expect_input_error("indices c.yaml -m wide.csv", "wide.csv: is UTF-16; must be UTF-8");
+    const std::string returns = ": has line ends of CR only; must be of LF or CR LF";
+    write_text("cr.csv", with_returns(text_of("s.csv")));
+    expect_input_error("indices c.yaml -m cr.csv", "cr.csv" + returns);
+    write_text("cr.yaml", with_returns(text_of("c.yaml")));
+    expect_input_error("inspect cr.yaml", "cr.yaml" + returns);
+    std::string decimals = text_of("s.csv");
+    std::replace(decimals.begin(), decimals.end(), ',', ';');
+    std::replace(decimals.begin(), decimals.end(), '.', ',');
+    write_text("commas.csv", decimals);
+    expect_input_error("indices c.yaml -m commas.csv",
+                       "must be a finite number with a decimal point");
+    std::replace(decimals.begin(), decimals.end(), ';', ',');
+    write_text("commas.csv", decimals);
+    expect_input_error("indices c.yaml -m commas.csv", "; are there decimal commas?");
+}
+
+TEST_F(BadInput, NamesThatAreNotUtf8AreRefusedBeforeTheSearch) {
+    const auto start = std::chrono::steady_clock::now();
+    std::filesystem::copy_file(folder_ / "s.csv", folder_ / "s\xff.csv");
+    expect_input_error(
+        "select c.yaml -m \"$(printf 's\\377.csv')\" -k 8 --starts 1000000 -o p.json",
+        "s\\xff.csv: its name is not UTF-8");
+    write_text("ids.csv", "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n\xff,1,2,3,4,5,6\n");
+    expect_input_error("select c.yaml --candidates ids.csv -k 8 --starts 1000000 --prior -o p.json",
+                       "ids.csv:2:1: is not UTF-8 text here");
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
+}
+
+TEST_F(BadInput, WhatNeverEndsIsRefused) {
+    expect_input_error("calibrate c.yaml -m /dev/zero", "/dev/zero: is larger than 1 MiB");
+    expect_input_error("inspect /dev/zero", "/dev/zero: is larger than 1 MiB");
+    std::string text = "<robot name='x'><link name='l0'/>\n";
+    for (int k = 1; k <= 20000; ++k) {
+        const std::string number = std::to_string(k);
+        text += "<link name='l" + number + "'/><joint name='j" + number +
+                "' type='revolute'><parent link='l" + std::to_string(k - 1) + "'/><child link='l" +
+                number + "'/><limit lower='-1' upper='1'/></joint>\n";
+    }
+    write_text("many.urdf", text + "</robot>");
+    expect_input_error("inspect many.urdf", "has 20000 joints between base link 'l0' and tip link");
+}
+
+TEST_F(BadInput, CountsNameTheFile) {
+    expect_input_error("select c.yaml -m s.csv -k 500", "s.csv: pose count is 500, must be from 1");
+    expect_input_error("select c.yaml -m s.csv -k 2", "s.csv: pose count is 2: no choice");
+    expect_input_error("select c.yaml --random 20 -k 500", "c.yaml: pose count is 500");
+    expect_input_error("plan c.yaml --poses 2", "c.yaml: --poses is 2, must be at least 5");
+}
+
+TEST_F(BadInput, APlanAndItsCsvAreWrittenBothOrNot) {
+    const std::string too_long(300, 'n');
+    const auto files = file_count();
+    const Outcome outcome =
+        run("plan c.yaml --poses 8 --starts 1 --pool 200 --time 20 -o p.json --csv " + too_long);
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    EXPECT_EQ(file_count(), files);
+    run_well("plan c.yaml --poses 8 --starts 1 --pool 200 -o p.json --csv p.csv");
+    EXPECT_TRUE(has_file("p.json") && has_file("p.csv"));
+}
+
 TEST_F(BadInput, MessagesAreOneLineWithoutControls) {
     const Outcome outcome = run("inspect \"$(printf 'a\\033[31m\\nb.yaml')\"");
     EXPECT_EQ(outcome.code, 1);
     EXPECT_EQ(outcome.err.find("posewise: a\\x1b[31m\\x0ab.yaml: cannot be read"), 0U)
         << outcome.err;
+    std::string text = text_of("s.csv");
+    const std::string turned = "\u202e7\u009b";
+    for (auto at = text.find("\n7,"); at != std::string::npos; at = text.find("\n7,")) {
+        text.replace(at + 1, 1, turned);
+    }
+    write_text("turned.csv", text);
+    const std::string all = run_well("select c.yaml -m turned.csv -k 12 --proof 0 -o t.json");
+    EXPECT_EQ(all.find(turned), std::string::npos) << all;
+    EXPECT_NE(all.find("\\xe2\\x80\\xae7\\xc2\\x9b"), std::string::npos) << all;
 }
 
 TEST_F(BadInput, APathCannotBreakTheComment) {

@@ -182,7 +182,7 @@ TEST_F(Commands, StudyWithoutGnuplotLeavesTheScript) {
     const Outcome outcome =
         run("study " + input_ + "--random 5 --poses 8 --plot p.svg", "PATH=/nowhere");
     EXPECT_EQ(outcome.code, 1);
-    EXPECT_NE(outcome.err.find("gnuplot p.svg.gnuplot"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("gnuplot './p.svg.gnuplot'"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.out.find("poses"), std::string::npos);
     EXPECT_TRUE(has_file("p.svg.gnuplot"));
     EXPECT_FALSE(has_file("p.svg"));

@@ -92,7 +92,86 @@ TEST_F(Urdf, NeedsATipWhereThereAreSeveral) {
     expect_input_error("inspect arm.urdf",
                        "arm.urdf: the tip link must be named (--tip), it could be finger or tool0");
     expect_input_error("inspect arm.urdf --tip tol0", "did you mean 'tool0'?");
-    expect_input_error("inspect arm.urdf --tip finger --write-campaign c.yaml", "mimics another");
+    expect_input_error("inspect arm.urdf --tip finger --write-campaign c.yaml",
+                       "drives a rotation and a translation");
+}
+
+TEST_F(Urdf, IsTakenAsRealFilesAre) {
+    const auto with = [&](const std::string& part, const std::string& by) {
+        std::string text = urdf;
+        EXPECT_NE(text.find(part), std::string::npos) << part;
+        write_text("real.urdf", text.replace(text.find(part), part.size(), by));
+    };
+    const std::string limit = R"(<limit lower="-3" upper="3" effort="1" velocity="2"/>)";
+    const std::string inspect = "inspect real.urdf --base base --tip tool0";
+    with(limit, R"(<limit lower="-3" upper="3" effort="1" velocity="2" command_effort="1"/>)");
+    Outcome outcome = run(inspect);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err,
+              "posewise: warning: real.urdf:14:5: joint 'pan' has limit with unknown attribute "
+              "'command_effort', which is left out\n");
+    run(inspect + " --write-campaign real.yaml");
+    EXPECT_NE(run("inspect real.yaml").err.find("'command_effort', which is left out"),
+              std::string::npos);
+    with(limit, R"(<limit lower="-1e16" upper="1e16" effort="1" velocity="2"/>)");
+    EXPECT_NE(run_well(inspect).find("pan      revolute      -180      180  deg"),
+              std::string::npos);
+    with(limit, R"(<limit effort="1" velocity="2"/>)");
+    outcome = run(inspect + " --write-campaign free.yaml");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("joint 'pan' has no limits that leave it room; must have, here or "
+                               "in a campaign under robot.joints\n"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_NE(text_of("free.yaml")
+                  .find("    pan: {limits_deg: [-180, 180]}  # FILL IN: none in the URDF\n"),
+              std::string::npos)
+        << text_of("free.yaml");
+    run_well("inspect free.yaml");
+}
+
+/// A parallel arm: the elbow's second joint follows it. Calibrated, exported and read again.
+TEST_F(Urdf, TakesAMimicForACoupling) {
+    std::string text = urdf;
+    const std::string limit = R"(    <limit lower="-3" upper="3" effort="1" velocity="2"/>
+  </joint>
+  <link name="wrist_1"/>)";
+    ASSERT_NE(text.find(limit), std::string::npos);
+    text.replace(text.find(limit), limit.size(),
+                 "    <mimic joint=\"elbow\" multiplier=\"-1\" offset=\"0.3\"/>\n" + limit);
+    write_text("mimic.urdf", text);
+    run_well("inspect mimic.urdf --base base --tip tool0 --write-campaign c.yaml");
+    std::string campaign = text_of("c.yaml");
+    EXPECT_EQ(campaign.find("wrist_1:"), std::string::npos) << campaign;
+    const auto replace = [&](const std::string& part, const std::string& by) {
+        ASSERT_NE(campaign.find(part), std::string::npos) << part;
+        campaign.replace(campaign.find(part), part.size(), by);
+    };
+    replace("# base:", "base:");
+    replace("robot:\n", "robot:\n  errors: geometric\n");
+    replace("{count: 3}", "{position_mm: [[100, 0, 50], [0, 100, 50], [-80, -80, 60]]}");
+    write_text("c.yaml", campaign);
+    run_well("simulate c.yaml --poses 25 --truth 5 -o m.csv");
+    const std::string calibrated = run_well("calibrate c.yaml -m m.csv --folds 0 -o e.json");
+    EXPECT_LT(number_behind(calibrated, "distance RMS", 1), 0.3) << calibrated;
+    run_well("export c.yaml e.json --urdf out.urdf");
+    replace("errors: geometric\n  urdf: \"mimic.urdf\"", "errors: stated\n  urdf: out.urdf");
+    write_text("out.yaml", campaign);
+    const std::string again = run_well("calibrate out.yaml -m m.csv --folds 0");
+    EXPECT_NEAR(number_behind(again, "distance RMS", 1),
+                number_behind(calibrated, "distance RMS", 1), 2e-4);
+}
+
+TEST_F(Urdf, NeedsNoLinksWhereTheyAreTheOnlyOnes) {
+    write_text("c.yaml",
+               "name: arm\nrobot:\n  urdf: arm.urdf\n  tip_link: tool0\nsensor: {kind: points, "
+               "sigma_mm: 0.05, targets: {count: 3}}\n");
+    EXPECT_NE(run_well("inspect c.yaml").find("from base link 'world' to tip link 'tool0'"),
+              std::string::npos);
+    write_text("n.yaml",
+               "name: arm\nrobot: {urdf: arm.urdf}\nsensor: {kind: points, sigma_mm: "
+               "0.05, targets: {count: 3}}\n");
+    expect_input_error("inspect n.yaml", "the tip link must be named (--tip), it could be");
 }
 
 TEST_F(Urdf, BecomesACampaignThatLoads) {

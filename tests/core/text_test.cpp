@@ -10,6 +10,11 @@ using namespace detail;
 TEST(EscapeControls, LeavesOneHarmlessLine) {
     EXPECT_EQ(escape_controls("a\nb\x1b[31m\x7f"), "a\\x0ab\\x1b[31m\\x7f");
     EXPECT_EQ(escape_controls("\u00b5m"), "\u00b5m");
+    EXPECT_EQ(escape_controls("a\u009b31m"), "a\\xc2\\x9b31m") << "C1";
+    EXPECT_EQ(escape_controls("a\u202eb\u2066c\u2028"),
+              "a\\xe2\\x80\\xaeb\\xe2\\x81\\xa6c\\xe2\\x80\\xa8");
+    EXPECT_EQ(escape_controls("\u00a0\u2030\u4e2d"), "\u00a0\u2030\u4e2d");
+    EXPECT_EQ(escape_controls("\x9b\xe9"), "\\x9b\\xe9") << "not UTF-8";
     EXPECT_EQ(escape_controls(std::string_view("\0", 1)), "\\x00");
 }
 
@@ -18,7 +23,7 @@ TEST(Quote, CutsLongTextsBehindAWholeCharacter) {
     EXPECT_EQ(quote(std::string(60, 'a')), "'" + std::string(60, 'a') + "'");
     EXPECT_EQ(quote(std::string(61, 'a')), "'" + std::string(60, 'a') + "...'");
     EXPECT_EQ(quote(std::string(59, 'a') + "\u03a9\u03a9"), "'" + std::string(59, 'a') + "...'");
-    EXPECT_EQ(quote(std::string(100, '\x80')).size(), 65U);  // no UTF-8 at all
+    EXPECT_EQ(quote(std::string(100, '\x80')).size(), 4 * 60 + 5U);  // no UTF-8 at all
 }
 
 TEST(CharacterLength, IsThatOfTheFirstCharacter) {

@@ -27,6 +27,49 @@ TEST(WriteFile, ReplacesTheWholeFileAndLeavesNothingElse) {
     EXPECT_EQ(folder.file_count(), 1U);
 }
 
+TEST(WriteFile, TakesTheNextNameWhereATemporaryOneIsTaken) {
+    const TemporaryFolder folder;
+    for (int k = 0; k < 1000; ++k) {  // as left by a program with this number, killed
+        folder.write(".posewise." + std::to_string(::getpid()) + '.' + std::to_string(k) + ".tmp",
+                     "left");
+    }
+    write_file(folder.path("a.txt"), "new");
+    EXPECT_EQ(read_file(folder.path("a.txt")), "new");
+    EXPECT_EQ(folder.file_count(), 1001U);
+}
+
+TEST(WriteFile, KeepsThePermissionsOfWhatItReplaces) {
+    using std::filesystem::perms;
+    const TemporaryFolder folder;
+    const std::string path = folder.write("a.txt", "old");
+    for (const perms kept : {perms::owner_read | perms::owner_write,
+                             perms::owner_all | perms::group_read | perms::others_write}) {
+        std::filesystem::permissions(path, kept);
+        write_file(path, "new");
+        EXPECT_EQ(std::filesystem::status(path).permissions(), kept);
+    }
+}
+
+TEST(WriteFiles, WritesAllOrNone) {
+    const TemporaryFolder folder;
+    const std::string old = folder.write("a.txt", "old");
+    const std::string too_long = folder.path(std::string(300, 'n'));
+    EXPECT_THROW(write_files({{old, "new"}, {folder.path("b.txt"), "new"}, {too_long, "new"}}),
+                 InputError);
+    EXPECT_EQ(read_file(old), "old");
+    EXPECT_EQ(folder.file_count(), 1U);
+    write_files({{old, "new"}, {folder.path("b.txt"), "new"}});
+    EXPECT_EQ(read_file(old), "new");
+    EXPECT_EQ(read_file(folder.path("b.txt")), "new");
+    EXPECT_EQ(folder.file_count(), 2U);
+}
+
+TEST(ReadFile, EndsADeviceThatDoesNot) {
+    EXPECT_EQ(input_error_of([&] { read_file("/dev/zero"); }),
+              "/dev/zero: is larger than 1 MiB; must be smaller");
+    EXPECT_EQ(read_file("/dev/null"), "");
+}
+
 TEST(WriteFile, ReplacesTheFileBehindALink) {
     const TemporaryFolder folder;
     const std::string path = folder.write("a.txt", "old");

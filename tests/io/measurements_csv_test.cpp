@@ -239,7 +239,8 @@ TEST(BadMeasurementsCsv, Numbers) {
 TEST(BadMeasurementsCsv, Rows) {
     expect_messages_of({
         {"4,5,6\na,1", "4,5\na,1", "2:26: row has 10 fields; must have 11 as the header"},
-        {"4,5,6\na,1", "4,5,6,7\na,1", "2:29: row has 12 fields; must have 11 as the header"},
+        {"4,5,6\na,1", "4,5,6,7\na,1",
+         "2:29: row has 12 fields; must have 11 as the header; are there decimal commas?"},
         {"7,8,9,10,11,12", ",,,,,",
          "4:18: the sample shows no target; must show one at least, or be left out"},
         {"0.25", "0.2",

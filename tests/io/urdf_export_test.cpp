@@ -100,6 +100,28 @@ TEST(CalibratedUrdf, PredictsAsTheErrorModelDoes) {
     }
 }
 
+TEST(CalibratedUrdf, PredictsAsTheErrorModelOfAMimicDoes) {
+    RandomStream stream(24);
+    const std::string axes[] = {"0 0 1", "0.3 -1 0.2", "1 0 0"};
+    std::vector<JointText> joints;
+    for (const std::string& axis : axes) joints.push_back({"revolute", "xyz=\"0.3 0.1 0\"", axis});
+    joints.push_back({"fixed", "xyz=\"0 0 0.1\"", ""});
+    std::string text = urdf_text(joints);
+    const std::string second = "    <axis xyz=\"" + axes[1] + "\"/>\n";
+    ASSERT_NE(text.find(second), std::string::npos);
+    text.insert(text.find(second),
+                "    <mimic joint=\"q1\" multiplier=\"-0.7\" offset=\"0.4\"/>\n");
+    for (int i = 0; i < 20; ++i) {
+        const VectorXd parameters = random_vector(stream, 30, 0.1);
+        const Exported exported = export_with(text, parameters);
+        ASSERT_EQ(exported.robot.joint_count(), 2);
+        const Index count = exported.robot.parameter_count();
+        EXPECT_LT(difference(exported.robot, parameters.head(count), exported.again, VectorXd()),
+                  1e-12)
+            << i;
+    }
+}
+
 TEST(CalibratedUrdf, OfNoErrorsIsTheFileItself) {
     RandomStream stream(22);
     const std::string text = random_urdf(stream, false);

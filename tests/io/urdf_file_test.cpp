@@ -98,7 +98,7 @@ TEST(ReadUrdf, ForwardKinematicsOfRandomAxesAgree) {
 TEST(BadUrdf, Joints) {
     const std::string many =
         ", which moves in several ways at once; must be one of revolute, "
-        "continuous, prismatic or fixed";
+        "continuous, prismatic or fixed, or not between base and tip link";
     const std::string numbers = "; must be three numbers, each at most 1e+06 in magnitude";
     std::vector<Slip> slips{
         {"\"continuous\"", "\"floating\"", "26:3: joint 'wrist' is of type 'floating'" + many},
@@ -141,7 +141,72 @@ TEST(BadUrdf, Limits) {
          "magnitude"},
         {"velocity=\"1.5\"", "velocity=\"-1.5\"",
          "24:5: joint 'arm-joint' has a negative velocity; must be positive"},
+        {"lower=\"-1.5\"", "lower=\"-90\"",
+         "24:5: joint 'arm-joint' has limits beyond five turns; must be rad: are they degrees?"},
+        {"effort=\"10\"", "efort=\"10\"",
+         "24:5: joint 'arm-joint' has limit with unknown attribute 'efort'; did you mean "
+         "'effort'?"},
     });
+}
+
+TEST(ReadUrdf, WarnsOfAttributesOfLimitsThatItDoesNotKnow) {
+    const UrdfRobot robot = read(replaced(text, "effort=\"10\"", "command_effort=\"10\""));
+    const std::vector<std::string> doubts = describe_doubts(robot);
+    ASSERT_EQ(doubts.size(), 1U);
+    const std::string end =
+        "robot.urdf:24:5: joint 'arm-joint' has limit with unknown attribute 'command_effort', "
+        "which is left out";
+    EXPECT_TRUE(doubts[0].ends_with(end)) << doubts[0];
+    EXPECT_EQ(make_chain(robot).joints()[1].upper, 2);
+}
+
+TEST(ReadUrdf, TakesHugeLimitsForNone) {
+    const std::string turning =
+        replaced(text, "lower=\"-1.5\" upper=\"2\"", "lower=\"-1e16\" upper=\"1e16\"");
+    const Chain chain = make_chain(read(turning));
+    EXPECT_EQ(chain.joints()[1].lower, -std::numbers::pi);
+    EXPECT_EQ(read(turning).joints[2].kind, UrdfJointKind::Continuous);
+    const std::string sliding =
+        replaced(text, "lower=\"0\" upper=\"0.8\"", "lower=\"-1e16\" upper=\"1e16\"");
+    EXPECT_FALSE(read(sliding).joints[0].limits);
+    const std::string fast = replaced(text, "velocity=\"1.5\"", "velocity=\"1e16\"");
+    EXPECT_EQ(read(fast).joints[2].speed, 0);
+}
+
+TEST(ReadUrdf, DrivesAMimicByTheJointThatItMimics) {
+    const std::string mimic = "<mimic joint=\"wrist\" multiplier=\"-0.5\" offset=\"0.2\"/>";
+    const std::string with_origin = "<origin xyz=\"0 0.1 0\"/><axis xyz=\"0 0 -1\"/>" + mimic;
+    const UrdfRobot robot =
+        read(replaced(text, "<mimic joint=\"wrist\"/>", with_origin), "base", "finger");
+    const Chain chain = make_chain(robot);
+    ASSERT_EQ(chain.joint_count(), 3);
+    const Vector3d q(0.3, 0.8, -1.1);
+    const Isometry3d expected = make_chain(read(text)).base_from_flange(q, VectorXd()) *
+                                Eigen::Translation3d(0, 0.1, 0) *
+                                Eigen::AngleAxisd(-0.5 * q[2] + 0.2, -Vector3d::UnitZ());
+    EXPECT_TRUE(chain.base_from_flange(q, VectorXd()).isApprox(expected, 1e-14));
+    EXPECT_EQ(make_chain(read(text, "base", "finger")).joint_count(), 3);
+}
+
+TEST(BadUrdf, Mimics) {
+    const std::string stated = "<mimic joint=\"wrist\"/>";
+    const auto error = [&](const std::string& by, const std::string& base) {
+        return error_of(replaced(text, stated, by), base, "finger");
+    };
+    const std::string rule =
+        ", which is no joint between base link 'base' and tip link 'finger' that moves by itself; "
+        "choose links that hold both or neither, or make it fixed";
+    EXPECT_EQ(error("<mimic joint='mount'/>", "base"),
+              "robot.urdf:30:3: joint 'grip' mimics 'mount'" + rule);
+    EXPECT_EQ(error("<mimic joint='grip'/>", "base"),
+              "robot.urdf:30:3: joint 'grip' mimics 'grip'" + rule);
+    EXPECT_EQ(error("<mimic/>", "base"),
+              "robot.urdf:32:5: joint 'grip' has a <mimic> without joint");
+    EXPECT_EQ(error("<mimic joint='wrist' multiplier='0'/>", "base"),
+              "robot.urdf:32:5: joint 'grip' has multiplier 0; must move, or be of type fixed");
+    EXPECT_EQ(error("<mimic joint='wrist' factor='2'/>", "base"),
+              "robot.urdf:32:5: joint 'grip' has mimic with unknown attribute 'factor'; must be "
+              "joint, multiplier or offset");
 }
 
 TEST(BadUrdf, Trees) {
@@ -186,9 +251,7 @@ TEST(BadUrdf, Ends) {
              {"tool", "tool", none + "'tool' and tip link 'tool'"},
              {"column", "plate", none + "'column' and tip link 'plate'"},
              {"finger", "", "robot.urdf: has no tip link below base link 'finger'"},
-             {"base", "finger",
-              "robot.urdf:30:3: joint 'grip' mimics another joint; only joints that move by "
-              "themselves can be part of the chain"}}) {
+             {"tool", "finger", none + "'tool' and tip link 'finger'"}}) {
         EXPECT_EQ(error_of(text, base, tip), message);
     }
     const std::string two = replaced(text, "<parent link=\"tool\"/>", "<parent link=\"arm\"/>");

@@ -155,7 +155,12 @@ TEST(StudyPlotScript, DrawsBandMedianAndCriterion) {
 TEST(StudyPlotScript, QuotesTextsSoThatNothingIsExecuted) {
     const auto script = study_plot_script({named("it's\n`touch x`")}, "o'ut`.png");
     EXPECT_NE(script.find("set title 'it''s `touch x`' noenhanced\n"), std::string::npos);
-    EXPECT_NE(script.find("set output 'o''ut`.png'\n"), std::string::npos);
+    EXPECT_NE(script.find("set output './o''ut`.png'\n"), std::string::npos);
+}
+
+TEST(StudyPlotScript, RunsNoProgramWhoseNameIsThatOfTheImage) {
+    const auto script = study_plot_script({example_study()}, "|touch x.svg");
+    EXPECT_NE(script.find("set output './|touch x.svg'\n"), std::string::npos) << script;
 }
 
 TEST(StudyPlotScript, RefusesOtherImagesAndEmptyStudies) {
@@ -205,6 +210,25 @@ TEST_F(RunGnuplot, SaysThatItFailed) {
     } catch (const InputError& error) {
         EXPECT_EQ(std::string(error.what()), "gnuplot failed");
     }
+}
+
+TEST_F(RunGnuplot, EndsOneThatHangs) {
+    const std::string program = write_script("gnuplot", "#!/bin/sh\nexec sleep 1000\n");
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    const std::string path = std::getenv("PATH");
+    setenv("PATH", (folder_.string() + ':' + path).c_str(), 1);
+    const auto error_of = [&](const std::function<bool()>& is_stopped, int seconds) {
+        try {
+            run_gnuplot(write_script("any.gnuplot", ""), is_stopped, std::chrono::seconds(seconds));
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    const std::string ended = "gnuplot did not end by itself and was ended";
+    EXPECT_EQ(error_of({}, 1), ended);
+    EXPECT_EQ(error_of([] { return true; }, 1000), ended);
+    setenv("PATH", path.c_str(), 1);
 }
 
 TEST_F(RunGnuplot, SaysThatGnuplotIsAbsent) {

@@ -148,6 +148,9 @@ RowMatrixXd mean_residuals(const Campaign& campaign, const Parameters& parameter
 /// target was not seen. Angles count only where no length is measured (rad^2).
 RowMatrixXd squared_distances(const Campaign& campaign, const Parameters& parameters,
                               const Measurements& measurements);
+/// The same of angles, rad^2; 0 where none is measured.
+RowMatrixXd squared_angles(const Campaign& campaign, const Parameters& parameters,
+                           const Measurements& measurements);
 
 /// Metrics of residuals as residuals() returns them, of which at most so many columns are lengths
 /// (Sensor::lengths_per_target()), the others angles.

@@ -95,6 +95,7 @@ struct CrossValidation {
     Metrics samples;  ///< over all samples of all groups
     Metrics means;
     RowMatrixXd squared_distances;      ///< of the means, see squared_distances(); 0 in failures
+    RowMatrixXd squared_angles;         ///< likewise
     std::vector<std::string> failures;  ///< folds that could not be identified, and why
 };
 CrossValidation cross_validate(const Campaign& campaign, const Measurements& measurements,

@@ -43,7 +43,8 @@ struct CampaignFile : Campaign {
     ErrorModel error_model = ErrorModel::Stated;
     /// What select and plan reckon with instead, as the file says under `planning`.
     std::optional<ErrorModel> planned_model;
-    std::optional<UrdfSource> urdf;  ///< where the robot comes from, if from a URDF
+    std::optional<UrdfSource> urdf;     ///< where the robot comes from, if from a URDF
+    std::vector<std::string> warnings;  ///< what was not understood of it, a sentence each
     Criterion criterion = Criterion::V;
     std::uint64_t seed = 1;
     MatMapping mat;

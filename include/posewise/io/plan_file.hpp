@@ -12,6 +12,10 @@ namespace posewise::io {
 /// poses, joint values in rad (m) exactly and in degrees (mm) for people. Relative paths are stored
 /// as seen from the plan's folder; infinite numbers are null.
 void write_plan(const std::string& path, const Plan& plan);
+/// The same beside write_configurations_csv() of its poses, unless `csv_path` is empty: both files
+/// or none.
+void write_plan(const std::string& path, const Plan& plan, const std::string& csv_path,
+                const Campaign& campaign);
 
 /// Reads a plan of format 2 or 1 (which had two kinds: "posewise plan" and "posewise pose plan");
 /// the file is read once. Relative paths lead from the plan's folder or else from the current one.

@@ -20,6 +20,13 @@ struct UrdfSource {
 
 enum class UrdfJointKind { Fixed, Revolute, Continuous, Prismatic };
 
+/// A joint that moves as another one does: factor * q + offset.
+struct UrdfMimic {
+    std::string joint;  ///< its name in the file
+    double factor = 1;
+    double offset = 0;  ///< rad or m
+};
+
 /// A joint of a URDF file: parent_from_child(q) = origin(xyz, rpy) * motion about or along the
 /// axis.
 struct UrdfJoint {
@@ -28,12 +35,16 @@ struct UrdfJoint {
     Vector3d xyz = Vector3d::Zero();    ///< m
     Vector3d rpy = Vector3d::Zero();    ///< see rotation_from_rpy()
     Vector3d axis = Vector3d::UnitX();  ///< unit vector
-    /// rad or m; a continuous joint's are half a turn both ways. Nothing: the file states none, or
-    /// both the same.
+    /// rad or m; a continuous joint's, and of one that turns beyond 1000 rad, are half a turn both
+    /// ways. Nothing: the file states none, or both the same, or beyond 1000 m.
     std::optional<Interval> limits;
-    double speed = 0;  ///< largest, rad/s or m/s; 0: the file states none
+    double speed = 0;                   ///< largest, rad/s or m/s; 0: the file states none
+    std::optional<UrdfMimic> mimic;     ///< of a joint that does not move by itself
+    std::vector<std::string> warnings;  ///< what was not understood and left out, a sentence each
     FileLocation location;
 };
+/// Whether it is a joint of the chain, neither fixed nor a mimic.
+bool is_driven(const UrdfJoint& joint);
 
 struct UrdfRobot {
     UrdfSource source;  ///< no link's name is empty
@@ -43,7 +54,8 @@ struct UrdfRobot {
 
 /// Reads the joints from base link to tip link. Throws InputError with path:line:column if the file
 /// is no URDF, the links are not joined, or a joint on the way cannot be part of a serial chain:
-/// floating or planar, a mimic, with a zero axis, with limits that are missing or out of order.
+/// floating or planar, a mimic of a joint that is not on the way, with a zero axis, with limits
+/// that are out of order or in degrees by the look of them.
 UrdfRobot read_urdf(const UrdfSource& source);
 
 /// What a joint that is not fixed does.
@@ -64,6 +76,9 @@ std::vector<Load> read_urdf_loads(const UrdfSource& source);
 
 /// Largest speed of each joint of the chain, rad/s or m/s; empty unless the file states all.
 VectorXd joint_speeds(const UrdfRobot& robot);
+
+/// What to look at in the file, a sentence each: what was left out, joints without limits.
+std::vector<std::string> describe_doubts(const UrdfRobot& robot);
 
 /// A campaign file for the robot, complete but for what only its user knows, with comments that say
 /// what to fill in. It shall stand at `path` and find the URDF from there.

@@ -44,6 +44,9 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
 /// "2 of 24 configurations are beyond ..."; `ids` are those of all.
 std::string describe(const BeyondLimits& beyond, const std::vector<std::string>& ids);
 
+/// "q1 and q7 are the same in all configurations: ..."; empty for no joints.
+std::string describe_still_joints(const Campaign& campaign, const std::vector<Index>& joints);
+
 /// The pose error with and without correction (mm, mrad), by how much joints change, and the first
 /// twenty poses whose correction is not complete, with the reason, as text.
 std::string format(const CorrectedPoses& poses);

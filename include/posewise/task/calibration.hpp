@@ -46,6 +46,8 @@ struct CalibrationOptions {
     /// Configurations to calibrate with, such as those of a plan; it is judged on the others, too.
     /// Empty: all.
     std::vector<Index> used{};
+    /// What was left out of the measurements by hand, with leave_out(): for the record.
+    std::vector<std::string> excluded{};
     /// Needs Joint.
     std::optional<Earlier> earlier{};
     /// What is identified: "base" and "targets" (the sensor's unknowns), "robot" or names of its
@@ -81,10 +83,19 @@ struct MeasuredCount {
     Index readings_seen = 0;  ///< less those of targets that were not seen
 };
 
-/// Distance RMS of the means that are no outliers, m.
+/// RMS of the means that are no outliers: distances, m (angles, rad, where no length is measured),
+/// and, where both are measured, angles, rad.
 struct WithoutOutliers {
     double fit_rms = 0;
     std::optional<double> held_out_rms;
+    std::optional<double> fit_angle_rms{};
+    std::optional<double> held_out_angle_rms{};
+};
+
+/// A set-up that is another one than that calibrated with.
+struct Moved {
+    double base = 0;     ///< m
+    double targets = 0;  ///< the farthest of them in the flange frame, m
 };
 
 /// A calibration: parameters, how sure they are, how accurate the robot is with them.
@@ -94,7 +105,8 @@ struct Calibration {
     Campaign campaign;
     std::optional<ParameterSpread> stated_spread;  ///< where others were learned
     CalibrationMethod method = CalibrationMethod::Joint;
-    MeasuredCount measured;  ///< that was calibrated with
+    MeasuredCount measured;             ///< that was calibrated with
+    std::vector<std::string> excluded;  ///< CalibrationOptions::excluded
     /// Its ending says whether there is a calibration: where it is NotIdentifiable, nothing below
     /// but `selection` is filled in, and `undetermined` says why.
     Estimate estimate;
@@ -109,8 +121,10 @@ struct Calibration {
     std::optional<ExpectedError> expected_validation;
     /// At CalibrationOptions::predicted: of distances, of angles.
     std::vector<ErrorPrediction> predicted;
-    std::optional<Metrics> left_out;                  ///< on the configurations not used
-    std::optional<Metrics> validation;                ///< on CalibrationOptions::validation
+    std::optional<Metrics> left_out;    ///< on the configurations not used
+    std::optional<Metrics> validation;  ///< on CalibrationOptions::validation
+    /// By how much base and targets have moved up to the validation, m, where that is plain.
+    std::optional<Moved> moved;
     std::optional<WithoutOutliers> without_outliers;  ///< if there are some
     std::optional<ModelSelection> selection;          ///< if asked for
     Doubts doubts;

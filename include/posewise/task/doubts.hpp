@@ -22,6 +22,9 @@ struct BeyondLimits {
 std::optional<BeyondLimits> find_beyond_limits(const Campaign& campaign,
                                                const RowMatrixXd& configurations);
 
+/// Joints that have the same value in all of several configurations.
+std::vector<Index> find_still_joints(const Campaign& campaign, const RowMatrixXd& configurations);
+
 /// A plane whose normal is measured reversed or, where planes are known, whose offset is measured
 /// with the other sign: of planes fitted to base and robot as stated.
 struct PlaneDoubt {
@@ -41,6 +44,20 @@ enum class UnitDoubt {
     PointsInMetres,
 };
 
+/// Base or a target that the measurements put elsewhere than the campaign states it.
+struct PlaceDoubt {
+    std::string name;  ///< as that of its parameters: "base", "target1", "tool"
+    Vector3d stated;   ///< m; of the base in the instrument's frame, of a target in the flange's
+    Vector3d found;
+    /// What the number stated would be right in, had it been read in the other one of m and mm.
+    enum class Unit { AsRead, Metres, Millimetres } unit = Unit::AsRead;
+    /// The target that is stated where this one was found, if they look exchanged; else empty.
+    std::string exchanged_with = {};
+};
+/// Those off by a factor of about 1000, by more than 100 mm, or exchanged. `registered` as for
+/// find_misfit(); what is known, or was not stated, is not looked at.
+std::vector<PlaceDoubt> find_place_doubts(const Campaign& campaign, const Parameters& registered);
+
 /// The nominal robot explains its own measurements to about the error expected of it, another
 /// robot's not.
 struct Misfit {
@@ -55,8 +72,8 @@ struct Misfit {
 std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& measurements,
                                   const Parameters& registered);
 
-/// Throws InputError, with describe_misfit(), if there is a misfit; measurements that do not
-/// determine base and targets are too few to tell.
+/// Throws InputError, with describe_misfit() or describe_places(), if there is a misfit or a place
+/// in another unit; measurements that do not determine base and targets are too few to tell.
 void check_is_of_robot(const Campaign& campaign, const Measurements& measurements,
                        const Registration& registration);
 
@@ -65,6 +82,8 @@ void check_is_of_robot(const Campaign& campaign, const Measurements& measurement
 std::string describe_misfit(const Campaign& campaign, const Misfit& misfit);
 /// "plane 2 looks reversed: stated with ..."; empty for none.
 std::string describe_planes(const std::vector<PlaneDoubt>& planes);
+/// "the base is stated at [...] mm, measured at [...] mm ..."; empty for none.
+std::string describe_places(const std::vector<PlaceDoubt>& places);
 
 /// How orientations may have been meant, from how they were read.
 enum class OrientationSense {
@@ -100,6 +119,7 @@ struct ModelErrorDoubt {
 struct Doubts {
     std::optional<Misfit> misfit;
     std::vector<PlaneDoubt> planes;  ///< where there is no misfit, which has its own
+    std::vector<PlaceDoubt> places;  ///< where there is no misfit
     /// Distance by which the nominal robot misses the points (RMS, m), if grossly: outliers?
     std::optional<double> gross_error;
     std::optional<OrientationDoubt> orientations;
@@ -112,6 +132,9 @@ struct Doubts {
     /// Residuals in units of those stated, if clearly not as stated: more than 1.2 times larger or
     /// smaller, and beyond what chi squared of the degrees of freedom is once in a thousand times.
     std::optional<double> residual_ratio;
+    /// The same where it is below a fiftieth: sigma or model error is stated in another unit. A
+    /// model error that was found counts as it was stated, where that is above 5 mm.
+    std::optional<double> small_residuals;
     /// Joints whose compliance is clearly negative: by three standard deviations.
     std::vector<Index> negative_compliances;
 };

@@ -1,0 +1,110 @@
+#include "posewise/measurement/exclusion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <unordered_map>
+
+#include "../core/text.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+/// Which samples stay.
+class Exclusion {
+  public:
+    explicit Exclusion(const Measurements& measurements)
+        : measurements_(measurements),
+          stays_(static_cast<std::size_t>(measurements.first_sample.back()), true) {
+        for (Index i = 0; i < measurements.configuration_count(); ++i) {
+            configuration_of_id_.emplace(measurements.ids[static_cast<std::size_t>(i)], i);
+        }
+    }
+
+    void leave_out(const std::string& name) {
+        if (const auto i = find(name)) {
+            return drop(name, first_sample(*i), measurements_.sample_count(*i));
+        }
+        const std::size_t colon = name.rfind(':');
+        const auto i = colon == std::string::npos ? std::nullopt : find(name.substr(0, colon));
+        if (!i) {
+            throw InputError(fmt::format(
+                "excluded configuration {} is not among the measured ones; must be an id, or one "
+                "and the number of a sample like {}:2",
+                detail::quote(name), measurements_.ids.front()));
+        }
+        const Index number = parse_number(name.substr(colon + 1));
+        if (number < 1 || number > measurements_.sample_count(*i)) {
+            throw InputError(fmt::format(
+                "excluded sample {} is not among the measured ones; configuration {} has {}",
+                detail::quote(name), detail::quote(name.substr(0, colon)),
+                detail::count_of(measurements_.sample_count(*i), "sample")));
+        }
+        drop(name, first_sample(*i) + number - 1, 1);
+    }
+
+    Measurements rest() const {
+        std::vector<Index> samples;
+        std::vector<Index> configurations;
+        Measurements rest;
+        for (Index i = 0; i < measurements_.configuration_count(); ++i) {
+            const auto before = samples.size();
+            for (Index k = first_sample(i); k < first_sample(i + 1); ++k) {
+                if (stays_[static_cast<std::size_t>(k)]) samples.push_back(k);
+            }
+            if (samples.size() == before) continue;
+            configurations.push_back(i);
+            rest.ids.push_back(measurements_.ids[static_cast<std::size_t>(i)]);
+            rest.first_sample.push_back(static_cast<Index>(samples.size()));
+        }
+        if (samples.empty()) throw InputError("nothing is left, all samples are excluded");
+        rest.configurations = measurements_.configurations(configurations, Eigen::all);
+        rest.observations = measurements_.observations(samples, Eigen::all);
+        rest.is_seen = measurements_.is_seen(samples, Eigen::all);
+        return rest;
+    }
+
+  private:
+    std::optional<Index> find(const std::string& id) const {
+        const auto found = configuration_of_id_.find(id);
+        if (found == configuration_of_id_.end()) return std::nullopt;
+        return found->second;
+    }
+
+    Index first_sample(Index configuration) const {
+        return measurements_.first_sample[static_cast<std::size_t>(configuration)];
+    }
+
+    /// 0 for what is no number.
+    static Index parse_number(const std::string& text) {
+        Index number = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+        return error == std::errc() && end == text.data() + text.size() ? number : 0;
+    }
+
+    void drop(const std::string& name, Index first, Index count) {
+        const auto begin = stays_.begin() + first;
+        if (std::find(begin, begin + count, false) != begin + count) {
+            throw InputError(detail::quote(name) + " is excluded twice; keep one");
+        }
+        std::fill(begin, begin + count, false);
+    }
+
+    const Measurements& measurements_;
+    std::unordered_map<std::string, Index> configuration_of_id_;
+    std::vector<bool> stays_;  ///< of each sample
+};
+
+}  // namespace
+
+Measurements leave_out(const Measurements& measurements, const std::vector<std::string>& excluded) {
+    if (excluded.empty()) return measurements;
+    Exclusion exclusion(measurements);
+    for (const std::string& name : excluded) exclusion.leave_out(name);
+    return exclusion.rest();
+}
+
+}  // namespace posewise

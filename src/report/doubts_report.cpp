@@ -1,0 +1,146 @@
+#include <fmt/format.h>
+
+#include "../core/format.hpp"
+#include "../core/text.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/report/reports.hpp"
+#include "sentences.hpp"
+
+namespace posewise {
+namespace {
+
+const char* advise(OrientationSense sense) {
+    switch (sense) {
+        case OrientationSense::AsRead:
+            break;
+        case OrientationSense::Inverted:
+            return "inverted: the quaternions look conjugate, turn round the signs of qx, qy and "
+                   "qz";
+        case OrientationSense::RealPartLast:
+            return "with the last number of each quaternion as its real part: name the columns qx, "
+                   "qy, qz, qw";
+    }
+    return "";
+}
+
+std::string describe_orientations(const OrientationDoubt& doubt) {
+    const std::string text =
+        fmt::format("the nominal robot misses the orientations by {} deg (RMS)",
+                    detail::format_short(to_degrees(doubt.rms), 3));
+    if (doubt.sense == OrientationSense::AsRead) {
+        return text +
+               "; is qw the real part of the quaternion, are roll, pitch and yaw about the fixed "
+               "axes x, y and z?";
+    }
+    return text + fmt::format(", but by {} deg {}",
+                              detail::format_short(to_degrees(doubt.rms_in_sense), 2),
+                              advise(doubt.sense));
+}
+
+/// A prior holds values back.
+std::string describe_sizes(const std::vector<SizeDoubt>& sizes, bool has_prior) {
+    std::string words;
+    for (const SizeDoubt& size : sizes) {
+        words += (words.empty() ? "" : ", ") + size.parameter + " (";
+        if (has_prior) words += detail::format_error(size.value, size.is_angle) + ", ";
+        words += detail::format_short(size.times, 3) + " times)";
+    }
+    if (has_prior) {
+        return "beyond three times the expected size, which holds them back: " + words +
+               "; are sign, unit and nominal value in the campaign right? If so, state a larger "
+               "size in spread";
+    }
+    return fmt::format(
+        "far above the expected size: {}; are sign, unit and nominal value in the campaign right, "
+        "and do the poses tell them apart? If so, state their size in spread",
+        words);
+}
+
+std::string describe_model_errors(const std::vector<ModelErrorDoubt>& errors) {
+    std::string words;
+    for (const ModelErrorDoubt& error : errors) {
+        words += fmt::format("{}{}, {} times what is expected", words.empty() ? "" : " and ",
+                             detail::format_error(error.value, error.is_angle),
+                             detail::format_short(error.times, 3));
+    }
+    return "the model error found is " + words +
+           ": error terms are missing (errors: full has most), the nominal robot is another, or "
+           "points are grossly wrong (try --loss cauchy)";
+}
+
+std::string describe_moved(const Moved& moved) {
+    return fmt::format(
+        "the validation was measured with another set-up, base {} mm and targets {} mm from those "
+        "calibrated with: --refit identifies them anew there",
+        detail::format_short(mm_per_m * moved.base, 3),
+        detail::format_short(mm_per_m * moved.targets, 3));
+}
+
+std::string describe_held_back(const HeldBackSize& size) {
+    const bool is_angle = size.held.is_angle;
+    return fmt::format(
+        "the size learned for spread.{}_{}, {}, holds its errors back, the one stated is too "
+        "small: "
+        "{} would fit",
+        size.held.key, units_of(is_angle).error, detail::format_error(size.held.size, is_angle),
+        detail::format_error(size.fitting, is_angle));
+}
+
+}  // namespace
+
+std::vector<std::string> describe_doubts(const Calibration& calibration,
+                                         const std::string& measurements) {
+    const Doubts& doubts = calibration.doubts;
+    const std::string at = measurements.empty() ? "" : measurements + ": ";
+    std::vector<std::string> sentences;
+    if (doubts.misfit) {
+        sentences.push_back(at + describe_misfit(calibration.campaign, *doubts.misfit));
+    }
+    if (!doubts.planes.empty()) sentences.push_back(at + describe_planes(doubts.planes));
+    if (!doubts.places.empty()) sentences.push_back(at + describe_places(doubts.places));
+    if (doubts.gross_error) {
+        sentences.push_back(fmt::format(
+            "{}the nominal robot misses the {} by {} m (RMS); if some are grossly wrong, try "
+            "--loss cauchy",
+            at, calibration.campaign.sensor->words().readings,
+            detail::format_short(*doubts.gross_error, 3)));
+    }
+    if (doubts.orientations) sentences.push_back(at + describe_orientations(*doubts.orientations));
+    if (!doubts.sizes.empty()) {
+        sentences.push_back(describe_sizes(doubts.sizes, calibration.campaign.spread.is_prior));
+    }
+    if (!doubts.model_errors.empty()) {
+        sentences.push_back(describe_model_errors(doubts.model_errors));
+    }
+    if (doubts.small_residuals) {
+        sentences.push_back(
+            fmt::format("the residuals are {} times what sigma and model error say: is one of them "
+                        "stated in um? Then sigma_um or model_error_um is its key",
+                        detail::format_short(*doubts.small_residuals, 2)));
+    }
+    if (calibration.moved) sentences.push_back(describe_moved(*calibration.moved));
+    if (doubts.held_back) sentences.push_back(describe_held_back(*doubts.held_back));
+    return sentences;
+}
+
+std::string describe_still_joints(const Campaign& campaign, const std::vector<Index>& joints) {
+    std::string names;
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+        if (k > 0) names += k + 1 == joints.size() ? " and " : ", ";
+        names += campaign.robot.joints()[static_cast<std::size_t>(joints[k])].name;
+    }
+    if (joints.empty()) return "";
+    return fmt::format(
+        "{} {} the same in all configurations: these say little about {} errors; are all columns "
+        "right?",
+        names, joints.size() == 1 ? "is" : "are", joints.size() == 1 ? "its" : "their");
+}
+
+std::string describe(const BeyondLimits& beyond, const std::vector<std::string>& ids) {
+    return fmt::format(
+        "{} of {} configurations are beyond the campaign's joint limits, the first is {}: {}",
+        beyond.count, ids.size(), detail::quote(ids[static_cast<std::size_t>(beyond.first)]),
+        beyond.violation);
+}
+
+}  // namespace posewise
