@@ -73,7 +73,7 @@ void add_select_problem(CLI::App& command, SelectArguments& arguments) {
 void add_select_search(CLI::App& command, SelectArguments& arguments) {
     command
         .add_option("--starts", arguments.request.starts,
-                    "Independent searches (default: until five agree, 2 to 100)")
+                    "Independent searches (default: until ten agree, 2 to 100)")
         ->check(whole_number(1, 1000000));
     command
         .add_option("--proof", arguments.request.proof,

@@ -30,7 +30,6 @@ using detail::Shortlist;
 
 constexpr Index sweep_limit = 50;  // of the last sweeps over all candidates
 constexpr Index sweep_size = 4096;
-constexpr Index agreeing_starts = 5;  // end the search
 
 std::vector<Index> by_decreasing(const VectorXd& values) {
     std::vector<Index> order(static_cast<std::size_t>(values.size()));
@@ -147,6 +146,12 @@ Index count_at_best(std::span<const ScoredPoses> choices, double best) {
     });
 }
 
+/// Whether so many starts that ended at the best are enough to end the search. Few starts may by
+/// chance agree on a plan that is not the best.
+bool is_enough(Index at_best, Index starts) {
+    return at_best >= 10 || (at_best >= 5 && starts >= 30);
+}
+
 /// What the starts ended at, in their order whichever ended first. Where they may agree, those
 /// after the first ones of which enough ended at the best of them are not needed.
 class Ends {
@@ -167,7 +172,9 @@ class Ends {
             first_.push_back(*ends_[first_.size()]);
             const auto& [identifies, value] = first_.back().score;
             if (identifies) best_ = std::max(best_, value);
-            if (may_agree_ && count_at_best(first_, best_) >= agreeing_starts) needed_ = counted();
+            if (may_agree_ && is_enough(count_at_best(first_, best_), counted())) {
+                needed_ = counted();
+            }
         }
     }
 
