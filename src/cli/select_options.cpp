@@ -77,7 +77,7 @@ void add_select_search(CLI::App& command, SelectArguments& arguments) {
         ->check(whole_number(1, 1000000));
     command
         .add_option("--proof", arguments.request.proof,
-                    "CPU seconds for branch and bound (default: 3 at most)")
+                    "CPU seconds for branch and bound (default: 0.7 at most)")
         ->check(real_number(0, 1e9));
     add_search_options(command, arguments,
                        "Of the random starts and of --random (default: the campaign's, else 1)",

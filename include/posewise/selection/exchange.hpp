@@ -40,8 +40,8 @@ struct SelectOptions {
     /// 5000 for small ones.
     Index shortlist = 0;
     /// Seconds of a CPU, about, to spend on proving by branch and bound that no choice is better;
-    /// counted in operations, so that results do not depend on the machine. 0: none. Empty: 3, but
-    /// a tenth where that shows that they would not do.
+    /// counted in operations, so that results do not depend on the machine. 0: none. Empty: 0.7,
+    /// but a tenth where that shows that they would not do; again for what better starts find.
     std::optional<double> proof{};
     double gap = 1e-5;       ///< relative gap of the information function to end the relaxation at
     std::uint64_t seed = 1;  ///< start i draws from stream (seed, i)
