@@ -73,11 +73,11 @@ void add_select_problem(CLI::App& command, SelectArguments& arguments) {
 void add_select_search(CLI::App& command, SelectArguments& arguments) {
     command
         .add_option("--starts", arguments.request.starts,
-                    "Independent searches (default: until five agree, 2 to 100)")
+                    "Independent searches (default: until ten agree, 2 to 100)")
         ->check(whole_number(1, 1000000));
     command
         .add_option("--proof", arguments.request.proof,
-                    "CPU seconds for branch and bound (default: 3 at most)")
+                    "CPU seconds for branch and bound (default: 0.7 at most)")
         ->check(real_number(0, 1e9));
     add_search_options(command, arguments,
                        "Of the random starts and of --random (default: the campaign's, else 1)",

@@ -6,7 +6,7 @@
 namespace posewise::detail {
 
 /// Seconds of a CPU that a proof may take where nothing is said of it.
-constexpr double usual_proof = 3;
+constexpr double usual_proof = 0.7;
 
 /// What a search of all choices proves.
 struct Proof {

@@ -30,7 +30,6 @@ using detail::Shortlist;
 
 constexpr Index sweep_limit = 50;  // of the last sweeps over all candidates
 constexpr Index sweep_size = 4096;
-constexpr Index agreeing_starts = 5;  // end the search
 
 std::vector<Index> by_decreasing(const VectorXd& values) {
     std::vector<Index> order(static_cast<std::size_t>(values.size()));
@@ -147,6 +146,12 @@ Index count_at_best(std::span<const ScoredPoses> choices, double best) {
     });
 }
 
+/// Whether so many starts that ended at the best are enough to end the search. Few starts may by
+/// chance agree on a plan that is not the best.
+bool is_enough(Index at_best, Index starts) {
+    return at_best >= 10 || (at_best >= 5 && starts >= 30);
+}
+
 /// What the starts ended at, in their order whichever ended first. Where they may agree, those
 /// after the first ones of which enough ended at the best of them are not needed.
 class Ends {
@@ -167,7 +172,9 @@ class Ends {
             first_.push_back(*ends_[first_.size()]);
             const auto& [identifies, value] = first_.back().score;
             if (identifies) best_ = std::max(best_, value);
-            if (may_agree_ && count_at_best(first_, best_) >= agreeing_starts) needed_ = counted();
+            if (may_agree_ && is_enough(count_at_best(first_, best_), counted())) {
+                needed_ = counted();
+            }
         }
     }
 
@@ -204,10 +211,15 @@ struct Outcome {
     double bound = std::numeric_limits<double>::infinity();
 };
 
-/// Searches from the best so far, the start of the relaxation, and from random ones.
+ScoredPoses search_from(const SearchProblem& problem, const Shortlist& shortlist,
+                        const ScoredPoses& start, RandomStream& random) {
+    return improve_with_kicks(problem, shortlist,
+                              make_identifying(problem, shortlist, start, random), random);
+}
+
+/// Searches from random starts, beside the `first`, which has ended.
 void run_starts(const SearchProblem& problem, const Relaxation& relaxation,
-                const Shortlist& shortlist, Outcome& outcome) {
-    const ScoredPoses first = outcome.best;
+                const Shortlist& shortlist, const ScoredPoses& first, Outcome& outcome) {
     const SelectOptions& options = problem.options;
     const Index starts = start_count(shortlist, problem);
     detail::ProgressCounter counter(options.progress, {.total = starts, .bound = relaxation.bound});
@@ -216,9 +228,10 @@ void run_starts(const SearchProblem& problem, const Relaxation& relaxation,
         if (!ends.is_needed(start) || (start > 0 && options.stop.is_set())) return;
         RandomStream random(options.seed, static_cast<std::uint64_t>(start));
         ScoredPoses choice = first;
-        if (start > 0) choice = make_random_start(problem, relaxation, random).value_or(first);
-        choice = make_identifying(problem, shortlist, choice, random);
-        choice = improve_with_kicks(problem, shortlist, choice, random);
+        if (start > 0) {
+            choice = make_random_start(problem, relaxation, random).value_or(first);
+            choice = search_from(problem, shortlist, choice, random);
+        }
         counter.count([&](Progress& progress) {
             if (choice.score.identifies) {
                 progress.value = std::max(progress.value, choice.score.value);
@@ -274,22 +287,27 @@ bool prove(const SearchProblem& problem, const Relaxation& relaxation,
     }
 }
 
-/// The relaxation's own start may leave few enough other choices to rule them out; else all starts.
+/// What the start of the relaxation ends at may leave few enough other choices to rule them out;
+/// else all starts, and a proof of what they find.
 Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
     const Shortlist shortlist = shortlist_by_sensitivity(problem, relaxation);
+    RandomStream random(problem.options.seed, 0);
+    const ScoredPoses first =
+        search_from(problem, shortlist, make_first_start(problem, relaxation), random);
     Outcome outcome;
-    outcome.best = improve(problem, shortlist, make_first_start(problem, relaxation));
+    outcome.best = first;
     const std::optional<double> asked = problem.options.proof;
-    const double seconds = asked.value_or(detail::usual_proof);
-    if (prove(problem, relaxation, {.seconds = std::min(1.0, seconds), .is_only_if_likely = true},
-              outcome)) {
+    const double usual = std::min(asked.value_or(detail::usual_proof), detail::usual_proof);
+    if (prove(problem, relaxation, {.seconds = usual, .is_only_if_likely = true}, outcome)) {
         outcome.starts = {outcome.best};
         return outcome;
     }
-    run_starts(problem, relaxation, shortlist, outcome);
+    const detail::Score tried = outcome.best.score;
+    run_starts(problem, relaxation, shortlist, first, outcome);
     outcome.best = sweep_all(problem, outcome.best);
-    if (!problem.options.stop.is_set()) {
-        prove(problem, relaxation, {.seconds = seconds, .is_only_if_likely = !asked}, outcome);
+    if (!problem.options.stop.is_set() && (asked || is_better(outcome.best.score, tried))) {
+        prove(problem, relaxation, {.seconds = asked.value_or(usual), .is_only_if_likely = !asked},
+              outcome);
     }
     return outcome;
 }

@@ -35,7 +35,8 @@ double evaluation_operations(const Objective& objective, Index L) {
     const double rows = objective.criterion == Criterion::G
                             ? static_cast<double>(objective.test_poses->matrix.rows())
                             : 0;
-    return 5e4 + (is_spectral ? 40 : 6) * size * size * size + 4 * rows * size * size;
+    const double cubes = is_spectral ? 40 : objective.criterion == Criterion::V ? 15 : 6;
+    return 5e4 + cubes * size * size * size + 4 * rows * size * size;
 }
 
 /// Of trying a choice, where the filter rules it out.

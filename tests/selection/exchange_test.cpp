@@ -240,13 +240,13 @@ TEST(SelectByExchange, PassesOnWhatTheProgressCallbackThrows) {
     EXPECT_THROW(select_poses(test::random_blocks(20, 1, 4, 5), options), std::domain_error);
 }
 
-TEST(SelectByExchange, EndsWhenFiveStartsAgree) {
+TEST(SelectByExchange, EndsWhenTenStartsAgree) {
     SelectOptions options;
     options.pose_count = 10;
     options.proof = 0;
     const Blocks candidates = test::random_blocks(30, 3, 5, 1);
     const Choice agreed = select_poses(candidates, options);
-    EXPECT_EQ(agreed.starts_at_best, 5);
+    EXPECT_EQ(agreed.starts_at_best, 10);
     EXPECT_LT(agreed.starts, 20);
     options.starts = 20;
     const Choice stated = select_poses(candidates, options);

@@ -29,9 +29,9 @@ struct SelectOptions {
     double least_distance = 0;    ///< Euclidean, between any two different poses chosen
     std::vector<std::string> column_names;  ///< for messages; empty: columns are numbered from 1
 
-    /// Independent searches. 0: until five of them agree on the best value, at most 100 (20 by
-    /// E, G and O2 to O5), fewer (2 at least) where blocks of many rows and parameters make
-    /// each take seconds.
+    /// Independent searches. 0: until ten of them agree on the best value, or five of thirty, at
+    /// most 100 (20 by E, G and O2 to O5), fewer (2 at least) where blocks of many rows and
+    /// parameters make each take seconds.
     Index starts = 0;
     /// Perturbations of each start's plan without success until it ends; up to ten times as many
     /// where the poses have hardly more rows than there are parameters.
@@ -40,8 +40,8 @@ struct SelectOptions {
     /// 5000 for small ones.
     Index shortlist = 0;
     /// Seconds of a CPU, about, to spend on proving by branch and bound that no choice is better;
-    /// counted in operations, so that results do not depend on the machine. 0: none. Empty: 3, but
-    /// a tenth where that shows that they would not do.
+    /// counted in operations, so that results do not depend on the machine. 0: none. Empty: 0.7,
+    /// but a tenth where that shows that they would not do; again for what better starts find.
     std::optional<double> proof{};
     double gap = 1e-5;       ///< relative gap of the information function to end the relaxation at
     std::uint64_t seed = 1;  ///< start i draws from stream (seed, i)
