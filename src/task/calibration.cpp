@@ -1,5 +1,8 @@
 #include "posewise/task/calibration.hpp"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "../core/progress_counter.hpp"
@@ -12,9 +15,9 @@ namespace {
 
 /// What is calibrated, with what, and how far it is.
 struct Work {
-    const Campaign& whole;       ///< as asked for
-    std::vector<bool> is_known;  ///< of its robot's errors, see CalibrationOptions::only
-    Campaign campaign;           ///< less what is known
+    const Campaign& whole;          ///< as asked for, with the sizes that were learned earlier
+    detail::KnownParameters known;  ///< see EarlierUse::only
+    Campaign campaign;              ///< less what is known
     const Measurements& used;
     const CalibrationOptions& options;
     Index folds;
@@ -44,8 +47,16 @@ void check_options(const CalibrationOptions& options) {
         throw InputError(
             "an earlier estimate needs the method lm, without model selection or learning sizes");
     }
-    if (!options.only.empty() && !options.earlier) {
-        throw InputError("what is not identified needs an earlier estimate to take it from");
+    const auto count_refitted = [&](const char* name) {
+        return std::count(options.refitted.begin(), options.refitted.end(), name);
+    };
+    const auto base = count_refitted("base");
+    const auto targets = count_refitted("targets");
+    if (base + targets < std::ssize(options.refitted)) {
+        throw InputError("what is refitted for the validation must be base, targets or both");
+    }
+    if (options.validation_campaign != nullptr && (base == 0 || targets == 0)) {
+        throw InputError("for a validation of another campaign both base and targets are refitted");
     }
     if (!is_joint && options.joint.loss.kind != LossKind::Squares) {
         throw InputError("the loss is " + std::string(loss_name(options.joint.loss.kind)) +
@@ -94,10 +105,10 @@ void identify_by_method(const Work& work, const Parameters& registered, Calibrat
     result.starts_at_best = found.starts_at_best;
 }
 
-/// Base and targets fitted, the robot as its maker says.
+/// Base and targets fitted, as far as they are not known, the robot as its maker says.
 Metrics fit_nominal(const Work& work, Parameters registered) {
     registered.robot.resize(0);
-    const Campaign nominal = with_robot(work.campaign, without_parameters(work.campaign.robot));
+    const Campaign nominal = with_robot(work.campaign, without_parameters(work.whole.robot));
     return identify(nominal, work.used, registered, work.beside()).fit;
 }
 
@@ -149,10 +160,6 @@ void calibrate_with(Work& work, Calibration& result) {
         return;
     }
     Parameters& registered = registration.parameters;
-    const auto& earlier = work.options.earlier;
-    if (earlier) {
-        registered.robot = detail::open_values(earlier->estimate.parameters.robot, work.is_known);
-    }
     if (work.options.learns_sizes) {
         result.stated_spread = work.campaign.spread;
         work.campaign.spread =
@@ -178,31 +185,49 @@ void calibrate_with(Work& work, Calibration& result) {
             find_held_back_size(result.campaign, *result.stated_spread, work.used,
                                 result.estimate.parameters, work.stopped(work.options.joint));
     }
-    if (earlier) {
+    if (const auto& earlier = work.options.earlier) {
         result.estimate =
-            detail::complete(work.whole, earlier->estimate, work.is_known, result.estimate);
+            detail::complete(work.whole, earlier->estimate, work.known, result.estimate);
         result.campaign = with_model_error(work.whole, result.estimate);
     }
     result.expected = expected_error(result.campaign, result.estimate, work.used);
 }
 
-/// The estimate with base and targets identified anew.
-Parameters refit(const Work& work, const Calibration& result, const Measurements& others) {
-    const VectorXd& robot = result.estimate.parameters.robot;
-    const std::vector<bool> all(static_cast<std::size_t>(robot.size()), true);
-    const Campaign held =
-        with_robot(result.campaign, with_known_errors(result.campaign.robot, robot, all));
+/// The estimate with base or targets identified anew, of the validation's campaign.
+Parameters refit(const Work& work, const Calibration& result, const Campaign& campaign) {
+    const Measurements& others = *work.options.validation;
+    Parameters values = result.estimate.parameters;
+    values.robot = errors_under_loads(result.campaign.robot, values.robot, campaign.robot);
+    const detail::KnownParameters known = detail::known_parameters(campaign, work.options.refitted);
+    const Campaign held = detail::with_known(campaign, known, values);
     const Registration registration = register_base_and_targets(held, others);
     const Estimate found = registration.is_determined()
                                ? identify(held, others, registration.parameters, work.beside())
                                : Estimate{};
     const std::string& undetermined =
         registration.is_determined() ? found.undetermined : registration.undetermined;
-    if (!undetermined.empty())
-        throw InputError("base and targets of the validation: " + undetermined);
-    Parameters refitted = found.parameters;
-    refitted.robot = robot;
-    return refitted;
+    if (!undetermined.empty()) {
+        throw InputError(fmt::format("{} of the validation: {}",
+                                     fmt::join(work.options.refitted, " and "), undetermined));
+    }
+    return detail::complete(known, values, found.parameters);
+}
+
+/// On the measurements of the validation.
+void validate(const Work& work, Calibration& result) {
+    const CalibrationOptions& options = work.options;
+    if (options.validation == nullptr) return;
+    Campaign campaign = result.campaign;
+    Estimate estimate = result.estimate;
+    if (options.validation_campaign != nullptr) {
+        campaign = with_model_error(*options.validation_campaign, estimate);
+    }
+    if (!options.refitted.empty()) estimate.parameters = refit(work, result, campaign);
+    result.validation = make_metrics(residuals(campaign, estimate.parameters, *options.validation),
+                                     campaign.sensor->lengths_per_target());
+    // What else was identified there the estimate's covariance does not tell.
+    if (options.validation_campaign != nullptr) return;
+    result.expected_validation = expected_error(campaign, estimate, *options.validation);
 }
 
 }  // namespace
@@ -233,40 +258,32 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
         options.used.empty() ? Measurements{} : take(measurements, options.used);
     const Measurements& used = options.used.empty() ? measurements : part;
     const Index folds = options.folds.value_or(default_folds(used.configuration_count()));
-    std::vector<bool> is_known = detail::known_errors(campaign, options.only);
-    Campaign reduced =
-        options.earlier ? detail::with_earlier(campaign, *options.earlier, is_known) : campaign;
-    Work work{campaign,
-              std::move(is_known),
-              std::move(reduced),
+    const auto& earlier = options.earlier;
+    Campaign whole = campaign;
+    if (earlier && earlier->spread) whole.spread = *earlier->spread;
+    Work work{whole,
+              detail::known_parameters(campaign,
+                                       earlier ? earlier->use.only : std::vector<std::string>{}),
+              earlier ? with_earlier(campaign, *earlier) : campaign,
               used,
               options,
               folds,
               detail::ProgressCounter(options.progress, part_count(campaign, options, folds))};
     Calibration result;
-    result.campaign = campaign;
+    result.campaign = whole;
+    if (earlier && earlier->spread) result.stated_spread = campaign.spread;
     result.method = options.method;
     result.measured = count_measured(used);
     calibrate_with(work, result);
     if (!result.is_identified()) return result;
-    const auto judge_on = [&](const Parameters& parameters, const Measurements& others) {
-        return make_metrics(residuals(campaign, parameters, others),
-                            campaign.sensor->lengths_per_target());
-    };
     const auto left_out = all_but(measurements.configuration_count(), options.used);
     if (!options.used.empty() && !left_out.empty()) {
         const Measurements others = take(measurements, left_out);
-        result.left_out = judge_on(result.estimate.parameters, others);
+        result.left_out = make_metrics(residuals(campaign, result.estimate.parameters, others),
+                                       campaign.sensor->lengths_per_target());
         result.expected_left_out = expected_error(result.campaign, result.estimate, others);
     }
-    if (options.validation != nullptr) {
-        const Parameters parameters = options.refits_validation
-                                          ? refit(work, result, *options.validation)
-                                          : result.estimate.parameters;
-        result.validation = judge_on(parameters, *options.validation);
-        result.expected_validation =
-            expected_error(result.campaign, result.estimate, *options.validation);
-    }
+    validate(work, result);
     if (options.predicted.rows() > 0) {
         result.predicted = predict_errors(result.campaign, result.estimate, options.predicted);
     }
