@@ -234,6 +234,11 @@ def check_calibrate():
                  number_behind(text, "expected not in plan:"), 4), "calibrate: expected")
     both("calibrate", FANUC, "-m", "s.csv", "--model-selection", "--folds", 4)
     both("calibrate", FANUC, "-m", "s.csv", "--prior", "--learn-sizes")
+    run("calibrate", FANUC, "-m", "s.csv", "--folds", 0, "-o", "f.json")
+    document, _ = both("select", FANUC, "--random", 60, "-k", 6, "--from", "f.json", "--as-prior",
+                       "--moved", "base", "-o", "p.json")
+    expect(document["problem"]["estimate"]["moved"] == ["base"], "select: estimate")
+    both("verify", "p.json")
     off = pathlib.Path(FANUC).read_text().replace("1075 mm", "1095 mm")
     expect(off != pathlib.Path(FANUC).read_text(), "the campaign has another upper arm now")
     pathlib.Path("off.yaml").write_text(off)

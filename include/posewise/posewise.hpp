@@ -23,6 +23,7 @@
 #include "posewise/task/choice.hpp"
 #include "posewise/task/correction.hpp"
 #include "posewise/task/doubts.hpp"
+#include "posewise/task/earlier.hpp"
 #include "posewise/task/geometry.hpp"
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"

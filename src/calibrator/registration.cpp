@@ -14,6 +14,20 @@
 namespace posewise {
 namespace {
 
+VectorXd expected_errors(const Campaign& campaign) {
+    const VectorXd& errors = campaign.nominal.robot;
+    return errors.size() > 0 ? errors : VectorXd::Zero(campaign.robot.parameter_count());
+}
+
+/// Base and sensor are open, the robot is as expected.
+Campaign with_expected_robot(const Campaign& campaign) {
+    const Chain& robot = campaign.robot;
+    const VectorXd errors = expected_errors(campaign);
+    if (errors.isZero(0)) return with_robot(campaign, without_parameters(robot));
+    const std::vector<bool> all(static_cast<std::size_t>(errors.size()), true);
+    return with_robot(campaign, with_known_errors(robot, errors, all));
+}
+
 /// What the configurations' means say of the sensor's observed points, one sample each.
 Measurements as_points(const Measurements& means, const ObservedPoints& observed) {
     Measurements points = means;
@@ -125,20 +139,19 @@ Registration find_start(const Campaign& campaign, const Measurements& measuremen
 }  // namespace
 
 Registration register_roughly(const Campaign& campaign, const Measurements& measurements) {
-    const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
-    Registration start = find_start(nominal, measurements);
-    start.parameters.robot = VectorXd::Zero(campaign.robot.parameter_count());
+    Registration start = find_start(with_expected_robot(campaign), measurements);
+    start.parameters.robot = expected_errors(campaign);
     return start;
 }
 
 Registration register_base_and_targets(const Campaign& campaign, const Measurements& measurements) {
-    const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
-    Registration registered = register_roughly(nominal, measurements);
+    const Campaign expected = with_expected_robot(campaign);
+    Registration registered = register_roughly(expected, measurements);
     if (registered.is_determined()) {
-        Estimate polished = identify(nominal, measurements, registered.parameters);
+        Estimate polished = identify(expected, measurements, registered.parameters);
         registered = {std::move(polished.parameters), std::move(polished.undetermined)};
     }
-    registered.parameters.robot = VectorXd::Zero(campaign.robot.parameter_count());
+    registered.parameters.robot = expected_errors(campaign);
     return registered;
 }
 

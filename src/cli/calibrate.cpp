@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "../io/robot_statement.hpp"
 #include "calibrate_options.hpp"
 #include "commands.hpp"
 #include "estimates.hpp"
@@ -40,7 +41,8 @@ noise_mm,total_mm,p95_mm; orientations likewise in mrad). Each row is one, the s
 it stands there; of a file with a column sample each configuration.
 With --from it starts at an earlier estimate. --only base,targets identifies nothing else: where is the
 robot now that the instrument was moved? --as-prior takes what was known then as prior, so that a few
-new poses say what has changed. --validate NEW.csv --refit: is the calibration still good there?
+new poses say what has changed. --validate NEW.csv --refit base,targets: is the calibration still good
+there? --validate-campaign states what NEW.csv was measured with, if that was another instrument.
 With --loss huber or cauchy a target seen wrongly counts less (cauchy: hardly at all) and is listed:
 if its mean is farther off than 4.95 robust standard deviations (three coordinates), which come from
 the residuals' median, whatever sigma is stated. sqrt(variance factor) is their ratio to the stated.
@@ -106,7 +108,8 @@ void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& ar
     const bool is_squares = arguments.loss == "squares";
     const bool is_lm = arguments.method == "lm";
     require(is_squares || is_lm, "--loss", "needs --method lm; the others know squares only");
-    require(arguments.from.empty() || (is_lm && !options.learns_sizes && !options.model_selection),
+    require(arguments.earlier.from.empty() ||
+                (is_lm && !options.learns_sizes && !options.model_selection),
             "--from", "needs --method lm, without --learn-sizes and --model-selection");
     require(!options.learns_sizes || is_lm, "--learn-sizes", "needs --method lm");
     require(!options.learns_sizes || arguments.prior.value_or(true), "--learn-sizes",
@@ -119,47 +122,57 @@ void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& ar
 }
 
 void print_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
-                       const Calibration& result) {
-    print(common.json ? io::to_json(result, arguments.paths.measurements)
+                       const Calibration& result, const io::Provenance& made_from) {
+    print(common.json ? io::to_json(result, made_from)
                       : format(result, arguments.has_all_parameters));
 }
 
 /// With faults it is printed, but not written.
 void check_faults(const CalibrateArguments& arguments, const CommonOptions& common,
-                  const Calibration& result) {
+                  const Calibration& result, const io::Provenance& made_from) {
     const std::string words = "this is no calibration: " + join_faults(result.faults);
-    if (arguments.is_forced) return print_warning(words);
-    print_calibration(arguments, common, result);
+    if (arguments.earlier.is_forced) return print_warning(words);
+    print_calibration(arguments, common, result, made_from);
     throw NoCalibration(fmt::format(
         "{}: {}; {}--force takes it all the same", arguments.paths.measurements, words,
         arguments.out.empty() && arguments.predict_out.empty() ? "" : "nothing was written, "));
 }
 
-void calibrate(const CalibrateArguments& arguments, const CommonOptions& common) {
+/// Measurements to validate with, and their campaign, which the calibration's options refer to.
+struct Validation {
+    std::optional<io::CampaignFile> campaign;
+    std::optional<Measurements> measured;
+
+    Validation(const CalibrateArguments& arguments, const io::CampaignFile& file) {
+        if (!arguments.validation_campaign.empty()) {
+            campaign = read_with_prior(arguments.validation_campaign, arguments.prior);
+            detail::check_is_same_robot(campaign->path, campaign->robot, file.robot);
+        }
+        if (arguments.validate.empty()) return;
+        measured = read_measured(arguments.validate, campaign ? *campaign : file);
+    }
+};
+
+void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
+               const CommonOptions& common) {
     const InputPaths& paths = arguments.paths;
+    const EarlierArguments& earlier = arguments.earlier;
     check_outputs({paths.campaign, paths.measurements, arguments.plan, arguments.validate,
-                   arguments.predict, arguments.from},
+                   arguments.validation_campaign, arguments.predict, earlier.from},
                   {arguments.out, arguments.predict_out}, common);
     const io::CampaignFile file = read_with_prior(paths.campaign, arguments.prior);
     CalibrationOptions options = make_options(arguments, file.seed);
     const Measurements measured = read_measured_without(options.excluded, paths.measurements, file);
-    if (!arguments.from.empty()) {
-        const auto has_moved = [&](const char* part) {
-            return std::ranges::find(arguments.moved, part) != arguments.moved.end();
-        };
-        options.earlier =
-            Earlier{read_usable_estimate(arguments.from, file, arguments.is_forced),
-                    arguments.from_is_prior,
-                    {arguments.drift_mm / mm_per_m, arguments.drift_offset_mrad / mrad_per_rad,
-                     arguments.drift_mrad / mrad_per_rad},
-                    has_moved("base"),
-                    has_moved("targets")};
+    const io::Provenance made_from = provenance_of(command, file, paths.measurements, measured);
+    if (!earlier.from.empty()) {
+        options.earlier = read_usable_earlier(earlier.from, file, earlier.use(), earlier.is_forced);
+        warn_of_counting_twice(earlier, measured);
     }
     if (!arguments.plan.empty())
         options.used = find_planned(measured, arguments.plan, options.excluded);
-    std::optional<Measurements> validation;
-    if (!arguments.validate.empty()) validation = read_measured(arguments.validate, file);
-    options.validation = validation ? &*validation : nullptr;
+    const Validation validation(arguments, file);
+    options.validation = validation.measured ? &*validation.measured : nullptr;
+    options.validation_campaign = validation.campaign ? &*validation.campaign : nullptr;
     io::Configurations predicted;
     if (!arguments.predict.empty()) predicted = read_unlimited(arguments.predict, file);
     options.predicted = predicted.joints;
@@ -172,12 +185,12 @@ void calibrate(const CalibrateArguments& arguments, const CommonOptions& common)
         throw input_error_at({paths.measurements}, result.estimate.undetermined);
     }
     std::ranges::for_each(describe_doubts(result, paths.measurements), print_warning);
-    if (!result.faults.empty()) check_faults(arguments, common, result);
-    if (!arguments.out.empty()) io::write_estimate(arguments.out, result, paths.measurements);
+    if (!result.faults.empty()) check_faults(arguments, common, result, made_from);
+    if (!arguments.out.empty()) io::write_estimate(arguments.out, result, made_from);
     if (!arguments.predict_out.empty()) {
         io::write_predictions_csv(arguments.predict_out, predicted.ids, result.predicted);
     }
-    print_calibration(arguments, common, result);
+    print_calibration(arguments, common, result, made_from);
 }
 
 }  // namespace
@@ -192,7 +205,7 @@ void add_calibrate(CLI::App& program, const CommonOptions& common) {
     command->footer(calibrate_footer);
     command->callback([arguments, command, &common] {
         check_calibrate_usage(*command, *arguments);
-        calibrate(*arguments, common);
+        calibrate(*arguments, *command, common);
     });
 }
 

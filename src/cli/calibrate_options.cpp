@@ -1,6 +1,5 @@
 #include "calibrate_options.hpp"
 
-#include "estimates.hpp"
 #include "measured.hpp"
 #include "options.hpp"
 
@@ -74,48 +73,21 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     command.add_flag("--learn-sizes", options.learns_sizes,
                      "Learn how large the errors of each class are, instead of the expected sizes");
     command.add_flag("--all-parameters", arguments.has_all_parameters, "List each, however many");
-    CLI::Option* const from =
+    add_earlier_options(command, arguments.earlier);
+    CLI::Option* const refit =
         command
-            .add_option("--from", arguments.from,
-                        "Start at this estimate of the same robot (JSON), from calibrate --out")
-            ->check(file_name());
-    CLI::Option* const as_prior =
-        command
-            .add_flag("--as-prior", arguments.from_is_prior,
-                      "It is the prior, as sure as it was, but for drift of the robot's errors")
-            ->needs(from);
+            .add_option("--refit", options.refitted,
+                        "With --validate: base, targets or both (base,targets) are identified anew "
+                        "there; the rest stays")
+            ->delimiter(',')
+            ->check(CLI::IsMember({"base", "targets"}))
+            ->needs("--validate");
     command
-        .add_option("--moved", arguments.moved,
-                    "With --as-prior: base, targets or both (base,targets) were moved since")
-        ->delimiter(',')
-        ->check(CLI::IsMember({"base", "targets"}))
-        ->needs(as_prior);
-    command
-        .add_option("--drift-mm", arguments.drift_mm,
-                    "With --as-prior: by which lengths may have changed since, standard deviation")
-        ->check(real_number(1e-6, 1e3))
-        ->capture_default_str()
-        ->needs(as_prior);
-    for (const auto& [name, value, what] :
-         {std::tuple{"--drift-offset-mrad", &arguments.drift_offset_mrad,
-                     "The same of offsets of joints"},
-          std::tuple{"--drift-mrad", &arguments.drift_mrad, "The same of other angles"}}) {
-        command.add_option(name, *value, what)
-            ->check(real_number(1e-6, 1e3))
-            ->capture_default_str()
-            ->needs(as_prior);
-    }
-    command
-        .add_option("--only", options.only,
-                    "With --from: identify base,targets and, if named, robot or errors of it; the "
-                    "others stay")
-        ->delimiter(',')
-        ->needs(from);
-    command
-        .add_flag("--refit", options.refits_validation,
-                  "With --validate: base and targets are identified anew there; the robot stays")
-        ->needs("--validate");
-    add_force_option(command, arguments.is_forced);
+        .add_option("--validate-campaign", arguments.validation_campaign,
+                    "Campaign file of that measurement, if it has other targets, another sensor or "
+                    "payload; needs --refit base,targets")
+        ->check(file_name())
+        ->needs(refit);
     command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
         ->check(file_name());
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common.hpp"
+#include "estimates.hpp"
 #include "posewise/task/calibration.hpp"
 
 namespace posewise::cli {
@@ -25,13 +26,8 @@ struct CalibrateArguments {
     std::optional<Index> iteration_limit;
     std::optional<bool> prior;
     bool has_all_parameters = false;
-    bool is_forced = false;
-    std::string from;
-    bool from_is_prior = false;
-    std::vector<std::string> moved;
-    double drift_mm = 0.02;
-    double drift_offset_mrad = 0.1;
-    double drift_mrad = 0.02;
+    std::string validation_campaign;
+    EarlierArguments earlier;
     CalibrationOptions options;  ///< with the numbers that are options as they are
 };
 

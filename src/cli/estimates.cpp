@@ -2,34 +2,178 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <tuple>
+
+#include "../core/text.hpp"
 #include "common.hpp"
+#include "files.hpp"
+#include "measured.hpp"
+#include "options.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/task/doubts.hpp"
 
 namespace posewise::cli {
+namespace {
+
+/// The first few.
+std::string join_some(const std::vector<std::string>& texts) {
+    constexpr std::size_t shown = 3;
+    if (texts.size() <= shown) return fmt::format("{}", fmt::join(texts, "; "));
+    return fmt::format("{}; and {} more like this",
+                       fmt::join(texts.begin(), texts.begin() + shown, "; "), texts.size() - shown);
+}
+
+bool contains(const std::vector<std::string>& names, const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
 
 void add_force_option(CLI::App& command, bool& is_forced) {
     command.add_flag("--force", is_forced,
                      "Take an estimate that did not converge or has values no robot has");
 }
 
-std::string join_faults(const std::vector<std::string>& faults) {
-    constexpr std::size_t shown = 3;
-    if (faults.size() <= shown) return fmt::format("{}", fmt::join(faults, "; "));
-    return fmt::format("{}; and {} more like this",
-                       fmt::join(faults.begin(), faults.begin() + shown, "; "),
-                       faults.size() - shown);
-}
+std::string join_faults(const std::vector<std::string>& faults) { return join_some(faults); }
 
 Estimate read_usable_estimate(const std::string& path, const Campaign& campaign, bool is_forced) {
-    Estimate estimate = io::read_estimate(path, campaign);
-    const std::vector<std::string> faults = find_faults(campaign, estimate);
-    if (faults.empty()) return estimate;
-    const std::string words = "is no calibration to use: " + join_faults(faults);
+    return read_usable_earlier(path, campaign, {}, is_forced).estimate;
+}
+
+EarlierUse EarlierArguments::use() const {
+    return {is_prior,
+            {drift_mm / mm_per_m, drift_offset_mrad / mrad_per_rad, drift_mrad / mrad_per_rad},
+            contains(moved, "base"),
+            contains(moved, "targets"),
+            only};
+}
+
+CLI::Option* add_from_option(CLI::App& command, EarlierArguments& arguments) {
+    add_force_option(command, arguments.is_forced);
+    return command
+        .add_option("--from", arguments.from,
+                    "An estimate of the same robot (JSON), from calibrate --out: base, targets, "
+                    "errors, model error and learned sizes are as it found them")
+        ->check(file_name());
+}
+
+void add_earlier_options(CLI::App& command, EarlierArguments& arguments) {
+    CLI::Option* const from = add_from_option(command, arguments);
+    CLI::Option* const as_prior =
+        command
+            .add_flag("--as-prior", arguments.is_prior,
+                      "It is the prior, as sure as it was, but for drift of the robot's errors")
+            ->needs(from);
+    if (CLI::Option* const no_prior = command.get_option_no_throw("--no-prior")) {
+        as_prior->excludes(no_prior);
+    }
+    command
+        .add_option("--moved", arguments.moved,
+                    "With --from: base, targets or both (base,targets) were moved since; they are "
+                    "as the campaign says, targets perhaps more or fewer")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"base", "targets"}))
+        ->needs(from);
+    command
+        .add_option("--drift-mm", arguments.drift_mm,
+                    "With --as-prior: by which lengths may have changed since, standard deviation")
+        ->check(real_number(1e-6, 1e3))
+        ->capture_default_str()
+        ->needs(as_prior);
+    for (const auto& [name, value, what] :
+         {std::tuple{"--drift-offset-mrad", &arguments.drift_offset_mrad,
+                     "The same of offsets of joints"},
+          std::tuple{"--drift-mrad", &arguments.drift_mrad, "The same of other angles"}}) {
+        command.add_option(name, *value, what)
+            ->check(real_number(1e-6, 1e3))
+            ->capture_default_str()
+            ->needs(as_prior);
+    }
+    command
+        .add_option("--only", arguments.only,
+                    "With --from: identify only base, targets, robot or errors of it, by commas; "
+                    "the others are known to be as it found them")
+        ->delimiter(',')
+        ->needs(from);
+}
+
+Earlier read_usable_earlier(const std::string& path, const Campaign& campaign,
+                            const EarlierUse& use, bool is_forced) {
+    io::EarlierFile earlier = io::read_earlier(path, campaign, use);
+    if (!earlier.changes.empty()) {
+        print_warning(path + ": the campaign file said otherwise when it was made: " +
+                      join_some(earlier.changes));
+    }
+    Campaign judged = campaign;
+    if (earlier.spread) judged.spread = *earlier.spread;
+    const std::vector<std::string> faults = find_faults(judged, earlier.estimate);
+    if (faults.empty()) return earlier;
+    const std::string words = "is no calibration to use: " + join_some(faults);
     if (!is_forced) throw input_error_at({path}, words + "; --force takes it all the same");
     print_warning(path + ": " + words);
-    return estimate;
+    return earlier;
+}
+
+void expect_earlier(io::CampaignFile& file, const EarlierArguments& arguments) {
+    if (arguments.from.empty()) return;
+    const Earlier earlier =
+        read_usable_earlier(arguments.from, file, arguments.use(), arguments.is_forced);
+    static_cast<Campaign&>(file) = with_earlier(file, earlier);
+}
+
+io::CampaignFile read_planned(const PlanSources& sources, const EarlierUse& use,
+                              std::optional<bool> prior, bool is_forced) {
+    if (sources.estimate.empty()) return io::read_planned_campaign(sources.campaign, prior);
+    io::CampaignFile file = read_with_prior(sources.campaign, prior);
+    if (file.planned_model) {
+        print_warning(fmt::format("{}: planning.errors, {}, is not used: {} is of robot.errors",
+                                  sources.campaign, io::error_model_name(*file.planned_model),
+                                  sources.estimate));
+        file.planned_model.reset();
+    }
+    static_cast<Campaign&>(file) =
+        with_earlier(file, read_usable_earlier(sources.estimate, file, use, is_forced));
+    return file;
+}
+
+void warn_of_counting_twice(const EarlierArguments& arguments, const Measurements& measured) {
+    if (!arguments.is_prior) return;
+    if (io::measurements_checksum_of(arguments.from) != io::checksum_of(measured)) return;
+    print_warning(arguments.from +
+                  ": was made from these very measurements; as a prior beside them it "
+                  "counts them twice");
+}
+
+std::string describe_earlier(const std::string& path, const EarlierUse& use) {
+    if (path.empty()) return "";
+    std::vector<std::string> found;
+    if (!use.has_new_base) found.emplace_back("base");
+    if (!use.has_new_targets) found.emplace_back("targets");
+    found.emplace_back("errors and model error");
+    std::string text =
+        fmt::format("from:       {}: {} as it found them", path, fmt::join(found, ", "));
+    if (use.is_prior) text += "; it is the prior, but for drift";
+    if (!use.only.empty()) {
+        text += fmt::format("; to be identified: {}", fmt::join(use.only, ", "));
+    }
+    return text + '\n';
+}
+
+io::Provenance provenance_of(const CLI::App& command, const io::CampaignFile& file,
+                             const std::string& path, const Measurements& measured) {
+    io::Provenance made_from{path, io::checksum_of(measured), file.path, file.checksum, {}};
+    const std::vector<std::string> of_no_matter{"--out", "--predict-out", "--all-parameters",
+                                                "--json", "--threads"};
+    for (const CLI::Option* const option : command.get_options()) {
+        const std::string name = option->get_name();
+        const bool matters = name.starts_with("--") && !contains(of_no_matter, name.c_str());
+        if (option->count() == 0 || !matters) continue;
+        made_from.options.emplace_back(name, option->results());
+    }
+    return made_from;
 }
 
 }  // namespace posewise::cli

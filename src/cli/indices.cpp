@@ -3,6 +3,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "estimates.hpp"
 #include "files.hpp"
 #include "measured.hpp"
 #include "options.hpp"
@@ -22,13 +23,15 @@ file's own configurations) and the condition number (smaller is better). Two col
 the noise and scaled by the expected errors, which is what posewise selects by, and plain in mm and
 mrad as papers print them. The weakest directions name what these poses can hardly tell apart:
   1.2 % of the expected size: 0.71 mm Tx1, -0.70 mm base.x
-is read: these errors at once, in this proportion, are known only to 1.2 % of that size.)";
+is read: these errors at once, in this proportion, are known only to 1.2 % of that size. With --from the
+robot is as an earlier calibration found it, with --as-prior what that knew counts, too.)";
 
 struct IndicesArguments {
     InputPaths paths;
     std::string plan;
     std::vector<std::string> excluded;
     std::optional<bool> prior;
+    EarlierArguments earlier;
     Index directions = 3;
     int digits = 6;
 };
@@ -40,13 +43,16 @@ Measurements read_input(const IndicesArguments& arguments, const io::CampaignFil
 }
 
 void print_indices(const IndicesArguments& arguments, const CommonOptions& common) {
-    const auto file = read_with_prior(arguments.paths.campaign, arguments.prior);
+    auto file = read_with_prior(arguments.paths.campaign, arguments.prior);
+    expect_earlier(file, arguments.earlier);
     const Measurements measurements = read_input(arguments, file);
+    warn_of_counting_twice(arguments.earlier, measurements);
     const Rating rating = compute_from(arguments.paths.measurements, [&] {
         return rate(file, measurements, arguments.directions);
     });
     print(common.json ? io::to_json(rating, file)
-                      : format(rating, file, arguments.digits) + describe_unused_planning(file));
+                      : format(rating, file, arguments.digits) +
+                            describe_earlier(arguments.earlier) + describe_unused_planning(file));
 }
 
 }  // namespace
@@ -64,6 +70,7 @@ void add_indices(CLI::App& program, const CommonOptions& common) {
     command->add_option("--directions", arguments->directions, "How many weak directions to name")
         ->check(whole_number(0, 1000))
         ->capture_default_str();
+    add_earlier_options(*command, arguments->earlier);
     add_digits_option(*command, arguments->digits);
     command->footer(indices_footer);
     command->callback([arguments, &common] { print_indices(*arguments, common); });

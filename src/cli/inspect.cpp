@@ -9,6 +9,7 @@
 #include "../report/joint_directions.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "estimates.hpp"
 #include "files.hpp"
 #include "measured.hpp"
 #include "options.hpp"
@@ -39,7 +40,7 @@ what is not, as of harmonics of high order on a joint that turns little.
 
 With --measurements the directions of the joints are checked, too: the robot is registered (base and
 targets fitted, nothing else) with every choice of joints reversed. The right one misses the points by
-what the robot's errors are, any other by far more.
+what the robot's errors are, any other by far more; with --from, by what an earlier estimate left.
 
 A robot can be inspected before there is a campaign, straight from its URDF; --write-campaign then
 makes a file to begin with, which says what is left to fill in.)";
@@ -50,6 +51,7 @@ struct InspectArguments {
     std::string tip_link;
     std::string written;
     std::string measurements;
+    EarlierArguments earlier;
 };
 
 /// The choices of joint directions that were tried, by the names of the joints.
@@ -106,8 +108,9 @@ bool is_urdf(const InspectArguments& arguments) {
 /// The campaign that --write-campaign would write.
 void inspect_urdf(const InspectArguments& arguments, const CommonOptions& common) {
     const std::string& urdf = arguments.file;
-    if (!arguments.measurements.empty()) {
-        throw input_error_at({urdf}, "is a robot alone; --measurements needs a campaign file");
+    if (!arguments.measurements.empty() || !arguments.earlier.from.empty()) {
+        throw input_error_at({urdf},
+                             "is a robot alone; --measurements and --from need a campaign file");
     }
     const std::string& written = arguments.written;
     check_outputs({urdf}, {written}, common);
@@ -138,8 +141,9 @@ void warn_of_places(const std::string& path, const io::CampaignFile& file,
 
 void inspect(const InspectArguments& arguments, const CommonOptions& common) {
     if (is_urdf(arguments)) return inspect_urdf(arguments, common);
-    const io::CampaignFile file = io::read_campaign(arguments.file);
+    io::CampaignFile file = io::read_campaign(arguments.file);
     std::ranges::for_each(file.warnings, print_warning);
+    expect_earlier(file, arguments.earlier);
     std::vector<detail::SignPattern> patterns;
     if (!arguments.measurements.empty()) {
         const Measurements measurements = io::read_measurements(arguments.measurements, file);
@@ -179,6 +183,7 @@ void add_inspect(CLI::App& program, const CommonOptions& common) {
         ->add_option("-m,--measurements", arguments->measurements,
                      "Measured configurations (CSV, or MATLAB .mat): check the joints' directions")
         ->check(file_name());
+    add_from_option(*command, arguments->earlier);
     command->footer(inspect_footer);
     command->callback([arguments, &common] { inspect(*arguments, common); });
 }

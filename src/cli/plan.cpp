@@ -28,6 +28,7 @@ Example:
   posewise plan campaign.yaml --poses 24 --out plan.json --csv poses.csv
   posewise plan campaign.yaml --poses 12 --augment measured.csv --criterion d
   posewise plan campaign.yaml --plan plan.json --drop p7,p12 --out repaired.json
+  posewise plan campaign.yaml --from estimate.json --only base,targets --poses 5
 
 Proposes configurations to measure: draws a pool within the joint limits, keeps what the campaign's
 cell allows, chooses from it, moves each pose continuously to where it tells most, and puts the
@@ -44,6 +45,8 @@ and tables of the poses, of the accuracy for other numbers of poses, and of how 
 will be. The workspace is drawn within the limits and the cell's target boxes, collisions excluded,
 sight not asked for; --workspace or --workspace-box-mm state another.
 
+--from plans for the robot as an earlier calibration found it, --as-prior for what that left open;
+--only base,targets for finding them again after the instrument or the tool was moved.
 --augment counts what was measured already. --plan with --drop keeps the other poses of a plan as
 they are and finds new ones, at least 5 deg in some joint from those that could not be reached.
 Ctrl-C or --time end the search with the best plan so far, marked as interrupted; exit code 0.
@@ -99,8 +102,8 @@ void print_planning(const Planning& planning, const io::CampaignFile& campaign,
               ? "\nPredicted position error by number of poses: left out, planning was stopped\n"
               : format_other_counts(counts, planning.campaign));
     print(format_deviations(plan));
-    print(fmt::format("\n{}plan:        {}\n", describe_planned(campaign, plan.request.repeats),
-                      detail::escape_controls(out)));
+    print(fmt::format("\n{}{}plan:        {}\n", describe_planned(campaign, plan.request.repeats),
+                      describe_earlier(plan.request), detail::escape_controls(out)));
 }
 
 Planning plan_with_progress(const io::CampaignFile& campaign, PlanningOptions& options,
@@ -117,11 +120,12 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     const PlanSources& sources = arguments.request.sources;
     const std::string out =
         arguments.out.empty() ? default_plan_out(sources.campaign) : arguments.out;
-    check_outputs({sources.campaign, sources.augment, sources.repaired, sources.workspace},
+    check_outputs({sources.campaign, arguments.earlier.from, sources.augment, sources.repaired,
+                   sources.workspace},
                   {out, arguments.csv}, common);
     std::optional<InterruptFlag> interrupted(std::in_place);
     const StopSignal stop{interrupted->get(), deadline_after(arguments.request.time_limit)};
-    const io::CampaignFile campaign = io::read_planned_campaign(sources.campaign, arguments.prior);
+    const io::CampaignFile campaign = read_planned(arguments);
     const PlanRequest request = make_request(arguments, &campaign, Criterion::V);
     PlanningOptions options = read_planning_inputs(request, campaign);
     if (!sources.repaired.empty()) options.repaired = io::read_plan(sources.repaired);
@@ -155,35 +159,10 @@ void add_plan_problem(CLI::App& command, PlanArguments& problem) {
         ->check(file_name());
     add_ids_option(command, "--drop", request.dropped, "Ids of its poses to replace, by commas");
     add_prior_option(command, problem.prior, "; --poses may then be below what identifies");
+    add_earlier_options(command, problem.earlier);
     command.add_option("--repeats", request.repeats, "Samples of each configuration")
         ->check(real_number(1, 1e9))
         ->default_val(1.0);
-}
-
-void add_workspace(CLI::App& command, PlanRequest& request) {
-    CLI::Option* const given =
-        command
-            .add_option("--workspace", request.sources.workspace,
-                        "Configurations (CSV) where the robot shall be accurate (default: drawn)")
-            ->check(file_name());
-    command
-        .add_option("--workspace-poses", request.workspace_count,
-                    "How many are drawn for it otherwise")
-        ->check(whole_number(1, 20000))
-        ->default_val(Index{500})
-        ->excludes(given);
-    command
-        .add_option("--workspace-box-mm", request.workspace_box_mm,
-                    "Box of the base frame that targets are in then: least x,y,z,largest x,y,z "
-                    "(default: the cell's target boxes)")
-        ->delimiter(',')
-        ->expected(6)
-        ->excludes(given);
-    command
-        .add_option("--workspace-target", request.workspace_target,
-                    "Target whose position counts, from 1 (0: all of them)")
-        ->check(whole_number(0, 10000))
-        ->capture_default_str();
 }
 
 void add_plan_search(CLI::App& command, PlanArguments& arguments) {
@@ -209,7 +188,7 @@ void add_plan(CLI::App& program, const CommonOptions& common) {
     CLI::App* command =
         program.add_subcommand("plan", "Propose configurations to measure, from nothing");
     add_plan_problem(*command, *arguments);
-    add_workspace(*command, arguments->request);
+    add_workspace_options(*command, arguments->request);
     add_plan_search(*command, *arguments);
     command->footer(plan_footer);
     command->callback([arguments, &common] { plan(*arguments, common); });

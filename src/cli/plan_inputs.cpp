@@ -37,8 +37,7 @@ void read_plain(ChoiceInputs& inputs) {
 void read_with_robot(ChoiceInputs& inputs, CandidateKind kind, Index count) {
     ChoiceOptions& options = inputs.options;
     const PlanSources& sources = options.sources;
-    io::CampaignFile& campaign = *inputs.campaign;
-    io::set_prior(campaign, options.has_prior);
+    const io::CampaignFile& campaign = *inputs.campaign;
     if (kind != CandidateKind::Random) {
         inputs.candidates = read_candidates(sources.candidates, kind, campaign);
     }

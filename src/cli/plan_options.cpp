@@ -17,6 +17,32 @@ void add_focus_option(CLI::App& command, RequestArguments& arguments) {
         ->capture_default_str();
 }
 
+void add_workspace_options(CLI::App& command, PlanRequest& request) {
+    CLI::Option* const given =
+        command
+            .add_option("--workspace", request.sources.workspace,
+                        "Configurations (CSV) where the robot shall be accurate (default: drawn)")
+            ->check(file_name());
+    command
+        .add_option("--workspace-poses", request.workspace_count,
+                    "How many are drawn for it otherwise")
+        ->check(whole_number(1, 20000))
+        ->default_val(Index{500})
+        ->excludes(given);
+    command
+        .add_option("--workspace-box-mm", request.workspace_box_mm,
+                    "Box of the base frame that targets are in then: least x,y,z,largest x,y,z "
+                    "(default: the cell's target boxes)")
+        ->delimiter(',')
+        ->expected(6)
+        ->excludes(given);
+    command
+        .add_option("--workspace-target", request.workspace_target,
+                    "Target whose position counts, from 1 (0: all of them)")
+        ->check(whole_number(0, 10000))
+        ->capture_default_str();
+}
+
 void add_search_options(CLI::App& command, RequestArguments& arguments,
                         const std::string& seed_help, const std::string& default_out) {
     command.add_option("--seed", arguments.seed, seed_help)->check(whole_number(0, largest_seed));
@@ -33,15 +59,25 @@ void add_progress_flag(CLI::App& command, RequestArguments& arguments) {
                      "Show progress on standard error even if it is no terminal");
 }
 
+io::CampaignFile read_planned(const RequestArguments& arguments) {
+    const EarlierArguments& earlier = arguments.earlier;
+    PlanSources sources = arguments.request.sources;
+    sources.estimate = earlier.from;
+    return read_planned(sources, earlier.use(), arguments.prior, earlier.is_forced);
+}
+
 PlanRequest make_request(const RequestArguments& arguments, const io::CampaignFile* campaign,
                          Criterion usual) {
     PlanRequest request = arguments.request;
     const bool is_focused = arguments.focus == "robot";
     if (is_focused && usual == Criterion::V) usual = Criterion::D;
     request.criterion = arguments.criterion.empty() ? usual : parse_criterion(arguments.criterion);
-    request.has_prior = arguments.prior.value_or(campaign != nullptr && campaign->spread.is_prior);
+    request.has_prior =
+        campaign != nullptr ? campaign->spread.is_prior : arguments.prior.value_or(false);
     request.seed = arguments.seed.value_or(campaign != nullptr ? campaign->seed : 1);
     request.is_focused_on_robot = is_focused;
+    request.sources.estimate = arguments.earlier.from;
+    request.earlier = arguments.earlier.use();
     return request;
 }
 

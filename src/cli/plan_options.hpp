@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "estimates.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/task/plan.hpp"
 
@@ -17,6 +18,7 @@ struct RequestArguments {
     std::optional<bool> prior;
     std::optional<std::uint64_t> seed;
     std::string focus = "all";
+    EarlierArguments earlier;
     std::string out;
     bool progress = false;
 };
@@ -24,10 +26,15 @@ struct RequestArguments {
 /// -c, --criterion with that help.
 void add_criterion_option(CLI::App& command, RequestArguments& arguments, const std::string& help);
 void add_focus_option(CLI::App& command, RequestArguments& arguments);
+/// Of plan: where accuracy matters.
+void add_workspace_options(CLI::App& command, PlanRequest& request);
 /// --seed with that help, --time, and -o, --out, by default named as `default_out` says.
 void add_search_options(CLI::App& command, RequestArguments& arguments,
                         const std::string& seed_help, const std::string& default_out);
 void add_progress_flag(CLI::App& command, RequestArguments& arguments);
+
+/// The campaign that poses are planned with, as its file and the command line say.
+io::CampaignFile read_planned(const RequestArguments& arguments);
 
 /// What is asked for; prior and seed are as the campaign says where the command line does not, the
 /// criterion the `usual` one, or D where that is V and base and targets do not count.

@@ -38,7 +38,7 @@ calibrate --plan and verify, prints the chosen ids, the criterion's value and wh
   proof       optimal: branch and bound ruled out or tried all other choices; else what it tried
 
 Measurements register the base and the targets; other candidates need them in the campaign file (or
-measured poses, --augment). A candidate file has the columns config,q1_deg,... and perhaps
+measured poses, --augment), or from an earlier estimate, --from, which tells the robot's errors, too. A candidate file has the columns config,q1_deg,... and perhaps
 visible_targets (as plan --csv writes it), or is a measurement file; --random draws a scrambled Halton
 sequence within the joint limits. A file of blocks has a row of numbers a line (or is a MATLAB
 matrix), each --rows of them one candidate, named 0, 1, ... One of --groups: columns config,group.
@@ -68,9 +68,10 @@ std::string default_select_out(const PlanSources& sources) {
     return std::filesystem::path(path).stem().string() + ".plan.json";
 }
 
-/// Noise and scales; nothing of plain blocks.
-std::string describe_robot(const ChoiceInputs& inputs, double repeats) {
-    return inputs.campaign ? describe_planned(*inputs.campaign, repeats) : "";
+/// Noise and scales, an earlier estimate; nothing of plain blocks.
+std::string describe_robot(const ChoiceInputs& inputs, const PlanRequest& request) {
+    if (!inputs.campaign) return "";
+    return describe_planned(*inputs.campaign, request.repeats) + describe_earlier(request);
 }
 
 /// On standard error.
@@ -87,18 +88,18 @@ void warn_of_few(Index count, Index asked) {
 
 void print_design(const ApproximateDesign& design, const SelectArguments& arguments,
                   const ChoiceInputs& inputs, const CommonOptions& common) {
-    print(common.json ? io::to_json(design)
-                      : format(design, arguments.digits) + '\n' +
-                            describe_robot(inputs, design.request.repeats));
+    print(common.json
+              ? io::to_json(design)
+              : format(design, arguments.digits) + '\n' + describe_robot(inputs, design.request));
     note_interrupt(design.ending, "weights are");
 }
 
 void print_plan(const Plan& plan, const SelectArguments& arguments, const ChoiceInputs& inputs,
                 const std::string& out, const CommonOptions& common) {
-    print(common.json ? io::to_json(plan, out)
-                      : format_choice(plan, arguments.digits) +
-                            describe_robot(inputs, plan.request.repeats) +
-                            "plan:       " + detail::escape_controls(out) + '\n');
+    print(common.json
+              ? io::to_json(plan, out)
+              : format_choice(plan, arguments.digits) + describe_robot(inputs, plan.request) +
+                    "plan:       " + detail::escape_controls(out) + '\n');
     note_interrupt(plan.ending, "plan is");
 }
 
@@ -107,15 +108,14 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     std::optional<InterruptFlag> interrupted(std::in_place);
     const StopSignal stop{interrupted->get(), deadline_after(arguments.request.time_limit)};
     std::optional<io::CampaignFile> file;
-    const std::string& path = arguments.request.sources.campaign;
-    if (!path.empty()) file = io::read_planned_campaign(path, arguments.prior);
+    if (!arguments.request.sources.campaign.empty()) file = read_planned(arguments);
     const PlanRequest request = complete_request(arguments, file ? &*file : nullptr);
     const PlanSources& sources = request.sources;
     const bool has_default = arguments.out.empty() && !arguments.relaxes;
     const std::string out = has_default ? default_select_out(sources) : arguments.out;
-    check_outputs(
-        {sources.campaign, sources.candidates, sources.augment, sources.test_poses, sources.groups},
-        {out}, common);
+    check_outputs({sources.campaign, sources.estimate, sources.candidates, sources.augment,
+                   sources.test_poses, sources.groups},
+                  {out}, common);
     ChoiceInputs inputs =
         read_choice_inputs(request, kind_of(arguments), arguments.random, std::move(file));
     inputs.options.stop = stop;

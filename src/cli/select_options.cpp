@@ -50,6 +50,7 @@ void add_select_problem(CLI::App& command, SelectArguments& arguments) {
                     "g and v: predict these (as --candidates; default: the candidates)")
         ->check(file_name());
     add_prior_option(command, arguments.prior, "; --poses may then be below what identifies");
+    add_earlier_options(command, arguments.earlier);
     add_focus_option(command, arguments);
     command
         .add_option("--augment", request.sources.augment,
@@ -109,6 +110,7 @@ void check_select_usage(const SelectArguments& arguments) {
                   "--variable", "goes with --blocks and a MATLAB file only");
     require_usage(!is_plain || request.repeats == 0, "--repeats", "needs a robot");
     require_usage(!is_plain || arguments.focus == "all", "--focus", "needs a robot");
+    require_usage(!is_plain || arguments.earlier.from.empty(), "--from", "needs a robot");
     const bool has_distance = arguments.least_distance_deg != 0;
     require_usage(!is_plain || !has_distance, "--least-distance-deg", "needs a robot");
     require_usage(sources.groups.empty() == (request.group_limit == 0), "--groups",

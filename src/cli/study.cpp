@@ -29,6 +29,9 @@ themselves expect 0.21; half of all random eights leave more than 0.45. Planned 
 where all is above 1, within chance else. Subsets that do not identify the model count as the worst
 ("-": no number). The pose count from which a column stays flat is enough.
 
+--from studies the robot as an earlier calibration found it; with --as-prior each subset is calibrated
+with what that knew, with --only base,targets only these are found.
+
 With few configurations there are no splits (--splits 0): each subset is judged on what it leaves,
 and one that takes the telling configurations is judged on easier ones than others are.
 
@@ -40,7 +43,11 @@ random and planned subsets leave, planned against random of that model, and of t
 /// The campaign as its file says, or with each of the error models asked for.
 std::vector<io::CampaignFile> read_files(const StudyArguments& arguments) {
     const std::string& path = arguments.paths.campaign;
-    if (arguments.models.empty()) return {read_with_prior(path, arguments.prior)};
+    if (arguments.models.empty()) {
+        io::CampaignFile file = read_with_prior(path, arguments.prior);
+        expect_earlier(file, arguments.earlier);
+        return {file};
+    }
     std::vector<io::CampaignFile> files = io::read_campaign(path, arguments.models);
     for (io::CampaignFile& file : files) {
         io::set_prior(file, arguments.prior.value_or(file.spread.is_prior));
@@ -59,10 +66,12 @@ std::vector<RobotModel> list_models(const std::vector<io::CampaignFile>& files) 
 void study(const StudyArguments& arguments, const CommonOptions& common) {
     const InputPaths& paths = arguments.paths;
     if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
-    check_outputs({paths.campaign, paths.measurements}, {arguments.csv, arguments.plot}, common);
+    check_outputs({paths.campaign, paths.measurements, arguments.earlier.from},
+                  {arguments.csv, arguments.plot}, common);
     const std::vector<io::CampaignFile> files = read_files(arguments);
     const io::CampaignFile& file = files.front();
     const auto measurements = read_measured_without(arguments.excluded, paths.measurements, file);
+    warn_of_counting_twice(arguments.earlier, measurements);
     StudyOptions options = arguments.options;
     options.seed = arguments.seed.value_or(file.seed);
     options.criteria = arguments.criteria;
@@ -83,7 +92,7 @@ void study(const StudyArguments& arguments, const CommonOptions& common) {
     }
     print(common.json ? io::to_json(studies)
                       : (compares ? format(studies) : format(studies.front())) +
-                            describe_unused_planning(file));
+                            describe_earlier(arguments.earlier) + describe_unused_planning(file));
     if (!arguments.csv.empty()) {
         detail::write_file(arguments.csv,
                            compares ? study_csv(studies) : study_csv(studies.front()));

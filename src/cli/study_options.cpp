@@ -93,7 +93,8 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
         "Pose counts, 5:24 or 6,9,12 (default: 8,12,16,20,30,50 up to a third of what there is to "
         "choose from; without splits from the least that identifies to all but one)");
     add_prior_option(command, arguments.prior, ": of choice and calibration alike");
-    command.add_option_function<std::string>(
+    add_earlier_options(command, arguments.earlier);
+    CLI::Option* const models = command.add_option_function<std::string>(
         "--models",
         [&arguments](const std::string& text) {
             arguments.models =
@@ -101,6 +102,7 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
         },
         "Error models of the robot to compare on the same splits and random subsets, of full, "
         "geometric and stated (default: the campaign's alone)");
+    models->excludes("--from");
     command
         .add_option("--least-distance-deg", arguments.least_distance_deg,
                     "Least distance in joint space (Euclidean) of any two planned; random subsets "

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common.hpp"
+#include "estimates.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/task/study.hpp"
 
@@ -15,6 +16,7 @@ namespace posewise::cli {
 /// The command line of study; what it does not say is as the campaign says.
 struct StudyArguments {
     std::optional<bool> prior;
+    EarlierArguments earlier;
     InputPaths paths;
     std::vector<std::string> excluded;
     std::vector<Criterion> criteria;

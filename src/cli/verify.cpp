@@ -7,6 +7,7 @@
 #include "../core/text.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "estimates.hpp"
 #include "options.hpp"
 #include "plan_inputs.hpp"
 #include "posewise/core/errors.hpp"
@@ -36,6 +37,7 @@ Exit code: 0 everything is as stated, 1 something is not.)";
 struct VerifyArguments {
     std::string plan;
     std::string campaign;
+    std::string estimate;
     std::string candidates;
     std::string augment;
     std::string groups;
@@ -47,6 +49,7 @@ void redirect(PlanSources& sources, const VerifyArguments& arguments) {
         if (!other.empty()) path = other;
     };
     redirect_one(sources.campaign, arguments.campaign);
+    redirect_one(sources.estimate, arguments.estimate);
     redirect_one(sources.candidates, arguments.candidates);
     redirect_one(sources.augment, arguments.augment);
     redirect_one(sources.groups, arguments.groups);
@@ -54,8 +57,11 @@ void redirect(PlanSources& sources, const VerifyArguments& arguments) {
 }
 
 /// Throws for files that a plan of this kind has none of.
-void check_verify_usage(const VerifyArguments& arguments, CandidateKind kind) {
+void check_verify_usage(const VerifyArguments& arguments, CandidateKind kind, bool has_estimate) {
     const std::string others = arguments.groups + arguments.test_poses;
+    if (!arguments.estimate.empty() && !has_estimate) {
+        throw CLI::ValidationError("--from", "the plan was made without an estimate");
+    }
     if (kind == CandidateKind::Pool && !(arguments.candidates + others).empty()) {
         throw CLI::ValidationError("PLAN", "is a pose plan, which takes --campaign and --augment");
     }
@@ -77,10 +83,15 @@ void conclude(const std::string& path, const Verification& verification) {
         fmt::format("{}: not as stated: {}", path, fmt::join(verification.wrong(), ", ")));
 }
 
+/// An estimate that was taken by force may be taken again.
+io::CampaignFile read_planned_again(const PlanRequest& request) {
+    return read_planned(request.sources, request.earlier, request.has_prior, true);
+}
+
 Verification verify_choice(const Plan& plan) {
     std::optional<io::CampaignFile> campaign;
     if (plan.kind != CandidateKind::Blocks) {
-        campaign = io::read_planned_campaign(plan.request.sources.campaign);
+        campaign = read_planned_again(plan.request);
     }
     const ChoiceInputs inputs =
         read_choice_inputs(plan.request, plan.kind, plan.candidate_count, std::move(campaign));
@@ -89,8 +100,7 @@ Verification verify_choice(const Plan& plan) {
 }
 
 Verification verify_continuous(const Plan& plan, const std::string& path) {
-    io::CampaignFile campaign = io::read_planned_campaign(plan.request.sources.campaign);
-    io::set_prior(campaign, plan.request.has_prior);
+    const io::CampaignFile campaign = read_planned_again(plan.request);
     const PlanningOptions options = read_planning_inputs(plan.request, campaign);
     const std::string mismatch = describe_mismatch(plan, campaign);
     if (!mismatch.empty()) throw input_error_at({path}, mismatch);
@@ -109,8 +119,8 @@ std::string describe_plan(const Plan& plan, Index candidate_count) {
 
 void verify_file(const VerifyArguments& arguments, const CommonOptions& common) {
     Plan plan = io::read_plan(arguments.plan);
+    check_verify_usage(arguments, plan.kind, !plan.request.sources.estimate.empty());
     redirect(plan.request.sources, arguments);
-    check_verify_usage(arguments, plan.kind);
     const Verification verification =
         plan.is_continuous() ? verify_continuous(plan, arguments.plan) : verify_choice(plan);
     print(common.json ? io::to_json(verification, plan, arguments.plan)
@@ -130,6 +140,7 @@ void add_verify(CLI::App& program, const CommonOptions& common) {
         ->required()
         ->check(file_name());
     command->add_option("--campaign", arguments->campaign, "Campaign file, if it is elsewhere now");
+    command->add_option("--from", arguments->estimate, "As of select, if it is elsewhere now");
     command->add_option("-m,--measurements,--candidates,--blocks", arguments->candidates,
                         "File of the candidates, if it is elsewhere now");
     command->add_option("--augment", arguments->augment, "As of select, if it is elsewhere now");

@@ -23,4 +23,11 @@ class Checksum {
     std::uint64_t state_ = 0xcbf29ce484222325U;
 };
 
+/// Of a text alone.
+inline std::string checksum_of(const std::string& text) {
+    Checksum checksum;
+    checksum.add(text);
+    return checksum.text();
+}
+
 }  // namespace posewise::detail

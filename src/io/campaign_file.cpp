@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "../core/checksum.hpp"
 #include "../model/complete_model.hpp"
 #include "atomic_file.hpp"
 #include "campaign_sections.hpp"
@@ -146,6 +147,7 @@ CampaignFile parse(const std::string& content, const std::string& path,
          "base", "spread", "prior", "planning", "criterion", "seed", "measurements", "cell"});
     CampaignFile file;
     file.path = path;
+    file.checksum = detail::checksum_of(content);
     Campaign& campaign = file;
     campaign.name = read_name(map.require("name"));
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "../core/checksum.hpp"
 #include "atomic_file.hpp"
 #include "csv_reader.hpp"
 #include "doubts_json.hpp"
@@ -215,13 +216,27 @@ Json selection_to_json(const ModelSelection& selection) {
     return json;
 }
 
-Json estimate_to_json(const Calibration& calibration, const std::string& measurements) {
+/// What is not known is left out.
+Json made_from_to_json(const Provenance& made_from) {
+    Json json = Json::object();
+    const auto add = [&](const char* key, const std::string& text) {
+        if (!text.empty()) json[key] = text;
+    };
+    add("campaign_file", made_from.campaign_file);
+    add("campaign_checksum", made_from.campaign_checksum);
+    add("measurements_checksum", made_from.measurements_checksum);
+    for (const auto& [name, values] : made_from.options) json["options"][name] = values;
+    return json;
+}
+
+Json estimate_to_json(const Calibration& calibration, const Provenance& made_from) {
     const Campaign& campaign = calibration.campaign;
     const Estimate& estimate = calibration.estimate;
     const VectorXd sigmas = standard_deviations(estimate);
     Json document = detail::make_document("estimate", estimate_format);
     document["campaign"] = campaign.name;
-    document["measurements"] = measurements;
+    document["measurements"] = made_from.measurements;
+    document["made_from"] = made_from_to_json(made_from);
     document["measured"] = measured_to_json(calibration.measured);
     if (!calibration.excluded.empty()) document["excluded"] = calibration.excluded;
     document["method"] = method_name(calibration.method);
@@ -254,13 +269,22 @@ Json estimate_to_json(const Calibration& calibration, const std::string& measure
 
 }  // namespace
 
-std::string to_json(const Calibration& calibration, const std::string& measurements) {
-    return detail::json_text(estimate_to_json(calibration, measurements));
+std::string checksum_of(const Measurements& measurements) {
+    detail::Checksum checksum;
+    for (const std::string& id : measurements.ids) checksum.add(id);
+    checksum.add(measurements.configurations);
+    checksum.add(measurements.observations);
+    checksum.add(RowMatrixXd(measurements.is_seen.cast<double>()));
+    return checksum.text();
+}
+
+std::string to_json(const Calibration& calibration, const Provenance& made_from) {
+    return detail::json_text(estimate_to_json(calibration, made_from));
 }
 
 void write_estimate(const std::string& path, const Calibration& calibration,
-                    const std::string& measurements) {
-    detail::write_json(path, estimate_to_json(calibration, measurements));
+                    const Provenance& made_from) {
+    detail::write_json(path, estimate_to_json(calibration, made_from));
 }
 
 void write_predictions_csv(const std::string& path, const std::vector<std::string>& ids,

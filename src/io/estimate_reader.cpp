@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../core/text.hpp"
@@ -13,6 +14,7 @@
 namespace posewise::io {
 namespace {
 
+using detail::Json;
 using detail::JsonValue;
 using detail::Quantity;
 
@@ -110,11 +112,13 @@ VectorXd read_unknowns(const JsonValue& values, const Sensor& sensor) {
     return unknowns;
 }
 
-Parameters read_parameters(const JsonValue& root, const Campaign& campaign) {
+Parameters read_parameters(const JsonValue& root, const Campaign& campaign, bool has_same_targets) {
     Parameters parameters;
     parameters.world_from_base = read_base(root["base"]);
     parameters.robot = read_robot(root["robot"], campaign);
-    if (campaign.sensor->observes_targets()) {
+    if (!has_same_targets) {
+        parameters.sensor = campaign.nominal.sensor;
+    } else if (campaign.sensor->observes_targets()) {
         parameters.sensor = read_targets(root["targets"], *campaign.sensor);
     } else {
         parameters.sensor = read_unknowns(root["sensor"], *campaign.sensor);
@@ -122,10 +126,28 @@ Parameters read_parameters(const JsonValue& root, const Campaign& campaign) {
     return parameters;
 }
 
-MatrixXd read_covariance(const JsonValue& covariance, const std::vector<std::string>& names) {
+/// A row up to the diagonal, of a matrix of which the rows before are there.
+void read_covariance_row(const JsonValue& value, Index i, MatrixXd& matrix) {
+    const std::vector<double> row = read_numbers(value, static_cast<std::size_t>(i) + 1);
+    matrix.row(i).head(i + 1) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), i + 1);
+    matrix.col(i).head(i + 1) = matrix.row(i).head(i + 1).transpose();
+    constexpr double rounding = 1 + 1e-9;
+    for (Index j = 0; j <= i; ++j) {
+        if (matrix(i, j) * matrix(i, j) <= rounding * matrix(i, i) * matrix(j, j) &&
+            matrix(i, i) >= 0) {
+            continue;
+        }
+        throw value.error("is no row of a covariance; a correlation is beyond 1");
+    }
+}
+
+/// Of `names`, which may be followed by others; of those only if `is_all` is false.
+MatrixXd read_covariance(const JsonValue& covariance, const std::vector<std::string>& names,
+                         bool is_all) {
     const std::vector<JsonValue> listed = covariance["parameters"].list();
     const std::vector<JsonValue> rows = covariance["rows_si"].list();
-    if (listed.size() != names.size() || rows.size() != names.size()) {
+    const bool is_short = listed.size() < names.size() || rows.size() < names.size();
+    if (is_short || (is_all && (listed.size() > names.size() || rows.size() > names.size()))) {
         throw covariance.error(fmt::format("has {} parameters in {} rows; must have {}",
                                            listed.size(), rows.size(), names.size()));
     }
@@ -135,18 +157,7 @@ MatrixXd read_covariance(const JsonValue& covariance, const std::vector<std::str
             throw listed[k].error("is " + detail::quote(listed[k].text()) + "; must be " +
                                   detail::quote(names[k]));
         }
-        const std::vector<double> row = read_numbers(rows[k], k + 1);
-        const auto i = static_cast<Index>(k);
-        matrix.row(i).head(i + 1) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), i + 1);
-        matrix.col(i).head(i + 1) = matrix.row(i).head(i + 1).transpose();
-        constexpr double rounding = 1 + 1e-9;
-        for (Index j = 0; j <= i; ++j) {
-            if (matrix(i, j) * matrix(i, j) <= rounding * matrix(i, i) * matrix(j, j) &&
-                matrix(i, i) >= 0) {
-                continue;
-            }
-            throw rows[k].error("is no row of a covariance; a correlation is beyond 1");
-        }
+        read_covariance_row(rows[k], static_cast<Index>(k), matrix);
     }
     return matrix;
 }
@@ -164,22 +175,33 @@ double read_size(const JsonValue& value) {
     return number;
 }
 
-}  // namespace
+/// Of base and robot alone where the targets are others.
+MatrixXd read_covariance_of(const JsonValue& root, const Campaign& campaign,
+                            bool has_same_targets) {
+    std::vector<std::string> names = parameter_names(campaign);
+    const Index size = std::ssize(names);
+    if (!has_same_targets) names.resize(names.size() - campaign.sensor->unknown_names().size());
+    MatrixXd covariance = MatrixXd::Zero(size, size);
+    const Index told = std::ssize(names);
+    covariance.topLeftCorner(told, told) =
+        read_covariance(root["covariance"], names, has_same_targets);
+    return covariance;
+}
 
-Estimate read_estimate(const std::string& path, const Campaign& campaign) {
-    const detail::Json document = detail::read_document(path, "estimate");
-    const JsonValue root(document, path);
-    const std::string readings = root["readings"].text();
-    if (readings != campaign.sensor->words().readings) {
-        throw root["readings"].error("is " + detail::quote(readings) + ", the campaign's sensor " +
-                                     "measures " + campaign.sensor->words().readings +
-                                     "; must be an estimate of this campaign");
-    }
+void check_readings(const JsonValue& value, const Sensor& sensor) {
+    const std::string readings = value.text();
+    if (readings == sensor.words().readings) return;
+    throw value.error("is " + detail::quote(readings) + ", the campaign's sensor measures " +
+                      sensor.words().readings + "; must be an estimate of this campaign");
+}
+
+Estimate read_estimate_of(const JsonValue& root, const Campaign& campaign, bool has_same_targets) {
+    if (has_same_targets) check_readings(root["readings"], *campaign.sensor);
     detail::check_is_of_robot(root["chain"], campaign.robot);
     Estimate estimate;
-    estimate.parameters = read_parameters(root, campaign);
+    estimate.parameters = read_parameters(root, campaign, has_same_targets);
     estimate.names = parameter_names(campaign);
-    estimate.covariance = read_covariance(root["covariance"], estimate.names);
+    estimate.covariance = read_covariance_of(root, campaign, has_same_targets);
     estimate.ending = read_ending(root["ending"]);
     estimate.iterations = root["iterations"].count(0);
     estimate.degrees_of_freedom = root["degrees_of_freedom"].count(0);
@@ -187,6 +209,65 @@ Estimate read_estimate(const std::string& path, const Campaign& campaign) {
     estimate.model_error = read_size(root["model_error_m"]);
     estimate.model_error_orientation = read_size(root["model_error_rad"]);
     return estimate;
+}
+
+/// The campaign's, with those that the estimate learned.
+ParameterSpread read_learned_sizes(const JsonValue& sizes, const Campaign& campaign) {
+    ParameterSpread spread = campaign.spread;
+    for (const SharedSize& shared : shared_sizes(campaign.spread, campaign.robot)) {
+        const std::string key = shared.key + detail::si_suffix(shared.is_angle);
+        if (!sizes.has(key)) continue;
+        const JsonValue learned = sizes[key]["learned"];
+        const double size = learned.number();
+        if (!(size > 0)) throw learned.error(fmt::format("is {:g}; must be above 0", size));
+        size_of(spread, campaign.robot, shared.members.front()) = size;
+    }
+    return spread;
+}
+
+/// Where noise and expected sizes are others now than when the estimate was made. The model error
+/// is what it found, and so are sizes that were learned.
+std::vector<std::string> find_changes(const JsonValue& assumes, const Campaign& campaign,
+                                      bool has_learned) {
+    const Json before = assumes.json().flatten();
+    std::vector<std::string> changes;
+    for (const NamedNumber& now : assumptions_of(campaign)) {
+        const bool is_found = now.name.starts_with("model_error") ||
+                              (has_learned && now.name.starts_with("expected_error/"));
+        const auto then = before.find('/' + now.name);
+        if (is_found || then == before.end() || !then->is_number()) continue;
+        const auto was = then->get<double>();
+        if (std::abs(was - now.value) <= 1e-9 * std::max(was, now.value)) continue;
+        changes.push_back(fmt::format("{} was {:g}, is {:g}", now.name, was, now.value));
+    }
+    return changes;
+}
+
+}  // namespace
+
+Estimate read_estimate(const std::string& path, const Campaign& campaign) {
+    const detail::Json document = detail::read_document(path, "estimate");
+    return read_estimate_of(JsonValue(document, path), campaign, true);
+}
+
+EarlierFile read_earlier(const std::string& path, const Campaign& campaign, const EarlierUse& use) {
+    const detail::Json document = detail::read_document(path, "estimate");
+    const JsonValue root(document, path);
+    EarlierFile earlier;
+    earlier.estimate = read_estimate_of(root, campaign, !use.has_new_targets);
+    earlier.use = use;
+    const bool has_learned = root.has("learned_sizes");
+    if (has_learned) earlier.spread = read_learned_sizes(root["learned_sizes"], campaign);
+    if (root.has("assumes")) earlier.changes = find_changes(root["assumes"], campaign, has_learned);
+    return earlier;
+}
+
+std::string measurements_checksum_of(const std::string& path) {
+    const detail::Json document = detail::read_document(path, "estimate");
+    const JsonValue root(document, path);
+    constexpr const char* key = "measurements_checksum";
+    if (!root.has("made_from") || !root["made_from"].has(key)) return "";
+    return root["made_from"][key].text();
 }
 
 }  // namespace posewise::io

@@ -39,12 +39,29 @@ Json candidates_to_json(const Plan& plan, const std::string& plan_path) {
     return json;
 }
 
+/// An earlier estimate, and how it was used.
+Json earlier_to_json(const PlanRequest& request, const std::string& plan_path) {
+    const EarlierUse& use = request.earlier;
+    Json json = {{"file", detail::path_to_json(request.sources.estimate, plan_path)},
+                 {"as_prior", use.is_prior},
+                 {"moved", Json::array()},
+                 {"only", use.only}};
+    if (use.has_new_base) json["moved"].push_back("base");
+    if (use.has_new_targets) json["moved"].push_back("targets");
+    if (!use.is_prior) return json;
+    json["drift_m"] = use.drift.length;
+    json["drift_offset_rad"] = use.drift.offset;
+    json["drift_rad"] = use.drift.angle;
+    return json;
+}
+
 Json problem_to_json(const Plan& plan, const std::string& plan_path) {
     const PlanRequest& request = plan.request;
     Json json = {{"pose_count", request.pose_count},
                  {"prior", request.has_prior},
                  {"focus", request.is_focused_on_robot ? "robot" : "all"},
                  {"augment", detail::path_to_json(request.sources.augment, plan_path)}};
+    if (!request.sources.estimate.empty()) json["estimate"] = earlier_to_json(request, plan_path);
     if (plan.is_continuous()) {
         json["repaired_plan"] = detail::path_to_json(request.sources.repaired, plan_path);
         json["dropped"] = request.dropped;

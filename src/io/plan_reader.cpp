@@ -79,18 +79,24 @@ Criterion read_criterion(const JsonValue& json) {
     }
 }
 
+std::vector<std::string> read_texts(const JsonValue& list) {
+    std::vector<std::string> texts;
+    for (const JsonValue& text : list.list()) texts.push_back(text.text());
+    return texts;
+}
+
 void read_choice_limits(const JsonValue& problem, const std::string& path, PlanRequest& request) {
     request.sources.test_poses = read_path(problem["test_poses"], path);
     request.sources.groups = read_path(problem["groups"], path);
     request.group_limit = problem["group_limit"].count(0, most_poses);
-    for (const JsonValue& id : problem["excluded"].list()) request.excluded.push_back(id.text());
+    request.excluded = read_texts(problem["excluded"]);
     request.repeat_limit = problem["repeat_limit"].count(1, most_poses);
     request.least_distance = read_not_negative(problem["least_distance_rad"]);
 }
 
 void read_workspace(const JsonValue& problem, const std::string& path, PlanRequest& request) {
     request.sources.repaired = read_path(problem["repaired_plan"], path);
-    for (const JsonValue& id : problem["dropped"].list()) request.dropped.push_back(id.text());
+    request.dropped = read_texts(problem["dropped"]);
     request.sources.workspace = read_path(problem["workspace"], path);
     request.workspace_count = problem["workspace_poses"].count(1, most_workspace_poses);
     for (const JsonValue& number : problem["workspace_box_mm"].list()) {
@@ -103,6 +109,27 @@ void read_workspace(const JsonValue& problem, const std::string& path, PlanReque
     request.time_limit = read_not_negative(problem["time_limit_s"]);
 }
 
+double read_drift(const JsonValue& json) {
+    const double drift = json.number();
+    if (!(drift > 0)) throw json.error("must be above 0");
+    return drift;
+}
+
+void read_earlier(const JsonValue& json, const std::string& path, PlanRequest& request) {
+    request.sources.estimate = read_path(json["file"], path);
+    EarlierUse& use = request.earlier;
+    use.is_prior = json["as_prior"].boolean();
+    use.only = read_texts(json["only"]);
+    for (const JsonValue& part : json["moved"].list()) {
+        const std::string name = part.text();
+        if (name != "base" && name != "targets") throw part.error("must be base or targets");
+        (name == "base" ? use.has_new_base : use.has_new_targets) = true;
+    }
+    if (!use.is_prior) return;
+    use.drift = {read_drift(json["drift_m"]), read_drift(json["drift_offset_rad"]),
+                 read_drift(json["drift_rad"])};
+}
+
 void read_problem(const JsonValue& problem, const std::string& path, Plan& plan) {
     PlanRequest& request = plan.request;
     request.pose_count =
@@ -112,6 +139,7 @@ void read_problem(const JsonValue& problem, const std::string& path, Plan& plan)
     if (focus != "all" && focus != "robot") throw problem["focus"].error("must be all or robot");
     request.is_focused_on_robot = focus == "robot";
     request.sources.augment = read_path(problem["augment"], path);
+    if (problem.has("estimate")) read_earlier(problem["estimate"], path, request);
     if (plan.is_continuous()) {
         if (request.pose_count != static_cast<Index>(plan.poses.size())) {
             throw problem["pose_count"].error("is " + std::to_string(request.pose_count) +

@@ -99,4 +99,13 @@ void check_is_of_robot(const JsonValue& stated, const Chain& robot) {
             "torques follow, were others");
 }
 
+void check_is_same_robot(const std::string& path, const Chain& other, const Chain& robot) {
+    const Json there = robot_statement(other);
+    const Json here = robot_statement(robot);
+    const JsonValue stated(there, path);
+    constexpr const char* advice = "both campaigns must state the same robot and its errors";
+    compare(stated["elements"], here["elements"], "element", advice);
+    compare(stated["terms"], here["terms"], "term", advice);
+}
+
 }  // namespace posewise::detail

@@ -14,4 +14,7 @@ Json robot_statement(const Chain& robot);
 /// if `stated` is of another robot. Amounts are alike within 1e-9.
 void check_is_of_robot(const JsonValue& stated, const Chain& robot);
 
+/// The same of the robot that another campaign, in the file at `path`, states.
+void check_is_same_robot(const std::string& path, const Chain& other, const Chain& robot);
+
 }  // namespace posewise::detail

@@ -49,7 +49,9 @@ std::vector<Index> make_priority(const Campaign& campaign) {
 MatrixXd stack_at_nominal(const Campaign& campaign, Index pose_count) {
     const RowMatrixXd configurations =
         detail::random_configurations(campaign.robot, pose_count, configuration_seed);
-    return make_plain_blocks(campaign, campaign.nominal, configurations).matrix;
+    Parameters nominal = campaign.nominal;
+    nominal.robot.setZero(campaign.robot.parameter_count());  // beside it rank is nearly lost only
+    return make_plain_blocks(campaign, nominal, configurations).matrix;
 }
 
 /// How the dropped columns follow from the kept ones: kept x dropped, in the columns' own units.

@@ -81,6 +81,7 @@ std::vector<SharedSize> shared_sizes(const ParameterSpread& spread, const Chain&
         if (size == &sizes.length) return "length";
         if (size == &sizes.angle) return "angle";
         if (size == &sizes.gravity) return "gravity";
+        if (size == &sizes.tilt) return "tilt";
         return size == &sizes.harmonic ? "harmonic" : "offset";
     };
     const auto names = robot.parameter_names();

@@ -15,6 +15,7 @@ namespace {
 Chain with_driven_parameters(const Chain& chain) {
     std::vector<Element> elements = without_parameters(chain).elements();
     for (std::size_t k = 0; k < elements.size(); ++k) {
+        elements[k].known_terms.clear();  // which bend it too little to matter
         if (!elements[k].joints.empty()) elements[k].parameter = "element " + std::to_string(k);
     }
     return Chain(chain.joints(), std::move(elements));

@@ -87,7 +87,10 @@ std::string describe_counts(const Planning& planning) {
     if (planning.measured_count > 0) {
         text += fmt::format(", {} measured already", planning.measured_count);
     }
-    if (planning.plan.request.has_prior) text += ", prior: the scale as standard deviation";
+    if (planning.plan.request.has_prior) {
+        text += planning.campaign.prior ? ", prior: that of an earlier estimate"
+                                        : ", prior: the scale as standard deviation";
+    }
     return text;
 }
 

@@ -66,6 +66,7 @@ std::string describe_scaling(const Campaign& campaign, double repeats) {
     add(TermKind::Tilt, "tilt", campaign.spread.tilt);
     if (!campaign.spread.by_name.empty()) text += ", others by name in the campaign file";
     text += '\n';
+    if (campaign.prior) return text + "prior: that of an earlier estimate\n";
     if (campaign.spread.is_prior) text += "prior: the scale, as standard deviation\n";
     return text;
 }

@@ -1,5 +1,7 @@
 #include "posewise/task/calibration.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -14,9 +16,9 @@ namespace {
 
 /// What is calibrated, with what, and how far it is.
 struct Work {
-    const Campaign& whole;       ///< as asked for
-    std::vector<bool> is_known;  ///< of its robot's errors, see CalibrationOptions::only
-    Campaign campaign;           ///< less what is known
+    const Campaign& whole;          ///< as asked for, with the sizes that were learned earlier
+    detail::KnownParameters known;  ///< see EarlierUse::only
+    Campaign campaign;              ///< less what is known
     const Measurements& used;
     const CalibrationOptions& options;
     Index folds;
@@ -46,8 +48,16 @@ void check_options(const CalibrationOptions& options) {
         throw InputError(
             "an earlier estimate needs the method lm, without model selection or learning sizes");
     }
-    if (!options.only.empty() && !options.earlier) {
-        throw InputError("what is not identified needs an earlier estimate to take it from");
+    const auto count_refitted = [&](const char* name) {
+        return std::count(options.refitted.begin(), options.refitted.end(), name);
+    };
+    const auto base = count_refitted("base");
+    const auto targets = count_refitted("targets");
+    if (base + targets < std::ssize(options.refitted)) {
+        throw InputError("what is refitted for the validation must be base, targets or both");
+    }
+    if (options.validation_campaign != nullptr && (base == 0 || targets == 0)) {
+        throw InputError("for a validation of another campaign both base and targets are refitted");
     }
     if (!is_joint && options.joint.loss.kind != LossKind::Squares) {
         throw InputError("the loss is " + std::string(loss_name(options.joint.loss.kind)) +
@@ -96,10 +106,10 @@ void identify_by_method(const Work& work, const Parameters& registered, Calibrat
     result.starts_at_best = found.starts_at_best;
 }
 
-/// Base and targets fitted, the robot as its maker says.
+/// Base and targets fitted, as far as they are not known, the robot as its maker says.
 Metrics fit_nominal(const Work& work, Parameters registered) {
     registered.robot.resize(0);
-    const Campaign nominal = with_robot(work.campaign, without_parameters(work.campaign.robot));
+    const Campaign nominal = with_robot(work.campaign, without_parameters(work.whole.robot));
     return identify(nominal, work.used, registered, work.beside()).fit;
 }
 
@@ -158,10 +168,6 @@ void calibrate_with(Work& work, Calibration& result) {
         return;
     }
     Parameters& registered = registration.parameters;
-    const auto& earlier = work.options.earlier;
-    if (earlier) {
-        registered.robot = detail::open_values(earlier->estimate.parameters.robot, work.is_known);
-    }
     if (work.options.learns_sizes) {
         result.stated_spread = work.campaign.spread;
         work.campaign.spread =
@@ -187,33 +193,34 @@ void calibrate_with(Work& work, Calibration& result) {
             find_held_back_size(result.campaign, *result.stated_spread, work.used,
                                 result.estimate.parameters, work.stopped(work.options.joint));
     }
-    if (earlier) {
+    if (const auto& earlier = work.options.earlier) {
         result.estimate =
-            detail::complete(work.whole, earlier->estimate, work.is_known, result.estimate);
+            detail::complete(work.whole, earlier->estimate, work.known, result.estimate);
         result.campaign = with_model_error(work.whole, result.estimate);
     }
     result.expected = expected_error(result.campaign, result.estimate, work.used);
 }
 
-/// The estimate with base and targets identified anew.
-Registration find_refit(const Work& work, const Calibration& result, const Measurements& others) {
-    const VectorXd& robot = result.estimate.parameters.robot;
-    const std::vector<bool> all(static_cast<std::size_t>(robot.size()), true);
-    const Campaign held =
-        with_robot(result.campaign, with_known_errors(result.campaign.robot, robot, all));
-    Registration refitted = register_base_and_targets(held, others);
-    if (refitted.is_determined()) {
-        Estimate found = identify(held, others, refitted.parameters, work.beside());
-        refitted = {std::move(found.parameters), std::move(found.undetermined)};
-    }
-    refitted.parameters.robot = robot;
-    return refitted;
+/// The estimate with these parts of it identified anew, of the validation's campaign.
+Registration find_refit(const Work& work, const Calibration& result, const Campaign& campaign,
+                        const std::vector<std::string>& refitted) {
+    const Measurements& others = *work.options.validation;
+    Parameters values = result.estimate.parameters;
+    values.robot = errors_under_loads(result.campaign.robot, values.robot, campaign.robot);
+    const detail::KnownParameters known = detail::known_parameters(campaign, refitted);
+    const Campaign held = detail::with_known(campaign, known, values);
+    Registration registration = register_base_and_targets(held, others);
+    if (!registration.is_determined()) return registration;
+    const Estimate found = identify(held, others, registration.parameters, work.beside());
+    return {detail::complete(known, values, found.parameters), found.undetermined};
 }
 
-Parameters refit(const Work& work, const Calibration& result, const Measurements& others) {
-    Registration refitted = find_refit(work, result, others);
-    if (refitted.is_determined()) return std::move(refitted.parameters);
-    throw InputError("base and targets of the validation: " + refitted.undetermined);
+Parameters refit(const Work& work, const Calibration& result, const Campaign& campaign) {
+    const std::vector<std::string>& refitted = work.options.refitted;
+    Registration registration = find_refit(work, result, campaign, refitted);
+    if (registration.is_determined()) return std::move(registration.parameters);
+    throw InputError(fmt::format("{} of the validation: {}", fmt::join(refitted, " and "),
+                                 registration.undetermined));
 }
 
 /// Nothing unless the validation is off by far more than is expected there, and fits with base and
@@ -222,15 +229,15 @@ std::optional<Moved> find_moved(const Work& work, const Calibration& result) {
     constexpr double plain = 5;
     const double off = result.validation->rms();
     if (off <= plain * result.expected_validation->total()) return std::nullopt;
-    const Measurements& others = *work.options.validation;
-    const Parameters& before = result.estimate.parameters;
-    const Registration registration = find_refit(work, result, others);
+    const Campaign& campaign = result.campaign;
+    const Registration registration = find_refit(work, result, campaign, {"base", "targets"});
     if (!registration.is_determined()) return std::nullopt;
+    const Parameters& before = result.estimate.parameters;
     const Parameters& refitted = registration.parameters;
-    const Metrics left = make_metrics(residuals(work.whole, refitted, others),
-                                      work.whole.sensor->lengths_per_target());
+    const Metrics left = make_metrics(residuals(campaign, refitted, *work.options.validation),
+                                      campaign.sensor->lengths_per_target());
     if (plain * left.rms() > off) return std::nullopt;
-    const Targets& targets = work.whole.sensor->targets();
+    const Targets& targets = campaign.sensor->targets();
     Moved moved;
     moved.base =
         (refitted.world_from_base.translation() - before.world_from_base.translation()).norm();
@@ -240,6 +247,24 @@ std::optional<Moved> find_moved(const Work& work, const Calibration& result) {
         moved.targets = std::max(moved.targets, distance);
     }
     return moved;
+}
+
+/// On the measurements of the validation.
+void validate(const Work& work, Calibration& result) {
+    const CalibrationOptions& options = work.options;
+    if (options.validation == nullptr) return;
+    Campaign campaign = result.campaign;
+    Estimate estimate = result.estimate;
+    if (options.validation_campaign != nullptr) {
+        campaign = with_model_error(*options.validation_campaign, estimate);
+    }
+    if (!options.refitted.empty()) estimate.parameters = refit(work, result, campaign);
+    result.validation = make_metrics(residuals(campaign, estimate.parameters, *options.validation),
+                                     campaign.sensor->lengths_per_target());
+    // What else was identified there the estimate's covariance does not tell.
+    if (options.validation_campaign != nullptr) return;
+    result.expected_validation = expected_error(campaign, estimate, *options.validation);
+    if (options.refitted.empty()) result.moved = find_moved(work, result);
 }
 
 }  // namespace
@@ -270,42 +295,33 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
         options.used.empty() ? Measurements{} : take(measurements, options.used);
     const Measurements& used = options.used.empty() ? measurements : part;
     const Index folds = options.folds.value_or(default_folds(used.configuration_count()));
-    std::vector<bool> is_known = detail::known_errors(campaign, options.only);
-    Campaign reduced =
-        options.earlier ? detail::with_earlier(campaign, *options.earlier, is_known) : campaign;
-    Work work{campaign,
-              std::move(is_known),
-              std::move(reduced),
+    const auto& earlier = options.earlier;
+    Campaign whole = campaign;
+    if (earlier && earlier->spread) whole.spread = *earlier->spread;
+    Work work{whole,
+              detail::known_parameters(campaign,
+                                       earlier ? earlier->use.only : std::vector<std::string>{}),
+              earlier ? with_earlier(campaign, *earlier) : campaign,
               used,
               options,
               folds,
               detail::ProgressCounter(options.progress, part_count(campaign, options, folds))};
     Calibration result;
-    result.campaign = campaign;
+    result.campaign = whole;
+    if (earlier && earlier->spread) result.stated_spread = campaign.spread;
     result.method = options.method;
     result.measured = count_measured(used);
     result.excluded = options.excluded;
     calibrate_with(work, result);
     if (!result.is_identified()) return result;
-    const auto judge_on = [&](const Parameters& parameters, const Measurements& others) {
-        return make_metrics(residuals(campaign, parameters, others),
-                            campaign.sensor->lengths_per_target());
-    };
     const auto left_out = all_but(measurements.configuration_count(), options.used);
     if (!options.used.empty() && !left_out.empty()) {
         const Measurements others = take(measurements, left_out);
-        result.left_out = judge_on(result.estimate.parameters, others);
+        result.left_out = make_metrics(residuals(campaign, result.estimate.parameters, others),
+                                       campaign.sensor->lengths_per_target());
         result.expected_left_out = expected_error(result.campaign, result.estimate, others);
     }
-    if (options.validation != nullptr) {
-        const Parameters parameters = options.refits_validation
-                                          ? refit(work, result, *options.validation)
-                                          : result.estimate.parameters;
-        result.validation = judge_on(parameters, *options.validation);
-        result.expected_validation =
-            expected_error(result.campaign, result.estimate, *options.validation);
-        if (!options.refits_validation) result.moved = find_moved(work, result);
-    }
+    validate(work, result);
     if (options.predicted.rows() > 0) {
         result.predicted = predict_errors(result.campaign, result.estimate, options.predicted);
     }

@@ -1,61 +1,60 @@
 #include "earlier_estimate.hpp"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 
 #include "../core/text.hpp"
+#include "../measurement/known_sensor.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/model/error_terms.hpp"
 
-namespace posewise::detail {
+namespace posewise {
 namespace {
 
-std::vector<Index> numbers_of(const std::vector<bool>& is_known, bool wanted) {
+using detail::KnownParameters;
+
+std::vector<Index> numbers_of(const std::vector<bool>& marks, bool wanted) {
     std::vector<Index> numbers;
-    for (std::size_t k = 0; k < is_known.size(); ++k) {
-        if (is_known[k] == wanted) numbers.push_back(static_cast<Index>(k));
+    for (std::size_t k = 0; k < marks.size(); ++k) {
+        if (marks[k] == wanted) numbers.push_back(static_cast<Index>(k));
     }
     return numbers;
 }
 
-/// Where the parameters of the robot less what is known are among all of them.
-std::vector<Index> open_parameters(const Campaign& campaign, const std::vector<bool>& is_known) {
-    const Index begin = base_parameter_count(campaign);
-    std::vector<Index> open(static_cast<std::size_t>(begin));
-    std::iota(open.begin(), open.end(), Index{0});
-    for (const Index k : numbers_of(is_known, false)) open.push_back(begin + k);
-    for (Index k = begin + std::ssize(is_known); k < parameter_count(campaign); ++k) {
-        open.push_back(k);
-    }
-    return open;
+/// Of all parameters of the campaign.
+std::vector<bool> mark_known(const Campaign& campaign, const KnownParameters& known) {
+    std::vector<bool> marks(static_cast<std::size_t>(base_parameter_count(campaign)), known.base);
+    marks.insert(marks.end(), known.robot.begin(), known.robot.end());
+    marks.resize(static_cast<std::size_t>(parameter_count(campaign)), known.targets);
+    return marks;
 }
 
 /// The covariance of what was known then, a year or so later.
 MatrixXd drifted(const Campaign& campaign, const Earlier& earlier) {
     MatrixXd covariance = earlier.estimate.covariance;
+    const Drift& drift = earlier.use.drift;
     const Index begin = base_parameter_count(campaign);
     for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
         const Element& element = campaign.robot.parameter_element(k);
         const bool is_offset =
             !element.joints.empty() && campaign.robot.parameter_term(k) == nullptr;
-        const double drift = element.motion == Motion::Translation ? earlier.drift.length
-                             : is_offset                           ? earlier.drift.offset
-                                                                   : earlier.drift.angle;
-        covariance(begin + k, begin + k) += drift * drift;
+        const double change = element.motion == Motion::Translation ? drift.length
+                              : is_offset                           ? drift.offset
+                                                                    : drift.angle;
+        covariance(begin + k, begin + k) += change * change;
     }
     return covariance;
 }
 
 /// Of `reduced`, the campaign less what is known.
 Prior make_prior(const Campaign& campaign, const Campaign& reduced, const Earlier& earlier,
-                 const std::vector<bool>& is_known) {
-    Prior prior{earlier.estimate.parameters, !earlier.has_new_base, !earlier.has_new_targets, {}};
-    prior.mean.robot = open_values(prior.mean.robot, is_known);
-    std::vector<Index> told = open_parameters(campaign, is_known);
-    if (earlier.has_new_targets) {
-        told.resize(told.size() - static_cast<std::size_t>(prior.mean.sensor.size()));
+                 const KnownParameters& known) {
+    Prior prior{reduced.nominal, !earlier.use.has_new_base, !earlier.use.has_new_targets, {}};
+    std::vector<Index> told = numbers_of(mark_known(campaign, known), false);
+    if (earlier.use.has_new_targets) {
+        told.resize(told.size() - static_cast<std::size_t>(reduced.nominal.sensor.size()));
     }
-    if (earlier.has_new_base)
+    if (earlier.use.has_new_base)
         told.erase(told.begin(), told.begin() + base_parameter_count(reduced));
     prior.covariance = drifted(campaign, earlier)(told, told);
     return prior;
@@ -63,68 +62,120 @@ Prior make_prior(const Campaign& campaign, const Campaign& reduced, const Earlie
 
 }  // namespace
 
-std::vector<bool> known_errors(const Campaign& campaign, const std::vector<std::string>& only) {
+namespace detail {
+
+KnownParameters known_parameters(const Campaign& campaign, const std::vector<std::string>& only) {
     const std::vector<std::string> names = campaign.robot.parameter_names();
-    std::vector<bool> is_known(names.size(), !only.empty());
-    bool has_base = only.empty();
-    bool has_targets = only.empty();
+    const bool knows = !only.empty();
+    KnownParameters known{knows, knows, std::vector<bool>(names.size(), knows)};
     for (const std::string& name : only) {
         const auto found = std::find(names.begin(), names.end(), name);
         if (name == "base") {
-            has_base = true;
+            known.base = false;
         } else if (name == "targets") {
-            has_targets = true;
+            known.targets = false;
         } else if (name == "robot") {
-            std::fill(is_known.begin(), is_known.end(), false);
+            std::fill(known.robot.begin(), known.robot.end(), false);
         } else if (found != names.end()) {
-            is_known[static_cast<std::size_t>(found - names.begin())] = false;
+            known.robot[static_cast<std::size_t>(found - names.begin())] = false;
         } else {
             throw InputError(quote(name) +
                              " is no error of this robot; must be one, or base, targets or robot");
         }
     }
-    if (!has_base || !has_targets) {
+    if (numbers_of(mark_known(campaign, known), false).empty()) {
         throw InputError(
-            "base and targets are always identified; both must be named, then errors of the robot");
+            "nothing is left to identify; all that is named is known, by the campaign");
     }
-    return is_known;
+    return known;
 }
 
-Campaign with_earlier(const Campaign& campaign, const Earlier& earlier,
-                      const std::vector<bool>& is_known) {
-    const Chain robot =
-        with_known_errors(campaign.robot, earlier.estimate.parameters.robot, is_known);
-    Campaign changed = with_robot(campaign, robot);
-    changed.model_error = earlier.estimate.model_error;
-    changed.model_error_orientation = earlier.estimate.model_error_orientation;
-    if (!earlier.is_prior) return changed;
-    changed.spread.is_prior = true;
-    changed.prior = make_prior(campaign, changed, earlier, is_known);
+Campaign with_known(const Campaign& campaign, const KnownParameters& known,
+                    const Parameters& values) {
+    Campaign changed = campaign;
+    if (known.base) {
+        changed.base_is_known.fill(true);
+        changed.nominal.world_from_base = values.world_from_base;
+        changed.has_nominal_base = true;
+    }
+    if (known.targets && values.sensor.size() > 0) {
+        changed.sensor = std::make_shared<KnownSensor>(campaign.sensor, values.sensor);
+        changed.nominal.sensor.resize(0);
+        changed.has_nominal_targets = true;
+    }
+    changed = with_robot(changed, with_known_errors(campaign.robot, values.robot, known.robot));
+    changed.nominal.robot = values.robot(numbers_of(known.robot, false));
     return changed;
 }
 
-VectorXd open_values(const VectorXd& values, const std::vector<bool>& is_known) {
-    return values(numbers_of(is_known, false));
+Parameters complete(const KnownParameters& known, const Parameters& values,
+                    const Parameters& found) {
+    Parameters whole = found;  // its base is as it was where that is known
+    whole.robot = values.robot;
+    whole.robot(numbers_of(known.robot, false)) = found.robot;
+    if (known.targets) whole.sensor = values.sensor;
+    return whole;
 }
 
-Estimate complete(const Campaign& campaign, const Estimate& earlier,
-                  const std::vector<bool>& is_known, const Estimate& found) {
-    const std::vector<Index> known = numbers_of(is_known, true);
-    if (known.empty()) return found;
-    const std::vector<Index> open = numbers_of(is_known, false);
+Estimate complete(const Campaign& campaign, const Estimate& earlier, const KnownParameters& known,
+                  const Estimate& found) {
+    const std::vector<bool> marks = mark_known(campaign, known);
+    const std::vector<Index> of_earlier = numbers_of(marks, true);
+    if (of_earlier.empty()) return found;
+    const std::vector<Index> of_found = numbers_of(marks, false);
     Estimate whole = found;
     whole.names = parameter_names(campaign);
-    whole.parameters.robot = earlier.parameters.robot;
-    whole.parameters.robot(open) = found.parameters.robot;
-    const Index begin = base_parameter_count(campaign);
+    whole.parameters = complete(known, earlier.parameters, found.parameters);
     const Index size = parameter_count(campaign);
-    const std::vector<Index> of_found = open_parameters(campaign, is_known);
-    std::vector<Index> of_earlier;
-    for (const Index k : known) of_earlier.push_back(begin + k);
     whole.covariance = MatrixXd::Zero(size, size);
     whole.covariance(of_found, of_found) = found.covariance;
     whole.covariance(of_earlier, of_earlier) = earlier.covariance(of_earlier, of_earlier);
     return whole;
 }
 
-}  // namespace posewise::detail
+}  // namespace detail
+
+Campaign with_earlier(const Campaign& campaign, const Earlier& earlier) {
+    const Estimate& estimate = earlier.estimate;
+    const EarlierUse& use = earlier.use;
+    if (estimate.names != parameter_names(campaign)) {
+        throw InputError("the earlier estimate is of other parameters than those of " +
+                         campaign.name);
+    }
+    const KnownParameters known = detail::known_parameters(campaign, use.only);
+    if ((known.base && use.has_new_base) || (known.targets && use.has_new_targets)) {
+        throw InputError("base and targets that were moved must be identified, too");
+    }
+    Campaign expected = campaign;
+    if (earlier.spread) expected.spread = *earlier.spread;
+    expected.model_error = estimate.model_error;
+    expected.model_error_orientation = estimate.model_error_orientation;
+    if (!use.has_new_base) {
+        expected.nominal.world_from_base = estimate.parameters.world_from_base;
+        expected.has_nominal_base = true;
+    }
+    if (!use.has_new_targets) {
+        expected.nominal.sensor = estimate.parameters.sensor;
+        expected.has_nominal_targets = true;
+    }
+    Campaign changed = detail::with_known(expected, known, estimate.parameters);
+    if (!use.is_prior) return changed;
+    changed.spread.is_prior = true;
+    changed.prior = make_prior(campaign, changed, earlier, known);
+    return changed;
+}
+
+VectorXd errors_under_loads(const Chain& robot, const VectorXd& errors, const Chain& loaded) {
+    if (robot.parameter_names() != loaded.parameter_names()) {
+        throw InputError("the robots have other errors; must be the same robot");
+    }
+    VectorXd scaled = errors;
+    const std::vector<Compliance> before = compliances(robot);
+    const std::vector<Compliance> now = compliances(loaded);
+    for (std::size_t i = 0; i < before.size() && i < now.size(); ++i) {
+        scaled[now[i].parameter] *= now[i].largest / before[i].largest;
+    }
+    return scaled;
+}
+
+}  // namespace posewise

@@ -2,25 +2,31 @@
 
 #include <vector>
 
-#include "posewise/task/calibration.hpp"
+#include "posewise/task/earlier.hpp"
 
 namespace posewise::detail {
 
-/// Which of the robot's errors CalibrationOptions::only leaves as in the earlier estimate. Throws
-/// InputError for a name that is none, and where base or sensor would be left.
-std::vector<bool> known_errors(const Campaign& campaign, const std::vector<std::string>& only);
+/// What EarlierUse::only leaves as it was.
+struct KnownParameters {
+    bool base = false;
+    bool targets = false;
+    std::vector<bool> robot;  ///< of its errors
+};
 
-/// The campaign less the errors that are known, with the earlier estimate's values of them and its
-/// model error, and the prior that it gives of the others, where it is one.
-Campaign with_earlier(const Campaign& campaign, const Earlier& earlier,
-                      const std::vector<bool>& is_known);
+/// Throws InputError for a name that is none, and where nothing would be left to identify.
+KnownParameters known_parameters(const Campaign& campaign, const std::vector<std::string>& only);
 
-/// The values of those that are not known.
-VectorXd open_values(const VectorXd& values, const std::vector<bool>& is_known);
+/// The campaign with these values of what is known, less what is.
+Campaign with_known(const Campaign& campaign, const KnownParameters& known,
+                    const Parameters& values);
+
+/// Parameters of such a campaign as those of the whole.
+Parameters complete(const KnownParameters& known, const Parameters& values,
+                    const Parameters& found);
 
 /// An estimate of such a campaign as one of the whole: what was known has its earlier value and
 /// covariance.
-Estimate complete(const Campaign& campaign, const Estimate& earlier,
-                  const std::vector<bool>& is_known, const Estimate& found);
+Estimate complete(const Campaign& campaign, const Estimate& earlier, const KnownParameters& known,
+                  const Estimate& found);
 
 }  // namespace posewise::detail

@@ -38,7 +38,6 @@ Campaign with_base(Campaign campaign, const PlanningOptions& options) {
                          "tell it");
     }
     campaign.nominal = register_measured(campaign, *measured, name);
-    campaign.nominal.robot.setZero();
     campaign.has_nominal_base = campaign.has_nominal_targets = true;
     return campaign;
 }

@@ -1,3 +1,4 @@
+#include <Eigen/Cholesky>
 #include <limits>
 
 #include "posewise/calibrator/registration.hpp"
@@ -8,15 +9,17 @@
 namespace posewise {
 namespace {
 
-/// Blocks, and below them what a prior tells: the identity's rows of parameters that have one.
+/// Blocks, and below them what a prior tells: a root of its information of parameters that have
+/// one.
 MatrixXd stack_with_prior(const Blocks& blocks, const MatrixXd& prior) {
     std::vector<Index> known;
     for (Index k = 0; k < prior.rows(); ++k) {
         if (prior(k, k) > 0) known.push_back(k);
     }
-    MatrixXd stacked(blocks.matrix.rows() + static_cast<Index>(known.size()),
-                     blocks.parameter_count());
-    stacked << blocks.matrix, prior(known, Eigen::all);
+    const MatrixXd root = MatrixXd(prior(known, known)).llt().matrixU();
+    MatrixXd stacked = MatrixXd::Zero(blocks.matrix.rows() + root.rows(), blocks.parameter_count());
+    stacked.topRows(blocks.matrix.rows()) = blocks.matrix;
+    stacked.bottomRows(root.rows())(Eigen::all, known) = root;
     return stacked;
 }
 

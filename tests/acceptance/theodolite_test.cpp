@@ -241,7 +241,7 @@ TEST(ATheodolite, HasFilesOfEstimates) {
     const Measurements measured = simulate(campaign, {.pose_count = 40}).measurements;
     const Calibration calibration = calibrate(campaign, measured, {.folds = 0});
     const TemporaryFolder folder;
-    io::write_estimate(folder.path("estimate.json"), calibration, "measured.csv");
+    io::write_estimate(folder.path("estimate.json"), calibration, {"measured.csv"});
     const Parameters again = io::read_estimate(folder.path("estimate.json"), campaign).parameters;
     EXPECT_EQ(again.robot, calibration.estimate.parameters.robot);
     EXPECT_EQ(again.sensor, calibration.estimate.parameters.sensor);

@@ -40,7 +40,7 @@ class OtherCampaigns : public Program {
     /// RMS (mm) of `other` by a robot with these errors, calibrated on `campaign`.
     double judged_on(const std::string& other, const std::string& campaign,
                      const std::string& errors, const std::string& robot,
-                     const std::string& options = "--refit") const {
+                     const std::string& options = "--refit base,targets") const {
         const std::string data = std::string(POSEWISE_REAL_DATA) + "/";
         write_text("c.yaml", "name: c\nrobot:\n  errors: " + errors + "\n" + robot);
         const Outcome outcome = run("calibrate c.yaml --no-prior --folds 0 -m " + data + campaign +

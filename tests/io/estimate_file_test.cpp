@@ -37,7 +37,7 @@ class EstimateFile : public ::testing::Test {
     Json written() const {
         Calibration calibration = calibration_;
         calibration.campaign = campaign_;
-        write_estimate(path_, calibration, "m.csv");
+        write_estimate(path_, calibration, {"m.csv"});
         return Json::parse(read_file(path_));
     }
 
@@ -162,6 +162,48 @@ TEST_F(EstimateFile, IsReadBackExactly) {
     EXPECT_EQ(parameters.sensor, expected.sensor);
     EXPECT_EQ(parameters.world_from_base.translation(), expected.world_from_base.translation());
     EXPECT_TRUE(parameters.world_from_base.isApprox(expected.world_from_base, 1e-15));
+}
+
+TEST_F(EstimateFile, IsReadAsAnEarlierOneWithTheSizesLearned) {
+    calibration_.stated_spread = campaign_.spread;
+    Campaign stated = campaign_;
+    campaign_.spread.length = 2.5e-3;
+    Json document = written();
+    document["made_from"]["measurements_checksum"] = "fnv1a64:0123456789abcdef";
+    folder_.write("estimate.json", document.dump());
+    const EarlierFile earlier = read_earlier(path_, stated, {.is_prior = true});
+    EXPECT_TRUE(earlier.use.is_prior);
+    ASSERT_TRUE(earlier.spread);
+    EXPECT_EQ(earlier.spread->length, 2.5e-3);
+    EXPECT_EQ(earlier.spread->angle, stated.spread.angle);
+    EXPECT_EQ(earlier.estimate.covariance, calibration_.estimate.covariance);
+    EXPECT_TRUE(earlier.changes.empty()) << earlier.changes.front();
+    EXPECT_EQ(measurements_checksum_of(path_), "fnv1a64:0123456789abcdef");
+
+    document["assumes"]["sigma_m"] = 1.0;
+    document["learned_sizes"]["length_m"]["learned"] = 0.0;
+    folder_.write("estimate.json", document.dump());
+    EXPECT_EQ(testing::input_error_of([&] { read_earlier(path_, stated, {}); }),
+              "estimate.json: learned_sizes.length_m.learned: is 0; must be above 0");
+    document.erase("learned_sizes");
+    folder_.write("estimate.json", document.dump());
+    EXPECT_EQ(read_earlier(path_, stated, {}).changes.front().substr(0, 15), "sigma_m was 1, ");
+}
+
+TEST_F(EstimateFile, TellsNothingOfTargetsThatWereMoved) {
+    written();
+    Campaign other = campaign_;
+    other.sensor = std::make_shared<PoseSensor>(std::nullopt, IsotropicNoise{1e-5}, 1e-5);
+    other.nominal.sensor = VectorXd::Constant(6, 0.1);
+    EXPECT_THROW(read_earlier(path_, other, {}), InputError);
+    const Estimate estimate = read_earlier(path_, other, {.has_new_targets = true}).estimate;
+    EXPECT_EQ(estimate.names, parameter_names(other));
+    EXPECT_EQ(estimate.parameters.robot, calibration_.estimate.parameters.robot);
+    EXPECT_EQ(estimate.parameters.sensor, other.nominal.sensor);
+    const Index told = parameter_count(other) - 6;
+    EXPECT_EQ(estimate.covariance.topLeftCorner(told, told),
+              calibration_.estimate.covariance.topLeftCorner(told, told));
+    EXPECT_TRUE(estimate.covariance.bottomRows(6).isZero(0));
 }
 
 TEST_F(EstimateFile, OfAnotherCampaignIsRefused) {

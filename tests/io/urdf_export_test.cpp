@@ -168,7 +168,7 @@ TEST(CalibratedUrdf, PredictsTheMeasuredPointsAsTheEstimateDoes) {
     const Measurements& measurements = simulation.measurements;
     const Calibration calibration = calibrate(file, measurements, {.folds = 0});
     ASSERT_EQ(calibration.estimate.ending, Ending::Converged);
-    write_estimate(folder.path("estimate.json"), calibration, "simulated");
+    write_estimate(folder.path("estimate.json"), calibration, {"simulated"});
     const Parameters parameters = read_estimate(folder.path("estimate.json"), file).parameters;
     const CalibratedUrdf urdf = make_calibrated_urdf(*file.urdf, file.robot, parameters.robot);
     EXPECT_TRUE(urdf.not_expressed.empty());

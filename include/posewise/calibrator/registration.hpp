@@ -7,7 +7,8 @@
 
 namespace posewise {
 
-/// Base and targets, the robot at nominal (its errors zero).
+/// Base and targets, the robot as expected (its errors as Campaign::nominal has them: zero, unless
+/// with_earlier() says otherwise).
 struct Registration {
     Parameters parameters;
     /// Why the measurements do not determine them, as a sentence; empty: they do.
@@ -16,7 +17,7 @@ struct Registration {
     bool is_determined() const { return undetermined.empty(); }
 };
 
-/// Base pose and the sensor's unknowns with no initial guess, the robot at nominal. For points,
+/// Base pose and the sensor's unknowns with no initial guess, the robot as expected. For points,
 /// with X = R_base^T and c = -R_base^T p_base, the equations X p_ij + c - R_i t_j = p_i are linear
 /// in (X, c, t): least squares, X projected on SO(3), then polished on the true residuals. Where
 /// they leave a part of X open (points that lie in planes, axes that cross) X is searched among the

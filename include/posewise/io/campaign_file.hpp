@@ -36,6 +36,7 @@ ErrorModel parse_error_model(const std::string& name);
 /// A campaign, what else its file says, and the defaults of the command line.
 struct CampaignFile : Campaign {
     std::string path;
+    std::string checksum;  ///< of the file's text
     /// The robot as the file's elements state it. With ErrorModel::Complete, `robot` is the
     /// irreducible form of its complete model, with ErrorModel::Full its full model, else the
     /// same.

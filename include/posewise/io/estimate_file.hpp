@@ -1,17 +1,31 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "posewise/task/calibration.hpp"
 
 namespace posewise::io {
 
+/// What an estimate was made from: paths, and checksums where they are known.
+struct Provenance {
+    std::string measurements{};
+    std::string measurements_checksum{};  ///< checksum_of()
+    std::string campaign_file{};
+    std::string campaign_checksum{};  ///< CampaignFile::checksum
+    /// Of the command line: its name and what was said.
+    std::vector<std::pair<std::string, std::vector<std::string>>> options{};
+};
+
+/// Tells whether measurements are the same: of configurations, their ids, what was observed there.
+std::string checksum_of(const Measurements& measurements);
+
 /// Writes a calibration as JSON, units in the names (accuracy in mm, all else in m and rad),
-/// numbers with as many digits as it takes to read them back exactly. `measurements` says where
-/// they came from, a path. Same input, same bytes. The calibration must be identified.
+/// numbers with as many digits as it takes to read them back exactly. Same input, same bytes. The
+/// calibration must be identified.
 void write_estimate(const std::string& path, const Calibration& calibration,
-                    const std::string& measurements);
+                    const Provenance& made_from);
 
 /// Writes CSV, a row a configuration: config, then parameters, left_over, noise, total (RMS) and
 /// p95 (95 % of points are off by less), each with _mm, of orientations with _mrad. `ids` are those
@@ -24,5 +38,17 @@ void write_predictions_csv(const std::string& path, const std::vector<std::strin
 /// is of another robot than the campaign's (see designs/README.md) or of another kind of sensor.
 /// Whether it can be used is for find_faults() to say.
 Estimate read_estimate(const std::string& path, const Campaign& campaign);
+
+/// The same as an earlier estimate, with the sizes of errors that were learned along. Targets (the
+/// sensor's unknowns) that were moved since may be others now, seen by another kind of sensor: they
+/// are as the campaign states them, with covariance 0.
+struct EarlierFile : Earlier {
+    /// Where the campaign's noise or expected sizes are others now: "sigma_m was 1e-05, is 2e-05".
+    std::vector<std::string> changes;
+};
+EarlierFile read_earlier(const std::string& path, const Campaign& campaign, const EarlierUse& use);
+
+/// Provenance::measurements_checksum of an estimate; empty if it does not say.
+std::string measurements_checksum_of(const std::string& path);
 
 }  // namespace posewise::io

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "posewise/io/estimate_file.hpp"
 #include "posewise/io/robot_files.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/model/dh.hpp"
-#include "posewise/task/calibration.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/correction.hpp"
 #include "posewise/task/geometry.hpp"
@@ -47,7 +47,7 @@ std::string to_json(const ApproximateDesign& design);
 std::string to_json(const Verification& verification, const Plan& plan, const std::string& path);
 
 /// As write_estimate() writes it. The calibration must be identified.
-std::string to_json(const Calibration& calibration, const std::string& measurements);
+std::string to_json(const Calibration& calibration, const Provenance& made_from);
 
 /// Of one error model, or of several (compare_models()).
 std::string to_json(const std::vector<Study>& studies);

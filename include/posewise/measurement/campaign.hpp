@@ -84,7 +84,7 @@ struct Campaign {
     VectorXd joint_repeatability;
     /// Which of base.x .. base.z, base.rx .. base.rz are as stated, so that none is identified.
     std::array<bool, 6> base_is_known{};
-    /// Expected base and targets, for planning and simulation; robot errors are zero.
+    /// Expected base and targets, for planning and simulation; robot errors too, zero at first.
     Parameters nominal;
     /// Whether base and targets in `nominal` were stated, not made up.
     bool has_nominal_base = false;

@@ -8,6 +8,7 @@
 #include "posewise/calibrator/model_selection.hpp"
 #include "posewise/core/progress.hpp"
 #include "posewise/task/doubts.hpp"
+#include "posewise/task/earlier.hpp"
 
 namespace posewise {
 
@@ -19,22 +20,6 @@ enum class CalibrationMethod {
 };
 /// "lm", "two-step", "global".
 std::string_view method_name(CalibrationMethod method);
-
-/// By how much a robot's errors may have changed since it was calibrated, standard deviations.
-struct Drift {
-    double length = 2e-5;  ///< m
-    double offset = 1e-4;  ///< of joints that turn, rad
-    double angle = 2e-5;   ///< all others, rad
-};
-
-/// An earlier estimate of the same robot, where identification starts.
-struct Earlier {
-    Estimate estimate;      ///< names as those of the campaign
-    bool is_prior = false;  ///< its covariance, and drift of the robot's errors, are the prior
-    Drift drift{};
-    bool has_new_base = false;     ///< moved since: it tells nothing of the base
-    bool has_new_targets = false;  ///< or of the targets (the sensor's unknowns)
-};
 
 struct CalibrationOptions {
     CalibrationMethod method = CalibrationMethod::Joint;
@@ -50,14 +35,15 @@ struct CalibrationOptions {
     std::vector<std::string> excluded{};
     /// Needs Joint.
     std::optional<Earlier> earlier{};
-    /// What is identified: "base" and "targets" (the sensor's unknowns), "robot" or names of its
-    /// errors; the others stay as in `earlier`. Empty: all.
-    std::vector<std::string> only{};
-    /// Whether base and targets are identified anew for `validation`: it was measured with another
-    /// set-up. The robot's errors stay.
-    bool refits_validation = false;
     /// More measurements, to judge on only; the caller keeps them alive. Null: none.
     const Measurements* validation = nullptr;
+    /// What is identified anew for them, since they were measured with another set-up: "base",
+    /// "targets" or both. The rest stays. Empty: nothing.
+    std::vector<std::string> refitted{};
+    /// The campaign they are of: the same robot, perhaps with another payload, and its errors, but
+    /// other targets or another sensor. Then base and targets must both be refitted. Null: the
+    /// same.
+    const Campaign* validation_campaign = nullptr;
     /// Configurations that need not be measured, to say what to expect there (m x joints, and
     /// measured torques; rad, m, N m). Empty: none.
     RowMatrixXd predicted{};

@@ -10,6 +10,7 @@
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/planner/prediction.hpp"
 #include "posewise/selection/choice.hpp"
+#include "posewise/task/earlier.hpp"
 
 namespace posewise {
 
@@ -26,6 +27,7 @@ enum class CandidateKind {
 /// find them again; empty where there were none.
 struct PlanSources {
     std::string campaign;
+    std::string estimate;  ///< an earlier one that with_earlier() applied to the campaign
     std::string candidates;
     Index rows_per_block = 0;  ///< of plain blocks
     std::string variable;      ///< of plain blocks in a MATLAB file; empty: the first
@@ -50,6 +52,7 @@ struct PlanRequest {
     Index starts = 0;
     std::uint64_t seed = 1;  ///< of all draws
     PlanSources sources;
+    EarlierUse earlier{};  ///< how the estimate was used, if there was one
 
     // Of choose().
     Index group_limit = 0;              ///< most of one group; 0: any number

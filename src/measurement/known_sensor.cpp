@@ -1,0 +1,44 @@
+#include "known_sensor.hpp"
+
+namespace posewise::detail {
+namespace {
+
+Targets known_targets(const Targets& targets, const VectorXd& unknowns) {
+    std::vector<std::optional<Vector3d>> positions;
+    for (Index j = 0; j < targets.count(); ++j) positions.push_back(targets.position(j, unknowns));
+    return Targets(positions);
+}
+
+}  // namespace
+
+KnownSensor::KnownSensor(std::shared_ptr<const Sensor> sensor, VectorXd unknowns)
+    : sensor_(std::move(sensor)),
+      unknowns_(std::move(unknowns)),
+      targets_(known_targets(sensor_->targets(), unknowns_)) {}
+
+SensorWords KnownSensor::words() const {
+    SensorWords words = sensor_->words();
+    const std::pair<std::string, std::string> changes[] = {
+        {describe(sensor_->targets()), describe(targets_)}, {"(to be identified)", "(known)"}};
+    for (const auto& [open, known] : changes) {
+        const auto place = words.sentence.find(open);
+        if (place != std::string::npos) words.sentence.replace(place, open.size(), known);
+    }
+    return words;
+}
+
+std::optional<ObservedPoints> KnownSensor::observed_points() const {
+    const std::optional<ObservedPoints> observed = sensor_->observed_points();
+    if (!observed) return std::nullopt;
+    // Where they are in the flange is what would be observed with the flange in the world's origin.
+    const VectorXd in_flange =
+        observed->positions(sensor_->predict(Isometry3d::Identity(), unknowns_));
+    std::vector<std::optional<Vector3d>> points;
+    for (Index k = 0; k < observed->points.count(); ++k) {
+        points.emplace_back(in_flange.segment<3>(3 * k));
+    }
+    return ObservedPoints{Targets(points), observed->positions,
+                          [](const VectorXd& coordinates) { return coordinates; }};
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+
+#include "posewise/measurement/sensor.hpp"
+
+namespace posewise::detail {
+
+/// A sensor whose unknowns are known: another one with these values of them.
+class KnownSensor final : public Sensor {
+  public:
+    KnownSensor(std::shared_ptr<const Sensor> sensor, VectorXd unknowns);
+
+    const Targets& targets() const override { return targets_; }
+    Index row_count() const override { return sensor_->row_count(); }
+    std::vector<std::string> observation_names() const override {
+        return sensor_->observation_names();
+    }
+    std::vector<std::string> unknown_names() const override { return {}; }
+    VectorXd predict(const Isometry3d& world_from_flange, const VectorXd&) const override {
+        return sensor_->predict(world_from_flange, unknowns_);
+    }
+    void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                       const VectorXd&, Eigen::Ref<RowMatrixXd> J) const override {
+        sensor_->differentiate(world_from_flange, twists, unknowns_, J);
+    }
+    MatrixXd covariance(const Isometry3d& world_from_flange, const VectorXd&) const override {
+        return sensor_->covariance(world_from_flange, unknowns_);
+    }
+
+    bool is_angle(Index row) const override { return sensor_->is_angle(row); }
+    bool is_distance(Index row) const override { return sensor_->is_distance(row); }
+    bool has_orientation() const override { return sensor_->has_orientation(); }
+    Index target_count() const override { return sensor_->target_count(); }
+    VectorXd deviation(const VectorXd& observation, const VectorXd& reference) const override {
+        return sensor_->deviation(observation, reference);
+    }
+    VectorXd deviate(const VectorXd& reference, const VectorXd& deviation) const override {
+        return sensor_->deviate(reference, deviation);
+    }
+    void differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                             const Twist& direction, const TwistMatrix& twist_rates,
+                             const VectorXd&, Eigen::Ref<RowMatrixXd> J_rate) const override {
+        sensor_->differentiate_along(world_from_flange, twists, direction, twist_rates, unknowns_,
+                                     J_rate);
+    }
+    MatrixXd covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
+                             const VectorXd&) const override {
+        return sensor_->covariance_rate(world_from_flange, direction, unknowns_);
+    }
+    bool has_constant_covariance() const override { return sensor_->has_constant_covariance(); }
+    std::vector<NoiseNumber> noise_numbers() const override { return sensor_->noise_numbers(); }
+    SensorWords words() const override;
+    std::optional<ObservedPoints> observed_points() const override;
+
+  private:
+    std::shared_ptr<const Sensor> sensor_;
+    VectorXd unknowns_;
+    Targets targets_;
+};
+
+}  // namespace posewise::detail

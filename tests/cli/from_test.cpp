@@ -1,0 +1,273 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+
+#include "program.hpp"
+
+/// Commands that go on from an earlier estimate, --from.
+namespace posewise::testing {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// With as many digits as it takes.
+std::string number(double value) { return Json(value).dump(); }
+
+/// As a list in YAML, times `unit`.
+std::string list(const std::vector<double>& values, double unit) {
+    std::string text;
+    for (const double value : values) text += (text.empty() ? "[" : ", ") + number(unit * value);
+    return text + ']';
+}
+
+/// "312 mm + 0.5 mm": the amount of an element with the error that was found.
+std::string add_error(const std::string& amount, const Json& error) {
+    const bool is_length = error.contains("value_m");
+    const double value = is_length ? 1e3 * error["value_m"].get<double>()
+                                   : error["value_rad"].get<double>() * 180 / std::numbers::pi;
+    const std::string size = number(std::abs(value)) + (is_length ? " mm" : " deg");
+    const std::string sign = value < 0 ? "-" : "";
+    if (amount == "0") return sign + size;
+    return amount + (value < 0 ? " - " : " + ") + size;
+}
+
+/// The campaign with base, targets and errors copied by hand from an estimate: errors go into the
+/// nominal amounts, if asked.
+std::string copy_by_hand(const std::string& campaign, const Json& estimate, bool copies_errors) {
+    std::istringstream lines(campaign);
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+        const auto bracket = line.find('[');
+        if (copies_errors && line.starts_with("    - ") && bracket != std::string::npos) {
+            const std::string name = line.substr(bracket + 1, line.find(']') - bracket - 1);
+            const std::string amount = line.substr(9, bracket - 10);
+            line =
+                line.substr(0, 9) + add_error(amount, estimate["robot"][name]) + " [" + name + ']';
+        } else if (line.starts_with("  targets:")) {
+            line = "  targets: {position_mm: [";
+            for (const Json& target : estimate["targets"]) {
+                line += list(target["position_m"], 1e3) + ", ";
+            }
+            line += "]}";
+        } else if (line.starts_with("base:")) {
+            line = "base: {position_mm: " + list(estimate["base"]["position_m"], 1e3) +
+                   ", rpy_deg: " + list(estimate["base"]["rpy_deg"], 1) + '}';
+        }
+        text += line + '\n';
+    }
+    return text;
+}
+
+/// Less the lines that name files or estimates, and the bound that is searched only.
+std::string without_names(const std::string& text) {
+    std::istringstream lines(text);
+    std::string kept;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("from:") || line.starts_with("plan:")) continue;
+        if (line.starts_with("searched:")) continue;
+        kept += line + '\n';
+    }
+    return kept;
+}
+
+class From : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        campaign_ = read_text(std::string(POSEWISE_SOURCE_DIR) +
+                              "/designs/fanuc_r2000ic_165f/campaign.yaml");
+        write_text("c.yaml", campaign_);
+        run_well("simulate c.yaml --truth 7 --seed 3 --poses 30 --repeats 3 -o s.csv");
+        run_well("calibrate c.yaml -m s.csv --folds 0 -o e.json");
+        estimate_ = Json::parse(text_of("e.json"));
+        write_text("hand.yaml", copy_by_hand(campaign_, estimate_, true));
+    }
+
+    void expect_same(const std::string& command, const std::string& options) const {
+        const std::string by_hand = run_well(command + " hand.yaml " + options);
+        const std::string from = run_well(command + " c.yaml --from e.json " + options);
+        EXPECT_EQ(without_names(from), without_names(by_hand)) << command;
+        EXPECT_NE(from.find("from:       e.json: base, targets, errors and model error"),
+                  std::string::npos)
+            << from;
+    }
+
+    std::string campaign_;
+    Json estimate_;
+};
+
+TEST_F(From, IsWhatACampaignCopiedByHandIs) {
+    expect_same("select", "--random 200 -k 9 --starts 3 --threads 1 -o p.json");
+    expect_same("select", "--random 200 -k 9 --relax --digits 6");
+    expect_same("plan", "-k 9 --pool 100 --starts 1 --workspace-poses 50 --threads 1 -o p.json");
+    expect_same("indices", "-m s.csv");
+    EXPECT_NE(run_well("indices c.yaml -m s.csv"), run_well("indices hand.yaml -m s.csv"));
+    expect_same("study", "-m s.csv -k 9 --random 6 --splits 2 --threads 1");
+}
+
+TEST_F(From, InspectTakesBaseAndTargets) {
+    write_text("hand.yaml", copy_by_hand(campaign_, estimate_, false));
+    EXPECT_EQ(run_well("inspect c.yaml --from e.json --json"),
+              run_well("inspect hand.yaml --json"));
+    EXPECT_NE(run_well("inspect c.yaml --json"), run_well("inspect hand.yaml --json"));
+    // The robot as it was found misses by its noise, the nominal one by its errors.
+    const auto missed = [&](const std::string& options) {
+        return Json::parse(run_well("inspect c.yaml -m s.csv --json" +
+                                    options))["joint_directions"][0]["distance_rms_mm"]
+            .get<double>();
+    };
+    EXPECT_LT(missed(" --from e.json"), 0.2);
+    EXPECT_GT(missed(""), 1);
+}
+
+TEST_F(From, PlansForReRegistration) {
+    const std::string out = run_well(
+        "plan c.yaml --from e.json --only base,targets -k 5 --pool 300 --threads 1 -o p.json");
+    EXPECT_NE(out.find("; to be identified: base, targets\n"), std::string::npos) << out;
+    const Json plan = Json::parse(text_of("p.json"));
+    EXPECT_EQ(plan["predicted"]["standard_deviation"].size(), 15U);
+    EXPECT_EQ(plan["problem"]["estimate"]["only"], Json({"base", "targets"}));
+    run_well("verify p.json");
+    // Errors that are known widen nothing: five poses tell more than all errors' twenty-four.
+    EXPECT_LT(plan["predicted"]["position_error_rms_m"].get<double>(), 2e-4);
+
+    run_well("select c.yaml --from e.json --only base -m s.csv -k 3 -c d -o b.json");
+    EXPECT_EQ(Json::parse(text_of("b.json"))["assumes"]["expected_error"].size(), 6U);
+    run_well("verify b.json");
+    expect_input_error("plan c.yaml --from e.json --only base,dq9 -k 5 -o q.json",
+                       "'dq9' is no error of this robot");
+
+    // The file that the plan was made from is found by its path, or where it is now.
+    std::filesystem::rename(folder_ / "e.json", folder_ / "moved.json");
+    expect_input_error("verify p.json", "e.json");
+    run_well("verify p.json --from moved.json");
+    Json other = estimate_;
+    other["robot"]["dq3"]["value_rad"] = 0.05;
+    write_text("moved.json", other.dump());
+    const Outcome outcome = run("verify p.json --from moved.json");
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("not as stated"), std::string::npos) << outcome.err;
+}
+
+TEST_F(From, AsPriorCountsWhatWasKnown) {
+    const auto rms = [&](const std::string& options) {
+        run_well("plan c.yaml -k 6 --pool 200 --starts 1 --workspace-poses 50 -o p.json " +
+                 options);
+        run_well("verify p.json");
+        return Json::parse(text_of("p.json"))["predicted"]["position_error_rms_m"].get<double>();
+    };
+    const double anew = rms("--from e.json --prior");
+    const double after = rms("--from e.json --as-prior");
+    const double drifted = rms("--from e.json --as-prior --drift-offset-mrad 5 --drift-mm 1");
+    EXPECT_LT(after, 0.5 * anew);
+    EXPECT_GT(drifted, 1.2 * after);
+    EXPECT_GT(rms("--from e.json --as-prior --moved base,targets"), after);
+    EXPECT_EQ(run("plan c.yaml -k 6 --from e.json --as-prior --no-prior").code, 2);
+    EXPECT_EQ(run("plan c.yaml -k 6 --as-prior").code, 2);
+    EXPECT_EQ(run("study c.yaml -m s.csv --from e.json --models stated,full").code, 2);
+
+    const Outcome twice = run("indices c.yaml -m s.csv --from e.json --as-prior");
+    EXPECT_EQ(twice.code, 0);
+    EXPECT_EQ(twice.err,
+              "posewise: warning: e.json: was made from these very measurements; as a prior beside "
+              "them it counts them twice\n");
+    run_well("simulate c.yaml --truth 7 --seed 4 --poses 8 -o t.csv");
+    const std::string known = run_well("indices c.yaml -m t.csv --from e.json --as-prior");
+    EXPECT_GT(number_behind(known, "o3 "),
+              number_behind(run_well("indices c.yaml -m t.csv"), "o3 "));
+}
+
+TEST_F(From, TakesTheSizesLearned) {
+    run_well("calibrate c.yaml -m s.csv --prior --learn-sizes --folds 0 -o l.json");
+    const Json learned = Json::parse(text_of("l.json"));
+    EXPECT_NE(learned["assumes"]["expected_error"]["Tx1_m"], 1e-3);
+    run_well("select c.yaml --prior --from l.json --random 50 -k 9 --starts 2 -o p.json");
+    const Json plan = Json::parse(text_of("p.json"));
+    EXPECT_EQ(plan["assumes"]["expected_error"], learned["assumes"]["expected_error"]);
+    EXPECT_EQ(plan["assumes"]["model_error_m"], learned["model_error_m"]);
+    // And hands them on.
+    run_well("calibrate c.yaml -m s.csv --prior --from l.json --folds 0 -o again.json");
+    EXPECT_EQ(Json::parse(text_of("again.json"))["learned_sizes"], learned["learned_sizes"]);
+}
+
+TEST_F(From, RefusesAnotherRobotAndWhatIsNoCalibration) {
+    std::string other = campaign_;
+    other.replace(other.find("1075 mm"), 7, "1175 mm");
+    write_text("other.yaml", other);
+    ASSERT_EQ(
+        run("calibrate c.yaml -m s.csv --folds 0 --max-iterations 1 --force -o bad.json").code, 0);
+    for (const std::string command : {"select", "plan", "indices", "study", "inspect"}) {
+        const bool measures = command == "indices" || command == "study";
+        const std::string options = command == "select" ? " --random 50 -k 9 -o q.json"
+                                    : command == "plan" ? " -k 9 --pool 50 -o q.json"
+                                    : measures          ? " -m s.csv"
+                                                        : "";
+        expect_input_error(command + " other.yaml --from e.json" + options,
+                           "the estimate is of another robot");
+        expect_input_error(command + " c.yaml --from bad.json" + options,
+                           "bad.json: is no calibration to use: it did not converge");
+    }
+    const Outcome forced = run("indices c.yaml -m s.csv --from bad.json --force");
+    EXPECT_EQ(forced.code, 0);
+    EXPECT_NE(forced.err.find("did not converge"), std::string::npos) << forced.err;
+    EXPECT_EQ(run("inspect robot.urdf --from e.json").code, 1);
+}
+
+TEST_F(From, SaysWhatItWasMadeFromAndWhatDiffersNow) {
+    const Json& made_from = estimate_["made_from"];
+    EXPECT_EQ(made_from["campaign_file"], "c.yaml");
+    EXPECT_EQ(made_from["options"],
+              Json::parse(R"({"--measurements": ["s.csv"], "--folds": ["0"]})"));
+    EXPECT_TRUE(made_from["campaign_checksum"].get<std::string>().starts_with("fnv1a64:"));
+    run_well("calibrate c.yaml -m s.csv --folds 0 --threads 1 -o again.json");
+    EXPECT_EQ(text_of("again.json"), text_of("e.json"));
+    run_well("simulate c.yaml --truth 7 --seed 4 --poses 30 --repeats 3 -o t.csv");
+    run_well("calibrate c.yaml -m t.csv --folds 0 -o t.json");
+    EXPECT_NE(Json::parse(text_of("t.json"))["made_from"]["measurements_checksum"],
+              made_from["measurements_checksum"]);
+    std::string noisier = campaign_;
+    noisier.replace(noisier.find("0.052"), 5, "0.104");
+    write_text("noisier.yaml", noisier);
+    const Outcome outcome = run("inspect noisier.yaml --from e.json");
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_EQ(
+        outcome.err,
+        "posewise: warning: e.json: the campaign file said otherwise when it was made: sigma_m "
+        "was 5.2e-05, is 0.000104\n");
+}
+
+TEST_F(From, OtherTargetsAfterAMove) {
+    std::string one = campaign_;
+    const auto begin = one.find("  targets:");
+    one.replace(begin, one.find('\n', begin) - begin, "  targets: {position_mm: [[300, 20, 80]]}");
+    one.replace(one.find("-557.6"), 6, "1557.6");
+    one.erase(one.find("measurements:"));  // of MATLAB files of three targets
+    write_text("one.yaml", one);
+    run_well("simulate one.yaml --truth 7 --seed 5 --poses 20 --repeats 2 -o one.csv");
+    const std::string only = " --from e.json --only base,targets";
+    expect_input_error("calibrate one.yaml -m one.csv -o o.json" + only, "parameters");
+    const std::string out =
+        run_well("calibrate one.yaml -m one.csv --folds 0 -o o.json --moved base,targets" + only);
+    EXPECT_LT(number_behind(out, "distance RMS", 1), 0.3);
+    EXPECT_GT(number_behind(out, "distance RMS", 0), 1);
+    const Json found = Json::parse(text_of("o.json"));
+    EXPECT_EQ(found["robot"]["dq2"]["value_rad"], estimate_["robot"]["dq2"]["value_rad"]);
+
+    const std::string validate = "calibrate c.yaml -m s.csv --folds 0 --validate one.csv ";
+    const std::string judged =
+        run_well(validate + "--validate-campaign one.yaml --refit base,targets --json");
+    EXPECT_NEAR(Json::parse(judged)["accuracy"]["validation"]["distance_rms_mm"].get<double>(),
+                found["accuracy"]["fit"]["distance_rms_mm"].get<double>(), 1e-6);
+    expect_input_error(validate + "--validate-campaign one.yaml --refit base",
+                       "both base and targets");
+    EXPECT_EQ(run(validate + "--validate-campaign one.yaml").code, 2);
+    std::string other = one;
+    other.replace(other.find("1075 mm"), 7, "1175 mm");
+    write_text("other.yaml", other);
+    expect_input_error(validate + "--validate-campaign other.yaml --refit base,targets",
+                       "must state the same robot");
+}
+
+}  // namespace
+}  // namespace posewise::testing
