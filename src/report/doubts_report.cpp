@@ -71,7 +71,7 @@ std::string describe_model_errors(const std::vector<ModelErrorDoubt>& errors) {
 std::string describe_moved(const Moved& moved) {
     return fmt::format(
         "the validation was measured with another set-up, base {} mm and targets {} mm from those "
-        "calibrated with: --refit identifies them anew there",
+        "calibrated with: --refit base,targets identifies them anew there",
         detail::format_short(mm_per_m * moved.base, 3),
         detail::format_short(mm_per_m * moved.targets, 3));
 }
