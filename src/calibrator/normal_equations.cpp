@@ -11,8 +11,9 @@ NormalEquations normal_equations(const IdentificationProblem& problem,
     const MatrixXd all = gram(system.augmented.topRows(system.augmented.rows() - count));
     NormalEquations equations{all.topLeftCorner(size, size), all.row(size).head(size).transpose(),
                               system.r().squaredNorm()};
-    equations.M.diagonal().segment(problem.prior_begin(), count).array() += 1;
-    equations.g.segment(problem.prior_begin(), count) += system.r().tail(count);
+    const Index begin = problem.prior_begin();
+    equations.M.block(begin, begin, count, count).diagonal().array() += 1;
+    equations.g.segment(begin, count) += system.r().tail(count);
     return equations;
 }
 

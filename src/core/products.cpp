@@ -170,8 +170,9 @@ struct SolveLower {
 MatrixXd as_divisor(const MatrixXd& L) {
     const Index size = padded(L.rows(), tile_rows);
     MatrixXd minus_L = MatrixXd::Identity(size, size);
-    minus_L.topLeftCorner(L.rows(), L.rows()) = -L;
-    minus_L.diagonal().head(L.rows()) = L.diagonal().cwiseInverse();
+    auto corner = minus_L.topLeftCorner(L.rows(), L.rows());
+    corner = -L;
+    corner.diagonal() = L.diagonal().cwiseInverse();
     return minus_L;
 }
 
