@@ -94,7 +94,7 @@ TEST(MutatedEstimates, ReachNoRobotIfNotConvergedOrOfAnotherChainOrAbsurd) {
     CalibrationOptions options;
     options.folds = 0;
     const std::string path = folder.path("estimate.json");
-    io::write_estimate(path, calibrate(campaign, measurements, options), measured);
+    io::write_estimate(path, calibrate(campaign, measurements, options), {measured});
     ASSERT_TRUE(is_taken(path, campaign));
     const Json original = Json::parse(std::ifstream(path));
 

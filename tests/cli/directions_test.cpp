@@ -64,8 +64,9 @@ TEST_F(Directions, OfThePublishedCampaignFitTenTimesBetterThanAnyOther) {
 }
 
 TEST_F(Directions, NeedACampaignAndMeasurements) {
-    expect_input_error("inspect robot.urdf -m m.csv",
-                       "robot.urdf: is a robot alone; --measurements needs a campaign file");
+    expect_input_error(
+        "inspect robot.urdf -m m.csv",
+        "robot.urdf: is a robot alone; --measurements and --from need a campaign file");
     expect_input_error("inspect " + fanuc_design + " -m absent.csv", "absent.csv");
 }
 
