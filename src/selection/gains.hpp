@@ -57,9 +57,9 @@ class Gains {
     MatrixXd C_root_;
     MatrixXd C_;
     Eigen::LLT<MatrixXd> cholesky_;  // of M
-    LaneGrams G_;           // B_i M^-1 B_i^T
-    LaneGrams H_;           // B_i M^-1 C M^-1 B_i^T
-    VectorXd sensitivity_;  // of the shortlist's members
+    LaneGrams G_;                    // B_i M^-1 B_i^T
+    LaneGrams H_;                    // B_i M^-1 C M^-1 B_i^T
+    VectorXd sensitivity_;           // of the shortlist's members
     double removed_sensitivity_ = 0;
     MatrixXd P_;
     MatrixXd Q_;  // W C W - M^-1 C M^-1 = P Q^T + Q P^T
