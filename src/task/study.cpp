@@ -20,9 +20,13 @@
 namespace posewise {
 namespace {
 
-/// What more kicks would find is far below the scatter of what is found by calibrating.
-constexpr Index kicks = 2;
 constexpr double proof_seconds = 0.01;
+
+/// Of many candidates two kicks find choices as good as any, for all that calibrating can tell; of
+/// few more are needed, and take no longer.
+Index kick_count(Index candidates) {
+    return std::clamp<Index>(2000 / candidates, 2, SelectOptions{}.kicks);
+}
 
 /// Configurations to choose from, and those that all subsets are judged on (none: on the rest).
 struct Split {
@@ -151,7 +155,7 @@ std::vector<Index> choose_poses(const Setting& setting, const Job& job, const Sp
     options.criterion = setting.options.criteria[job.number];
     options.pose_count = job.pose_count;
     options.starts = setting.options.starts;
-    options.kicks = kicks;
+    options.kicks = kick_count(all);
     options.proof = proof_seconds;
     if (setting.campaign.spread.is_prior) options.held = prior_information(setting.campaign);
     options.positions = split.positions;
