@@ -19,8 +19,8 @@ SelectOptions quick_options(const Planning& planning) {
     options.nuisance = planning.search.nuisance;
     options.held = planning.search.held.information;
     options.held_pose_count = planning.search.held_pose_count;
-    options.starts = 1;
-    options.kicks = 0;
+    options.starts = 4;  // one alone may be far off where poses hardly suffice
+    options.kicks = 2;
     options.proof = 0;
     options.gap = 1e-2;
     options.seed = planning.search.seed;
