@@ -73,6 +73,29 @@ void check_mimics(const UrdfRobot& robot) {
     }
 }
 
+/// A joint turns no farther than what mimics it may.
+void limit_by_mimics(UrdfRobot& robot) {
+    for (const UrdfJoint& mimic : robot.joints) {
+        if (!mimic.mimic || !mimic.limits || mimic.kind == UrdfJointKind::Continuous) continue;
+        const auto [name, factor, offset] = *mimic.mimic;
+        const auto [a, b] = std::minmax(
+            {(mimic.limits->lower - offset) / factor, (mimic.limits->upper - offset) / factor});
+        const auto driver = std::ranges::find(robot.joints, name, &UrdfJoint::name);
+        Interval range{a, b};
+        if (driver->limits && driver->kind != UrdfJointKind::Continuous) {
+            range = {std::max(a, driver->limits->lower), std::min(b, driver->limits->upper)};
+        }
+        if (!(range.lower < range.upper)) {
+            throw input_error_at(mimic.location, "joint " + quote(mimic.name) +
+                                                     " has limits that leave joint " + quote(name) +
+                                                     ", which it mimics, no room; are multiplier "
+                                                     "and offset right?");
+        }
+        if (driver->kind == UrdfJointKind::Continuous) driver->kind = UrdfJointKind::Revolute;
+        driver->limits = range;
+    }
+}
+
 }  // namespace
 
 UrdfRobot read_urdf(const UrdfSource& source) {
@@ -89,6 +112,7 @@ UrdfRobot read_urdf(const UrdfSource& source) {
     }
     check_joint_count(robot);
     check_mimics(robot);
+    limit_by_mimics(robot);
     return robot;
 }
 

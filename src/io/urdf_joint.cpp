@@ -143,7 +143,13 @@ class JointReader {
         }
         const double largest = std::max(-stated.lower, stated.upper);
         const bool is_revolute = joint.kind == io::UrdfJointKind::Revolute;
-        if (is_revolute && largest > none) joint.kind = io::UrdfJointKind::Continuous;
+        if (is_revolute && largest > none) {
+            if (-stated.lower < none || stated.upper < none) {
+                throw error(limit,
+                            "has a limit on one side only; must have both, or be continuous");
+            }
+            joint.kind = io::UrdfJointKind::Continuous;
+        }
         if (joint.kind == io::UrdfJointKind::Continuous) {
             joint.limits = Interval{-std::numbers::pi, std::numbers::pi};
         } else if (is_revolute && largest > most_turns * 2 * std::numbers::pi) {

@@ -194,33 +194,42 @@ void calibrate_with(Work& work, Calibration& result) {
                                 result.estimate.parameters, work.stopped(work.options.joint));
     }
     if (const auto& earlier = work.options.earlier) {
-        result.estimate =
-            detail::complete(work.whole, earlier->estimate, work.known, result.estimate);
+        result.estimate = detail::complete(work.whole, earlier->estimate, work.known, work.campaign,
+                                           work.used, result.estimate);
         result.campaign = with_model_error(work.whole, result.estimate);
     }
     result.expected = expected_error(result.campaign, result.estimate, work.used);
 }
 
-/// The estimate with these parts of it identified anew, of the validation's campaign.
-Registration find_refit(const Work& work, const Calibration& result, const Campaign& campaign,
-                        const std::vector<std::string>& refitted) {
+/// The estimate with these parts of it identified anew, of the validation's campaign. Of another
+/// campaign it has no covariance that tells of all its parameters.
+Estimate find_refit(const Work& work, const Calibration& result, const Campaign& campaign,
+                    const std::vector<std::string>& refitted) {
     const Measurements& others = *work.options.validation;
-    Parameters values = result.estimate.parameters;
-    values.robot = errors_under_loads(result.campaign.robot, values.robot, campaign.robot);
+    Estimate before = result.estimate;
+    VectorXd& robot = before.parameters.robot;
+    robot = errors_under_loads(result.campaign.robot, robot, campaign.robot);
     const detail::KnownParameters known = detail::known_parameters(campaign, refitted);
-    const Campaign held = detail::with_known(campaign, known, values);
-    Registration registration = register_base_and_targets(held, others);
-    if (!registration.is_determined()) return registration;
-    const Estimate found = identify(held, others, registration.parameters, work.beside());
-    return {detail::complete(known, values, found.parameters), found.undetermined};
+    const Campaign held = detail::with_known(campaign, known, before.parameters);
+    const Registration registration = register_base_and_targets(held, others);
+    Estimate found;
+    found.undetermined = registration.undetermined;
+    if (!registration.is_determined()) return found;
+    found = identify(held, others, registration.parameters, work.beside());
+    if (!found.undetermined.empty()) return found;
+    if (work.options.validation_campaign == nullptr) {
+        return detail::complete(campaign, before, known, held, others, found);
+    }
+    found.parameters = detail::complete(known, before.parameters, found.parameters);
+    return found;
 }
 
-Parameters refit(const Work& work, const Calibration& result, const Campaign& campaign) {
+Estimate refit(const Work& work, const Calibration& result, const Campaign& campaign) {
     const std::vector<std::string>& refitted = work.options.refitted;
-    Registration registration = find_refit(work, result, campaign, refitted);
-    if (registration.is_determined()) return std::move(registration.parameters);
-    throw InputError(fmt::format("{} of the validation: {}", fmt::join(refitted, " and "),
-                                 registration.undetermined));
+    Estimate found = find_refit(work, result, campaign, refitted);
+    if (found.undetermined.empty()) return found;
+    throw InputError(
+        fmt::format("{} of the validation: {}", fmt::join(refitted, " and "), found.undetermined));
 }
 
 /// Nothing unless the validation is off by far more than is expected there, and fits with base and
@@ -230,10 +239,10 @@ std::optional<Moved> find_moved(const Work& work, const Calibration& result) {
     const double off = result.validation->rms();
     if (off <= plain * result.expected_validation->total()) return std::nullopt;
     const Campaign& campaign = result.campaign;
-    const Registration registration = find_refit(work, result, campaign, {"base", "targets"});
-    if (!registration.is_determined()) return std::nullopt;
+    const Estimate found = find_refit(work, result, campaign, {"base", "targets"});
+    if (!found.undetermined.empty()) return std::nullopt;
     const Parameters& before = result.estimate.parameters;
-    const Parameters& refitted = registration.parameters;
+    const Parameters& refitted = found.parameters;
     const Metrics left = make_metrics(residuals(campaign, refitted, *work.options.validation),
                                       campaign.sensor->lengths_per_target());
     if (plain * left.rms() > off) return std::nullopt;
@@ -258,7 +267,7 @@ void validate(const Work& work, Calibration& result) {
     if (options.validation_campaign != nullptr) {
         campaign = with_model_error(*options.validation_campaign, estimate);
     }
-    if (!options.refitted.empty()) estimate.parameters = refit(work, result, campaign);
+    if (!options.refitted.empty()) estimate = refit(work, result, campaign);
     result.validation = make_metrics(residuals(campaign, estimate.parameters, *options.validation),
                                      campaign.sensor->lengths_per_target());
     // What else was identified there the estimate's covariance does not tell.

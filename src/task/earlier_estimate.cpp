@@ -1,11 +1,13 @@
 #include "earlier_estimate.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <numeric>
 
 #include "../core/text.hpp"
 #include "../measurement/known_sensor.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/jacobian/identification.hpp"
 #include "posewise/model/error_terms.hpp"
 
 namespace posewise {
@@ -58,6 +60,20 @@ Prior make_prior(const Campaign& campaign, const Campaign& reduced, const Earlie
         told.erase(told.begin(), told.begin() + base_parameter_count(reduced));
     prior.covariance = drifted(campaign, earlier)(told, told);
     return prior;
+}
+
+/// By how much what was found moves where what was known is off: by e, then by the d of least
+/// |J_f d + J_k e|^2 + d^T P d, P what was known of it before; d = -(J_f^T J_f + P)^-1 J_f^T J_k e.
+MatrixXd follow(const Campaign& campaign, const Parameters& at, const Measurements& measured,
+                const std::vector<Index>& of_found, const std::vector<Index>& of_known,
+                const MatrixXd& P) {
+    const Blocks blocks = make_blocks(campaign, at, measured.configurations, times_seen(measured));
+    const VectorXd scale = parameter_scale(campaign);
+    const MatrixXd J_f = blocks.matrix(Eigen::all, of_found);
+    const MatrixXd J_k = blocks.matrix(Eigen::all, of_known);
+    const MatrixXd M = J_f.transpose() * J_f + P;
+    const MatrixXd d = -M.llt().solve(J_f.transpose() * J_k);
+    return scale(of_found).asDiagonal() * d * scale(of_known).cwiseInverse().asDiagonal();
 }
 
 }  // namespace
@@ -118,7 +134,7 @@ Parameters complete(const KnownParameters& known, const Parameters& values,
 }
 
 Estimate complete(const Campaign& campaign, const Estimate& earlier, const KnownParameters& known,
-                  const Estimate& found) {
+                  const Campaign& reduced, const Measurements& measured, const Estimate& found) {
     const std::vector<bool> marks = mark_known(campaign, known);
     const std::vector<Index> of_earlier = numbers_of(marks, true);
     if (of_earlier.empty()) return found;
@@ -127,9 +143,14 @@ Estimate complete(const Campaign& campaign, const Estimate& earlier, const Known
     whole.names = parameter_names(campaign);
     whole.parameters = complete(known, earlier.parameters, found.parameters);
     const Index size = parameter_count(campaign);
-    whole.covariance = MatrixXd::Zero(size, size);
-    whole.covariance(of_found, of_found) = found.covariance;
-    whole.covariance(of_earlier, of_earlier) = earlier.covariance(of_earlier, of_earlier);
+    const MatrixXd C = earlier.covariance(of_earlier, of_earlier);
+    const MatrixXd G = follow(with_model_error(campaign, found), whole.parameters, measured,
+                              of_found, of_earlier, prior_information(reduced));
+    whole.covariance.resize(size, size);
+    whole.covariance(of_earlier, of_earlier) = C;
+    whole.covariance(of_found, of_found) = found.covariance + G * C * G.transpose();
+    whole.covariance(of_found, of_earlier) = G * C;
+    whole.covariance(of_earlier, of_found) = (G * C).transpose();
     return whole;
 }
 

@@ -24,9 +24,9 @@ Campaign with_known(const Campaign& campaign, const KnownParameters& known,
 Parameters complete(const KnownParameters& known, const Parameters& values,
                     const Parameters& found);
 
-/// An estimate of such a campaign as one of the whole: what was known has its earlier value and
-/// covariance.
+/// An estimate of such a campaign, `reduced`, as one of the whole: what was known has its earlier
+/// value and covariance, and what was `found` by these measurements follows its errors.
 Estimate complete(const Campaign& campaign, const Estimate& earlier, const KnownParameters& known,
-                  const Estimate& found);
+                  const Campaign& reduced, const Measurements& measured, const Estimate& found);
 
 }  // namespace posewise::detail

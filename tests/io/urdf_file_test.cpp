@@ -188,6 +188,21 @@ TEST(ReadUrdf, DrivesAMimicByTheJointThatItMimics) {
     EXPECT_EQ(make_chain(read(text, "base", "finger")).joint_count(), 3);
 }
 
+TEST(ReadUrdf, LimitsAJointByWhatItsMimicMay) {
+    const auto limits_with = [](const std::string& mimic) {
+        const std::string limited =
+            mimic + "<limit lower=\"-0.4\" upper=\"0.1\" effort=\"1\" velocity=\"1\"/>";
+        const Chain chain =
+            make_chain(read(replaced(text, "<mimic joint=\"wrist\"/>", limited), "base", "finger"));
+        return std::pair{chain.joint(2).lower, chain.joint(2).upper};
+    };
+    const auto [lower, upper] =
+        limits_with("<mimic joint='wrist' multiplier='-0.5' offset='0.2'/>");
+    EXPECT_DOUBLE_EQ(lower, 0.2);
+    EXPECT_DOUBLE_EQ(upper, 1.2);
+    EXPECT_THROW(limits_with("<mimic joint='arm-joint' offset='5'/>"), InputError);
+}
+
 TEST(BadUrdf, Mimics) {
     const std::string stated = "<mimic joint=\"wrist\"/>";
     const auto error = [&](const std::string& by, const std::string& base) {

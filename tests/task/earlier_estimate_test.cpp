@@ -69,6 +69,16 @@ TEST(EarlierEstimate, HoldsTheRobotWhileBaseAndTargetsAreFound) {
                   .norm(),
               1e-3);
     EXPECT_LT(again.estimate.fit.distance_rms, 4e-4);
+    // Base and targets found with the robot follow what is wrong with it: together they are as sure
+    // as the poses measured are.
+    EXPECT_LT(again.expected.total(), 2 * first.expected.total());
+    MatrixXd apart = again.estimate.covariance;
+    apart.block(begin, 0, count, begin).setZero();
+    apart.block(0, begin, begin, count).setZero();
+    Estimate unrelated = again.estimate;
+    unrelated.covariance = apart;
+    EXPECT_GT(expected_error(again.campaign, unrelated, after).total(),
+              1.2 * again.expected.total());
 
     // Judged on poses measured before or after the move, refitted, the error is the same.
     CalibrationOptions judged = without_folds();
@@ -83,7 +93,9 @@ TEST(EarlierEstimate, HoldsTheRobotWhileBaseAndTargetsAreFound) {
     judged.validation = &before;
     judged.refitted = {"base", "targets"};
     const Measurements used = measure(campaign, first.estimate.parameters, 24, 1);
-    const double here = calibrate(campaign, used, judged).validation->distance_rms;
+    const Calibration refitted = calibrate(campaign, used, judged);
+    EXPECT_LT(refitted.expected_validation->total(), 2 * refitted.expected.total());
+    const double here = refitted.validation->distance_rms;
     judged.validation = &moved;
     EXPECT_NEAR(calibrate(campaign, used, judged).validation->distance_rms, here, 1e-12);
     judged.refitted = {};
