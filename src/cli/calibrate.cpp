@@ -130,7 +130,7 @@ void print_calibration(const CalibrateArguments& arguments, const CommonOptions&
 /// With faults it is printed, but not written.
 void check_faults(const CalibrateArguments& arguments, const CommonOptions& common,
                   const Calibration& result, const io::Provenance& made_from) {
-    const std::string words = "this is no calibration: " + join_faults(result.faults);
+    const std::string words = "this is no calibration: " + join_some(result.faults);
     if (arguments.earlier.is_forced) return print_warning(words);
     print_calibration(arguments, common, result, made_from);
     throw NoCalibration(fmt::format(

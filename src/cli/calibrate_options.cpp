@@ -75,12 +75,9 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     command.add_flag("--all-parameters", arguments.has_all_parameters, "List each, however many");
     add_earlier_options(command, arguments.earlier);
     CLI::Option* const refit =
-        command
-            .add_option("--refit", options.refitted,
-                        "With --validate: base, targets or both (base,targets) are identified anew "
-                        "there; the rest stays")
-            ->delimiter(',')
-            ->check(CLI::IsMember({"base", "targets"}))
+        add_parts_option(command, "--refit", options.refitted,
+                         "With --validate: base, targets or both (base,targets) are identified "
+                         "anew there; the rest stays")
             ->needs("--validate");
     command
         .add_option("--validate-campaign", arguments.validation_campaign,

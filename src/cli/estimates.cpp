@@ -18,14 +18,6 @@
 namespace posewise::cli {
 namespace {
 
-/// The first few.
-std::string join_some(const std::vector<std::string>& texts) {
-    constexpr std::size_t shown = 3;
-    if (texts.size() <= shown) return fmt::format("{}", fmt::join(texts, "; "));
-    return fmt::format("{}; and {} more like this",
-                       fmt::join(texts.begin(), texts.begin() + shown, "; "), texts.size() - shown);
-}
-
 bool contains(const std::vector<std::string>& names, const char* name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -37,7 +29,19 @@ void add_force_option(CLI::App& command, bool& is_forced) {
                      "Take an estimate that did not converge or has values no robot has");
 }
 
-std::string join_faults(const std::vector<std::string>& faults) { return join_some(faults); }
+std::string join_some(const std::vector<std::string>& texts) {
+    constexpr std::size_t shown = 3;
+    if (texts.size() <= shown) return fmt::format("{}", fmt::join(texts, "; "));
+    return fmt::format("{}; and {} more like this",
+                       fmt::join(texts.begin(), texts.begin() + shown, "; "), texts.size() - shown);
+}
+
+CLI::Option* add_parts_option(CLI::App& command, const std::string& name,
+                              std::vector<std::string>& parts, const std::string& description) {
+    return command.add_option(name, parts, description)
+        ->delimiter(',')
+        ->check(CLI::IsMember({"base", "targets"}));
+}
 
 Estimate read_usable_estimate(const std::string& path, const Campaign& campaign, bool is_forced) {
     return read_usable_earlier(path, campaign, {}, is_forced).estimate;
@@ -70,12 +74,9 @@ void add_earlier_options(CLI::App& command, EarlierArguments& arguments) {
     if (CLI::Option* const no_prior = command.get_option_no_throw("--no-prior")) {
         as_prior->excludes(no_prior);
     }
-    command
-        .add_option("--moved", arguments.moved,
-                    "With --from: base, targets or both (base,targets) were moved since; they are "
-                    "as the campaign says, targets perhaps more or fewer")
-        ->delimiter(',')
-        ->check(CLI::IsMember({"base", "targets"}))
+    add_parts_option(command, "--moved", arguments.moved,
+                     "With --from: base, targets or both (base,targets) were moved since; they are "
+                     "as the campaign says, targets perhaps more or fewer")
         ->needs(from);
     command
         .add_option("--drift-mm", arguments.drift_mm,

@@ -24,8 +24,12 @@ class NoCalibration : public std::runtime_error {
 /// --force: an estimate with faults is taken all the same.
 void add_force_option(CLI::App& command, bool& is_forced);
 
-/// "it did not converge (iteration limit); ...".
-std::string join_faults(const std::vector<std::string>& faults);
+/// "it did not converge (iteration limit); ...", the first few.
+std::string join_some(const std::vector<std::string>& texts);
+
+/// An option that takes base, targets or both (base,targets).
+CLI::Option* add_parts_option(CLI::App& command, const std::string& name,
+                              std::vector<std::string>& parts, const std::string& description);
 
 /// The estimate in a file. Throws InputError if it is of another robot, or has faults and is not
 /// forced, see find_faults(). Warns where noise or sizes were stated differently when it was made.

@@ -11,6 +11,7 @@
 #include "posewise/io/dh_file.hpp"
 #include "posewise/model/transforms.hpp"
 #include "robot_parts.hpp"
+#include "urdf_tree.hpp"
 #include "yaml_reader.hpp"
 
 namespace posewise::io {
@@ -51,13 +52,6 @@ VectorXd without(const Chain& robot, VectorXd errors, const std::vector<std::str
     return errors;
 }
 
-/// Whatever limits the file states.
-Chain read_urdf_chain(const UrdfSource& source) {
-    UrdfRobot robot = read_urdf(source);
-    for (UrdfJoint& joint : robot.joints) joint.limits = Interval{-1, 1};
-    return make_chain(robot);
-}
-
 Chain read_dh_robot(const std::string& path) {
     const YamlMap file(parse_yaml(read_file(path), path), {"robot"});
     return read_robot(file.require("robot"), ErrorModel::Stated).declared;
@@ -89,7 +83,8 @@ FlangeDifference write_calibrated_urdf(const std::string& path, const Calibrated
                                        const VectorXd& errors) {
     return write_robot(path, urdf.text, robot, without(robot, errors, urdf.not_expressed),
                        [&](const std::string& written) {
-                           return read_urdf_chain({written, source.base_link, source.tip_link});
+                           return make_chain_without_limits(
+                               read_urdf({written, source.base_link, source.tip_link}));
                        });
 }
 

@@ -9,6 +9,9 @@
 /// What the ways to state a robot share: elements, DH table, URDF.
 namespace posewise::detail {
 
+/// Either way: no robot's joint turns farther.
+inline constexpr double most_turns = 5;
+
 // Far above any robot: what is more is no robot, and would only take memory and time.
 inline constexpr std::size_t most_joints = 100;
 inline constexpr std::size_t most_elements = 1000;

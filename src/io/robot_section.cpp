@@ -44,7 +44,6 @@ constexpr double full_turn = 2 * std::numbers::pi;
 
 /// Degrees read as rad, by the look of them.
 void check_turns(const YamlMeasure& limits, const VectorXd& values) {
-    constexpr double most_turns = 5;
     const double turns = values.cwiseAbs().maxCoeff() / full_turn;
     if (turns <= most_turns) return;
     throw limits.value.error(fmt::format(

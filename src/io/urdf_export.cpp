@@ -178,12 +178,6 @@ std::vector<std::string> errors_after_last_joint(const Chain& robot, const Vecto
     return names;
 }
 
-/// The robot of the file, whatever limits that states.
-Chain nominal_chain(std::vector<UrdfJoint> joints) {
-    for (UrdfJoint& joint : joints) joint.limits = Interval{-1, 1};
-    return make_chain({{}, "", std::move(joints)});
-}
-
 }  // namespace
 
 CalibratedUrdf make_calibrated_urdf(const UrdfSource& source, const Chain& robot,
@@ -194,7 +188,7 @@ CalibratedUrdf make_calibrated_urdf(const UrdfSource& source, const Chain& robot
     std::vector<UrdfJoint> joints;
     for (const xml_node joint : path.joints) joints.push_back(read_urdf_joint(document, joint));
 
-    const auto nominal = constants_of(nominal_chain(joints), VectorXd());
+    const auto nominal = constants_of(make_chain_without_limits({{}, "", joints}), VectorXd());
     const auto calibrated = constants_of(robot, parameters);
     CalibratedUrdf result;
     std::vector<Edit> edits;

@@ -177,3 +177,12 @@ VectorXd joint_speeds(const UrdfRobot& robot) {
 }
 
 }  // namespace posewise::io
+
+namespace posewise::detail {
+
+Chain make_chain_without_limits(io::UrdfRobot robot) {
+    for (io::UrdfJoint& joint : robot.joints) joint.limits = Interval{-1, 1};
+    return io::make_chain(robot);
+}
+
+}  // namespace posewise::detail

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "robot_parts.hpp"
 #include "text.hpp"
 #include "urdf_tree.hpp"
 
@@ -158,8 +159,6 @@ class JointReader {
             joint.limits = stated;
         }
     }
-
-    static constexpr double most_turns = 5;  // either way: no robot's joint turns farther
 
     const XmlDocument& document_;
     const xml_node element_;

@@ -28,4 +28,7 @@ std::optional<Vector3d> read_vector(const XmlDocument& document, pugi::xml_node 
 /// The joint in an element <joint> on the way from base to tip.
 io::UrdfJoint read_urdf_joint(const XmlDocument& document, pugi::xml_node element);
 
+/// io::make_chain() of a robot whose limits, stated or not, do not matter.
+Chain make_chain_without_limits(io::UrdfRobot robot);
+
 }  // namespace posewise::detail

@@ -201,6 +201,11 @@ void calibrate_with(Work& work, Calibration& result) {
     result.expected = expected_error(result.campaign, result.estimate, work.used);
 }
 
+Metrics judge(const Campaign& campaign, const Parameters& parameters, const Measurements& others) {
+    return make_metrics(residuals(campaign, parameters, others),
+                        campaign.sensor->lengths_per_target());
+}
+
 /// The estimate with these parts of it identified anew, of the validation's campaign. Of another
 /// campaign it has no covariance that tells of all its parameters.
 Estimate find_refit(const Work& work, const Calibration& result, const Campaign& campaign,
@@ -243,8 +248,7 @@ std::optional<Moved> find_moved(const Work& work, const Calibration& result) {
     if (!found.undetermined.empty()) return std::nullopt;
     const Parameters& before = result.estimate.parameters;
     const Parameters& refitted = found.parameters;
-    const Metrics left = make_metrics(residuals(campaign, refitted, *work.options.validation),
-                                      campaign.sensor->lengths_per_target());
+    const Metrics left = judge(campaign, refitted, *work.options.validation);
     if (plain * left.rms() > off) return std::nullopt;
     const Targets& targets = campaign.sensor->targets();
     Moved moved;
@@ -268,8 +272,7 @@ void validate(const Work& work, Calibration& result) {
         campaign = with_model_error(*options.validation_campaign, estimate);
     }
     if (!options.refitted.empty()) estimate = refit(work, result, campaign);
-    result.validation = make_metrics(residuals(campaign, estimate.parameters, *options.validation),
-                                     campaign.sensor->lengths_per_target());
+    result.validation = judge(campaign, estimate.parameters, *options.validation);
     // What else was identified there the estimate's covariance does not tell.
     if (options.validation_campaign != nullptr) return;
     result.expected_validation = expected_error(campaign, estimate, *options.validation);
@@ -326,8 +329,7 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
     const auto left_out = all_but(measurements.configuration_count(), options.used);
     if (!options.used.empty() && !left_out.empty()) {
         const Measurements others = take(measurements, left_out);
-        result.left_out = make_metrics(residuals(campaign, result.estimate.parameters, others),
-                                       campaign.sensor->lengths_per_target());
+        result.left_out = judge(campaign, result.estimate.parameters, others);
         result.expected_left_out = expected_error(result.campaign, result.estimate, others);
     }
     validate(work, result);

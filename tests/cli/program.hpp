@@ -95,6 +95,16 @@ class Program : public ::testing::Test {
     std::filesystem::path folder_;
 };
 
+/// A base and what measures poses of the flange, behind a robot.
+inline const std::string measured_poses =
+    R"(base: {position_mm: [1000, 200, 30], rpy_deg: [0, 0, 90]}
+sensor:
+  kind: poses
+  sigma_mm: 0.05
+  sigma_orientation_mrad: 0.2
+  tool: {position_mm: [10, 20, 120], rpy_deg: [10, 0, 90]}
+)";
+
 /// A robot of six joints, below "robot:".
 inline const std::string six_joints = R"(  joints:
     q1: {limits_deg: [-170, 170]}

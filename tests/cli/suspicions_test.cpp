@@ -19,13 +19,7 @@ sensor:
   targets: {position_mm: [[0, 0, 150]]}
 )";
 
-const std::string poses = arm + R"(base: {position_mm: [1000, 200, 30], rpy_deg: [0, 0, 90]}
-sensor:
-  kind: poses
-  sigma_mm: 0.05
-  sigma_orientation_mrad: 0.2
-  tool: {position_mm: [10, 20, 120], rpy_deg: [10, 0, 90]}
-)";
+const std::string poses = arm + measured_poses;
 
 class Suspicions : public Program {
   protected:

@@ -72,6 +72,25 @@ class Urdf : public Program {
         Program::SetUp();
         write_text("arm.urdf", urdf);
     }
+
+    /// Copies a file with parts of it replaced.
+    void rewrite(const std::string& from, const std::string& to,
+                 const std::vector<std::pair<std::string, std::string>>& changes) const {
+        std::string text = text_of(from);
+        for (const auto& [part, by] : changes) {
+            ASSERT_NE(text.find(part), std::string::npos) << part;
+            text.replace(text.find(part), part.size(), by);
+        }
+        write_text(to, text);
+    }
+
+    /// What inspect --write-campaign leaves open.
+    void fill_in(const std::string& campaign) const {
+        rewrite(campaign, campaign,
+                {{"# base:", "base:"},
+                 {"robot:\n", "robot:\n  errors: geometric\n"},
+                 {"{count: 3}", "{position_mm: [[100, 0, 50], [0, 100, 50], [-80, -80, 60]]}"}});
+    }
 };
 
 TEST_F(Urdf, IsInspectedWithoutACampaign) {
@@ -141,22 +160,14 @@ TEST_F(Urdf, TakesAMimicForACoupling) {
                  "    <mimic joint=\"elbow\" multiplier=\"-1\" offset=\"0.3\"/>\n" + limit);
     write_text("mimic.urdf", text);
     run_well("inspect mimic.urdf --base base --tip tool0 --write-campaign c.yaml");
-    std::string campaign = text_of("c.yaml");
-    EXPECT_EQ(campaign.find("wrist_1:"), std::string::npos) << campaign;
-    const auto replace = [&](const std::string& part, const std::string& by) {
-        ASSERT_NE(campaign.find(part), std::string::npos) << part;
-        campaign.replace(campaign.find(part), part.size(), by);
-    };
-    replace("# base:", "base:");
-    replace("robot:\n", "robot:\n  errors: geometric\n");
-    replace("{count: 3}", "{position_mm: [[100, 0, 50], [0, 100, 50], [-80, -80, 60]]}");
-    write_text("c.yaml", campaign);
+    EXPECT_EQ(text_of("c.yaml").find("wrist_1:"), std::string::npos) << text_of("c.yaml");
+    fill_in("c.yaml");
     run_well("simulate c.yaml --poses 25 --truth 5 -o m.csv");
     const std::string calibrated = run_well("calibrate c.yaml -m m.csv --folds 0 -o e.json");
     EXPECT_LT(number_behind(calibrated, "distance RMS", 1), 0.3) << calibrated;
     run_well("export c.yaml e.json --urdf out.urdf");
-    replace("errors: geometric\n  urdf: \"mimic.urdf\"", "errors: stated\n  urdf: out.urdf");
-    write_text("out.yaml", campaign);
+    rewrite("c.yaml", "out.yaml",
+            {{"errors: geometric\n  urdf: \"mimic.urdf\"", "errors: stated\n  urdf: out.urdf"}});
     const std::string again = run_well("calibrate out.yaml -m m.csv --folds 0");
     EXPECT_NEAR(number_behind(again, "distance RMS", 1),
                 number_behind(calibrated, "distance RMS", 1), 2e-4);
@@ -195,15 +206,7 @@ TEST_F(Urdf, BecomesACampaignThatLoads) {
 /// the same measurements fit as well as with the estimate.
 TEST_F(Urdf, IsCalibrated) {
     run_well("inspect arm.urdf --base base --tip tool0 --write-campaign c.yaml");
-    std::string campaign = text_of("c.yaml");
-    const auto replace = [&](const std::string& part, const std::string& by) {
-        ASSERT_NE(campaign.find(part), std::string::npos) << part;
-        campaign.replace(campaign.find(part), part.size(), by);
-    };
-    replace("# base:", "base:");
-    replace("robot:\n", "robot:\n  errors: geometric\n");
-    replace("{count: 3}", "{position_mm: [[100, 0, 50], [0, 100, 50], [-80, -80, 60]]}");
-    write_text("c.yaml", campaign);
+    fill_in("c.yaml");
     run_well("simulate c.yaml --poses 20 --truth 5 -o m.csv");
     const std::string calibrated = run_well("calibrate c.yaml -m m.csv --folds 0 -o e.json");
     const std::string text = run_well("export c.yaml e.json --urdf out.urdf");
@@ -215,8 +218,8 @@ TEST_F(Urdf, IsCalibrated) {
         std::string::npos)
         << text;
 
-    replace("errors: geometric\n  urdf: \"arm.urdf\"", "errors: stated\n  urdf: out.urdf");
-    write_text("out.yaml", campaign);
+    rewrite("c.yaml", "out.yaml",
+            {{"errors: geometric\n  urdf: \"arm.urdf\"", "errors: stated\n  urdf: out.urdf"}});
     const std::string again = run_well("calibrate out.yaml -m m.csv --folds 0");
     EXPECT_EQ(number_behind(again, "distance RMS", 1),
               number_behind(calibrated, "distance RMS", 1));

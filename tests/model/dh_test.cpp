@@ -117,6 +117,18 @@ Chain chain_of(const Chain& chain, const std::vector<DhRow>& rows) {
     return Chain(chain.joints(), elements);
 }
 
+void expect_same_flange(const Chain& chain, const VectorXd& errors, const std::vector<DhRow>& rows,
+                        RandomStream& stream, double tolerance) {
+    const Chain again = chain_of(chain, rows);
+    for (int i = 0; i < 20; ++i) {
+        const VectorXd q = random_vector(stream, chain.joint_count(), 2);
+        EXPECT_LT((again.base_from_flange(q, VectorXd()).matrix() -
+                   chain.base_from_flange(q, errors).matrix())
+                      .norm(),
+                  tolerance);
+    }
+}
+
 TEST(DhRows, MoveTheFlangeExactlyAsTheChainDoes) {
     const std::vector<Chain> chains{fanuc(), planar_arm({1, 0.8, 0.5}), gantry_with_wrist(),
                                     scara(), complete_model(fanuc()),   complete_model(scara())};
@@ -126,14 +138,7 @@ TEST(DhRows, MoveTheFlangeExactlyAsTheChainDoes) {
             const VectorXd errors = random_vector(stream, chain.parameter_count(), size);
             const auto rows = dh_rows(chain, errors);
             EXPECT_LE(static_cast<Index>(rows.size()), chain.joint_count() + 2);
-            const Chain again = chain_of(chain, rows);
-            for (int i = 0; i < 20; ++i) {
-                const VectorXd q = random_vector(stream, chain.joint_count(), 2);
-                EXPECT_LT((again.base_from_flange(q, VectorXd()).matrix() -
-                           chain.base_from_flange(q, errors).matrix())
-                              .norm(),
-                          1e-12);
-            }
+            expect_same_flange(chain, errors, rows, stream, 1e-12);
         }
     }
 }
@@ -152,15 +157,8 @@ TEST(DhRows, OfAxesThatAreNearlyParallelHaveNoFarOffsets) {
         EXPECT_NE(rows[1].beta, 0) << size;
         EXPECT_NE(rows[2].beta, 0) << size;
         EXPECT_EQ(rows[0].beta, 0) << "of axes that cross";
-        const Chain again = chain_of(chain, rows);
-        for (int i = 0; i < 20; ++i) {
-            const VectorXd q = random_vector(stream, chain.joint_count(), 2);
-            EXPECT_LT((again.base_from_flange(q, VectorXd()).matrix() -
-                       chain.base_from_flange(q, errors).matrix())
-                          .norm(),
-                      1e-13)
-                << size;
-        }
+        SCOPED_TRACE(size);
+        expect_same_flange(chain, errors, rows, stream, 1e-13);
     }
 }
 
