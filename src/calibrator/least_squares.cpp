@@ -121,6 +121,16 @@ std::string describe_unseen_target(const Campaign& campaign, const Measurements&
             "leave it out of the campaign's targets",
             j + 1, these(measurements.configuration_count(), "configuration"));
     }
+    if (sensor.needs_first_guess()) return "";
+    const std::vector<std::string> contacts = sensor.contact_names();
+    for (Index k = 0; k < std::ssize(contacts); ++k) {
+        if (measurements.is_seen.col(k).any()) continue;
+        return fmt::format(
+            "{} is touched in none of {}, so its place cannot be found; touch it, or leave it out "
+            "of the campaign's sockets",
+            quote(contacts[static_cast<std::size_t>(k)]),
+            these(measurements.configuration_count(), "configuration"));
+    }
     return "";
 }
 

@@ -126,7 +126,8 @@ Registration find_start(const Campaign& campaign, const Measurements& measuremen
     if (const auto observed = registered_points(campaign)) {
         return solve_linear(campaign, *observed, mean_measurements(sensor, measurements));
     }
-    if (!campaign.has_nominal_base || !campaign.has_nominal_targets) {
+    const bool is_found_anyway = base_parameter_count(campaign) == 0 && !sensor.needs_first_guess();
+    if (!is_found_anyway && (!campaign.has_nominal_base || !campaign.has_nominal_targets)) {
         throw InputError(fmt::format(
             "base and targets cannot be found from nothing by {} alone or beside a base that is "
             "partly known; the campaign must state base and targets, if only roughly (keys base "

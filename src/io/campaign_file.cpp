@@ -6,6 +6,7 @@
 
 #include "../core/checksum.hpp"
 #include "../model/complete_model.hpp"
+#include "../model/sampling.hpp"
 #include "atomic_file.hpp"
 #include "campaign_sections.hpp"
 #include "posewise/calibrator/registration.hpp"
@@ -21,14 +22,45 @@ using detail::YamlValue;
 
 constexpr std::size_t most_bytes = 1 << 20;  // of a file
 
-void read_base(const YamlValue& value, Campaign& campaign) {
-    const YamlMap base(value, {"position_<length>", "rpy_<angle>", "known"});
+void read_base(const std::optional<YamlValue>& value, bool is_world, Campaign& campaign) {
+    if (is_world) {
+        if (value) {
+            throw value->error(
+                "is stated beside sockets at unknown places, which are found in the robot's base "
+                "frame; must be left out, or known_sockets: true");
+        }
+        campaign.base_is_known.fill(true);
+        campaign.has_nominal_base = true;
+        return;
+    }
+    if (!value) return;
+    const YamlMap base(*value, {"position_<length>", "rpy_<angle>", "known"});
     campaign.nominal.world_from_base = read_frame(base);
     campaign.has_nominal_base = true;
     const auto known = base.find("known");
     if (!known) return;
     const auto marks = read_known(*known, {"x", "y", "z", "rx", "ry", "rz"});
     std::copy(marks.begin(), marks.end(), campaign.base_is_known.begin());
+}
+
+/// Places that the robot reaches, for those that the file does not state.
+void place_within_reach(const std::vector<Index>& reached, Campaign& campaign) {
+    constexpr std::uint64_t seed = 20154;  // any: it only has to be the same every time
+    const Chain& robot = campaign.robot;
+    const RowMatrixXd drawn =
+        detail::random_configurations(robot, static_cast<Index>(reached.size()), seed);
+    VectorXd middle = drawn.row(0).transpose();
+    for (Index j = 0; j < robot.joint_count(); ++j) {
+        const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
+        middle[j] = (joint.lower + joint.upper) / 2;
+    }
+    const Targets& targets = campaign.sensor->targets();
+    for (std::size_t k = 0; k < reached.size(); ++k) {
+        const VectorXd q = (middle + drawn.row(static_cast<Index>(k)).transpose()) / 2;
+        campaign.nominal.sensor.segment<3>(reached[k]) =
+            world_from_flange(campaign, campaign.nominal, q) *
+            targets.position(0, campaign.nominal.sensor);
+    }
 }
 
 /// `has_stated_errors`: the campaign has no other error parameters than the file says.
@@ -161,13 +193,16 @@ CampaignFile parse(const std::string& content, const std::string& path,
     campaign.sensor = sensor.sensor;
     campaign.nominal.sensor = sensor.unknowns;
     campaign.has_nominal_targets = sensor.has_positions;
-    if (const auto base = map.find("base")) read_base(*base, campaign);
+    read_base(map.find("base"), sensor.is_in_base_frame, campaign);
     campaign = with_robot(campaign, robot.declared);
+    if (!sensor.reached.empty()) place_within_reach(sensor.reached, campaign);
     if (robot.error_model == ErrorModel::Complete) {
         campaign = make_complete(campaign, map.require("robot"));
     }
     if (robot.error_model == ErrorModel::Full) {
-        campaign = with_robot(campaign, detail::full_model(robot.declared, robot.gravity));
+        const Chain full = detail::full_model(robot.declared, robot.gravity);
+        campaign =
+            with_robot(campaign, sensor.is_in_base_frame ? without_errors_of_base(full) : full);
         campaign.spread = population_spread(robot.declared);
     }
     read_model_error(map, "model_error", campaign.model_error);

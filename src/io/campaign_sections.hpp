@@ -29,6 +29,12 @@ struct SensorSection {
     std::shared_ptr<const Sensor> sensor;
     VectorXd unknowns;          ///< nominal values of the sensor's unknowns, m or rad
     bool has_positions = true;  ///< whether they were stated, not made up
+    /// Whether the world is the robot's base frame: nothing in the world is known that tells
+    /// another.
+    bool is_in_base_frame = false;
+    /// Unknowns that are the first coordinates of places which the robot reaches, nobody said
+    /// where.
+    std::vector<Index> reached = {};
 };
 SensorSection read_sensor(const YamlValue& sensor);
 

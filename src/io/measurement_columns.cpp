@@ -39,6 +39,7 @@ std::vector<WantedColumn> wanted_columns(const Campaign& campaign) {
         wanted.push_back(
             {torque_stem(joint_of(robot, torque)), Role::Joint, next++, Quantity::Torque});
     }
+    if (!campaign.sensor->contact_names().empty()) return wanted;
     Index k = 0;
     for (const std::string& name : campaign.sensor->observation_names()) {
         const Quantity quantity = campaign.sensor->is_angle(k) ? Quantity::Angle : Quantity::Length;
@@ -74,6 +75,16 @@ std::string joint_cells(const Campaign& campaign, const VectorXd& q) {
         fmt::format_to(std::back_inserter(text), ",{:.12g}", for_people(campaign, j, q[j]));
     }
     return text;
+}
+
+std::string_view seen_header(const Campaign& campaign) {
+    return campaign.sensor->contact_names().empty() ? visible_targets : contact;
+}
+
+std::string seen_cell(const Campaign& campaign, const SeenTargets& is_seen) {
+    const std::vector<std::string> names = campaign.sensor->contact_names();
+    if (names.empty()) return target_numbers(is_seen);
+    return names[static_cast<std::size_t>(targets_seen(is_seen).front())];
 }
 
 }  // namespace posewise::detail

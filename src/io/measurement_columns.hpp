@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/seen.hpp"
 #include "units.hpp"
 
 /// Columns of CSV files of measurements and configurations, for reader and writers.
@@ -13,11 +14,15 @@ namespace posewise::detail {
 
 /// Of a configuration: the numbers of the targets it shows, from 1, separated by blanks.
 inline constexpr std::string_view visible_targets = "visible_targets";
+/// Of a sample or a configuration: the name of what the robot touches, of sensors with
+/// contact_names(); it stands for the columns observed, and for visible_targets.
+inline constexpr std::string_view contact = "socket";
 
 enum class Role {
     Configuration,
     Sample,
     VisibleTargets,
+    Contact,
     Joint,  ///< or a measured torque: a number of the configuration
     Observation,
     Orientation,
@@ -43,7 +48,7 @@ struct WantedColumn {
     std::string example() const;
 };
 
-/// Joints, measured torques, then observations.
+/// Joints, measured torques, then observations, but for contacts.
 std::vector<WantedColumn> wanted_columns(const Campaign& campaign);
 
 /// The name of the column of a joint's torque without unit, "tau_q2".
@@ -58,5 +63,9 @@ std::vector<std::string> reading_columns(const Campaign& campaign);
 /// The same, each after a comma, and the values (rad or m, N m) for them to 12 digits.
 std::string joint_header(const Campaign& campaign);
 std::string joint_cells(const Campaign& campaign, const VectorXd& q);
+
+/// The column that says which targets a configuration shows, and its cell.
+std::string_view seen_header(const Campaign& campaign);
+std::string seen_cell(const Campaign& campaign, const SeenTargets& is_seen);
 
 }  // namespace posewise::detail

@@ -19,11 +19,13 @@ class HeaderReader {
           joints_(campaign.robot.joints()),
           wanted_(wanted_columns(campaign)),
           has_orientation_(campaign.sensor->has_orientation()),
+          has_contact_(!campaign.sensor->contact_names().empty()),
           examples_{"config"} {
         if (!is_optional(Role::Sample)) examples_.emplace_back("sample");
         for (const WantedColumn& column : wanted_) {
             if (!is_optional(column.role)) examples_.push_back(column.example());
         }
+        if (has_contact_) examples_.emplace_back(contact);
     }
 
     std::vector<Column> read() const {
@@ -57,7 +59,7 @@ class HeaderReader {
     InputError unknown(std::size_t field) const {
         std::vector<std::string> known = examples_;
         if (is_optional(Role::Sample)) known.emplace_back("sample");
-        known.emplace_back(visible_targets);
+        if (!has_contact_) known.emplace_back(visible_targets);
         return error(field, "is unknown; " + suggest(csv_.fields()[field], known));
     }
 
@@ -65,7 +67,8 @@ class HeaderReader {
         const std::string_view name = csv_.fields()[field];
         if (name == "config") return {Role::Configuration, 0, nullptr};
         if (name == "sample") return {Role::Sample, 0, nullptr};
-        if (name == visible_targets) return {Role::VisibleTargets, 0, nullptr};
+        if (name == visible_targets && !has_contact_) return {Role::VisibleTargets, 0, nullptr};
+        if (name == contact && has_contact_) return {Role::Contact, 0, nullptr};
         const NameWithUnit with_unit = split_unit(name);
         const auto found = std::find_if(wanted_.begin(), wanted_.end(), [&](const auto& column) {
             return column.stem == name || column.stem == with_unit.stem;
@@ -147,6 +150,9 @@ class HeaderReader {
             if (is_replaced && column.role == Role::Observation && column.index >= 3) continue;
             if (!has(column.role, column.index)) missing.push_back(column.example());
         }
+        if (has_contact_ && content_ != Content::Program && !has(Role::Contact, 0)) {
+            missing.emplace_back(contact);
+        }
         if (missing.empty()) return;
         throw input_error_at(csv_.locate(csv_.fields().size()),
                              fmt::format("missing column{} {}; the header must have {}",
@@ -159,6 +165,7 @@ class HeaderReader {
     const std::vector<Joint>& joints_;
     std::vector<WantedColumn> wanted_;
     bool has_orientation_;
+    bool has_contact_;
     std::vector<std::string> examples_;
 };
 

@@ -29,6 +29,7 @@ class RowReader {
           campaign_(campaign),
           content_(content),
           columns_(std::move(columns)),
+          contacts_(campaign.sensor->contact_names()),
           field_of_joint_(static_cast<std::size_t>(campaign.robot.configuration_size())),
           field_of_observation_(static_cast<std::size_t>(campaign.sensor->row_count())),
           is_each_row_one_(content == Content::Program &&
@@ -57,7 +58,7 @@ class RowReader {
         check_width();
         sample_.clear();
         for (std::size_t field = 0; field < columns_.size(); ++field) read_field(field);
-        if (content_ == Content::JointsAndObservations) read_targets();
+        if (content_ == Content::JointsAndObservations && contacts_.empty()) read_targets();
         check_new_sample();
         const auto locate = [this](Index joint) {
             return csv_.locate(field_of_joint_[static_cast<std::size_t>(joint)]);
@@ -91,6 +92,9 @@ class RowReader {
             case Role::VisibleTargets:
                 // What was planned; what was measured tells by itself what was seen.
                 if (content_ != Content::JointsAndObservations) read_visible(field);
+                return;
+            case Role::Contact:
+                read_contact(field);
                 return;
             case Role::Joint:
                 row_.joints[column.index] = read_number(field);
@@ -148,6 +152,19 @@ class RowReader {
             csv_.locate(field),
             fmt::format("{} is {}; must be numbers of targets from 1 to {}, separated by blanks",
                         detail::visible_targets, detail::quote(text), row_.is_seen.size()));
+    }
+
+    /// "s3": what the robot touches.
+    void read_contact(std::size_t field) {
+        const std::string name(csv_.fields()[field]);
+        const auto found = std::find(contacts_.begin(), contacts_.end(), name);
+        if (found == contacts_.end()) {
+            throw input_error_at(csv_.locate(field),
+                                 fmt::format("{} is {}; {}", detail::contact, detail::quote(name),
+                                             detail::suggest(name, contacts_)));
+        }
+        row_.is_seen.setConstant(false);
+        row_.is_seen[found - contacts_.begin()] = true;
     }
 
     void read_targets() {
@@ -233,6 +250,7 @@ class RowReader {
     const Campaign& campaign_;
     Content content_;
     std::vector<Column> columns_;
+    std::vector<std::string> contacts_;
     std::vector<std::size_t> field_of_joint_;
     std::vector<std::size_t> field_of_observation_;
     bool is_each_row_one_;                         ///< a configuration by itself

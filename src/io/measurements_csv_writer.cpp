@@ -75,15 +75,18 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
             joint_factors.push_back(column.quantity == detail::Quantity::Length ? 1e3 : 1);
         }
     }
+    const bool has_contact = !campaign.sensor->contact_names().empty();
+    if (has_contact) fmt::format_to(out, ",{}", detail::contact);
     text += '\n';
     for (Index i = 0; i < measurements.configuration_count(); ++i) {
         const auto k = static_cast<std::size_t>(i);
         const std::string joints = joint_cells(measurements, i, joint_factors);
         for (Index sample = 0; sample < measurements.sample_count(i); ++sample) {
-            fmt::format_to(out, "{},{}{}{}\n", detail::csv_field(measurements.ids[k]), sample,
-                           joints,
-                           observation_cells(*campaign.sensor, measurements,
-                                             measurements.first_sample[k] + sample));
+            const Index row = measurements.first_sample[k] + sample;
+            fmt::format_to(
+                out, "{},{}{}{}\n", detail::csv_field(measurements.ids[k]), sample, joints,
+                has_contact ? ',' + detail::seen_cell(campaign, measurements.is_seen.row(row))
+                            : observation_cells(*campaign.sensor, measurements, row));
         }
     }
     detail::write_file(path, text);

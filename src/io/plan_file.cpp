@@ -223,12 +223,12 @@ Json report_to_json(const Plan& plan, const std::string& path) {
 
 std::string configurations_text(const Campaign& campaign, const std::vector<PlannedPose>& poses) {
     std::string text =
-        fmt::format("config{},{}\n", detail::joint_header(campaign), detail::visible_targets);
+        fmt::format("config{},{}\n", detail::joint_header(campaign), detail::seen_header(campaign));
     const Index targets = campaign.sensor->target_count();
     for (const PlannedPose& pose : poses) {
         fmt::format_to(std::back_inserter(text), "{}{},{}\n", detail::csv_field(pose.id),
                        detail::joint_cells(campaign, pose.configuration),
-                       target_numbers(seen_targets(pose.targets, targets)));
+                       detail::seen_cell(campaign, seen_targets(pose.targets, targets)));
     }
     return text;
 }

@@ -217,19 +217,108 @@ SensorSection read_planes(const YamlValue& value) {
             join(targets.unknowns, own), targets.has_positions};
 }
 
+// ---- Sockets ----
+
+/// Places for sockets that the file does not state, all different.
+Vector3d generic_socket(std::size_t index) { return Vector3d(0.5, 0, 0.2) + generic_target(index); }
+
+Socket read_socket(const YamlValue& value, const std::vector<Socket>& before, bool& has_position) {
+    const YamlMap map(value, {"name", "position_<length>", "from", "distance_<length>"});
+    Socket socket;
+    const YamlValue name = map.require("name");
+    socket.name = name.text();
+    const auto is_called = [](const std::string& called) {
+        return [&called](const Socket& other) { return other.name == called; };
+    };
+    if (socket.name.empty() || socket.name.find_first_of(", \t\"'") != std::string::npos) {
+        throw name.error("is " + quote(socket.name) + "; must be one word");
+    }
+    if (std::any_of(before.begin(), before.end(), is_called(socket.name))) {
+        throw name.error("is " + quote(socket.name) + " as of another socket; must be its own");
+    }
+    const auto position = map.find_measure("position");
+    has_position = position.has_value();
+    socket.position = position ? position->vector_to_si() : generic_socket(before.size());
+    const auto from = map.find("from");
+    const auto distance = map.find_measure("distance");
+    if (from.has_value() != distance.has_value()) {
+        throw value.error("must have both from and distance_mm, or none of them");
+    }
+    if (!from) return socket;
+    const std::string other = from->text();
+    const auto found = std::find_if(before.begin(), before.end(), is_called(other));
+    if (found == before.end()) {
+        throw from->error("is " + quote(other) + "; must be a socket listed before this one");
+    }
+    socket.from = found - before.begin();
+    socket.distance = read_positive(*distance);
+    return socket;
+}
+
+struct SocketsSection {
+    std::vector<Socket> sockets;
+    std::vector<bool> has_position;  ///< whether it was stated, not made up
+};
+
+SocketsSection read_socket_list(const YamlValue& list) {
+    SocketsSection section;
+    for (const YamlValue& item : list.list()) {
+        bool has_position = false;
+        section.sockets.push_back(read_socket(item, section.sockets, has_position));
+        section.has_position.push_back(has_position);
+    }
+    if (section.sockets.empty()) throw list.error("is empty; must list at least one socket");
+    return section;
+}
+
+SensorSection read_sockets(const YamlValue& value) {
+    const YamlMap sensor(value, {"kind", "sigma_<length>", "sockets", "known_sockets", "targets"});
+    const YamlValue list = sensor.require("sockets");
+    const SocketsSection section = read_socket_list(list);
+    const auto known = sensor.find("known_sockets");
+    const bool are_known = known && known->boolean();
+    const auto& stated = section.has_position;
+    const bool has_positions = std::all_of(stated.begin(), stated.end(), [](bool b) { return b; });
+    if (are_known && !has_positions) {
+        throw known->error("is true; needs position_mm of every socket");
+    }
+    const YamlValue targets_value = sensor.require("targets");
+    TargetsSection targets = read_targets(targets_value);
+    if (targets.targets.count() != 1) {
+        throw targets_value.error(
+            fmt::format("are {}; must be one, the ball", targets.targets.count()));
+    }
+    auto result = std::make_shared<SocketSensor>(std::move(targets.targets), section.sockets,
+                                                 are_known, read_sigma(sensor));
+    VectorXd unknowns = VectorXd::Zero(std::ssize(result->unknown_names()));
+    unknowns.head(targets.unknowns.size()) = targets.unknowns;
+    std::vector<Index> reached;
+    Index next = targets.unknowns.size();
+    for (std::size_t k = 0; k < section.sockets.size() && !are_known; ++k) {
+        const bool is_free = section.sockets[k].from < 0;
+        if (is_free) unknowns.segment<3>(next) = section.sockets[k].position;
+        if (is_free && !section.has_position[k]) reached.push_back(next);
+        next += is_free ? 3 : 2;
+    }
+    return {std::move(result), std::move(unknowns), targets.has_positions && has_positions,
+            !are_known, std::move(reached)};
+}
+
 /// A sensor by its kind; its keys depend on it.
 using ReadKind = SensorSection (*)(const YamlValue&);
-constexpr std::array<std::pair<std::string_view, ReadKind>, 4> kinds{{{"points", read_points},
+constexpr std::array<std::pair<std::string_view, ReadKind>, 5> kinds{{{"points", read_points},
                                                                       {"poses", read_poses},
                                                                       {"distances", read_distances},
-                                                                      {"planes", read_planes}}};
+                                                                      {"planes", read_planes},
+                                                                      {"sockets", read_sockets}}};
 
 YamlValue kind_of(const YamlValue& sensor) {
     for (const YamlEntry& entry : sensor.entries()) {
         if (entry.key == "kind") return entry.value;
     }
-    return YamlMap(sensor, {"kind", "sigma_<length>", "sigma_orientation_<angle>", "noise",
-                            "targets", "tool", "anchors", "planes", "known_planes"})
+    return YamlMap(sensor,
+                   {"kind", "sigma_<length>", "sigma_orientation_<angle>", "noise", "targets",
+                    "tool", "anchors", "planes", "known_planes", "sockets", "known_sockets"})
         .require("kind");
 }
 

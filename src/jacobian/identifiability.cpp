@@ -3,11 +3,13 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "../core/decompositions.hpp"
+#include "../measurement/contact.hpp"
 #include "../model/complete_model.hpp"
 #include "../model/sampling.hpp"
 #include "posewise/jacobian/identification.hpp"
@@ -47,11 +49,12 @@ std::vector<Index> make_priority(const Campaign& campaign) {
 }
 
 MatrixXd stack_at_nominal(const Campaign& campaign, Index pose_count) {
-    const RowMatrixXd configurations =
-        detail::random_configurations(campaign.robot, pose_count, configuration_seed);
     Parameters nominal = campaign.nominal;
     nominal.robot.setZero(campaign.robot.parameter_count());  // beside it rank is nearly lost only
-    return make_plain_blocks(campaign, nominal, configurations).matrix;
+    const detail::ShownPoses poses =
+        detail::random_poses(campaign, nominal, pose_count, configuration_seed);
+    return make_plain_blocks(campaign, nominal, poses.configurations, times_seen(poses.is_seen, 1))
+        .matrix;
 }
 
 /// How the dropped columns follow from the kept ones: kept x dropped, in the columns' own units.
@@ -158,6 +161,26 @@ Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names)
     return chain.with_elements(std::move(elements));
 }
 
+Chain without_errors_of_base(const Chain& chain) {
+    constexpr double rounding = 1e-9;  // of twists, rad per rad and m per rad
+    const RowMatrixXd drawn = detail::random_configurations(chain, 2, configuration_seed);
+    std::array<FlangeMotion, 2> motions;
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+        chain.differentiate(Isometry3d::Identity(), drawn.row(static_cast<Index>(i)).transpose(),
+                            VectorXd::Zero(chain.parameter_count()), motions[i]);
+    }
+    const std::vector<std::string> names = chain.parameter_names();
+    std::vector<std::string> kept;
+    for (Index k = 0; k < chain.parameter_count(); ++k) {
+        const Index column = 6 + k;
+        const Twist change = motions[1].twists.col(column) - motions[0].twists.col(column);
+        if (change.norm() > rounding || chain.parameter_term(k) != nullptr) {
+            kept.push_back(names[static_cast<std::size_t>(k)]);
+        }
+    }
+    return keep_parameters(chain, kept);
+}
+
 Chain irreducible_model(const Campaign& campaign) {
     const Campaign complete = with_robot(campaign, detail::complete_model(campaign.robot));
     const auto names = parameter_names(complete);
@@ -174,7 +197,7 @@ Index least_pose_count(const Campaign& stated) {
         stated.spread.is_prior ? with_robot(stated, without_parameters(stated.robot)) : stated;
     const Identifiability all = find_identifiable(campaign);
     const auto rank = static_cast<Index>(all.kept.size());
-    const Index rows = campaign.sensor->row_count();
+    const Index rows = campaign.sensor->rows_per_target() * campaign.sensor->seen_at_once();
     const MatrixXd J = stack_at_nominal(campaign, 2 * parameter_count(campaign));
     const auto suffices = [&](Index count) {
         if (count * rows >= J.rows()) return true;

@@ -32,6 +32,7 @@ class KnownSensor final : public Sensor {
     bool is_distance(Index row) const override { return sensor_->is_distance(row); }
     bool has_orientation() const override { return sensor_->has_orientation(); }
     Index target_count() const override { return sensor_->target_count(); }
+    std::vector<std::string> contact_names() const override { return sensor_->contact_names(); }
     VectorXd deviation(const VectorXd& observation, const VectorXd& reference) const override {
         return sensor_->deviation(observation, reference);
     }

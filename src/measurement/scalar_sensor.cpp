@@ -8,7 +8,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/measurement/sensors.hpp"
-#include "posewise/model/transforms.hpp"
+#include "tilted_direction.hpp"
 
 namespace posewise {
 
@@ -175,13 +175,7 @@ ScalarSensor::Length PlaneSensor::measure(const Vector3d& x, Index plane,
                 Matrix3d::Zero()};
     }
     const Vector3d own = unknowns.segment<3>(unknown_index(plane));
-    const Vector3d axis1 = stated.unitOrthogonal();
-    const Vector3d axis2 = stated.cross(axis1);
-    const Vector3d tilt = own[0] * axis1 + own[1] * axis2;
-    const Vector3d n = rotation_from_vector(tilt) * stated;
-    const Matrix3d turns = rotation_vector_rate(tilt);
-    const Vector3d n_by_tilt1 = (turns * axis1).cross(n);
-    const Vector3d n_by_tilt2 = (turns * axis2).cross(n);
+    const auto [n, n_by_tilt1, n_by_tilt2] = detail::tilt(stated, own[0], own[1]);
     Matrix3d feature_by_x = Matrix3d::Zero();
     feature_by_x.row(0) = n_by_tilt1.transpose();
     feature_by_x.row(1) = n_by_tilt2.transpose();

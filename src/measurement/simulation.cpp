@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "../model/sampling.hpp"
+#include "contact.hpp"
 #include "noise.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
@@ -15,6 +15,33 @@ VectorXd draw_normal(RandomStream& stream, Index count) {
     VectorXd z(count);
     for (Index k = 0; k < count; ++k) z[k] = stream.normal();
     return z;
+}
+
+/// Joints as they are where the robot touches what it shows, give or take the noise.
+VectorXd touching_joints(const Campaign& campaign, const Parameters& truth, const VectorXd& q,
+                         const SeenTargets& is_seen, const VectorXd& noise) {
+    const Index width = campaign.sensor->rows_per_target();
+    const Index contact = targets_seen(is_seen).front();
+    for (const auto& range :
+         {detail::limits_of(campaign.robot), detail::unlimited(campaign.robot)}) {
+        auto joints = detail::bring_to_contact(campaign, truth, q, contact, range,
+                                               noise.segment(width * contact, width));
+        if (joints) return std::move(*joints);
+    }
+    throw InputError("a simulated robot cannot reach " +
+                     campaign.sensor->contact_names()[static_cast<std::size_t>(contact)] +
+                     " near a configuration that shows it; its expected errors must be smaller");
+}
+
+void check_contacts(const Campaign& campaign, const Seen& is_seen, Index repeats) {
+    if (campaign.sensor->contact_names().empty()) return;
+    if (repeats != 1) {
+        throw InputError(
+            "repeats must be 1: the robot touches once a configuration, and is "
+            "elsewhere when it does so again");
+    }
+    if ((is_seen.rowwise().count() == 1).all()) return;
+    throw InputError("each configuration must show one contact and no other");
 }
 
 }  // namespace
@@ -33,32 +60,53 @@ Parameters draw_truth(const Campaign& campaign, std::uint64_t seed) {
 Measurements simulate_measurements(const Campaign& campaign, const Parameters& truth,
                                    const RowMatrixXd& configurations, Index repeats,
                                    std::uint64_t seed) {
+    return simulate_measurements(campaign, truth, configurations,
+                                 all_seen(configurations.rows(), campaign.sensor->target_count()),
+                                 repeats, seed);
+}
+
+Measurements simulate_measurements(const Campaign& campaign, const Parameters& truth,
+                                   const RowMatrixXd& configurations, const Seen& is_seen,
+                                   Index repeats, std::uint64_t seed) {
     detail::check_noise(campaign);
+    check_contacts(campaign, is_seen, repeats);
     const Sensor& sensor = *campaign.sensor;
     const Index rows = sensor.row_count();
     const VectorXd model_error = detail::model_error_of_rows(campaign);
+    const bool has_contacts = !sensor.contact_names().empty();
     Measurements measurements;
     measurements.configurations = configurations;
     measurements.observations.resize(configurations.rows() * repeats, rows);
-    measurements.is_seen.setConstant(configurations.rows() * repeats, sensor.target_count(), true);
+    measurements.is_seen.resize(configurations.rows() * repeats, sensor.target_count());
     for (Index i = 0; i < configurations.rows(); ++i) {
         RandomStream stream(seed, static_cast<std::uint64_t>(i));
         VectorXd q = configurations.row(i).transpose();
+        VectorXd joint_errors = VectorXd::Zero(q.size());
         if (campaign.joint_repeatability.size() > 0) {
             const Index joints = campaign.robot.joint_count();
-            q.head(joints) +=
+            joint_errors.head(joints) =
                 campaign.joint_repeatability.cwiseProduct(draw_normal(stream, joints));
         }
+        q += joint_errors;
         const Isometry3d flange = world_from_flange(campaign, truth, q);
         const VectorXd expected =
             sensor.deviate(sensor.predict(flange, truth.sensor),
                            model_error.cwiseProduct(draw_normal(stream, rows)));
         const MatrixXd noise_factor =
             detail::cholesky_factor(sensor.covariance(flange, truth.sensor));
+        measurements.is_seen.middleRows(i * repeats, repeats).rowwise() = is_seen.row(i);
         for (Index k = 0; k < repeats; ++k) {
             const VectorXd noise = noise_factor * draw_normal(stream, rows);
             measurements.observations.row(i * repeats + k) =
                 sensor.deviate(expected, noise).transpose();
+        }
+        if (has_contacts) {
+            const VectorXd noise =
+                measurements.observations.row(i).transpose() - sensor.predict(flange, truth.sensor);
+            measurements.configurations.row(i) =
+                (touching_joints(campaign, truth, q, is_seen.row(i), noise) - joint_errors)
+                    .transpose();
+            measurements.observations.row(i).setZero();
         }
         measurements.ids.push_back(std::to_string(i));
         measurements.first_sample.push_back((i + 1) * repeats);
@@ -72,11 +120,9 @@ Simulation simulate(const Campaign& campaign, const SimulateOptions& options) {
     }
     // Configurations and noise come from different streams of one seed.
     const std::uint64_t configuration_seed = ~options.seed;
-    const Index targets = campaign.sensor->target_count();
-    return simulate(
-        campaign,
-        detail::random_configurations(campaign.robot, options.pose_count, configuration_seed),
-        all_seen(options.pose_count, targets), options);
+    const detail::ShownPoses poses =
+        detail::random_poses(campaign, campaign.nominal, options.pose_count, configuration_seed);
+    return simulate(campaign, poses.configurations, poses.is_seen, options);
 }
 
 Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
@@ -99,10 +145,7 @@ Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
     Simulation simulation;
     simulation.truth = draw_truth(campaign, options.truth_seed);
     simulation.measurements = simulate_measurements(campaign, simulation.truth, configurations,
-                                                    options.repeats, options.seed);
-    for (Index sample = 0; sample < simulation.measurements.is_seen.rows(); ++sample) {
-        simulation.measurements.is_seen.row(sample) = is_seen.row(sample / options.repeats);
-    }
+                                                    is_seen, options.repeats, options.seed);
     return simulation;
 }
 

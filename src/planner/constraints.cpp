@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "../core/elementary.hpp"
+#include "../measurement/contact.hpp"
 #include "../model/halton.hpp"
 #include "cell_check.hpp"
 
@@ -48,6 +49,7 @@ const char* constraint_name(Constraint constraint) {
         "target_boxes",
         "keep_out",
         "self-collision of links",
+        "contact",
         "tracker.range",
         "tracker.azimuth",
         "tracker.elevation",
@@ -61,8 +63,10 @@ double ConstraintReport::margin() const {
     return *std::min_element(clearance.begin(), clearance.end());
 }
 
-Constraints::Constraints(const Campaign& campaign, Cell cell)
+Constraints::Constraints(const Campaign& campaign, Cell cell, bool needs_contact)
     : cell_(std::move(cell)),
+      contact_(needs_contact && !campaign.sensor->contact_names().empty() ? std::optional(campaign)
+                                                                          : std::nullopt),
       robot_(without_parameters(detail::with_margin(campaign.robot, cell_.limit_margin))),
       target_count_(campaign.sensor->target_count()),
       tracker_from_base_(campaign.nominal.world_from_base),
@@ -151,6 +155,27 @@ double Constraints::line_clearance(const Posture& posture, const Vector3d& targe
     return least;
 }
 
+void Constraints::check_contact(const VectorXd& q, ConstraintReport& report) const {
+    constexpr double touches = 1e-9;  // m
+    const Parameters& nominal = contact_->nominal;
+    const RowMatrixXd readings =
+        contact_->sensor->predict(world_from_flange(*contact_, nominal, q), nominal.sensor)
+            .reshaped<Eigen::RowMajor>(target_count_, contact_->sensor->rows_per_target());
+    const VectorXd misses = readings.rowwise().norm();
+    report.is_seen = (misses.transpose().array() <= touches);
+    report.clearance[static_cast<std::size_t>(Constraint::Contact)] = touches - misses.minCoeff();
+}
+
+RowMatrixXd Constraints::bring_to_contacts(const RowMatrixXd& candidates, Index first) const {
+    if (!contact_) return candidates;
+    detail::JointRange range = detail::limits_of(robot_);
+    for (const auto& [joint, value] : cell_.fixed_joints) {
+        range.lower[joint] = range.upper[joint] = value;
+    }
+    return detail::bring_to_contacts(*contact_, contact_->nominal, candidates, first, range)
+        .configurations;
+}
+
 void Constraints::check_sight(const Posture& posture, ConstraintReport& report) const {
     const Sight& sight = *cell_.sight;
     const std::size_t count = posture.targets.size();
@@ -203,11 +228,12 @@ ConstraintReport Constraints::check(const VectorXd& q) const {
     set(Constraint::KeepOuts, keep_out_clearance(posture));
     set(Constraint::SelfCollision, self_clearance(posture));
     if (cell_.sight) check_sight(posture, report);
+    if (contact_) check_contact(q, report);
     return report;
 }
 
 SeenTargets Constraints::seen(const VectorXd& q) const {
-    return cell_.sight ? check(q).is_seen : SeenTargets::Constant(target_count_, true);
+    return cell_.sight || contact_ ? check(q).is_seen : SeenTargets::Constant(target_count_, true);
 }
 
 double Constraints::collision_clearance(const VectorXd& q) const {

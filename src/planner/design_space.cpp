@@ -34,6 +34,7 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
         return pose->differentiate(q, Z, seen(q));
     };
     if (constraints == nullptr) return space;
+    space.is_pool_only = constraints->needs_contact();
     for (const auto& [joint, value] : constraints->cell().fixed_joints) {
         space.lower[joint] = space.upper[joint] = value;
     }

@@ -22,6 +22,9 @@ struct DesignSpace {
     std::function<VectorXd(const VectorXd& q, const MatrixXd& Z)> information_gradient;
     /// At least 0 where a pose is feasible; may have kinks. Empty: everywhere within the limits.
     std::function<double(const VectorXd& q)> margin;
+    /// Whether feasible poses have no feasible ones beside them, so that those of a pool are all
+    /// there are.
+    bool is_pool_only = false;
     /// Two poses of a plan differ at least so much in one joint (rad or m).
     double least_joint_distance = 0;
     std::vector<std::string> parameter_names;  ///< for messages; empty: they are numbered from 1

@@ -268,6 +268,22 @@ Refinement improve_with_kicks(const Problem& problem, Refinement best) {
     return best;
 }
 
+/// The best choice from a pool: where hardly any pose is feasible there is nothing to refine.
+PlannedPoses choose_only(const Problem& problem, const SelectOptions& select) {
+    PlannedPoses planned;
+    planned.criterion = problem.options.criterion;
+    planned.seed = problem.options.seed;
+    planned.pool_choice = determined(select_poses(problem.blocks, select));
+    planned.configurations = problem.pool(planned.pool_choice.poses, Eigen::all);
+    planned.value = planned.pool_choice.value;
+    planned.information = information_of(problem, planned.configurations);
+    check_all_is_seen(problem.space, planned.information);
+    planned.starts = planned.pool_choice.starts;
+    planned.starts_at_best = planned.pool_choice.starts_at_best;
+    planned.is_interrupted = problem.options.stop.is_set();
+    return planned;
+}
+
 }  // namespace
 
 PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const Blocks& blocks,
@@ -287,6 +303,12 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     }
     SelectOptions select = select_options(space, pool, options);
     const Problem problem{space, pool, blocks, options, make_objective(blocks, select)};
+    if (space.is_pool_only) {
+        if (options.starts > 0) select.starts = options.starts;
+        select.stop = options.stop;
+        select.progress = options.progress;
+        return choose_only(problem, select);
+    }
     select.stop = options.stop.with_half_the_time();
     PlannedPoses planned;
     planned.criterion = options.criterion;

@@ -112,7 +112,9 @@ Pool make_pool(const Constraints& constraints, Index count, std::uint64_t seed,
         for (const auto& [joint, value] : constraints.cell().fixed_joints) {
             candidates.col(joint).setConstant(value);
         }
-        parts.push_back(filter_pool(constraints, candidates));
+        parts.push_back(filter_pool(constraints, constraints.bring_to_contacts(candidates, drawn)));
+        // Those that reach no contact were drawn, too.
+        parts.back().candidate_count = size;
         drawn += size;
     }
     Pool pool = join(parts);

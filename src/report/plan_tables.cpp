@@ -96,8 +96,9 @@ std::string describe_counts(const Planning& planning) {
 
 std::string describe_searched_bound(const Plan& plan) {
     if (!std::isfinite(plan.searched_bound)) {
-        return plan.is_stopped_early() ? "not searched, stopped before"
-                                       : "not searched, there is no such bound for this criterion";
+        return plan.is_stopped_early()
+                   ? "not searched, stopped before"
+                   : "not searched: there is none for this criterion, or where poses must touch";
     }
     return fmt::format("{}, efficiency {}: by a search, not a proof",
                        format_value(plan, plan.searched_bound),
@@ -163,13 +164,15 @@ std::string describe_way(const Plan& plan, const PlannedPose& pose) {
     return text;
 }
 
-Table pose_table(const Plan& plan) {
+/// What each pose shows is a number of a target, or the name of what it touches.
+Table pose_table(const Plan& plan, const std::vector<std::string>& contacts) {
     Table table{{"pose"}, {}};
     for (const std::string& text : plan.columns) {
         const Column column(text);
         table.header.push_back(fmt::format("{}/{}", column.name, column.units.reading));
     }
-    table.header.insert(table.header.end(), {"targets seen", "way there"});
+    table.header.insert(table.header.end(),
+                        {contacts.empty() ? "targets seen" : "socket", "way there"});
     for (const PlannedPose& pose : plan.poses) {
         std::vector<std::string> row{pose.id};
         for (Index j = 0; j < pose.configuration.size(); ++j) {
@@ -178,7 +181,9 @@ Table pose_table(const Plan& plan) {
         }
         std::string seen;
         for (const Index target : pose.targets) {
-            seen += (seen.empty() ? "" : " ") + std::to_string(target + 1);
+            seen += (seen.empty() ? "" : " ") + (contacts.empty()
+                                                     ? std::to_string(target + 1)
+                                                     : contacts[static_cast<std::size_t>(target)]);
         }
         row.insert(row.end(), {seen, describe_way(plan, pose)});
         table.rows.push_back(std::move(row));
@@ -270,7 +275,8 @@ std::string format_planning(const Planning& planning) {
     text += fmt::format("searched:    {}\nstarts:      {}\norder:       {}\n",
                         describe_searched_bound(plan), describe_starts(plan, "at the best"),
                         describe_order(planning.tour));
-    return text + format_section("Poses, in the order to visit them", pose_table(plan));
+    return text + format_section("Poses, in the order to visit them",
+                                 pose_table(plan, planning.campaign.sensor->contact_names()));
 }
 
 std::string format_other_counts(const std::vector<CountAccuracy>& counts,

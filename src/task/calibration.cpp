@@ -79,9 +79,10 @@ Index part_count(const Campaign& campaign, const CalibrationOptions& options, In
     return sets + 1 + folds;
 }
 
-MeasuredCount count_measured(const Measurements& measurements) {
-    return {measurements.configuration_count(), measurements.observations.rows(),
-            measurements.is_seen.size(), measurements.is_seen.count()};
+MeasuredCount count_measured(const Sensor& sensor, const Measurements& measurements) {
+    const Index samples = measurements.observations.rows();
+    return {measurements.configuration_count(), samples, samples * sensor.seen_at_once(),
+            measurements.is_seen.count()};
 }
 
 void identify_by_method(const Work& work, const Parameters& registered, Calibration& result) {
@@ -322,7 +323,7 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
     result.campaign = whole;
     if (earlier && earlier->spread) result.stated_spread = campaign.spread;
     result.method = options.method;
-    result.measured = count_measured(used);
+    result.measured = count_measured(*campaign.sensor, used);
     result.excluded = options.excluded;
     calibrate_with(work, result);
     if (!result.is_identified()) return result;

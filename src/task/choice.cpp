@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "../measurement/contact.hpp"
 #include "../measurement/noise.hpp"
 #include "../model/halton.hpp"
 #include "choice_problem.hpp"
@@ -118,8 +119,12 @@ Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_
     Candidates candidates;
     candidates.kind = CandidateKind::Random;
     candidates.ids = detail::number_ids(count);
-    candidates.configurations = detail::halton_configurations(campaign.robot, count, {{}, 1, seed});
-    candidates.share = RowMatrixXd::Ones(count, campaign.sensor->target_count());
+    detail::ShownPoses poses =
+        detail::draw_poses(campaign, campaign.nominal, count, [&](Index drawn) {
+            return detail::halton_configurations(campaign.robot, drawn, {{}, 1, seed});
+        });
+    candidates.configurations = std::move(poses.configurations);
+    candidates.share = times_seen(poses.is_seen, 1);
     return candidates;
 }
 

@@ -15,7 +15,7 @@ RowMatrixXd workspace_configurations(const Campaign& campaign, const std::option
     if (target_box) cell.target_boxes = {*target_box};
     try {
         const Pool pool =
-            make_pool(Constraints(campaign, std::move(cell)), draws_per_pose * count, seed);
+            make_pool(Constraints(campaign, std::move(cell), false), draws_per_pose * count, seed);
         return pool.configurations.topRows(std::min(count, pool.configurations.rows()));
     } catch (const InputError& error) {
         throw InputError(std::string("workspace: ") + error.what());

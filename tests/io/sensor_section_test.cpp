@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <numbers>
 
 #include "posewise/io/measurements_file.hpp"
@@ -84,6 +85,43 @@ TEST(ReadSensor, TakesDistancesAndPartlyKnownTargets) {
     EXPECT_TRUE(campaign.nominal.sensor.isApprox(expected, 1e-15));
     const std::string fixed = replaced(distances, "300]]}", "300]], known: true}");
     EXPECT_EQ(read(fixed).nominal.sensor.size(), 1);
+}
+
+TEST(ReadSensor, TakesSockets) {
+    const std::string sockets =
+        "sensor:\n"
+        "  kind: sockets\n"
+        "  sigma_mm: 0.1\n"
+        "  targets: {position_mm: [[0, 0, 100]]}\n"
+        "  sockets:\n"
+        "    - {name: left, position_mm: [500, 100, 20]}\n"
+        "    - {name: right, from: left, distance_mm: 50}\n";
+    const std::string without_base = head.substr(0, head.find("base:"));
+    const Campaign campaign = parse_campaign(without_base + sockets, "c.yaml");
+    const auto& sensor = dynamic_cast<const SocketSensor&>(*campaign.sensor);
+    EXPECT_EQ(sensor.contact_names(), (std::vector<std::string>{"left", "right"}));
+    EXPECT_EQ(base_parameter_count(campaign), 0);
+    EXPECT_NEAR(
+        (sensor.socket_position(0, campaign.nominal.sensor) - Vector3d(0.5, 0.1, 0.02)).norm(), 0,
+        1e-15);
+    EXPECT_NEAR(
+        (sensor.socket_position(1, campaign.nominal.sensor) - Vector3d(0.5, 0.1, 0.02)).norm(),
+        0.05, 1e-15);
+    EXPECT_FALSE(campaign.has_nominal_targets);  // where right is nobody said
+    const auto message = [&](const std::string& part, const std::string& by) {
+        return input_error_of(
+            [&] { parse_campaign(without_base + replaced(sockets, part, by), "c.yaml"); });
+    };
+    EXPECT_NE(input_error_of([&] { read(sockets); }).find("must be left out"), std::string::npos);
+    for (const auto& [part, by, said] : std::vector<std::array<std::string, 3>>{
+             {"from: left", "from: right", "must be a socket listed before this one"},
+             {"name: right", "name: left", "must be its own"},
+             {"name: right", "name: the right", "must be one word"},
+             {", distance_mm: 50", "", "must have both from and distance_mm"},
+             {"[[0, 0, 100]]", "[[0, 0, 100], [0, 9, 0]]", "must be one, the ball"},
+             {"kind: sockets", "kind: sockets\n  known_sockets: true", "needs position_mm"}}) {
+        EXPECT_NE(message(part, by).find(said), std::string::npos) << message(part, by);
+    }
 }
 
 TEST(ReadSensor, TakesPlanes) {

@@ -39,6 +39,17 @@ inline std::vector<SensorCampaign> campaigns_of_every_sensor(const Chain& robot)
     for (Index k = 0; k < 3; ++k) {
         on_planes.segment<3>(6 + 3 * k) << 0.02, -0.01, planes[static_cast<std::size_t>(k)].offset;
     }
+    std::vector<Socket> sockets{{"s0"}, {"s1"}, {"s2", Vector3d::Zero(), 1, 0.3}};
+    for (std::size_t k = 0; k < sockets.size(); ++k) {
+        const double turn = 0.2 + 0.1 * static_cast<double>(k);
+        sockets[k].position = points.nominal.world_from_base *
+                              (robot.base_from_flange(VectorXd::Constant(6, turn),
+                                                      VectorXd::Zero(robot.parameter_count())) *
+                               two[0]);
+    }
+    const Targets ball(std::vector<std::optional<Vector3d>>{std::nullopt});
+    VectorXd in_sockets(11);
+    in_sockets << two[0], sockets[0].position, sockets[1].position, 0.1, -0.05;
     const auto pose = [&](std::optional<Isometry3d> known, const PointNoise& noise) {
         return std::make_shared<PoseSensor>(known, noise, 1e-4);
     };
@@ -60,6 +71,11 @@ inline std::vector<SensorCampaign> campaigns_of_every_sensor(const Chain& robot)
          with_sensor(points, std::make_shared<PlaneSensor>(unknown, planes, true, 5e-5), both)},
         {"unknown planes",
          with_sensor(points, std::make_shared<PlaneSensor>(unknown, planes, false, 5e-5), on_planes,
+                     true)},
+        {"known sockets",
+         with_sensor(points, std::make_shared<SocketSensor>(ball, sockets, true, 5e-5), two[0])},
+        {"unknown sockets",
+         with_sensor(points, std::make_shared<SocketSensor>(ball, sockets, false, 5e-5), in_sockets,
                      true)}};
     Campaign base_partly_known = points;
     base_partly_known.base_is_known = {false, false, true, true, true, false};

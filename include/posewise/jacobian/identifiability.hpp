@@ -57,6 +57,10 @@ std::vector<Index> weakest_kept(const Campaign& campaign, const Identifiability&
 /// The same robot with only the kept error parameters.
 Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names);
 
+/// The same robot without the errors that only move it as a whole, as that of the first joint's
+/// zero does: where all is found in its base frame they mean nothing.
+Chain without_errors_of_base(const Chain& chain);
+
 /// The irreducible form: with complete errors, then only those that are identifiable.
 Chain irreducible_model(const Campaign& campaign);
 

@@ -96,6 +96,11 @@ class Sensor {
     virtual Index target_count() const { return targets().count(); }
     Index rows_per_target() const { return row_count() / target_count(); }
     Index lengths_per_target() const { return rows_per_target() - count_angles() / target_count(); }
+    /// What the robot touches, if each pose shows one of these and no other, and that it is there:
+    /// all readings are 0, and files have a column of these names instead. Empty: readings differ.
+    virtual std::vector<std::string> contact_names() const { return {}; }
+    /// How many a pose can show at once.
+    Index seen_at_once() const { return contact_names().empty() ? target_count() : 1; }
     /// Which of targets() it belongs to.
     Index point_of(Index target) const { return target * targets().count() / target_count(); }
     /// Where the point of each target is in the flange frame, m.
@@ -146,6 +151,9 @@ class Sensor {
     /// Nothing, if an observation does not tell positions by itself: registration then begins at
     /// the campaign's nominal values.
     virtual std::optional<ObservedPoints> observed_points() const { return std::nullopt; }
+    /// Whether its unknowns are not found from whatever values they begin at, even where the base
+    /// is known.
+    virtual bool needs_first_guess() const { return true; }
     /// Whether those are the targets, and nothing else is unknown: a sensor of points.
     bool observes_targets() const;
 

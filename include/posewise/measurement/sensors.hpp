@@ -211,4 +211,62 @@ class PlaneSensor final : public ScalarSensor {
     std::vector<Plane> planes_;  ///< normals of length 1
 };
 
+/// A place fixed in the world where a ball sits.
+struct Socket {
+    std::string name;
+    Vector3d position = Vector3d::Zero();  ///< in the world, m: where it is, or is expected
+    /// The distance of its centre from that of an earlier socket, where that is known: the index of
+    /// the other (-1: there is none) and the distance, m.
+    Index from = -1;
+    double distance = 0;
+};
+
+/// No instrument: a ball fixed to the flange, its one target, is put into sockets fixed in the
+/// world. A pose shows one of them, and that the ball's centre is where the socket's is: readings
+/// are ball less socket, three lengths each, 0. Sockets are known, or have three unknowns each,
+/// socket.NAME.x to .z; at a known distance from another two, socket.NAME.tilt1 and .tilt2 (rad,
+/// from the expected direction, about two axes across it; a rotation vector).
+class SocketSensor final : public Sensor {
+  public:
+    /// Throws InputError if there is no socket, if a name is empty or there twice, if there is more
+    /// than one target, if sigma (standard deviation of each coordinate, m) is not finite or below
+    /// 1e-15, or if a distance is not above 0 or not from an earlier socket at another place.
+    SocketSensor(Targets ball, std::vector<Socket> sockets, bool are_known, double sigma);
+
+    double sigma() const { return sigma_; }
+    const std::vector<Socket>& sockets() const { return sockets_; }
+    Vector3d socket_position(Index socket, const VectorXd& unknowns) const;
+
+    const Targets& targets() const override { return ball_; }
+    Index target_count() const override { return static_cast<Index>(sockets_.size()); }
+    Index row_count() const override { return 3 * target_count(); }
+    std::vector<std::string> contact_names() const override;
+    bool needs_first_guess() const override { return are_known_; }
+    std::vector<std::string> observation_names() const override;
+    std::vector<std::string> unknown_names() const override;
+    std::vector<bool> unknown_is_angle() const override;
+    VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const override;
+    void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                       const VectorXd& unknowns,
+                       Eigen::Ref<RowMatrixXd> J_measured_parameters) const override;
+    void differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                             const Twist& direction, const TwistMatrix& twist_rates,
+                             const VectorXd& unknowns,
+                             Eigen::Ref<RowMatrixXd> J_rate) const override;
+    MatrixXd covariance(const Isometry3d&, const VectorXd&) const override;
+    bool has_constant_covariance() const override { return true; }
+    std::vector<NoiseNumber> noise_numbers() const override { return {{"sigma_m", {sigma_}}}; }
+    SensorWords words() const override;
+
+  private:
+    bool has_distance(Index socket) const { return of(socket).from >= 0 && !are_known_; }
+    const Socket& of(Index socket) const { return sockets_[static_cast<std::size_t>(socket)]; }
+
+    Targets ball_;
+    std::vector<Socket> sockets_;
+    bool are_known_;
+    double sigma_;
+    std::vector<Index> unknown_index_;  ///< the first of each socket's unknowns
+};
+
 }  // namespace posewise

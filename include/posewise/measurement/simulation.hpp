@@ -32,6 +32,13 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
                                    const RowMatrixXd& configurations, Index repeats,
                                    std::uint64_t seed);
 
+/// The same where each configuration shows some targets (m x targets). Where they are contacts it
+/// shows one, and the joints are where the robot touches it: they are moved from `configurations`
+/// there, and all readings are 0. Throws InputError if they cannot be.
+Measurements simulate_measurements(const Campaign& campaign, const Parameters& truth,
+                                   const RowMatrixXd& configurations, const Seen& is_seen,
+                                   Index repeats, std::uint64_t seed);
+
 /// draw_truth() measured at random configurations within the joint limits. Throws InputError for
 /// counts below 1 or if the campaign does not state its base and targets.
 Simulation simulate(const Campaign& campaign, const SimulateOptions& options);

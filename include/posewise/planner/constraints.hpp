@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@ enum class Constraint {
     TargetBoxes,    ///< every target in one of them
     KeepOuts,       ///< links that move, against keep-outs
     SelfCollision,  ///< links against links, but for those fixed to the same or the next frame
+    Contact,        ///< of sensors with contact_names(): one of them is touched, to 1 nm
     Range,          ///< this and the next four: as many targets as must be seen, each by itself
     Azimuth,
     Elevation,
@@ -25,7 +27,7 @@ enum class Constraint {
     LineOfSight,
     VisibleTargets,  ///< all five at once for as many targets as must be seen
 };
-inline constexpr std::size_t constraint_count = 11;
+inline constexpr std::size_t constraint_count = 12;
 
 /// As campaign files call it: "tracker.elevation".
 const char* constraint_name(Constraint constraint);
@@ -35,7 +37,7 @@ struct ConstraintReport {
     /// By Constraint, in m or rad: at least 0 if it is met; infinite if the cell has no such
     /// constraint.
     std::array<double, constraint_count> clearance;
-    SeenTargets is_seen;  ///< all if the cell does not speak of sight
+    SeenTargets is_seen;  ///< what is touched; else all if the cell does not speak of sight
 
     double operator[](Constraint constraint) const {
         return clearance[static_cast<std::size_t>(constraint)];
@@ -54,12 +56,18 @@ class Constraints {
     /// the limits, a number of normals other than that of targets, targets within a link that
     /// hides them, a cell that speaks of targets or the tracker where the sensor has no targets or
     /// the campaign does not state its base and targets.
-    Constraints(const Campaign& campaign, Cell cell);
+    /// `needs_contact`: whether a sensor with contact_names() is to measure there.
+    Constraints(const Campaign& campaign, Cell cell, bool needs_contact = true);
 
     const Cell& cell() const { return cell_; }
     /// The robot with its limits drawn in by the margin; fixed joints keep theirs.
     const Chain& robot() const { return robot_; }
     Index target_count() const { return target_count_; }
+    /// Whether something must be touched: hardly any pose is feasible then.
+    bool needs_contact() const { return contact_.has_value(); }
+    /// Candidates, the first of index `first`, brought to what is to be touched, one after another;
+    /// as they are, if nothing is. Those that cannot be are left out.
+    RowMatrixXd bring_to_contacts(const RowMatrixXd& candidates, Index first) const;
 
     /// Nominal geometry throughout. Throws InputError as Chain::check_configuration().
     ConstraintReport check(const VectorXd& q) const;
@@ -82,9 +90,11 @@ class Constraints {
     double keep_out_clearance(const Posture& posture) const;
     double self_clearance(const Posture& posture) const;
     double line_clearance(const Posture& posture, const Vector3d& target) const;
+    void check_contact(const VectorXd& q, ConstraintReport& report) const;
     void check_sight(const Posture& posture, ConstraintReport& report) const;
 
     Cell cell_;
+    std::optional<Campaign> contact_;  // if something must be touched
     Chain robot_;
     Index target_count_;
     Isometry3d tracker_from_base_;

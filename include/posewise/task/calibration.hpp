@@ -65,7 +65,7 @@ Index default_folds(Index configuration_count);
 struct MeasuredCount {
     Index configurations = 0;
     Index samples = 0;
-    Index readings = 0;       ///< samples x targets
+    Index readings = 0;       ///< samples x targets that one shows at most
     Index readings_seen = 0;  ///< less those of targets that were not seen
 };
 

@@ -1,0 +1,125 @@
+#include "contact.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <limits>
+
+#include "../model/sampling.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise::detail {
+
+JointRange limits_of(const Chain& robot) {
+    JointRange range = unlimited(robot);
+    for (Index j = 0; j < robot.joint_count(); ++j) {
+        range.lower[j] = robot.joints()[static_cast<std::size_t>(j)].lower;
+        range.upper[j] = robot.joints()[static_cast<std::size_t>(j)].upper;
+    }
+    return range;
+}
+
+JointRange unlimited(const Chain& robot) {
+    const VectorXd infinite =
+        VectorXd::Constant(robot.joint_count(), std::numeric_limits<double>::infinity());
+    return {-infinite, infinite};
+}
+
+std::optional<VectorXd> bring_to_contact(const Campaign& campaign, const Parameters& parameters,
+                                         VectorXd q, Index contact, const JointRange& range,
+                                         const VectorXd& readings) {
+    constexpr int most_steps = 60;
+    constexpr double touches = 1e-12;  // m
+    constexpr double damping = 1e-6;   // of the largest a joint can do
+    constexpr double longest = 0.5;    // rad or m: farther a step means nothing
+    const Sensor& sensor = *campaign.sensor;
+    const Index width = sensor.rows_per_target();
+    const Index joints = campaign.robot.joint_count();
+    RowMatrixXd J(sensor.row_count(), joints);
+    FlangeMotion motion;
+    for (int step = 0; step < most_steps; ++step) {
+        campaign.robot.differentiate(parameters.world_from_base, q, parameters.robot, motion, true);
+        const VectorXd miss = readings - sensor.predict(motion.world_from_flange, parameters.sensor)
+                                             .segment(width * contact, width);
+        if (miss.norm() <= touches) return q;
+        sensor.differentiate(motion.world_from_flange, motion.joint_twists, parameters.sensor, J);
+        MatrixXd rows = J.middleRows(width * contact, width);
+        // Joints at a limit that the step would cross stay.
+        for (Index tries = 0; tries < 2; ++tries) {
+            MatrixXd M = rows * rows.transpose();
+            M.diagonal().array() += damping * M.trace() + std::numeric_limits<double>::min();
+            VectorXd d = rows.transpose() * M.llt().solve(miss);
+            const double size = d.cwiseAbs().maxCoeff();
+            if (!(size < std::numeric_limits<double>::infinity())) return std::nullopt;
+            if (size > longest) d *= longest / size;
+            const VectorXd moved = (q.head(joints) + d).cwiseMax(range.lower).cwiseMin(range.upper);
+            const auto stays = ((moved - q.head(joints)).array() == 0 && d.array() != 0).eval();
+            if (tries == 1 || !stays.any()) {
+                q.head(joints) = moved;
+                break;
+            }
+            for (Index j = 0; j < joints; ++j) {
+                if (stays[j]) rows.col(j).setZero();
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+ShownPoses bring_to_contacts(const Campaign& campaign, const Parameters& parameters,
+                             const RowMatrixXd& candidates, Index first, const JointRange& range) {
+    const Sensor& sensor = *campaign.sensor;
+    const Index targets = sensor.target_count();
+    if (sensor.contact_names().empty()) return {candidates, all_seen(candidates.rows(), targets)};
+    const VectorXd touching = VectorXd::Zero(sensor.rows_per_target());
+    ShownPoses poses{RowMatrixXd(candidates.rows(), candidates.cols()),
+                     Seen::Constant(candidates.rows(), targets, false)};
+    Index count = 0;
+    for (Index i = 0; i < candidates.rows(); ++i) {
+        const Index contact = (first + i) % targets;
+        const auto q = bring_to_contact(campaign, parameters, candidates.row(i).transpose(),
+                                        contact, range, touching);
+        if (!q) continue;
+        poses.configurations.row(count) = q->transpose();
+        poses.is_seen(count, contact) = true;
+        ++count;
+    }
+    poses.configurations.conservativeResize(count, Eigen::NoChange);
+    poses.is_seen.conservativeResize(count, Eigen::NoChange);
+    return poses;
+}
+
+ShownPoses draw_poses(const Campaign& campaign, const Parameters& parameters, Index count,
+                      const std::function<RowMatrixXd(Index count)>& draw) {
+    const std::vector<std::string> contacts = campaign.sensor->contact_names();
+    if (contacts.empty()) return {draw(count), all_seen(count, campaign.sensor->target_count())};
+    const Index least = std::max(2 * count, 16 * std::ssize(contacts));
+    ShownPoses poses;
+    for (const Index share : {1, 4, 32}) {
+        poses = bring_to_contacts(campaign, parameters, draw(share * least), 0,
+                                  limits_of(campaign.robot));
+        if (poses.configurations.rows() < count || !poses.is_seen.colwise().any().all()) continue;
+        poses.configurations.conservativeResize(count, Eigen::NoChange);
+        poses.is_seen.conservativeResize(count, Eigen::NoChange);
+        return poses;
+    }
+    std::vector<std::string> unreached;
+    for (Index k = 0; k < std::ssize(contacts); ++k) {
+        if (!poses.is_seen.col(k).any()) unreached.push_back(contacts[static_cast<std::size_t>(k)]);
+    }
+    throw InputError(fmt::format(
+        "hardly any configuration within the joint limits puts the ball into {}; must be within "
+        "reach as stated, keys sensor.sockets and {}",
+        unreached.empty() ? "a socket" : fmt::format("{}", fmt::join(unreached, ", ")),
+        campaign.sensor->words().key));
+}
+
+ShownPoses random_poses(const Campaign& campaign, const Parameters& parameters, Index count,
+                        std::uint64_t seed) {
+    return draw_poses(campaign, parameters, count, [&](Index drawn) {
+        return random_configurations(campaign.robot, drawn, seed);
+    });
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/seen.hpp"
+
+/// Poses that a sensor with contact_names() can measure: what the robot touches it has to reach.
+namespace posewise::detail {
+
+/// Where each joint may be, rad or m; both ends the same: it stays.
+struct JointRange {
+    VectorXd lower;
+    VectorXd upper;
+};
+JointRange limits_of(const Chain& robot);
+JointRange unlimited(const Chain& robot);
+
+/// The configuration near q at which this contact's readings are `readings` (m; 0: it touches), by
+/// least steps of the joints [Whitney 1969]; nothing if there is none within the range.
+std::optional<VectorXd> bring_to_contact(const Campaign& campaign, const Parameters& parameters,
+                                         VectorXd q, Index contact, const JointRange& range,
+                                         const VectorXd& readings);
+
+/// Configurations and which targets each shows: poses x targets.
+struct ShownPoses {
+    RowMatrixXd configurations;
+    Seen is_seen;
+};
+
+/// Candidates as they are, all targets seen; where the sensor knows contacts each is brought to
+/// one of them, the first to contact `first` and so on in turn, and left out if it cannot be.
+ShownPoses bring_to_contacts(const Campaign& campaign, const Parameters& parameters,
+                             const RowMatrixXd& candidates, Index first, const JointRange& range);
+
+/// So many poses out of configurations that `draw` draws; a longer list of it begins with the
+/// shorter one. Throws InputError if hardly any reach something that is to be touched.
+ShownPoses draw_poses(const Campaign& campaign, const Parameters& parameters, Index count,
+                      const std::function<RowMatrixXd(Index count)>& draw);
+
+/// Of random_configurations().
+ShownPoses random_poses(const Campaign& campaign, const Parameters& parameters, Index count,
+                        std::uint64_t seed);
+
+}  // namespace posewise::detail
