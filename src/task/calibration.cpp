@@ -56,7 +56,9 @@ void check_options(const CalibrationOptions& options) {
     if (base + targets < std::ssize(options.refitted)) {
         throw InputError("what is refitted for the validation must be base, targets or both");
     }
-    if (options.validation_campaign != nullptr && (base == 0 || targets == 0)) {
+    const Campaign* const other = options.validation_campaign;
+    const bool has_base = other != nullptr && base_parameter_count(*other) > 0;
+    if (other != nullptr && ((has_base && base == 0) || targets == 0)) {
         throw InputError("for a validation of another campaign both base and targets are refitted");
     }
     if (!is_joint && options.joint.loss.kind != LossKind::Squares) {

@@ -269,6 +269,11 @@ std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& e
                                      detail::format_short(ratio, 2)));
     }
     if (values == ValueCheck::None) return faults;
+    for (const auto& [plane, angle] :
+         detail::find_turned_planes(campaign, estimate.parameters.sensor)) {
+        faults.push_back(fmt::format("plane {} is turned by {} deg from the normal stated of it",
+                                     plane + 1, detail::format_short(to_degrees(angle), 2)));
+    }
     const VectorXd scale = parameter_scale(campaign);
     const VectorXd sigmas = standard_deviations(estimate);
     const Index robot_begin = base_parameter_count(campaign);

@@ -72,6 +72,21 @@ std::vector<PlaneDoubt> find_plane_doubts(const Campaign& campaign, const Measur
     return doubts;
 }
 
+std::vector<detail::TurnedPlane> detail::find_turned_planes(const Campaign& campaign,
+                                                            const VectorXd& unknowns) {
+    constexpr double least_cosine = 0.7;  // 45 deg, from the normal or what is opposite to it
+    const auto* const sensor = dynamic_cast<const PlaneSensor*>(campaign.sensor.get());
+    if (sensor == nullptr) return {};
+    std::vector<TurnedPlane> turned;
+    const Index first = sensor->targets().unknown_count();
+    for (Index next = first; next < unknowns.size(); next += 3) {
+        const double tilt = unknowns.segment<2>(next).norm();
+        if (std::abs(std::cos(tilt)) >= least_cosine) continue;
+        turned.push_back({(next - first) / 3, std::acos(std::cos(tilt))});
+    }
+    return turned;
+}
+
 void detail::find_other_sense(const Campaign& campaign, const Measurements& measured,
                               double tolerance, OrientationDoubt& doubt) {
     for (const auto sense : {OrientationSense::Inverted, OrientationSense::RealPartLast}) {

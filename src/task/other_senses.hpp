@@ -9,4 +9,12 @@ namespace posewise::detail {
 void find_other_sense(const Campaign& campaign, const Measurements& measurements, double tolerance,
                       OrientationDoubt& doubt);
 
+/// A plane that was found far from where it was stated: it is another face, or the poses do not
+/// tell it.
+struct TurnedPlane {
+    Index plane = 0;
+    double angle = 0;  ///< between the normals, rad
+};
+std::vector<TurnedPlane> find_turned_planes(const Campaign& campaign, const VectorXd& unknowns);
+
 }  // namespace posewise::detail

@@ -80,6 +80,15 @@ TEST_F(Suspicions, AReversedPlaneIsNamed) {
     EXPECT_EQ(warnings.find("plane 1"), std::string::npos) << warnings;
 }
 
+TEST_F(Suspicions, APlaneThatRunsAwayIsNoCalibration) {
+    write_text("c.yaml", planes);
+    run_well("simulate c.yaml --poses 40 -o s.csv");
+    write_with("r.yaml", planes, "[0.1, 1, 0]", "[0.1, 0.3, 1]");
+    const Outcome outcome = run("calibrate r.yaml -m s.csv --folds 0");
+    EXPECT_EQ(outcome.code, 3) << outcome.out;
+    EXPECT_NE(outcome.err.find("plane 3 is turned by 7"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Suspicions, AKnownPlaneThatIsReversedIsNamedWhereTheMeasurementsAreRefused) {
     write_text("c.yaml", planes);
     run_well("simulate c.yaml --poses 40 -o s.csv");
