@@ -36,4 +36,8 @@ MatrixXd root_of(const MatrixXd& C) {
     return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
+MatrixXd lower_root_of(const MatrixXd& C) {
+    return triangular_factor(root_of(C).transpose()).transpose();
+}
+
 }  // namespace posewise::detail

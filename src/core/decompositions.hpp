@@ -22,4 +22,7 @@ Eigen::SelfAdjointEigenSolver<MatrixXd> eigen_decomposition(
 /// F with C = F F^T, for a positive semidefinite C.
 MatrixXd root_of(const MatrixXd& C);
 
+/// The same, lower triangular.
+MatrixXd lower_root_of(const MatrixXd& C);
+
 }  // namespace posewise::detail

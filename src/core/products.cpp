@@ -58,27 +58,32 @@ POSEWISE_INLINE void add_multiples(const double* factors, const double* x,
     }
 }
 
-/// Some rows of A, row-major, to the lower half of M, column-major, both `size` wide.
-struct AddGram {
+/// M += A^T B by so many rows of A and B, all row-major; where A is B only M's upper half.
+struct AddProduct {
     const double* A;
+    Index A_columns;
+    const double* B;
+    Index columns;
     Index rows;
-    Index size;
     double* M;
 
     template <typename V>
     POSEWISE_INLINE void run() const {
-        constexpr Index columns = 2 * simd::width<V>;
-        for (Index i = 0; i < size; i += columns) {
-            for (Index j = 0; j < i + columns; j += tile_rows) add_tile<V>(i, j);
+        constexpr Index width = 2 * simd::width<V>;
+        for (Index i = 0; i < columns; i += width) {
+            const Index end = A == B ? i + width : A_columns;
+            for (Index j = 0; j < end; j += tile_rows) add_tile<V>(i, j);
         }
     }
 
     template <typename V>
     POSEWISE_INLINE void add_tile(Index i, Index j) const {
         V sums[tile_rows][2];
-        load(M + j * size + i, size, sums);
-        for (Index k = 0; k < rows; ++k) add_multiples<V>(A + k * size + j, A + k * size + i, sums);
-        store(sums, M + j * size + i, size);
+        load(M + j * columns + i, columns, sums);
+        for (Index k = 0; k < rows; ++k) {
+            add_multiples<V>(A + k * A_columns + j, B + k * columns + i, sums);
+        }
+        store(sums, M + j * columns + i, columns);
     }
 };
 
@@ -187,9 +192,29 @@ MatrixXd gram(const Eigen::Ref<const RowMatrixXd>& A) {
     for (Index row = 0; row < A.rows(); row += panel_rows) {
         const Index rows = std::min(panel_rows, A.rows() - row);
         panel.topLeftCorner(rows, A.cols()) = A.middleRows(row, rows);
-        simd::run(AddGram{panel.data(), rows, size, M.data()});
+        simd::run(AddProduct{panel.data(), size, panel.data(), size, rows, M.data()});
     }
     return M.topLeftCorner(A.cols(), A.cols()).triangularView<Eigen::Lower>();
+}
+
+MatrixXd symmetric_gram(const Eigen::Ref<const RowMatrixXd>& A) {
+    MatrixXd M = gram(A);
+    M.triangularView<Eigen::StrictlyUpper>() = M.transpose();
+    return M;
+}
+
+RowMatrixXd transposed_product(const Eigen::Ref<const RowMatrixXd>& A,
+                               const Eigen::Ref<const RowMatrixXd>& B) {
+    const auto pad = [](const Eigen::Ref<const RowMatrixXd>& X, Index part) {
+        RowMatrixXd result = RowMatrixXd::Zero(X.rows(), padded(X.cols(), part));
+        result.leftCols(X.cols()) = X;
+        return result;
+    };
+    const RowMatrixXd left = pad(A, tile_rows);
+    const RowMatrixXd right = pad(B, most_columns);
+    RowMatrixXd M = RowMatrixXd::Zero(left.cols(), right.cols());
+    simd::run(AddProduct{left.data(), left.cols(), right.data(), right.cols(), A.rows(), M.data()});
+    return M.topLeftCorner(A.cols(), B.cols());
 }
 
 MatrixXd cholesky(const MatrixXd& M) {

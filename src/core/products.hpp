@@ -10,6 +10,13 @@ namespace posewise::detail {
 /// A^T A, its lower half; zero above.
 MatrixXd gram(const Eigen::Ref<const RowMatrixXd>& A);
 
+/// The same, M^T = M.
+MatrixXd symmetric_gram(const Eigen::Ref<const RowMatrixXd>& A);
+
+/// A^T B.
+RowMatrixXd transposed_product(const Eigen::Ref<const RowMatrixXd>& A,
+                               const Eigen::Ref<const RowMatrixXd>& B);
+
 /// The L of M = L L^T, zero above its diagonal, by the lower half of M; empty if M is not positive
 /// definite.
 MatrixXd cholesky(const MatrixXd& M);

@@ -4,6 +4,7 @@
 
 #include "../core/decompositions.hpp"
 #include "../core/elementary.hpp"
+#include "../core/products.hpp"
 #include "posewise/core/errors.hpp"
 #include "prediction.hpp"
 #include "regular.hpp"
@@ -29,10 +30,9 @@ double inverse_trace(const MatrixXd* C, const MatrixXd& W, MatrixXd* slope) {
     const double value = 1 / (C == nullptr ? W.trace() : C->cwiseProduct(W).sum());
     if (slope == nullptr) return value;
     if (C == nullptr) {
-        *slope = value * value * W;
-        *slope *= W;
+        *slope = value * value * symmetric_gram(W);
     } else {
-        *slope = value * value * W * *C * W;
+        *slope = value * value * transposed_product(W, transposed_product(*C, W));
     }
     return value;
 }
@@ -103,6 +103,7 @@ Objective make_objective(Criterion criterion, Index pose_count, const Blocks* te
     if (criterion == Criterion::V) {
         objective.mean_test_information =
             information(*test_poses) / static_cast<double>(test_poses->count());
+        objective.mean_test_root = lower_root_of(objective.mean_test_information);
     }
     return objective;
 }

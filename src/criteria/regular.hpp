@@ -2,7 +2,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "posewise/core/types.hpp"
+#include "../core/products.hpp"
 
 namespace posewise::detail {
 
@@ -15,7 +15,7 @@ inline bool is_regular(const Eigen::LLT<MatrixXd>& cholesky, const MatrixXd& M) 
 }
 
 inline MatrixXd inverse(const Eigen::LLT<MatrixXd>& cholesky) {
-    return cholesky.solve(MatrixXd::Identity(cholesky.rows(), cholesky.cols()));
+    return symmetric_gram(invert_lower(cholesky.matrixLLT()));
 }
 
 /// What an information matrix says about the parameters of interest: the Schur complement of the

@@ -154,11 +154,6 @@ MatrixXd worst_information(const Objective& objective, const MatrixXd& M) {
     return weighted_information(*objective.test_poses, weights) / weights.sum();
 }
 
-/// Lower triangular T with C = T T^T, C positive semidefinite.
-MatrixXd lower_root(const MatrixXd& C) {
-    return triangular_factor(root_of(C).transpose()).transpose();
-}
-
 }  // namespace
 
 ChoiceFilter::ChoiceFilter(const Objective& objective, const MatrixXd& M)
@@ -184,10 +179,10 @@ ChoiceFilter::ChoiceFilter(const Objective& objective, const MatrixXd& M)
         case Criterion::A:
             break;
         case Criterion::V:
-            T = lower_root(objective.mean_test_information);
+            T = objective.mean_test_root;
             break;
         case Criterion::G:
-            T = lower_root(worst_information(objective, M));
+            T = lower_root_of(worst_information(objective, M));
             break;
         case Criterion::O5:
             test_ = Test::Nuclear;

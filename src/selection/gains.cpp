@@ -1,7 +1,10 @@
 #include "gains.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <numeric>
+
+#include "../core/products.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -10,9 +13,33 @@ namespace {
 /// least such a part of the information, what is cached is right to nine digits.
 constexpr int most_updates = 32;
 constexpr double least_left_by_updates = 1e-6;
-constexpr double singular = 1e-13;  // of the information in some direction, left by a removal
-constexpr double variance_margin =
-    1e-7;  // relative, above what is lost, so that nothing better is ruled out
+constexpr double singular = 1e-13;    // of the information in some direction, left by a removal
+// Relative, above what is lost, so that nothing better is ruled out.
+constexpr double gain_margin = 1e-8;
+constexpr double variance_margin = 1e-7;
+constexpr double rounding = 1e-13;  // of a sum of eigenvalues
+
+/// What rounding left indefinite, made positive definite.
+MatrixXd raised(MatrixXd M) {
+    M.diagonal().array() += rounding * M.trace();
+    return M;
+}
+
+/// The sum of X_k Y_k^T.
+RowMatrixXd product_of_columns(const std::vector<MatrixXd>& X, const std::vector<MatrixXd>& Y) {
+    const auto stack = [](const std::vector<MatrixXd>& parts) {
+        Index count = 0;
+        for (const MatrixXd& part : parts) count += part.cols();
+        RowMatrixXd rows(count, parts.front().rows());
+        count = 0;
+        for (const MatrixXd& part : parts) {
+            rows.middleRows(count, part.cols()) = part.transpose();
+            count += part.cols();
+        }
+        return rows;
+    };
+    return transposed_product(stack(X), stack(Y));
+}
 
 }  // namespace
 
@@ -28,31 +55,35 @@ Gains::Gains(const Blocks& candidates, const Shortlist& shortlist)
       asked_(static_cast<std::size_t>(shortlist.lanes.groups)),
       gains_(asked_.size()) {}
 
-MatrixXd Gains::identity() const { return MatrixXd::Identity(cholesky_.rows(), cholesky_.cols()); }
-
 void Gains::find_sensitivities() {
     const auto count = static_cast<Index>(shortlist_.members.size());
     if (shortlist_.lanes.rows > 0) {
         sensitivity_ = gram_traces(shortlist_.lanes, is_determinant() ? G_ : H_).head(count);
         return;
     }
-    const MatrixXd root = is_determinant() ? MatrixXd(cholesky_.matrixU().solve(identity()))
-                                           : MatrixXd(cholesky_.solve(C_root_));
+    const RowMatrixXd& slope = is_determinant() ? inverse_ : slope_;
     sensitivity_.resize(count);
     for (Index k = 0; k < count; ++k) {
         const auto block = candidates_[shortlist_.members[static_cast<std::size_t>(k)]];
-        sensitivity_[k] = (block * root).squaredNorm();
+        sensitivity_[k] = (block * slope).cwiseProduct(block).sum();
     }
 }
 
 void Gains::move_to(const MatrixXd& M, const MatrixXd& C_root) {
     C_root_ = C_root;
-    C_ = C_root * C_root.transpose();
-    cholesky_.compute(M);
     updates_ = 0;
+    MatrixXd L = cholesky(M);
+    if (L.size() == 0) L = cholesky(raised(M));
+    const RowMatrixXd L_inverse = invert_lower(L);
+    inverse_ = symmetric_gram(L_inverse);
+    RowMatrixXd root;  // its transpose, slope = root^T root
+    if (!is_determinant()) {
+        root = transposed_product(solve_lower(L, C_root_), L_inverse);
+        slope_ = symmetric_gram(root);
+    }
     if (shortlist_.lanes.rows > 0) {
-        G_ = make_grams(shortlist_.lanes, cholesky_.matrixU().solve(identity()));
-        if (!is_determinant()) H_ = make_grams(shortlist_.lanes, cholesky_.solve(C_root_));
+        G_ = make_grams(shortlist_.lanes, L_inverse.transpose());
+        if (!is_determinant()) H_ = make_grams(shortlist_.lanes, root.transpose());
     }
     find_sensitivities();
 }
@@ -62,39 +93,50 @@ void Gains::exchange(const Eigen::Ref<const RowMatrixXd>& added, const MatrixXd&
         return move_to(M, C_root_);
     }
     // M'^-1 = W - T T^T and M'^-1 C M'^-1 = W C W - T S^T - S T^T.
-    const MatrixXd WA = apply_W(added.transpose());
-    const MatrixXd growth = MatrixXd::Identity(added.rows(), added.rows()) + added * WA;
-    const MatrixXd T = growth.llt().matrixL().solve(WA.transpose()).transpose();
+    const MatrixXd A = added.transpose();
+    const MatrixXd WA = apply_W(A);
+    const Eigen::LLT<MatrixXd> growth(MatrixXd::Identity(A.cols(), A.cols()) + added * WA);
+    const MatrixXd T = growth.matrixL().solve(WA.transpose()).transpose();
     MatrixXd S;
     if (!is_determinant()) {
-        const MatrixXd CT = C_ * T;
-        S = apply_W(CT) - 0.5 * T * (T.transpose() * CT);
+        const MatrixXd WCWA =
+            transposed_product(slope_, A) + P_ * (Q_.transpose() * A) + Q_ * (P_.transpose() * A);
+        const MatrixXd WCT = growth.matrixL().solve(WCWA.transpose()).transpose();
+        S = WCT - 0.5 * T * growth.matrixL().solve(added * WCT);
+        slope_ += product_of_columns({P_, Q_, T, S}, {Q_, P_, -S, -T});
     }
+    inverse_ += product_of_columns({P_, T}, {P_, -T});
     update_grams(shortlist_.lanes, P_, Q_, 1, G_, H_);
     update_grams(shortlist_.lanes, T, S, -1, G_, H_);
-    cholesky_.compute(M);
     find_sensitivities();
 }
 
 bool Gains::remove(const Eigen::Ref<const RowMatrixXd>& block) {
-    const MatrixXd Z = cholesky_.solve(block.transpose());
-    removed_sensitivity_ = is_determinant() ? block.cwiseProduct(Z.transpose()).sum()
-                                            : (C_root_.transpose() * Z).squaredNorm();
+    const RowMatrixXd B = block.transpose();
+    const MatrixXd Z = transposed_product(inverse_, B);
+    const MatrixXd slope_B = is_determinant() ? Z : MatrixXd(transposed_product(slope_, B));
+    removed_sensitivity_ = slope_B.cwiseProduct(B).sum();
     const Eigen::LLT<MatrixXd> left(MatrixXd::Identity(block.rows(), block.rows()) - block * Z);
     if (left.info() != Eigen::Success) return false;
     const double least_left = left.matrixLLT().diagonal().array().square().minCoeff();
     if (least_left < singular) return false;
     P_ = left.matrixL().solve(Z.transpose()).transpose();
     is_removal_accurate_ = least_left > least_left_by_updates;
-    if (is_determinant()) return true;
+    const double margin = is_removal_accurate_ ? gain_margin : 1;
+    if (is_determinant()) {
+        least_gain_ = (1 - margin) / left.matrixLLT().diagonal().array().square().prod();
+        return true;
+    }
     // W C W - M^-1 C M^-1 = P Q^T + Q P^T with Q = M^-1 C P + P (P^T C P) / 2.
-    const MatrixXd CP = C_ * P_;
-    Q_ = cholesky_.solve(CP) + 0.5 * P_ * (P_.transpose() * CP);
+    const MatrixXd slope_P = left.matrixL().solve(slope_B.transpose()).transpose();
+    const MatrixXd PCP = left.matrixL().solve(block * slope_P);
+    least_gain_ = (1 - margin) * PCP.trace();
+    Q_ = slope_P + 0.5 * P_ * PCP;
     return true;
 }
 
 MatrixXd Gains::apply_W(const MatrixXd& X) const {
-    return cholesky_.solve(X) + P_ * (P_.transpose() * X);
+    return transposed_product(inverse_, X) + P_ * (P_.transpose() * X);
 }
 
 double Gains::compute_plainly(Index position, const MatrixXd& W, const MatrixXd& WCW) const {
@@ -109,8 +151,9 @@ double Gains::compute_plainly(Index position, const MatrixXd& W, const MatrixXd&
 VectorXd Gains::compute(const std::vector<Index>& positions) {
     VectorXd result(static_cast<Index>(positions.size()));
     if (shortlist_.lanes.rows == 0) {
-        const MatrixXd W = cholesky_.solve(identity()) + P_ * P_.transpose();
-        const MatrixXd WCW = is_determinant() ? MatrixXd() : W * C_ * W;
+        const MatrixXd W = inverse_ + P_ * P_.transpose();
+        MatrixXd WCW;
+        if (!is_determinant()) WCW = slope_ + P_ * Q_.transpose() + Q_ * P_.transpose();
         for (Index k = 0; k < result.size(); ++k) {
             result[k] = compute_plainly(positions[static_cast<std::size_t>(k)], W, WCW);
         }

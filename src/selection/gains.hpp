@@ -1,7 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
-
 #include "lanes.hpp"
 
 namespace posewise::detail {
@@ -37,6 +35,9 @@ class Gains {
 
     /// Takes a block out. False where what is left is singular.
     bool remove(const Eigen::Ref<const RowMatrixXd>& block);
+    /// By how much the block that was removed lowered trace(C W), or its factor of the determinant,
+    /// but for rounding, so that nothing as good is below it. Only after remove().
+    double least_gain() const { return least_gain_; }
     /// For the shortlisted positions asked for: the factor of the determinant, or by how much
     /// trace(C W) falls. Only after remove().
     VectorXd compute(const std::vector<Index>& positions);
@@ -46,21 +47,21 @@ class Gains {
     std::vector<Index> keeping_below(double most, const std::vector<RowMatrixXd>& test_poses);
 
   private:
-    bool is_determinant() const { return C_.size() == 0; }
+    bool is_determinant() const { return C_root_.size() == 0; }
     void find_sensitivities();
     MatrixXd apply_W(const MatrixXd& X) const;
-    MatrixXd identity() const;
     double compute_plainly(Index position, const MatrixXd& W, const MatrixXd& WCW) const;
 
     const Blocks& candidates_;
     const Shortlist& shortlist_;
     MatrixXd C_root_;
-    MatrixXd C_;
-    Eigen::LLT<MatrixXd> cholesky_;  // of M
-    LaneGrams G_;                    // B_i M^-1 B_i^T
-    LaneGrams H_;                    // B_i M^-1 C M^-1 B_i^T
-    VectorXd sensitivity_;           // of the shortlist's members
+    RowMatrixXd inverse_;   // M^-1
+    RowMatrixXd slope_;     // M^-1 C M^-1
+    LaneGrams G_;           // B_i M^-1 B_i^T
+    LaneGrams H_;           // B_i M^-1 C M^-1 B_i^T
+    VectorXd sensitivity_;  // of the shortlist's members
     double removed_sensitivity_ = 0;
+    double least_gain_ = 0;
     MatrixXd P_;
     MatrixXd Q_;  // W C W - M^-1 C M^-1 = P Q^T + Q P^T
     bool is_removal_accurate_ = false;

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "../core/decompositions.hpp"
@@ -59,7 +60,7 @@ Neighbourhood::Neighbourhood(const Objective& objective, const Blocks& candidate
             break;
         case Criterion::V:
             ranking_ = Ranking::Exact;
-            C_root_ = root_of(objective.mean_test_information);
+            C_root_ = objective.mean_test_root;
             break;
         case Criterion::G:
             ranking_ = Ranking::Witnesses;
@@ -159,7 +160,9 @@ Index Neighbourhood::best_by_gains(Index removed, double value, const Occupancy&
     if (positions.empty()) return -1;
     std::vector<Ranked> ranked = rank(positions);
     if (ranked.empty()) return -1;
-    if (ranking_ == Ranking::Exact) return ranked.front().position;
+    if (ranking_ == Ranking::Exact) {
+        return ranked.front().gain >= gains_.least_gain() ? ranked.front().position : -1;
+    }
     const MatrixXd remaining = M_ - B.transpose() * B;
     Index best = -1;
     std::vector<Index> batch;
@@ -252,6 +255,28 @@ Index Neighbourhood::best_by_witnesses(Index removed, double value, const Occupa
         value = exchanged;
     }
     return best;
+}
+
+std::vector<Index> Neighbourhood::nearest(const std::vector<Index>& poses, Index count) {
+    std::vector<Index> positions(shortlist_.members.size());
+    std::iota(positions.begin(), positions.end(), Index{0});
+    VectorXd nearness = VectorXd::Constant(static_cast<Index>(positions.size()),
+                                           -std::numeric_limits<double>::infinity());
+    for (const Index pose : poses) {
+        if (!gains_.remove(candidates_[pose])) continue;
+        VectorXd gains = gains_.compute(positions);
+        if (C_root_.size() == 0) {
+            gains /= gains_.least_gain();  // factors of the determinant
+        } else {
+            gains.array() -= gains_.least_gain();
+        }
+        nearness = nearness.cwiseMax(gains);
+    }
+    std::stable_sort(positions.begin(), positions.end(),
+                     [&](Index a, Index b) { return nearness[a] > nearness[b]; });
+    positions.resize(std::min(positions.size(), static_cast<std::size_t>(count)));
+    std::sort(positions.begin(), positions.end());
+    return positions;
 }
 
 Index Neighbourhood::best_replacement(Index removed, double value, const Occupancy& occupancy) {

@@ -36,6 +36,11 @@ class Neighbourhood {
     /// objective of M.
     Index best_replacement(Index removed, double value, const Occupancy& occupancy);
 
+    /// Positions in the shortlist, ascending, of at most `count` candidates: those that come
+    /// nearest to making the objective larger in the place of one of these poses, M's. Only where
+    /// gains are exact.
+    std::vector<Index> nearest(const std::vector<Index>& poses, Index count);
+
   private:
     enum class Ranking { Exact, Witnesses, Estimate };
     struct Ranked {

@@ -18,6 +18,13 @@ TEST(Products, AreThoseOfEigen) {
             ASSERT_EQ(found.rows(), size);
             EXPECT_LE((found - expected).norm(), 1e-14 * (1 + expected.norm()));
 
+            EXPECT_EQ(lower(symmetric_gram(A)), found);
+            EXPECT_EQ(symmetric_gram(A), symmetric_gram(A).transpose());
+            const RowMatrixXd B = RowMatrixXd::Random(rows, 7);
+            const MatrixXd product = transposed_product(A, B);
+            ASSERT_EQ(product.rows(), size);
+            EXPECT_LE((product - A.transpose() * B).norm(), 1e-13 * (1 + product.norm()));
+
             MatrixXd L = MatrixXd::Random(size, size);
             L.diagonal().array() += 3 * static_cast<double>(size);
             const RowMatrixXd X = solve_lower(L, A.transpose());

@@ -92,6 +92,25 @@ TEST(Gains, AreTheSameByUpdatesAsFromTheStart) {
     }
 }
 
+TEST(Gains, RuleOutWhatIsNoBetterThanTheRemovedBlock) {
+    for (const Index rows : {1, 3, 9, 13}) {  // 13: no kernel
+        constexpr Index L = 15;
+        const Blocks candidates = test::random_blocks(40, rows, L, 1);
+        const Shortlist shortlist = make_shortlist(candidates, indices_below(40));
+        const MatrixXd C_root = test::random_blocks(L, 1, L, 2).matrix;
+        for (const MatrixXd& root : {MatrixXd(), C_root}) {
+            Gains gains(candidates, shortlist);
+            gains.move_to(information(candidates, indices_below(20)), root);
+            for (Index i = 0; i < 20; ++i) {
+                ASSERT_TRUE(gains.remove(candidates[i]));
+                const double own = gains.compute({i})[0];
+                EXPECT_LE(gains.least_gain(), own);
+                EXPECT_GE(gains.least_gain(), own * (1 - 2e-8)) << rows << ' ' << i;
+            }
+        }
+    }
+}
+
 TEST(Gains, RuleOutExactlyWhatPredictsATestPoseTooBadly) {
     constexpr Index L = 15;
     for (const Index rows : {1, 3, 9, 13}) {  // 13: no kernel, nothing is ruled out
