@@ -3,10 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/products.hpp"
+
 namespace posewise::detail {
 namespace {
 
 constexpr Index quick_evaluations = 8;
+
+/// Candidates that kicks are improved with; the others, which come less near to improving what is
+/// kicked, only have a say in what the kicks lead to.
+constexpr Index least_near = 200;
+constexpr Index near_a_pose = 5;
 
 /// One choice being improved.
 class LocalSearch {
@@ -23,6 +30,15 @@ class LocalSearch {
     void start_at(const ScoredPoses& choice) {
         occupy(choice);
         settle();
+    }
+
+    /// The shortlist of those candidates that come nearest to improving the choice.
+    Shortlist nearest(Index count) {
+        std::vector<Index> members;
+        for (const Index position : neighbourhood_.nearest(choice_.poses, count)) {
+            members.push_back(shortlist_.members[static_cast<std::size_t>(position)]);
+        }
+        return make_shortlist(problem_.candidates, std::move(members));
     }
 
     void improve() {
@@ -119,6 +135,21 @@ Index patience(const SearchProblem& problem) {
         std::lround(static_cast<double>(problem.options.kicks) * ruggedness(problem)));
 }
 
+/// The first better choice that kicks of the best lead to; the best itself where too many in a row
+/// bring nothing.
+ScoredPoses kick(const SearchProblem& problem, const Shortlist& shortlist, const ScoredPoses& best,
+                 RandomStream& random) {
+    LocalSearch search(problem, shortlist, quick_evaluations);
+    const Index most_failures = patience(problem);
+    for (Index failures = 0; failures < most_failures && !problem.options.stop.is_set();
+         ++failures) {
+        search.start_near(best, random);
+        search.improve();
+        if (is_better(search.choice().score, best.score)) return search.choice();
+    }
+    return best;
+}
+
 }  // namespace
 
 double ridge_of(const Blocks& candidates) {
@@ -145,7 +176,7 @@ bool is_better(const Score& a, const Score& b) {
 }
 
 MatrixXd SearchProblem::regularised_information(const std::vector<Index>& poses) const {
-    MatrixXd M = held + information(candidates, poses);
+    MatrixXd M = held + symmetric_gram(take(candidates, poses).matrix);
     M.diagonal().array() += ridge;
     return M;
 }
@@ -168,22 +199,21 @@ ScoredPoses improve(const SearchProblem& problem, const Shortlist& shortlist,
 
 ScoredPoses improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
                                const ScoredPoses& choice, RandomStream& random) {
+    const Index near_size = std::max(least_near, near_a_pose * problem.options.pose_count);
+    const bool has_far = has_exact_gains(problem.objective) &&
+                         static_cast<Index>(shortlist.members.size()) > near_size;
     LocalSearch search(problem, shortlist, quick_evaluations);
     search.start_at(choice);
     search.improve();
-    ScoredPoses best = search.choice();
-    const Index most_failures = patience(problem);
-    for (Index failures = 0; failures < most_failures && !problem.options.stop.is_set();) {
-        search.start_near(best, random);
-        search.improve();
-        if (is_better(search.choice().score, best.score)) {
-            best = search.choice();
-            failures = 0;
-        } else {
-            ++failures;
-        }
+    Shortlist near;
+    while (true) {
+        if (has_far) near = search.nearest(near_size);
+        const ScoredPoses best = search.choice();
+        const ScoredPoses kicked = kick(problem, has_far ? near : shortlist, best, random);
+        if (!is_better(kicked.score, best.score)) return best;
+        search.start_at(kicked);
+        if (has_far) search.improve();
     }
-    return best;
 }
 
 }  // namespace posewise::detail

@@ -46,7 +46,9 @@ ScoredPoses improve(const SearchProblem& problem, const Shortlist& shortlist,
                     const ScoredPoses& choice);
 
 /// Iterated local search: some poses of the best choice are replaced at random and the result
-/// improved, until `options.kicks` kicks in a row, times the ruggedness, bring nothing.
+/// improved, until `options.kicks` kicks in a row, times the ruggedness, bring nothing. Where gains
+/// are exact and the shortlist is long, what is kicked is improved with the candidates that come
+/// nearest to improving the best, and with the whole shortlist only where that is better.
 ScoredPoses improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
                                const ScoredPoses& choice, RandomStream& random);
 
