@@ -30,6 +30,7 @@ using detail::Shortlist;
 
 constexpr Index sweep_limit = 50;  // of the last sweeps over all candidates
 constexpr Index sweep_size = 4096;
+constexpr Index few_starts = 5;  // fewer, as each takes seconds, run side by side before any proof
 
 std::vector<Index> by_decreasing(const VectorXd& values) {
     std::vector<Index> order(static_cast<std::size_t>(values.size()));
@@ -217,20 +218,30 @@ ScoredPoses search_from(const SearchProblem& problem, const Shortlist& shortlist
                               make_identifying(problem, shortlist, start, random), random);
 }
 
-/// Searches from random starts, beside the `first`, which has ended.
+/// What the start of the relaxation ends at.
+ScoredPoses search_from_first(const SearchProblem& problem, const Relaxation& relaxation,
+                              const Shortlist& shortlist) {
+    RandomStream random(problem.options.seed, 0);
+    return search_from(problem, shortlist, make_first_start(problem, relaxation), random);
+}
+
+/// Searches from the start of the relaxation, unless what it ends at is known, and random ones.
 void run_starts(const SearchProblem& problem, const Relaxation& relaxation,
-                const Shortlist& shortlist, const ScoredPoses& first, Outcome& outcome) {
+                const Shortlist& shortlist, Index starts, const std::optional<ScoredPoses>& first,
+                Outcome& outcome) {
     const SelectOptions& options = problem.options;
-    const Index starts = start_count(shortlist, problem);
     detail::ProgressCounter counter(options.progress, {.total = starts, .bound = relaxation.bound});
     Ends ends(starts, options.starts == 0);
     detail::for_each_index(starts, [&](Index start) {
         if (!ends.is_needed(start) || (start > 0 && options.stop.is_set())) return;
-        RandomStream random(options.seed, static_cast<std::uint64_t>(start));
-        ScoredPoses choice = first;
+        ScoredPoses choice;
         if (start > 0) {
-            choice = make_random_start(problem, relaxation, random).value_or(first);
-            choice = search_from(problem, shortlist, choice, random);
+            RandomStream random(options.seed, static_cast<std::uint64_t>(start));
+            auto drawn = make_random_start(problem, relaxation, random);
+            if (!drawn) drawn = first ? *first : make_first_start(problem, relaxation);
+            choice = search_from(problem, shortlist, *drawn, random);
+        } else {
+            choice = first ? *first : search_from_first(problem, relaxation, shortlist);
         }
         counter.count([&](Progress& progress) {
             if (choice.score.identifies) {
@@ -242,7 +253,8 @@ void run_starts(const SearchProblem& problem, const Relaxation& relaxation,
     outcome.starts = ends.choices();
     for (const auto& found : {outcome.starts, ends.cut_short()}) {
         for (const ScoredPoses& choice : found) {
-            if (is_better(choice.score, outcome.best.score)) outcome.best = choice;
+            const bool is_first = outcome.best.poses.empty();
+            if (is_first || is_better(choice.score, outcome.best.score)) outcome.best = choice;
         }
     }
 }
@@ -291,19 +303,21 @@ bool prove(const SearchProblem& problem, const Relaxation& relaxation,
 /// else all starts, and a proof of what they find.
 Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
     const Shortlist shortlist = shortlist_by_sensitivity(problem, relaxation);
-    RandomStream random(problem.options.seed, 0);
-    const ScoredPoses first =
-        search_from(problem, shortlist, make_first_start(problem, relaxation), random);
-    Outcome outcome;
-    outcome.best = first;
+    const Index starts = start_count(shortlist, problem);
     const std::optional<double> asked = problem.options.proof;
     const double usual = std::min(asked.value_or(detail::usual_proof), detail::usual_proof);
-    if (prove(problem, relaxation, {.seconds = usual, .is_only_if_likely = true}, outcome)) {
-        outcome.starts = {outcome.best};
-        return outcome;
+    Outcome outcome;
+    std::optional<ScoredPoses> first;
+    if (problem.options.starts > 0 || starts >= few_starts) {
+        first = search_from_first(problem, relaxation, shortlist);
+        outcome.best = *first;
+        if (prove(problem, relaxation, {.seconds = usual, .is_only_if_likely = true}, outcome)) {
+            outcome.starts = {outcome.best};
+            return outcome;
+        }
     }
     const detail::Score tried = outcome.best.score;
-    run_starts(problem, relaxation, shortlist, first, outcome);
+    run_starts(problem, relaxation, shortlist, starts, first, outcome);
     outcome.best = sweep_all(problem, outcome.best);
     if (!problem.options.stop.is_set() && (asked || is_better(outcome.best.score, tried))) {
         prove(problem, relaxation, {.seconds = asked.value_or(usual), .is_only_if_likely = !asked},

@@ -210,6 +210,7 @@ TEST(SelectByExchange, FindsThePosesThatJustIdentifyTheParameters) {
 TEST(SelectByExchange, StopsInTimeOrWhenAskedWithABound) {
     const Blocks candidates = test::random_blocks(2000, 3, 12, 5);
     SelectOptions options = make_options(Criterion::D, 20);
+    options.kicks = 1'000'000;
     options.stop.deadline = deadline_after(0.05);
     const Choice timed = select_poses(candidates, options);
     EXPECT_EQ(timed.ending, Ending::TimeLimit);
@@ -277,7 +278,16 @@ TEST(SelectByExchange, TakesFewerStartsWhereEachTakesLong) {
     options.pose_count = 10;
     options.kicks = 0;
     options.proof = 0;
-    EXPECT_EQ(select_poses(test::random_blocks(300, 12, 90, 1), options).starts, 3);
+    const Blocks candidates = test::random_blocks(300, 12, 90, 1);
+    const int threads = omp_get_max_threads();
+    const Choice parallel = select_poses(candidates, options);
+    omp_set_num_threads(1);
+    const Choice serial = select_poses(candidates, options);
+    omp_set_num_threads(threads);
+    EXPECT_EQ(parallel.starts, 3);
+    EXPECT_EQ(serial.poses, parallel.poses);
+    EXPECT_EQ(serial.starts_at_best, parallel.starts_at_best);
+    EXPECT_EQ(serial.bound, parallel.bound);
 }
 
 TEST(SelectByExchange, RefusesUnusableInput) {
