@@ -169,7 +169,7 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
         warn_of_counting_twice(earlier, measured);
     }
     if (!arguments.plan.empty())
-        options.used = find_planned(measured, arguments.plan, options.excluded);
+        options.used = find_planned(file, measured, arguments.plan, options.excluded);
     const Validation validation(arguments, file);
     options.validation = validation.measured ? &*validation.measured : nullptr;
     options.validation_campaign = validation.campaign ? &*validation.campaign : nullptr;

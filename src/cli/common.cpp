@@ -10,6 +10,7 @@
 #include "../core/format.hpp"
 #include "../core/text.hpp"
 #include "commands.hpp"
+#include "files.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/threads.hpp"
@@ -63,40 +64,12 @@ CLI::Validator criterion_check() {
         "CRITERION");
 }
 
-namespace {
-
-/// A plan of another robot or campaign may well have the same ids.
-void check_same_pose(const Measurements& measurements, Index i, const PlannedPose& pose,
-                     const std::string& plan_path) {
-    constexpr double tolerance = 2e-3;  // rad or m: what was read back may differ from the plan
-    if (pose.configuration.size() == 0) return;
-    const VectorXd measured = measurements.configurations.row(i).transpose();
-    if (pose.configuration.size() == measured.size() &&
-        (pose.configuration - measured).cwiseAbs().maxCoeff() <= tolerance) {
-        return;
-    }
-    throw InputError(plan_path + ": configuration '" + pose.id +
-                     "' of the plan has other joint values than the measured one; the plan must "
-                     "be of this robot and campaign");
-}
-
-}  // namespace
-
-std::vector<Index> find_planned(const Measurements& measurements, const std::string& plan_path,
+std::vector<Index> find_planned(const Campaign& campaign, const Measurements& measured,
+                                const std::string& plan_path,
                                 const std::vector<std::string>& excluded) {
-    std::vector<Index> planned;
-    for (const PlannedPose& pose : io::read_plan(plan_path).poses) {
-        if (std::ranges::find(excluded, pose.id) != excluded.end()) continue;
-        const auto found = std::find(measurements.ids.begin(), measurements.ids.end(), pose.id);
-        if (found == measurements.ids.end()) {
-            throw InputError(plan_path + ": configuration '" + pose.id +
-                             "' of the plan is not among the measured ones");
-        }
-        planned.push_back(found - measurements.ids.begin());
-        check_same_pose(measurements, planned.back(), pose, plan_path);
-    }
-    if (planned.empty()) throw InputError(plan_path + ": all poses of the plan are excluded");
-    return planned;
+    const Plan plan = io::read_plan(plan_path);
+    return compute_from(plan_path,
+                        [&] { return posewise::find_planned(plan, campaign, measured, excluded); });
 }
 
 void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }

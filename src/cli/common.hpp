@@ -26,9 +26,9 @@ CLI::Validator criterion_check();
 /// --digits: significant digits of what is printed as text.
 void add_digits_option(CLI::App& command, int& digits);
 
-/// Indices of the configurations a plan file asks for, but for those excluded. Throws InputError if
-/// another one is not there.
-std::vector<Index> find_planned(const Measurements& measurements, const std::string& plan_path,
+/// find_planned() of a plan file.
+std::vector<Index> find_planned(const Campaign& campaign, const Measurements& measured,
+                                const std::string& plan_path,
                                 const std::vector<std::string>& excluded);
 
 /// Everything is printed to standard output through these two.

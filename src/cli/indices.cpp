@@ -39,7 +39,7 @@ struct IndicesArguments {
 Measurements read_input(const IndicesArguments& arguments, const io::CampaignFile& file) {
     const auto& excluded = arguments.excluded;
     const auto all = read_measured_without(excluded, arguments.paths.measurements, file);
-    return arguments.plan.empty() ? all : take(all, find_planned(all, arguments.plan, excluded));
+    return arguments.plan.empty() ? all : take(all, find_planned(file, all, arguments.plan, excluded));
 }
 
 void print_indices(const IndicesArguments& arguments, const CommonOptions& common) {

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "../core/text.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/measurement/campaign.hpp"
 
@@ -43,6 +45,33 @@ std::string describe_columns(const Plan& plan, const std::vector<std::string>& w
     }
     return fmt::format("poses[0].joints: has {}, the campaign's robot has {}",
                        detail::count_of(std::ssize(plan.columns), "joint"), wanted.size());
+}
+
+/// What a plan of another robot or campaign has not, which may well have the same ids.
+void check_is_measured_pose(const PlannedPose& pose, const VectorXd& measured) {
+    constexpr double tolerance = 2e-3;  // rad or m: what was read back may differ from the plan
+    if (pose.configuration.size() == measured.size() &&
+        (pose.configuration - measured).cwiseAbs().maxCoeff() <= tolerance) {
+        return;
+    }
+    throw InputError("configuration '" + pose.id +
+                     "' of the plan has other joint values than the measured one; the plan must "
+                     "be of this robot and campaign");
+}
+
+/// Throws InputError unless a plan has as many poses as it is of, with the robot's joints.
+void check_is_whole(const Plan& plan, const Campaign& campaign) {
+    Index count = 0;
+    for (const PlannedPose& pose : plan.poses) count += pose.times;
+    if (count != plan.request.pose_count) {
+        throw InputError(
+            fmt::format("problem.pose_count: is {}, the plan has {}; must be the plan "
+                        "as posewise wrote it",
+                        plan.request.pose_count, detail::count_of(count, "pose")));
+    }
+    if (plan.kind == CandidateKind::Blocks) return;
+    const std::string fault = describe_columns(plan, configuration_columns(campaign));
+    if (!fault.empty()) throw InputError(fault);
 }
 
 }  // namespace
@@ -115,6 +144,26 @@ std::string describe_mismatch(const Plan& plan, const Campaign& campaign) {
         }
     }
     return "";
+}
+
+std::vector<Index> find_planned(const Plan& plan, const Campaign& campaign,
+                                const Measurements& measured,
+                                const std::vector<std::string>& excluded) {
+    check_is_whole(plan, campaign);
+    std::vector<Index> planned;
+    for (const PlannedPose& pose : plan.poses) {
+        if (std::ranges::find(excluded, pose.id) != excluded.end()) continue;
+        const auto found = std::ranges::find(measured.ids, pose.id);
+        if (found == measured.ids.end()) {
+            throw InputError("configuration '" + pose.id +
+                             "' of the plan is not among the measured ones");
+        }
+        planned.push_back(found - measured.ids.begin());
+        if (plan.kind == CandidateKind::Blocks) continue;
+        check_is_measured_pose(pose, measured.configurations.row(planned.back()).transpose());
+    }
+    if (planned.empty()) throw InputError("all poses of the plan are excluded");
+    return planned;
 }
 
 }  // namespace posewise

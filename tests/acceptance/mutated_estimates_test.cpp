@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -13,50 +12,18 @@
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/task/doubts.hpp"
+#include "support/json_mutants.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise {
 namespace {
 
+using namespace testing;
 using Json = nlohmann::json;
 
 const std::string design = POSEWISE_SOURCE_DIR "/designs/fanuc_r2000ic_165f/campaign.yaml";
 const std::string measured =
     POSEWISE_SOURCE_DIR "/data/fanuc_r2000ic_165f_simulated/measurements.csv";
-
-/// A place in the file: of the whole tree, or of what says what the estimate is worth.
-Json& draw_leaf(Json& root, RandomStream& random) {
-    Json* at = &root;
-    while (at->is_structured() && !at->empty()) {
-        at = &*std::next(at->begin(), random.index(static_cast<Index>(at->size())));
-    }
-    return *at;
-}
-
-/// Another number, of those that go wrong: sign, units, nothing, far too large.
-double other_number(double number, RandomStream& random) {
-    constexpr std::array<double, 8> factors{-1, 1e3, 1e-3, 57.29577951308232, 1e9, 0, 2, 1e-9};
-    const auto k = random.index(static_cast<Index>(factors.size()) + 2);
-    if (k == 0) return number + 1;
-    if (k == 1) return 1e3 * random.normal();
-    return factors[static_cast<std::size_t>(k - 2)] * number;
-}
-
-void mutate(Json& leaf, RandomStream& random) {
-    if (random.index(20) == 0) {
-        leaf = nullptr;
-    } else if (leaf.is_number_integer()) {
-        leaf = random.index(1000) - 100;
-    } else if (leaf.is_number()) {
-        leaf = other_number(leaf.get<double>(), random);
-    } else if (leaf.is_string()) {
-        const std::array<std::string, 5> words{"", "iteration limit", "stalled", "q1",
-                                               leaf.get<std::string>() + "x"};
-        leaf = words[static_cast<std::size_t>(random.index(5))];
-    } else if (leaf.is_boolean()) {
-        leaf = !leaf.get<bool>();
-    }
-}
 
 /// Why it must not reach a robot, by the file alone; empty: it may.
 std::string why_refused(const Json& file, const Json& original) {
@@ -88,7 +55,7 @@ bool is_taken(const std::string& path, const Campaign& campaign) {
 }
 
 TEST(MutatedEstimates, ReachNoRobotIfNotConvergedOrOfAnotherChainOrAbsurd) {
-    const testing::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const io::CampaignFile campaign = io::read_campaign(design);
     const Measurements measurements = io::read_measurements(measured, campaign);
     CalibrationOptions options;
@@ -98,8 +65,8 @@ TEST(MutatedEstimates, ReachNoRobotIfNotConvergedOrOfAnotherChainOrAbsurd) {
     ASSERT_TRUE(is_taken(path, campaign));
     const Json original = Json::parse(std::ifstream(path));
 
-    const char* const asked = std::getenv("POSEWISE_MUTANTS");  // more, once
-    const int count = asked != nullptr ? std::atoi(asked) : 600;
+    const int count = mutant_count();
+    const std::vector<std::string> words{"iteration limit", "stalled", "q1"};
     RandomStream random(1);
     int taken = 0, must_not = 0;
     for (int k = 0; k < count; ++k) {
@@ -107,7 +74,7 @@ TEST(MutatedEstimates, ReachNoRobotIfNotConvergedOrOfAnotherChainOrAbsurd) {
         // Most of a file is its covariance.
         constexpr std::array<const char*, 4> parts{"robot", "chain", "ending", "variance_factor"};
         const auto part = static_cast<std::size_t>(random.index(6));
-        mutate(draw_leaf(part < parts.size() ? file[parts[part]] : file, random), random);
+        mutate(draw_leaf(part < parts.size() ? file[parts[part]] : file, random), words, random);
         folder.write("estimate.json", file.dump());
         const std::string why = why_refused(file, original);
         const bool is_accepted = is_taken(path, campaign);

@@ -3,6 +3,7 @@
 #include "../../src/model/complete_model.hpp"
 #include "lift_urdf.hpp"
 #include "posewise/io/urdf_file.hpp"
+#include "support/mutate.hpp"
 #include "support/sweep.hpp"
 #include "support/urdf_text.hpp"
 
@@ -113,33 +114,13 @@ TEST(HostileXml, ThatIsALongTreeIsReadAtOnce) {
         "100 of them may move");
 }
 
-/// A few bytes replaced, cut out or doubled.
-std::string mutate(std::string content, RandomStream& stream) {
-    const std::string bytes = "<>/=\"'&;! -.09exyz\n\t\x01\xff";
-    const auto below = [&](std::size_t count) {
-        return static_cast<std::size_t>(stream.uniform(0, static_cast<double>(count) - 1e-6));
-    };
-    for (std::size_t edits = 1 + below(3); edits > 0; --edits) {
-        const std::size_t position = below(content.size());
-        const std::size_t length = std::min(below(30), content.size() - position);
-        const double kind = stream.uniform(0, 3);
-        if (kind < 1) {
-            content[position] = bytes[below(bytes.size())];
-        } else if (kind < 2) {
-            content.erase(position, length);
-        } else {
-            content.insert(position, content.substr(below(content.size()), length));
-        }
-    }
-    return content;
-}
-
 TEST(HostileXml, OfAnyKindIsARobotThatCanBeExportedOrOneLine) {
     RandomStream stream(31);
     Index readable = 0;
     const TemporaryFolder folder;
     for (Index i = 0; i < sweep_count() / 4; ++i) {
-        const UrdfSource source{folder.write("robot.urdf", mutate(text, stream)), "base", "tool"};
+        const UrdfSource source{folder.write("robot.urdf", mutate_bytes(text, stream)), "base",
+                                "tool"};
         try {
             const Chain robot = complete_model(make_chain(read_urdf(source)));
             const VectorXd errors = random_vector(stream, robot.parameter_count(), 0.1);

@@ -8,6 +8,7 @@
 
 #include "posewise/core/progress.hpp"
 #include "posewise/criteria/criterion.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/planner/prediction.hpp"
 #include "posewise/selection/choice.hpp"
 #include "posewise/task/earlier.hpp"
@@ -148,5 +149,13 @@ std::vector<NamedNumber> assumptions_of(const Campaign& campaign);
 /// Where a plan is not of a campaign (another name, joints or targets), in words that begin with
 /// the place: "campaign: is 'a'; must be a plan of 'b'". Empty if it is.
 std::string describe_mismatch(const Plan& plan, const Campaign& campaign);
+
+/// Which of the measured configurations are those of a plan, in its order; ids in `excluded` do not
+/// count. Throws InputError if one is not there or was measured at other joint values (beyond 2
+/// mrad or 2 mm), if the plan has other joints than the campaign's robot or not as many poses as it
+/// is of, and if all are excluded.
+std::vector<Index> find_planned(const Plan& plan, const Campaign& campaign,
+                                const Measurements& measured,
+                                const std::vector<std::string>& excluded = {});
 
 }  // namespace posewise
