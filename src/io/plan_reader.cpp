@@ -206,6 +206,9 @@ void read_search(const JsonValue& search, Plan& plan) {
         throw search["stop_reason"].error("is '" + reason + "', which is none of posewise");
     }
     plan.ending = *found;
+    if (plan.is_continuous() && plan.ending == Ending::Optimal) {
+        throw search["stop_reason"].error("is 'optimal', which of continuous poses nothing proves");
+    }
 }
 
 std::vector<std::string> keys_of(const Json& object) {
@@ -254,6 +257,7 @@ VectorXd read_configuration(const JsonValue& json) {
 PlannedPose read_pose(const JsonValue& json) {
     PlannedPose pose;
     pose.id = json["id"].text();
+    if (pose.id.empty()) throw json["id"].error("is empty; must be a name");
     if (json.has("times")) pose.times = json["times"].count(1);
     if (json.has("joints")) pose.configuration = read_configuration(json["joints"]);
     if (json.has("visible_targets")) {

@@ -1,10 +1,12 @@
 #include "yaml_reader.hpp"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <sstream>
 
 #include "text.hpp"
 
@@ -61,6 +63,28 @@ void check_utf8(const std::string& content, const std::string& path) {
     throw input_error_at({path, static_cast<long>(line), static_cast<long>(column)},
                          "is not UTF-8 text here; must be UTF-8 (or plain ASCII)");
 }
+
+/// Where the documents of a text begin.
+class DocumentStarts : public YAML::EventHandler {
+  public:
+    const std::vector<YAML::Mark>& marks() const { return marks_; }
+
+    void OnDocumentStart(const YAML::Mark& mark) override { marks_.push_back(mark); }
+    void OnDocumentEnd() override {}
+    void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+    void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+    void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  const std::string&) override {}
+    void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                         YAML::EmitterStyle::value) override {}
+    void OnSequenceEnd() override {}
+    void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                    YAML::EmitterStyle::value) override {}
+    void OnMapEnd() override {}
+
+  private:
+    std::vector<YAML::Mark> marks_;
+};
 
 }  // namespace
 
@@ -229,21 +253,28 @@ YamlValue parse_yaml(const std::string& content, const std::string& path) {
     if (content.find('\r') < content.size() - 1 && content.find('\n') == std::string::npos) {
         throw input_error_at({path}, "has line ends of CR only; must be of LF or CR LF");
     }
-    std::vector<YAML::Node> documents;
+    YAML::Node document;
+    DocumentStarts starts;
     try {
-        documents = YAML::LoadAll(content);
+        document = YAML::Load(content);
+        std::istringstream stream(content);
+        YAML::Parser parser(stream);
+        // Not further: a comma where a document should begin would be one empty document after
+        // another.
+        if (parser.HandleNextDocument(starts)) parser.HandleNextDocument(starts);
     } catch (const YAML::Exception& problem) {
-        throw input_error_at(locate(path, problem.mark),
-                             "is not YAML: " + problem.msg + "; correct it there or just before");
+        throw input_error_at(
+            locate(path, problem.mark),
+            "is not YAML: " + escape_controls(problem.msg) + "; correct it there or just before");
     }
-    if (documents.empty() || documents[0].IsNull()) {
-        throw input_error_at({path}, "is empty; must be a campaign in YAML");
+    if (document.IsNull()) {
+        throw input_error_at({path}, "is empty, or begins with no key; must be a campaign in YAML");
     }
-    if (documents.size() > 1) {
-        throw input_error_at(locate(path, documents[1].Mark()),
+    if (starts.marks().size() > 1) {
+        throw input_error_at(locate(path, starts.marks()[1]),
                              "a second document begins; must be one document");
     }
-    return YamlValue(documents[0], locate(path, documents[0].Mark()), "");
+    return YamlValue(document, locate(path, document.Mark()), "");
 }
 
 }  // namespace posewise::detail

@@ -5,6 +5,7 @@
 
 #include "../core/format.hpp"
 #include "../core/text.hpp"
+#include "../model/joint_limits.hpp"
 #include "../selection/bound.hpp"
 #include "findings.hpp"
 #include "planning_problem.hpp"
@@ -20,10 +21,21 @@ using detail::PlanningProblem;
 /// Information of many poses is summed in another order than when it was planned.
 constexpr double rounding = 1e-6;
 
+/// What is wrong with the configuration on the way to a pose; empty if nothing is.
+std::string find_fault_of_way(const Constraints& constraints, const VectorXd& via) {
+    const std::string beyond = detail::describe_limit_violation(constraints.robot(), via);
+    if (!beyond.empty()) return "has a via beyond the joint limits: " + beyond;
+    return constraints.collision_clearance(via) < -rounding ? "has a via that collides" : "";
+}
+
 /// What is wrong with a pose; empty if nothing is.
 std::string find_fault(const PlanningProblem& problem, const PlannedPose& pose) {
     const std::string violation = detail::describe_violation(problem.constraints, pose);
     if (!violation.empty()) return violation;
+    if (pose.via) {
+        const std::string fault = find_fault_of_way(problem.constraints, *pose.via);
+        if (!fault.empty()) return fault;
+    }
     const SeenTargets is_seen = problem.constraints.seen(pose.configuration);
     for (const Index target : pose.targets) {
         if (!is_seen[target]) return fmt::format("does not show target {}", target + 1);

@@ -11,6 +11,7 @@
 #include "../selection/branch_and_bound.hpp"
 #include "choice_problem.hpp"
 #include "findings.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 
 namespace posewise {
@@ -195,6 +196,9 @@ void check_numbers(const Plan& plan, const ChoiceProblem& problem, const std::ve
         bound = std::max(value, prove_again(plan, problem, poses, findings));
     }
     findings.compare("bound", plan.bound, bound, agree(criterion, plan.bound, bound));
+    if (plan.ending == Ending::Optimal && !agree(criterion, plan.value, plan.bound)) {
+        findings.note("proof", false, "stated to be optimal, the bound is above the value");
+    }
     const auto nuisance = static_cast<Index>(problem.options.nuisance.size());
     const double actual =
         detail::efficiency(criterion, value, bound, problem.blocks.parameter_count() - nuisance);
@@ -205,6 +209,8 @@ void check_numbers(const Plan& plan, const ChoiceProblem& problem, const std::ve
 /// `campaign` is null for plain blocks.
 Verification check(const Plan& plan, const ChoiceProblem& problem, const Campaign* campaign) {
     return detail::collect(problem.blocks.count(), [&](Findings& findings) {
+        const std::string mismatch = campaign ? describe_mismatch(plan, *campaign) : "";
+        if (!mismatch.empty()) throw InputError(mismatch);
         check_candidates(plan, problem, findings);
         const std::vector<Index> poses = find_poses(plan, problem, findings);
         check_poses(problem, poses, findings);

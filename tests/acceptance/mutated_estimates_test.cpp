@@ -19,7 +19,7 @@ namespace posewise {
 namespace {
 
 using namespace testing;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 const std::string design = POSEWISE_SOURCE_DIR "/designs/fanuc_r2000ic_165f/campaign.yaml";
 const std::string measured =

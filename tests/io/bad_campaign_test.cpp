@@ -31,8 +31,12 @@ TEST(BadCampaign, Files) {
               "folder: is a directory; must be a file");
     EXPECT_NE(error_of(std::string("\0\xFF\xFE\x01", 4)), "no error");
     expect_messages_of({
-        {campaign_text, "", " is empty; must be a campaign in YAML"},
-        {campaign_text, "# nothing\n", " is empty; must be a campaign in YAML"},
+        {campaign_text, "", " is empty, or begins with no key; must be a campaign in YAML"},
+        {campaign_text, ", a", " is empty, or begins with no key; must be a campaign in YAML"},
+        {campaign_text, "name: a\n, b", "2:1: a second document begins; must be one document"},
+        {campaign_text, "name: \"\\\n\"", "TODO"},
+        {campaign_text, "# nothing\n",
+         " is empty, or begins with no key; must be a campaign in YAML"},
         {campaign_text, std::string(2 << 20, 'a'), " is larger than 1 MiB; must be smaller"},
         {campaign_text, "name: a\nrobot: \xC3\xA4\xE9\n",
          "2:10: is not UTF-8 text here; must be UTF-8 (or plain ASCII)"},

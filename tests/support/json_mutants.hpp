@@ -18,8 +18,8 @@ inline int mutant_count() {
 }
 
 /// A place in a tree, drawn level by level.
-inline nlohmann::json& draw_leaf(nlohmann::json& root, RandomStream& random) {
-    nlohmann::json* at = &root;
+inline nlohmann::ordered_json& draw_leaf(nlohmann::ordered_json& root, RandomStream& random) {
+    nlohmann::ordered_json* at = &root;
     while (at->is_structured() && !at->empty()) {
         at = &*std::next(at->begin(), random.index(static_cast<Index>(at->size())));
     }
@@ -36,7 +36,7 @@ inline double other_number(double number, RandomStream& random) {
 }
 
 /// Another value of the same kind; a text becomes empty, longer or one of `words`. Rarely nothing.
-inline void mutate(nlohmann::json& leaf, const std::vector<std::string>& words,
+inline void mutate(nlohmann::ordered_json& leaf, const std::vector<std::string>& words,
                    RandomStream& random) {
     if (random.index(20) == 0) {
         leaf = nullptr;
