@@ -77,13 +77,20 @@ std::string quote(std::string_view text) {
 }
 
 std::size_t character_length(std::string_view text) {
-    const auto first = static_cast<unsigned char>(text[0]);
-    const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : first >= 0xC0 ? 2 : 1;
-    if (length > text.size()) return 1;
-    return std::all_of(text.begin() + 1, text.begin() + static_cast<std::ptrdiff_t>(length),
-                       is_continuation)
-               ? length
-               : 1;
+    const auto byte_at = [text](std::size_t k) {
+        return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U;
+    };
+    const unsigned first = byte_at(0);
+    if (first < 0xC2 || first > 0xF4) return 1;
+    const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+    // The second byte tells overlong forms, surrogates and what is beyond U+10FFFF.
+    const unsigned least = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
+    const unsigned most = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
+    bool is_good = byte_at(1) >= least && byte_at(1) <= most;
+    for (std::size_t k = 2; k < length; ++k) {
+        is_good = is_good && byte_at(k) >= 0x80 && byte_at(k) <= 0xBF;
+    }
+    return is_good ? length : 1;
 }
 
 std::string count_of(Index count, const std::string& noun) {

@@ -49,12 +49,21 @@ std::string find_misfit(const matvar_t& variable) {
     return "";
 }
 
+constexpr std::size_t header_size = 128;
+
+/// Whether the header is that of MATLAB 5 to 7 (version 1) or 7.3 (version 2). Whatever else it is
+/// given the library takes for MATLAB 4, which has no mark, and asks for memory by what it finds.
+bool has_header(const std::string& content, char version) {
+    if (content.size() < header_size) return false;
+    const std::string end = content.substr(124, 4);
+    return end == std::string{'\0', version, 'I', 'M'} ||
+           end == std::string{version, '\0', 'M', 'I'};
+}
+
 /// Whether a MATLAB 5 file ends where its last element does. Each begins with its type and its byte
 /// count; the library fills what is missing at the end with whatever was in memory.
 bool is_whole(const std::string& content) {
-    constexpr std::size_t header_size = 128;
     constexpr std::size_t tag_size = 8;
-    if (content.size() < header_size) return false;
     const bool is_big_endian = content.compare(126, 2, "MI") == 0;
     std::size_t position = header_size;
     while (position + tag_size <= content.size()) {
@@ -75,17 +84,18 @@ MatReader::MatReader(const std::string& path) : path_(path), file_(nullptr, Mat_
     const std::string content = read_file(path);
     if (content.empty()) throw input_error_at({path}, "is empty; must be a MATLAB file");
     byte_count_ = content.size();
-    Mat_LogInitFunc("posewise", count_damage);
-    file_.reset(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
-    // Whatever is not MATLAB 5 to 7.3 is taken for MATLAB 4, which has no mark of its own.
-    const mat_ft version = file_ == nullptr ? MAT_FT_UNDEFINED : Mat_GetVersion(file_.get());
-    if (version != MAT_FT_MAT5 && version != MAT_FT_MAT73) {
+    const bool is_version_5 = has_header(content, 1);
+    if (is_version_5 && !is_whole(content)) {
+        throw input_error_at({path}, "is cut short or damaged; must be a whole MATLAB file");
+    }
+    if (is_version_5 || has_header(content, 2)) {
+        Mat_LogInitFunc("posewise", count_damage);
+        file_.reset(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+    }
+    if (file_ == nullptr) {
         throw input_error_at({path},
                              "is not a MATLAB file of version 5 to 7.3; must be one, as "
                              "saved with -v7");
-    }
-    if (version == MAT_FT_MAT5 && !is_whole(content)) {
-        throw input_error_at({path}, "is cut short or damaged; must be a whole MATLAB file");
     }
 }
 

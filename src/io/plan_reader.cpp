@@ -262,7 +262,11 @@ PlannedPose read_pose(const JsonValue& json) {
     if (json.has("joints")) pose.configuration = read_configuration(json["joints"]);
     if (json.has("visible_targets")) {
         for (const JsonValue& target : json["visible_targets"].list()) {
-            pose.targets.push_back(target.count(1, most_targets) - 1);
+            const Index shown = target.count(1, most_targets) - 1;
+            if (std::ranges::find(pose.targets, shown) != pose.targets.end()) {
+                throw target.error("occurs before; keep one");
+            }
+            pose.targets.push_back(shown);
         }
     }
     if (json.has("via") && !json["via"].is_null()) pose.via = read_configuration(json["via"]);
@@ -308,6 +312,7 @@ void check_poses(const JsonValue& document, const Plan& plan) {
                                       "; must be 1, since each pose is planned once");
         }
         pose["visible_targets"].list();
+        pose["via"];  // null, or a configuration
     }
 }
 

@@ -20,25 +20,9 @@ std::string_view trim(std::string_view text) {
 }
 
 std::size_t find_not_utf8(std::string_view text) {
-    const auto byte_at = [text](std::size_t k) {
-        return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U;
-    };
     for (std::size_t at = 0; at < text.size();) {
-        const unsigned first = byte_at(at);
-        if (first < 0x80) {
-            ++at;
-            continue;
-        }
-        const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-        // The second byte tells overlong forms, surrogates and what is beyond U+10FFFF.
-        const unsigned least = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
-        const unsigned most = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
-        bool is_good = first >= 0xC2 && first <= 0xF4;
-        is_good = is_good && byte_at(at + 1) >= least && byte_at(at + 1) <= most;
-        for (std::size_t k = 2; k < length; ++k) {
-            is_good = is_good && byte_at(at + k) >= 0x80 && byte_at(at + k) <= 0xBF;
-        }
-        if (!is_good) return at;
+        const std::size_t length = character_length(text.substr(at));
+        if (length == 1 && static_cast<unsigned char>(text[at]) >= 0x80) return at;
         at += length;
     }
     return std::string_view::npos;

@@ -22,12 +22,13 @@ std::string path_from(const std::string& campaign, const std::string& urdf) {
     return relative.empty() ? fs::absolute(urdf).string() : relative.string();
 }
 
-/// A text as YAML in double quotes, which are those of JSON.
-std::string quote_for_yaml(const std::string& text) {
+/// A text of a URDF as YAML in double quotes, which are those of JSON.
+std::string quote_for_yaml(const std::string& text, const std::string& urdf) {
     try {
         return nlohmann::json(text).dump();
     } catch (const nlohmann::json::exception&) {
-        throw InputError("the name '" + detail::escape_controls(text) + "' must be UTF-8");
+        throw input_error_at({urdf},
+                             "the name '" + detail::escape_controls(text) + "' must be UTF-8");
     }
 }
 
@@ -71,13 +72,16 @@ std::string make_campaign_text(const UrdfRobot& robot, const std::string& path) 
     for (UrdfJoint& joint : limited.joints) joint.limits = limits_of(joint);
     make_chain(limited);  // throws if there is none
     const fs::path urdf = robot.source.path;
+    const auto quoted = [&](const std::string& text) {
+        return quote_for_yaml(text, urdf.string());
+    };
     std::string text =
         "# A campaign for posewise. What is marked FILL IN is not known from the URDF.\n";
-    text += "name: " + quote_for_yaml(robot.name.empty() ? urdf.stem().string() : robot.name);
-    text += "\n\nrobot:\n  urdf: " + quote_for_yaml(path_from(path, robot.source.path));
+    text += "name: " + quoted(robot.name.empty() ? urdf.stem().string() : robot.name);
+    text += "\n\nrobot:\n  urdf: " + quoted(path_from(path, robot.source.path));
     text += "    # a path from the folder of this file\n";
-    text += "  base_link: " + quote_for_yaml(robot.source.base_link) + '\n';
-    text += "  tip_link: " + quote_for_yaml(robot.source.tip_link) + '\n';
+    text += "  base_link: " + quoted(robot.source.base_link) + '\n';
+    text += "  tip_link: " + quoted(robot.source.tip_link) + '\n';
     text +=
         "  # Limits of the URDF. FILL IN: narrower ones where the cell needs them.\n  joints:\n";
     for (const UrdfJoint& joint : robot.joints) {

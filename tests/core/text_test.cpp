@@ -15,6 +15,10 @@ TEST(EscapeControls, LeavesOneHarmlessLine) {
               "a\\xe2\\x80\\xaeb\\xe2\\x81\\xa6c\\xe2\\x80\\xa8");
     EXPECT_EQ(escape_controls("\u00a0\u2030\u4e2d"), "\u00a0\u2030\u4e2d");
     EXPECT_EQ(escape_controls("\x9b\xe9"), "\\x9b\\xe9") << "not UTF-8";
+    EXPECT_EQ(escape_controls("\xff\x98\x98\x98"), "\\xff\\x98\\x98\\x98") << "no first byte";
+    EXPECT_EQ(escape_controls("\xc1\x9b\xe0\x82\x9b\xed\xa0\x80"),
+              "\\xc1\\x9b\\xe0\\x82\\x9b\\xed\\xa0\\x80")
+        << "overlong, a surrogate";
     EXPECT_EQ(escape_controls(std::string_view("\0", 1)), "\\x00");
 }
 

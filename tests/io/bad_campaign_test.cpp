@@ -33,8 +33,8 @@ TEST(BadCampaign, Files) {
     expect_messages_of({
         {campaign_text, "", " is empty, or begins with no key; must be a campaign in YAML"},
         {campaign_text, ", a", " is empty, or begins with no key; must be a campaign in YAML"},
-        {campaign_text, "name: a\n, b", "2:1: a second document begins; must be one document"},
-        {campaign_text, "name: \"\\\n\"", "TODO"},
+        {campaign_text, "name: \"a\\\x01\"\n",
+         "1:11: is not YAML: unknown escape character: \\x01; correct it there or just before"},
         {campaign_text, "# nothing\n",
          " is empty, or begins with no key; must be a campaign in YAML"},
         {campaign_text, std::string(2 << 20, 'a'), " is larger than 1 MiB; must be smaller"},
@@ -44,7 +44,7 @@ TEST(BadCampaign, Files) {
          "1:1: the file is 'just words'; must be a map of keys and values"},
         {campaign_text, "name: [a, b\nrobot: {\n", "[...]is not YAML[...]"},
         {campaign_text, "name: a\n---\nname: b\n",
-         "3:1: a second document begins; must be one document"},
+         "2:1: a second document begins; must be one document"},
     });
 }
 

@@ -72,6 +72,15 @@ TEST(ReadUrdf, TakesEveryMarkupThatIsNoElement) {
     EXPECT_EQ(error_of(replaced(text, "?>", " encoding='latin1'?>")), "no error");
 }
 
+TEST(HostileXml, WithANameThatIsNotUtf8BecomesACampaign) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write(
+        "robot.urdf", replaced(text, "<robot name=\"", "<robot name=\"\xff\x98\x98\x98"));
+    const UrdfRobot robot = read_urdf({path, "base", "tool"});
+    EXPECT_NE(make_campaign_text(robot, folder.path("c.yaml")).find("name: \"\\\\xff\\\\x98"),
+              std::string::npos);
+}
+
 TEST(HostileXml, OfEntitiesIsRefused) {
     const std::string problem = "declares a document type or an entity; must have none";
     expect_messages_of({

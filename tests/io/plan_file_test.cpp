@@ -180,6 +180,14 @@ TEST_F(PlanFileTest, SaysWhereAnEditedFileIsWrong) {
               "or blocks");
     EXPECT_EQ(error_with("\"repeats\": 2.5", "\"repeats\": 0.5"),
               "p.json: candidates.repeats: must be at least 1");
+    EXPECT_EQ(error_with("\"id\": \"" + plan_.poses[1].id + "\"", "\"id\": \"\""),
+              "p.json: poses[1].id: is empty; must be a name");
+    std::string text = written();
+    for (std::size_t at; (at = text.find("\"joints\"")) != text.npos;) {
+        text.replace(at, 8, "\"angles\"");
+    }
+    EXPECT_EQ(error_of(text),
+              "p.json: poses[0].joints: is missing; must be there as posewise writes it");
 }
 
 TEST_F(PlanFileTest, RefusesNumbersNoPlanHas) {
@@ -199,6 +207,8 @@ TEST_F(PlanFileTest, RefusesNumbersNoPlanHas) {
               "p.json: search.starts_at_best: is 21; must be at most 20");
     EXPECT_EQ(error_with("\"visible_targets\": [1,2]", "\"visible_targets\": [1,10001]"),
               "p.json: poses[0].visible_targets[1]: is 10001; must be at most 10000");
+    EXPECT_EQ(error_with("\"visible_targets\": [1,2]", "\"visible_targets\": [1,1]"),
+              "p.json: poses[0].visible_targets[1]: occurs before; keep one");
     EXPECT_EQ(error_with("\"repeats\": 2.5", "\"repeats\": 2e9"),
               "p.json: candidates.repeats: must be at most 1e9");
 }
@@ -220,6 +230,8 @@ TEST_F(PlanFileTest, RefusesAContinuousPlanThatContradictsItself) {
               "p.json: visiting_time_s: must not be negative");
     EXPECT_EQ(error_with("\"efficiency\": 0.0", "\"efficiency\": -7"),
               "p.json: bounds.pool.efficiency: must be from 0 to 1");
+    EXPECT_EQ(error_with("\"stop_reason\": \"time limit\"", "\"stop_reason\": \"optimal\""),
+              "p.json: search.stop_reason: is 'optimal', which of continuous poses nothing proves");
     EXPECT_EQ(error_with("\"via\": null", "\"via\": {}"),
               "p.json: poses[0].via: has other joints than poses[0].joints; must have the same");
 }

@@ -12,6 +12,7 @@
 #include "posewise/task/verification.hpp"
 #include "support/campaigns.hpp"
 #include "support/designs.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace posewise {
 namespace {
@@ -186,10 +187,42 @@ TEST_F(ChooseWithRobot, IsVerifiedWithoutAnyFile) {
     edited.value += 1;
     edited.poses.back() = edited.poses.front();
     EXPECT_EQ(verify(edited, campaign_, candidates, options).wrong(),
-              (std::vector<std::string>{"poses", "value", "bound", "efficiency"}));
+              (std::vector<std::string>{"poses", "value", "bound", "proof", "efficiency"}));
+    edited = plan;
+    edited.campaign = "another";
+    EXPECT_EQ(verify(edited, campaign_, candidates, options).obstacle,
+              "campaign: is 'another'; must be a plan of '" + campaign_.name + "'");
     campaign_.model_error = 3e-4;
     const auto wrong = verify(plan, campaign_, candidates, options).wrong();
     EXPECT_EQ(wrong.back(), "assumes");
+}
+
+TEST_F(ChooseWithRobot, IsFoundAmongWhatWasMeasured) {
+    const Plan plan = choose(campaign_, measured_candidates(measured_), choice_of(10));
+    const auto planned = find_planned(plan, campaign_, measured_);
+    ASSERT_EQ(planned.size(), 10U);
+    for (std::size_t k = 0; k < 10; ++k) {
+        EXPECT_EQ(measured_.ids[static_cast<std::size_t>(planned[k])], plan.poses[k].id);
+    }
+    EXPECT_EQ(find_planned(plan, campaign_, measured_, {plan.poses[3].id}).size(), 9U);
+    const auto error_of = [&](const Plan& edited) {
+        return testing::input_error_of([&] { find_planned(edited, campaign_, measured_); });
+    };
+    Plan edited = plan;
+    edited.poses.pop_back();
+    EXPECT_EQ(error_of(edited),
+              "problem.pose_count: is 10, the plan has 9 poses; must be the plan as posewise wrote "
+              "it");
+    edited = plan;
+    std::swap(edited.columns[0], edited.columns[1]);
+    EXPECT_EQ(error_of(edited),
+              "poses[0].joints: are in another order than those of the campaign's robot");
+    edited = plan;
+    edited.poses[2].configuration[1] += 0.01;
+    EXPECT_EQ(error_of(edited),
+              "configuration '" + plan.poses[2].id +
+                  "' of the plan has other joint values than the measured one; the plan must be of "
+                  "this robot and campaign");
 }
 
 TEST_F(ChooseWithRobot, LetsAnExceptionOfTheCallbackThrough) {

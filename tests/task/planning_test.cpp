@@ -44,6 +44,15 @@ TEST_F(MakePlan, IsVerifiedWithoutAnyFile) {
     EXPECT_NE(std::find(wrong.begin(), wrong.end(), "RMS/mm"), wrong.end());
     edited.campaign = "another";
     EXPECT_THROW(verify(edited, campaign_, options_), InputError);
+    // On the way there, too.
+    edited = plan;
+    edited.poses[2].via = plan.poses[1].configuration;
+    EXPECT_TRUE(verify(edited, campaign_, options_).is_right());
+    (*edited.poses[2].via)[1] = 50;
+    EXPECT_EQ(verify(edited, campaign_, options_).wrong(), std::vector<std::string>{"poses"});
+    edited.poses[2].via->setZero();
+    (*edited.poses[2].via)[1] = 1;  // the arm lies on the table
+    EXPECT_EQ(verify(edited, campaign_, options_).wrong(), std::vector<std::string>{"poses"});
 }
 
 TEST_F(MakePlan, PredictsHalfAndTwiceAsManyPoses) {
