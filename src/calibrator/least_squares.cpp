@@ -88,6 +88,15 @@ VectorXd ParameterUnits::prior_coordinates(const Campaign& campaign,
         .solve(step_between(campaign, campaign.prior->mean, parameters).segment(begin_, count));
 }
 
+MatrixXd ParameterUnits::prior_derivative(const Campaign& campaign,
+                                          const Parameters& parameters) const {
+    const Index count = prior_count(campaign);
+    if (units_.size() == 0 || !campaign.prior->has_base) return MatrixXd::Identity(count, count);
+    const auto L = units_.block(begin_, begin_, count, count).triangularView<Eigen::Lower>();
+    const MatrixXd D = differentiate_step(campaign, campaign.prior->mean, parameters);
+    return L.solve(D.block(begin_, begin_, count, count) * MatrixXd(L));
+}
+
 VectorXd ParameterUnits::step(const VectorXd& d) const {
     if (units_.size() == 0) return scale_.cwiseProduct(d);
     return units_ * d;
@@ -175,7 +184,8 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
     if (count > 0) {
         auto prior = system.augmented.bottomRows(count);
         prior.setZero();
-        prior.middleCols(problem.prior_begin(), count).setIdentity();
+        prior.middleCols(problem.prior_begin(), count) =
+            problem.units.prior_derivative(campaign, parameters);
         prior.col(size) = -problem.units.prior_coordinates(campaign, parameters);
     }
     return system;
@@ -230,6 +240,8 @@ double total_loss(const IdentificationProblem& problem, const Parameters& parame
 double converged_below(const IdentificationProblem& problem, double relative_tolerance,
                        double cost) {
     constexpr double negligible_per_equation = 1e-20;
+    constexpr double negligible_beside_prior = 1e-6;
+    if (problem.campaign.prior) return negligible_beside_prior;
     return negligible_per_equation * static_cast<double>(problem.equation_count()) +
            relative_tolerance * cost;
 }

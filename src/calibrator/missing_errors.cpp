@@ -44,8 +44,7 @@ double missing_errors(const IdentificationProblem& problem, const Parameters& pa
     const Campaign rich = with_robot(poor, with_missing(poor.robot));
     const auto [order, common] = common_first(poor, rich);
     const Index missing = std::ssize(order) - common;
-    const Index freedom = problem.equation_count() - common;
-    if (missing == 0 || freedom <= 0) return 0;
+    if (missing == 0) return 0;
     IdentificationProblem with_all = make_problem(rich, problem.measurements);
     with_all.loss = problem.loss;
     with_all.deviation = problem.deviation;
@@ -66,6 +65,8 @@ double missing_errors(const IdentificationProblem& problem, const Parameters& pa
             rows.push_back(with_all.observation_count() + of_robot);
         }
     }
+    const Index freedom = std::ssize(rows) - common;
+    if (freedom <= 0) return 0;
     MatrixXd augmented(std::ssize(rows), std::ssize(order) + 1);
     augmented << system.J()(rows, order), system.r()(rows);
     const MatrixXd R = triangular_factor(std::move(augmented));

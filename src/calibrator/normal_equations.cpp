@@ -12,8 +12,14 @@ NormalEquations normal_equations(const IdentificationProblem& problem,
     NormalEquations equations{all.topLeftCorner(size, size), all.row(size).head(size).transpose(),
                               system.r().squaredNorm()};
     const Index begin = problem.prior_begin();
-    equations.M.block(begin, begin, count, count).diagonal().array() += 1;
-    equations.g.segment(begin, count) += system.r().tail(count);
+    if (problem.campaign.prior) {
+        const MatrixXd P = system.J().bottomRows(count).middleCols(begin, count);
+        equations.M.block(begin, begin, count, count) += gram(P);
+        equations.g.segment(begin, count) += P.transpose() * system.r().tail(count);
+    } else {
+        equations.M.block(begin, begin, count, count).diagonal().array() += 1;
+        equations.g.segment(begin, count) += system.r().tail(count);
+    }
     return equations;
 }
 

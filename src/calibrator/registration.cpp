@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "../core/text.hpp"
+#include "../measurement/known_sensor.hpp"
 #include "../model/sampling.hpp"
 #include "least_squares.hpp"
 #include "linear_registration.hpp"
@@ -137,6 +138,27 @@ Registration find_start(const Campaign& campaign, const Measurements& measuremen
     return {campaign.nominal, {}};
 }
 
+/// Where a prior expects them, what it tells of base and sensor; the rest registered beside it.
+Registration register_beside(const Prior& prior, Campaign campaign,
+                             const Measurements& measurements) {
+    const Parameters told = campaign.nominal;
+    if (prior.has_base && prior.has_sensor) return {told, {}};
+    campaign.prior.reset();
+    if (prior.has_base) campaign.base_is_known.fill(true);
+    if (prior.has_sensor && told.sensor.size() > 0) {
+        campaign.sensor = std::make_shared<detail::KnownSensor>(campaign.sensor, told.sensor);
+        campaign.nominal.sensor.resize(0);
+    }
+    Registration registered = register_base_and_targets(campaign, measurements);
+    if (prior.has_sensor) registered.parameters.sensor = told.sensor;
+    return registered;
+}
+
+/// Whether it tells enough of base and sensor to begin at what it expects.
+bool can_begin_at(const Prior& prior, const Campaign& campaign) {
+    return prior.has_sensor || (prior.has_base && campaign.has_nominal_targets);
+}
+
 }  // namespace
 
 Registration register_roughly(const Campaign& campaign, const Measurements& measurements) {
@@ -151,6 +173,10 @@ Registration register_base_and_targets(const Campaign& campaign, const Measureme
     if (registered.is_determined()) {
         Estimate polished = identify(expected, measurements, registered.parameters);
         registered = {std::move(polished.parameters), std::move(polished.undetermined)};
+    }
+    const auto& prior = campaign.prior;
+    if (!registered.is_determined() && prior && can_begin_at(*prior, campaign)) {
+        registered = register_beside(*prior, campaign, measurements);
     }
     registered.parameters.robot = expected_errors(campaign);
     return registered;

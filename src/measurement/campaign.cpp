@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
 #include "posewise/core/errors.hpp"
 #include "posewise/model/error_terms.hpp"
@@ -196,6 +197,23 @@ VectorXd step_between(const Campaign& campaign, const Parameters& from, const Pa
     VectorXd step(std::ssize(unknown) + from.robot.size() + from.sensor.size());
     step << of_base(unknown), to.robot - from.robot, to.sensor - from.sensor;
     return step;
+}
+
+MatrixXd differentiate_step(const Campaign& campaign, const Parameters& from,
+                            const Parameters& to) {
+    const Index size = parameter_count(campaign);
+    MatrixXd derivative = MatrixXd::Identity(size, size);
+    const Eigen::AngleAxisd turn(to.world_from_base.linear() *
+                                 from.world_from_base.linear().transpose());
+    const double angle = turn.angle();
+    const Matrix3d K = cross_matrix(turn.axis());
+    const double curvature =
+        angle < 1e-4 ? angle * angle / 12 : 1 - angle / 2 / std::tan(angle / 2);
+    Eigen::Matrix<double, 6, 6> of_base = Eigen::Matrix<double, 6, 6>::Identity();
+    of_base.bottomRightCorner<3, 3>() += curvature * K * K - angle / 2 * K;
+    const std::vector<Index> unknown = unknown_of_base(campaign);
+    derivative.topLeftCorner(std::ssize(unknown), std::ssize(unknown)) = of_base(unknown, unknown);
+    return derivative;
 }
 
 Isometry3d world_from_flange(const Campaign& campaign, const Parameters& parameters,

@@ -55,6 +55,27 @@ TEST(Advance, TurnsTheBaseAboutItsOwnOriginInWorldAxes) {
     EXPECT_EQ(moved.sensor[8], campaign.nominal.sensor[8] + 5e-3);
 }
 
+TEST(StepBetween, HasTheDerivativeOfDifferences) {
+    Campaign campaign = tracked_campaign(planar_arm({1, 1}));
+    campaign.base_is_known[1] = true;
+    const Index size = parameter_count(campaign);
+    for (const double turn : {0.0, 1e-6, 1e-3, 0.7, 2.5}) {
+        VectorXd step = VectorXd::LinSpaced(size, -0.3, 0.2);
+        step.segment<3>(2) = turn * Vector3d(0.6, -0.5, 0.62);
+        const Parameters to = advance(campaign, campaign.nominal, step);
+        const MatrixXd D = differentiate_step(campaign, campaign.nominal, to);
+        constexpr double h = 1e-5;
+        for (Index k = 0; k < size; ++k) {
+            const VectorXd d = h * VectorXd::Unit(size, k);
+            const VectorXd difference =
+                (step_between(campaign, campaign.nominal, advance(campaign, to, d)) -
+                 step_between(campaign, campaign.nominal, advance(campaign, to, -d))) /
+                (2 * h);
+            EXPECT_TRUE(D.col(k).isApprox(difference, 1e-7)) << turn << ' ' << k;
+        }
+    }
+}
+
 TEST(Advance, KeepsTheBaseARotationForever) {
     RandomStream stream(51);
     const Campaign campaign = tracked_campaign(planar_arm({1, 1}));

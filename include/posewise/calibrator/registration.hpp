@@ -22,7 +22,9 @@ struct Registration {
 /// in (X, c, t): least squares, X projected on SO(3), then polished on the true residuals. Where
 /// they leave a part of X open (points that lie in planes, axes that cross) X is searched among the
 /// rotations. A pose is four points. Lengths, and a base that is partly known, are polished from
-/// the campaign's nominal values instead. Not determined where a target with unknown position is
+/// the campaign's nominal values instead. What
+/// few configurations leave open is where an earlier estimate that is the prior found it. Not
+/// determined where a target with unknown position is
 /// seen in no sample, or by configurations that are too few or too much alike. Throws InputError if
 /// nominal values are needed and not stated, or for measurements that do not fit the campaign.
 Registration register_base_and_targets(const Campaign& campaign, const Measurements& measurements);

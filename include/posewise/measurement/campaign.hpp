@@ -128,6 +128,11 @@ Parameters advance(const Campaign& campaign, const Parameters& parameters, const
 
 /// The step from one to other parameters near it: advance() of which is `to`.
 VectorXd step_between(const Campaign& campaign, const Parameters& from, const Parameters& to);
+/// How that changes with a further step, d step_between(from, advance(to, s)) / ds at s = 0
+/// (parameters square): the identity but for the turn phi of the base so far, where it is
+/// I - [phi]x / 2 + (1 / phi^2 - cot(phi / 2) / (2 phi)) [phi]x^2, the inverse left Jacobian of
+/// SO(3).
+MatrixXd differentiate_step(const Campaign& campaign, const Parameters& from, const Parameters& to);
 
 /// world_from_flange at a configuration.
 Isometry3d world_from_flange(const Campaign& campaign, const Parameters& parameters,
