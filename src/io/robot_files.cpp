@@ -23,20 +23,30 @@ const std::vector<std::string> ur_links{"shoulder", "upper_arm", "forearm",
                                         "wrist_1",  "wrist_2",   "wrist_3"};
 const std::vector<std::string> ur_numbers{"x", "y", "z", "roll", "pitch", "yaw"};
 
+/// By how much a file's flange may differ from the robot's: m, rad.
+struct Tolerance {
+    double position = 1e-9;
+    double orientation = 1e-9;
+};
+
 /// Writes the text if `read` makes the same robot of its file.
 template <class Read>
 FlangeDifference write_robot(const std::string& path, const std::string& text, const Chain& robot,
-                             const VectorXd& errors, const Read& read) {
-    constexpr double tolerance = 1e-9;  // m or rad
+                             const VectorXd& errors, const Read& read,
+                             const Tolerance& tolerance = Tolerance()) {
     FlangeDifference difference;
     write_file(path, text, [&](const std::string& written) {
         difference = compare_flanges(robot, errors, read(written), VectorXd());
-        if (difference.position <= tolerance && difference.orientation <= tolerance) return;
+        if (difference.position <= tolerance.position &&
+            difference.orientation <= tolerance.orientation) {
+            return;
+        }
         throw input_error_at(
             {path},
             fmt::format("is not written: read back, its flange is up to {:.1e} m and {:.1e} "
-                        "rad from the estimate's; must be within 1e-9",
-                        difference.position, difference.orientation));
+                        "rad from the estimate's; must be within {:.0e} m and {:.0e} rad",
+                        difference.position, difference.orientation, tolerance.position,
+                        tolerance.orientation));
     });
     return difference;
 }
@@ -99,10 +109,12 @@ FlangeDifference write_dh(const std::string& path, const std::string& title,
 FlangeDifference write_ur_kinematics(const std::string& path, const std::string& title,
                                      const UrFrames& frames, const Chain& robot,
                                      const VectorXd& errors) {
+    const auto read = [&](const std::string& written) {
+        return ur_chain(read_ur_kinematics(written), robot.joints());
+    };
     return write_robot(path, ur_text(escape_controls(title), frames), robot,
-                       without(robot, errors, {}), [&](const std::string& written) {
-                           return ur_chain(read_ur_kinematics(written), robot.joints());
-                       });
+                       without(robot, errors, {}), read,
+                       {ur_rounding.position + 1e-9, ur_rounding.orientation + 1e-9});
 }
 
 UrFrames read_ur_kinematics(const std::string& path) {

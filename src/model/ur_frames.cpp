@@ -61,12 +61,22 @@ Vector3d place(const std::array<Isometry3d, ur_joint_count>& frames, std::size_t
     return axis.point + along / axis.direction.dot(before.direction) * axis.direction;
 }
 
-void check_flange(const Isometry3d& flange, const Isometry3d& last, const std::string& joint) {
-    constexpr double tolerance = 1e-9;  // m or rad
-    const Isometry3d rest = last.inverse() * flange;
+/// The flange, brought onto the axis of the last joint if its description rounds what it should be:
+/// 1.5708 for half of pi.
+Isometry3d flange_on_axis(const Isometry3d& flange, const Isometry3d& last,
+                          const std::string& joint) {
+    constexpr double exact = 1e-9;  // m or rad
+    Isometry3d rest = last.inverse() * flange;
     const double sideways = std::hypot(rest.translation().x(), rest.translation().y());
     const double off = std::atan2(std::hypot(rest(0, 2), rest(1, 2)), rest(2, 2));
-    if (sideways <= tolerance && off <= tolerance) return;
+    if (sideways <= exact && off <= exact) return flange;
+    if (sideways <= ur_rounding.position && off <= ur_rounding.orientation) {
+        const Vector3d z = rest.linear().col(2);
+        rest.translation().head<2>().setZero();
+        rest.linear() = nearest_rotation(Eigen::Quaterniond::FromTwoVectors(z, Vector3d::UnitZ()) *
+                                         rest.linear());
+        return last * rest;
+    }
     throw InputError(fmt::format(
         "the flange is {:.4f} mm beside the axis of joint '{}', its z axis {:.4f} mrad off it; "
         "frames of a UR end with that joint, so that its z axis must be the flange's",
@@ -80,9 +90,9 @@ UrFrames ur_frames(const Chain& chain, const VectorXd& parameters) {
     check_joints(chain, axes);
     std::array<Isometry3d, ur_joint_count> frames;  // in the base
     for (std::size_t k = 0; k < ur_joint_count; ++k) frames[k] = turned_frame(axes[k]);
-    check_flange(flange, frames.back(), chain.joints().back().name);
+    const Isometry3d end = flange_on_axis(flange, frames.back(), chain.joints().back().name);
     for (std::size_t k = 0; k + 1 < ur_joint_count; ++k) frames[k].translation() = place(frames, k);
-    frames.back() = flange;
+    frames.back() = end;
     UrFrames relative = frames;
     for (std::size_t k = 1; k < ur_joint_count; ++k)
         relative[k] = frames[k - 1].inverse() * frames[k];

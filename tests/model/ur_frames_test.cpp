@@ -69,6 +69,24 @@ TEST(UrFrames, TakeAnyAxesAndJointsThatAreReversed) {
     EXPECT_LT(difference(chain, errors).orientation, 1e-13);
 }
 
+TEST(UrFrames, TakeHalvesOfPiThatAreRounded) {
+    for (const double half : {1.570796, 1.5708}) {
+        std::vector<Element> elements = fanuc().elements();
+        elements.push_back(rotation(Axis::Y, -half));
+        const Chain chain(fanuc().joints(), elements);
+        const FlangeDifference off = difference(chain, random_errors(chain, 1e-3, 4));
+        EXPECT_LT(off.position, 1e-12);
+        EXPECT_NEAR(off.orientation, std::abs(half - std::numbers::pi / 2), 1e-9) << half;
+    }
+    std::vector<Element> elements = fanuc().elements();
+    elements.push_back(rotation(Axis::Y, -1.571));
+    const Chain chain(fanuc().joints(), elements);
+    EXPECT_NE(input_error_of([&] {
+                  ur_frames(chain, VectorXd::Zero(chain.parameter_count()));
+              }).find("its z axis 0.2037 mrad off it"),
+              std::string::npos);
+}
+
 TEST(UrFrames, AreRefusedWhereTheyCannotExpressTheRobot) {
     const auto error = [](const Chain& chain, const VectorXd& errors) {
         return input_error_of([&] { ur_frames(chain, errors); });
