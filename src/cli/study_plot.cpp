@@ -64,6 +64,7 @@ void draw_plot(const std::string& image_path, const std::vector<Study>& studies)
     detail::write_file(script, detail::study_plot_script(studies, image));
     try {
         detail::run_gnuplot(script, detail::SignalDelay::has_come);
+        if (!fs::exists(image)) throw InputError("gnuplot wrote no image");
     } catch (const InputError& error) {
         if (detail::SignalDelay::has_come()) return;  // it ends the program
         throw input_error_at(

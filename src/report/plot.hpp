@@ -23,6 +23,6 @@ std::string study_plot_script(const std::vector<Study>& studies, const std::stri
 /// Runs gnuplot on a script file, not through a shell. Throws InputError if gnuplot is absent or
 /// fails, or is ended because it takes longer than `limit` or `is_stopped` says so.
 void run_gnuplot(const std::string& script_path, const std::function<bool()>& is_stopped = {},
-                 std::chrono::milliseconds limit = std::chrono::seconds(60));
+                 std::chrono::milliseconds limit = std::chrono::seconds(20));
 
 }  // namespace posewise::detail

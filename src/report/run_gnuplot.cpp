@@ -1,5 +1,6 @@
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -45,8 +46,12 @@ void run_gnuplot(const std::string& script_path, const std::function<bool()>& is
     std::string program = "gnuplot";
     const std::array<char*, 3> arguments{program.data(), script.data(), nullptr};
     pid_t child = 0;
+    posix_spawn_file_actions_t files;  // what it prints is no result of ours
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_adddup2(&files, STDERR_FILENO, STDOUT_FILENO);
     const int error =
-        posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments.data(), environ);
+        posix_spawnp(&child, program.c_str(), &files, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&files);
     if (error == ENOENT) throw InputError("gnuplot is not installed");
     if (error != 0) {
         throw InputError(std::string("gnuplot cannot be started: ") + std::strerror(error));

@@ -97,7 +97,21 @@ TEST_F(BadInput, ASignalWhileGnuplotHangsLeavesNothing) {
         EXPECT_TRUE(std::filesystem::remove(folder_ / "reached")) << signal;
         EXPECT_TRUE(std::filesystem::is_empty(folder_ / "tmp")) << signal;
         EXPECT_EQ(file_count(), files) << signal;
+        EXPECT_EQ(outcome.out.rfind("poses", 0), 0U) << "the table comes first: " << outcome.out;
     }
+}
+
+TEST_F(BadInput, WhatGnuplotPrintsIsNoResult) {
+    const std::string path = with_program("gnuplot", "echo noise\n");
+    const Outcome outcome =
+        run("study c.yaml -m s.csv --poses 8 --random 2 --plot a.svg --json", path);
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_EQ(outcome.out.find("noise"), std::string::npos) << outcome.out;
+    EXPECT_EQ(outcome.out.front(), '{');
+    EXPECT_EQ(outcome.out.substr(outcome.out.size() - 2), "}\n");
+    EXPECT_EQ(outcome.err,
+              "noise\nposewise: a.svg: the plot was not drawn, gnuplot wrote no image; its script "
+              "is left, try: gnuplot './a.svg.gnuplot'\n");
 }
 
 TEST_F(BadInput, TheScriptOfAPlotRunsNoProgram) {
