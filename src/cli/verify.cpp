@@ -30,8 +30,9 @@ and checks the candidates (a changed file is noticed by its checksum), the poses
 plan was made under. That needs no search and no optimiser, unless a plan claims more than its
 certificate proves: then branch and bound is repeated from it, until it proves as much.
 Of a pose plan, as plan writes it, checks every pose (joint limits, the cell's constraints, targets
-seen), the value, the predicted accuracy and each parameter's standard deviation. The time of the
-visit is not checked, and its bounds are not proven by what the file holds.
+seen, degrees and mm beside the joints), the value, the predicted accuracy, each parameter's standard
+deviation, and that bounds, values and efficiencies agree. The time of the visit is not checked, and
+its bounds are not proven by what the file holds.
 Exit code: 0 everything is as stated, 1 something is not.)";
 
 struct VerifyArguments {

@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -6,6 +9,7 @@
 #include "json_reader.hpp"
 #include "plan_format.hpp"
 #include "plan_paths.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/io/plan_file.hpp"
 
 namespace posewise::io {
@@ -254,12 +258,33 @@ VectorXd read_configuration(const JsonValue& json) {
     return q;
 }
 
+/// Degrees and mm beside the joints are for people, who must not be sent elsewhere.
+void check_readable(const JsonValue& readable, const JsonValue& joints) {
+    constexpr double rounding = 1e-3;  // deg or mm
+    const std::vector<std::string> columns = keys_of(joints.json());
+    const auto values = joints.values();
+    for (const AmountUnits& units : {angle_units, length_units}) {
+        const std::string suffix = '_' + std::string(units.si);
+        for (std::size_t j = 0; j < columns.size(); ++j) {
+            if (!columns[j].ends_with(suffix)) continue;
+            const std::string name = columns[j].substr(0, columns[j].size() - suffix.size()) + '_' +
+                                     std::string(units.reading);
+            const double value = units.to_reading(values[j].number());
+            const JsonValue stated = readable[name];
+            if (std::abs(stated.number() - value) <= rounding) continue;
+            throw stated.error(fmt::format("is {}, but joints.{} says {:.4f}; must be the same",
+                                           stated.number(), columns[j], value));
+        }
+    }
+}
+
 PlannedPose read_pose(const JsonValue& json) {
     PlannedPose pose;
     pose.id = json["id"].text();
     if (pose.id.empty()) throw json["id"].error("is empty; must be a name");
     if (json.has("times")) pose.times = json["times"].count(1);
     if (json.has("joints")) pose.configuration = read_configuration(json["joints"]);
+    if (json.has("readable")) check_readable(json["readable"], json["joints"]);
     if (json.has("visible_targets")) {
         for (const JsonValue& target : json["visible_targets"].list()) {
             const Index shown = target.count(1, most_targets) - 1;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "../core/format.hpp"
@@ -124,6 +125,28 @@ void check_prediction(const Plan& plan, const PlanningProblem& problem, const Bl
     check_deviations(plan, problem, M, findings);
 }
 
+/// What can be said without what proves them.
+void check_bounds(const Plan& plan, const PlanningProblem& problem, Findings& findings) {
+    const Criterion criterion = problem.search.criterion;
+    const Index counted =
+        parameter_count(problem.campaign) - static_cast<Index>(problem.search.nuisance.size());
+    bool is_right = true;
+    const auto check = [&](const char* name, double value, double bound, double stated) {
+        const double actual = detail::efficiency(criterion, value, bound, counted);
+        const bool is_above =
+            value > bound && !detail::is_same_value(criterion, value, bound, rounding);
+        if (is_above) findings.compare(name, bound, value, false);
+        const bool agrees = std::abs(stated - actual) <= rounding;
+        if (!agrees) findings.compare(std::string(name) + " efficiency", stated, actual, false);
+        is_right = is_right && !is_above && agrees;
+    };
+    check("pool bound", plan.choice_value, plan.bound, plan.efficiency);
+    check("searched bound", plan.value, plan.searched_bound, plan.searched_efficiency);
+    if (!is_right) return;
+    findings.note("bounds", true,
+                  "agree with values and efficiencies; the file does not hold what proves them");
+}
+
 }  // namespace
 
 Verification verify(const Plan& plan, const Campaign& campaign, const PlanningOptions& options) {
@@ -138,7 +161,7 @@ Verification verify(const Plan& plan, const Campaign& campaign, const PlanningOp
         check_value(plan, problem, blocks, findings);
         check_prediction(plan, problem, blocks, findings);
         findings.compare_assumptions(plan, problem.campaign);
-        findings.note("bounds", true, "not checked, the file does not hold what proves them");
+        check_bounds(plan, problem, findings);
     });
 }
 

@@ -153,8 +153,27 @@ TEST_F(Verify, ChecksPosePlans) {
     };
     expect_wrong([](Json& plan) { plan["value"] = plan["value"].get<double>() * 1.001; },
                  "value:      stated");
-    expect_wrong([](Json& plan) { plan["poses"][1]["joints"]["q2_rad"] = 1e6; },
-                 "is beyond the joint limits");
+    expect_wrong(
+        [](Json& plan) {
+            plan["poses"][1]["joints"]["q2_rad"] = 1e6;
+            plan["poses"][1].erase("readable");
+        },
+        "is beyond the joint limits");
+    expect_wrong([](Json& plan) { plan["poses"][1]["readable"]["q2_deg"] = 12.5; },
+                 "e.json: poses[1].readable.q2_deg: is 12.5, but joints.q2_rad says ");
+    expect_wrong([](Json& plan) { plan["poses"][1]["readable"].erase("q2_deg"); }, "readable");
+    expect_wrong([](Json& plan) { plan["poses"][1]["id"] = plan["poses"][0]["id"]; },
+                 "occurs before in poses[0]");
+    expect_wrong([](Json& plan) { plan["bounds"]["pool"]["efficiency"] = 0.999; },
+                 "pool bound efficiency: stated");
+    expect_wrong([](Json& plan) { plan["bounds"]["continuous"]["efficiency"] = 1; },
+                 "searched bound efficiency: stated");
+    expect_wrong(
+        [](Json& plan) {
+            plan["bounds"]["pool"]["bound"] = 0.5 * plan["bounds"]["pool"]["value"].get<double>();
+            plan["bounds"]["pool"]["efficiency"] = 1;
+        },
+        "pool bound: stated");
     expect_wrong([](Json& plan) { plan["poses"][1]["visible_targets"] = Json::array(); },
                  "shows no target");
     expect_wrong([](Json& plan) { plan["poses"][1]["visible_targets"] = {1}; },
