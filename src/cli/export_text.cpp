@@ -37,9 +37,15 @@ void print_loss(const io::ExportedRobot& robot) {
     const auto add = [&](const char* name, const PositionLoss& lost) {
         table.rows.push_back({name, detail::format_mm(lost.rms), detail::format_mm(lost.largest)});
     };
+    add("not calibrated", robot.nominal);
     add("nearest", robot.nearest->lost);
     add("estimate", robot.estimated.lost);
     print_section("Lost without them, at the targets over the workspace", table);
+    if (!robot.has_workspace) {
+        print(
+            "the workspace is all that limits (and cell) allow; --workspace says where the robot "
+            "works\n");
+    }
     print(robot.is_nearest ? "written is the nearest (--geometry estimate: the other)\n"
                            : "written is the estimate's (--geometry nearest: the other)\n");
 }

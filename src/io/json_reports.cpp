@@ -227,9 +227,8 @@ Json dh_row_to_json(const DhRow& row, const Chain& robot) {
             {"joints", joint_terms_to_json(row.joints, robot)}};
 }
 
-Json loss_to_json(const Geometry& geometry) {
-    return {{"rms_mm", mm_per_m * geometry.lost.rms},
-            {"largest_mm", mm_per_m * geometry.lost.largest}};
+Json loss_to_json(const PositionLoss& lost) {
+    return {{"rms_mm", mm_per_m * lost.rms}, {"largest_mm", mm_per_m * lost.largest}};
 }
 
 Json read_back_to_json(const ReadBack& file) {
@@ -333,8 +332,9 @@ std::string to_json(const ExportedRobot& robot, const Campaign& campaign) {
     Json document = detail::make_document("export", report_format);
     document["campaign"] = campaign.name;
     document["geometry"] = robot.is_nearest ? "nearest" : "estimate";
-    document["lost"]["estimate"] = loss_to_json(robot.estimated);
-    if (robot.nearest) document["lost"]["nearest"] = loss_to_json(*robot.nearest);
+    document["lost"]["nominal"] = loss_to_json(robot.nominal);
+    document["lost"]["estimate"] = loss_to_json(robot.estimated.lost);
+    if (robot.nearest) document["lost"]["nearest"] = loss_to_json(robot.nearest->lost);
     document["base"] = detail::base_to_json(written.world_from_base);
     document["targets_m"] = make_list(
         written.targets, [](const Vector3d& target) { return detail::vector_to_json(target); });

@@ -88,17 +88,24 @@ struct FlangePoints {
     }
 };
 
-/// What is fitted: the targets, with points beside them if they are few.
-FlangePoints fitted_points(const Campaign& campaign, const Parameters& found) {
-    constexpr double lever = 0.1;  // m
+/// Of each target.
+std::vector<std::array<bool, 3>> known_axes(const Campaign& campaign) {
     const Targets& targets = campaign.sensor->targets();
-    FlangePoints points{target_positions(campaign, found), {}};
+    std::vector<std::array<bool, 3>> known;
     for (Index target = 0; target < targets.count(); ++target) {
-        auto& is_known = points.is_known.emplace_back();
+        auto& is_known = known.emplace_back();
         for (Index axis = 0; axis < 3; ++axis) {
             is_known[static_cast<std::size_t>(axis)] = targets.unknown_index(target, axis) < 0;
         }
     }
+    return known;
+}
+
+/// What is fitted: the targets, with points beside them if they are few.
+FlangePoints fitted_points(const Campaign& campaign, const Parameters& found) {
+    constexpr double lever = 0.1;  // m
+    const Targets& targets = campaign.sensor->targets();
+    FlangePoints points{target_positions(campaign, found), known_axes(campaign)};
     if (targets.count() < 3) {
         for (Index axis = 0; axis < 3; ++axis) {
             points.positions.emplace_back(points.positions.front() + lever * Vector3d::Unit(axis));
@@ -123,11 +130,11 @@ Chain with_constant_errors(const Chain& robot, const VectorXd& errors) {
     return without_parameters(without_terms(with_known_errors(robot, errors, is_known)));
 }
 
-/// The campaign whose calibration on the positions of `points` is the nearest geometry; its nominal
-/// parameters are those found.
-Campaign geometric_campaign(const Campaign& campaign, const Parameters& found,
+/// The campaign whose calibration on the positions of `points` is the nearest geometry of a robot;
+/// base and targets are nominally those found.
+Campaign geometric_campaign(const Campaign& campaign, const Chain& robot, const Parameters& found,
                             const FlangePoints& points) {
-    Campaign geometric = with_robot(campaign, with_constant_errors(campaign.robot, found.robot));
+    Campaign geometric = with_robot(campaign, robot);
     geometric.prior.reset();
     geometric.joint_repeatability.resize(0);
     geometric.spread = population_spread(geometric.robot);
@@ -136,8 +143,6 @@ Campaign geometric_campaign(const Campaign& campaign, const Parameters& found,
     geometric.nominal.world_from_base = found.world_from_base;
     geometric.nominal.sensor = points.unknowns(geometric.sensor->targets());
     geometric.has_nominal_base = geometric.has_nominal_targets = true;
-    geometric = with_robot(geometric, irreducible_model(geometric));
-    geometric.nominal.robot = VectorXd::Zero(geometric.robot.parameter_count());
     return geometric;
 }
 
@@ -171,6 +176,7 @@ Parameters fit(const Campaign& geometric, const RowMatrixXd& configurations,
     constexpr Index iteration_limit = 20;
     constexpr double tolerance = 1e-9;  // relative fall of the sum of squares
     Parameters best = geometric.nominal;
+    if (parameter_count(geometric) == 0) return best;
     Equations system = equations(geometric, best, configurations, wanted);
     for (Index k = 0; k < iteration_limit; ++k) {
         const Parameters next = advance(geometric, best, solve_least_squares(system.J, system.r));
@@ -210,7 +216,9 @@ Geometry nearest_geometry(const Campaign& campaign, const Parameters& found,
                           const GeometryOptions& options) {
     const RowMatrixXd configurations = draw_workspace(campaign, found, options);
     const FlangePoints points = fitted_points(campaign, found);
-    const Campaign geometric = geometric_campaign(campaign, found, points);
+    Campaign geometric = geometric_campaign(
+        campaign, with_constant_errors(campaign.robot, found.robot), found, points);
+    geometric = with_robot(geometric, irreducible_model(geometric));
     const Parameters nearest =
         fit(geometric, configurations,
             predict_positions(campaign, found, points.positions, configurations));
@@ -225,6 +233,19 @@ Geometry nearest_geometry(const Campaign& campaign, const Parameters& found,
         loss_of(predict_positions(geometric, nearest, geometry.targets, configurations) -
                 predict_positions(campaign, found, targets, configurations));
     return geometry;
+}
+
+PositionLoss nominal_loss(const Campaign& campaign, const Parameters& found,
+                          const GeometryOptions& options) {
+    const RowMatrixXd configurations = draw_workspace(campaign, found, options);
+    const FlangePoints points{target_positions(campaign, found), known_axes(campaign)};
+    const Campaign nominal = geometric_campaign(
+        campaign, without_parameters(without_terms(campaign.robot)), found, points);
+    const VectorXd wanted = predict_positions(campaign, found, points.positions, configurations);
+    const Parameters nearest = fit(nominal, configurations, wanted);
+    return loss_of(
+        predict_positions(nominal, nearest, target_positions(nominal, nearest), configurations) -
+        wanted);
 }
 
 }  // namespace posewise

@@ -136,6 +136,19 @@ TEST(NearestGeometry, KeepsWhatIsKnown) {
     EXPECT_LT(Eigen::AngleAxisd(difference.linear()).angle(), 5e-3);
 }
 
+TEST(NominalLoss, IsWhatBaseAndTargetsAloneLeave) {
+    Campaign campaign = campaign_with_gravity();
+    const Parameters truth = draw_truth(campaign, 3);
+    const PositionLoss nominal = nominal_loss(campaign, truth);
+    EXPECT_GT(nominal.rms, 1.2 * nearest_geometry(campaign, truth).lost.rms);
+    EXPECT_GT(nominal.largest, nominal.rms);
+    Parameters exact = truth;
+    exact.robot.setZero();
+    EXPECT_LT(nominal_loss(campaign, exact).largest, 1e-9);
+    campaign.base_is_known.fill(true);
+    EXPECT_GT(nominal_loss(campaign, truth).rms, nominal.rms);
+}
+
 TEST(NearestGeometry, IsOfTheCellsWorkspace) {
     Campaign campaign = campaign_with_gravity();
     const Parameters truth = draw_truth(campaign, 5);

@@ -68,6 +68,8 @@ struct ExportedRobot {
     std::vector<std::string> terms;
     Geometry estimated;               ///< without them
     std::optional<Geometry> nearest;  ///< nothing: there are none
+    PositionLoss nominal;             ///< what the robot misses that is not calibrated
+    bool has_workspace = false;       ///< where the robot works was said
     bool is_nearest = false;          ///< that one is written
     std::optional<CalibratedUrdf> urdf;
     std::vector<DhRow> dh;           ///< empty: not asked for

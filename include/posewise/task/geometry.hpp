@@ -46,4 +46,10 @@ Geometry estimated_geometry(const Campaign& campaign, const Parameters& found,
 Geometry nearest_geometry(const Campaign& campaign, const Parameters& found,
                           const GeometryOptions& options = {});
 
+/// How far the targets of the robot as its maker says are from those of the one found, base and
+/// targets fitted to them over the workspace as far as they are not known: what a geometry's loss
+/// is to be compared with. Throws InputError as estimated_geometry() does.
+PositionLoss nominal_loss(const Campaign& campaign, const Parameters& found,
+                          const GeometryOptions& options = {});
+
 }  // namespace posewise
