@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "../io/robot_statement.hpp"
+#include "../core/text.hpp"
 #include "calibrate_options.hpp"
 #include "commands.hpp"
 #include "estimates.hpp"
@@ -16,6 +16,7 @@
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/io/json_reports.hpp"
 #include "posewise/report/reports.hpp"
+#include "validation.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -121,10 +122,19 @@ void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& ar
     require(options.folds != 0, "--model-selection", "needs --folds of 2 or more");
 }
 
+/// Which estimate it goes on from.
+std::string describe_start(const CalibrateArguments& arguments) {
+    const EarlierArguments& earlier = arguments.earlier;
+    const bool builds_on = earlier.is_prior || !earlier.only.empty();
+    if (earlier.from.empty()) return "";
+    if (builds_on) return '\n' + describe_earlier(earlier);
+    return fmt::format("\nfrom:       {}: where it began\n", detail::escape_controls(earlier.from));
+}
+
 void print_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
                        const Calibration& result, const io::Provenance& made_from) {
     print(common.json ? io::to_json(result, made_from)
-                      : format(result, arguments.has_all_parameters));
+                      : format(result, arguments.has_all_parameters) + describe_start(arguments));
 }
 
 /// With faults it is printed, but not written.
@@ -138,48 +148,45 @@ void check_faults(const CalibrateArguments& arguments, const CommonOptions& comm
         arguments.out.empty() && arguments.predict_out.empty() ? "" : "nothing was written, "));
 }
 
-/// Measurements to validate with, and their campaign, which the calibration's options refer to.
-struct Validation {
-    std::optional<io::CampaignFile> campaign;
-    std::optional<Measurements> measured;
-
-    Validation(const CalibrateArguments& arguments, const io::CampaignFile& file) {
-        if (!arguments.validation_campaign.empty()) {
-            campaign = read_with_prior(arguments.validation_campaign, arguments.prior);
-            detail::check_is_same_robot(campaign->path, campaign->robot, file.robot);
-        }
-        if (arguments.validate.empty()) return;
-        measured = read_measured(arguments.validate, campaign ? *campaign : file);
+/// What is wrong names the file that it is in.
+Calibration calibrate_files(const CalibrateArguments& arguments, const io::CampaignFile& file,
+                            const Measurements& measured, const CalibrationOptions& options) {
+    try {
+        check_folds(options, measured.configuration_count());
+        return posewise::calibrate(file, measured, options);
+    } catch (const ValidationError& error) {
+        throw input_error_at({arguments.validate}, error.what());
+    } catch (const InputError& error) {
+        throw input_error_at({arguments.paths.measurements}, error.what());
     }
-};
+}
 
 void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
                const CommonOptions& common) {
     const InputPaths& paths = arguments.paths;
     const EarlierArguments& earlier = arguments.earlier;
-    check_outputs({paths.campaign, paths.measurements, arguments.plan, arguments.validate,
-                   arguments.validation_campaign, arguments.predict, earlier.from},
-                  {arguments.out, arguments.predict_out}, common);
     const io::CampaignFile file = read_with_prior(paths.campaign, arguments.prior);
+    const Validation validation = read_validation(arguments, file);
+    check_outputs(
+        {&file, validation.campaign ? &*validation.campaign : nullptr},
+        {paths.measurements, arguments.plan, arguments.validate, arguments.predict, earlier.from},
+        {arguments.out, arguments.predict_out}, common);
     CalibrationOptions options = make_options(arguments, file.seed);
-    const Measurements measured = read_measured_without(options.excluded, paths.measurements, file);
+    const Measurements measured =
+        read_measured_without(options.excluded, paths.measurements, file, earlier);
     const io::Provenance made_from = provenance_of(command, file, paths.measurements, measured);
     if (!earlier.from.empty()) {
         options.earlier = read_usable_earlier(earlier.from, file, earlier.use(), earlier.is_forced);
-        warn_of_counting_twice(earlier, measured);
     }
     if (!arguments.plan.empty())
         options.used = find_planned(file, measured, arguments.plan, options.excluded);
-    const Validation validation(arguments, file);
+    warn_of_no_validation(arguments, validation, made_from);
     options.validation = validation.measured ? &*validation.measured : nullptr;
     options.validation_campaign = validation.campaign ? &*validation.campaign : nullptr;
     io::Configurations predicted;
     if (!arguments.predict.empty()) predicted = read_unlimited(arguments.predict, file);
     options.predicted = predicted.joints;
-    const Calibration result = compute_from(paths.measurements, [&] {
-        check_folds(options, measured.configuration_count());
-        return posewise::calibrate(file, measured, options);
-    });
+    const Calibration result = calibrate_files(arguments, file, measured, options);
     if (!result.is_identified()) {
         if (result.selection && !common.json) print(format(*result.selection));
         throw input_error_at({paths.measurements}, result.estimate.undetermined);

@@ -59,9 +59,8 @@ CorrectionOptions correction_options(const CorrectArguments& arguments) {
 }
 
 void correct(const CorrectArguments& arguments, const CommonOptions& common) {
-    check_outputs({arguments.paths.campaign, arguments.estimate, arguments.poses}, {arguments.out},
-                  common);
     const io::CampaignFile file = io::read_campaign(arguments.paths.campaign);
+    check_outputs({&file}, {arguments.estimate, arguments.poses}, {arguments.out}, common);
     const Parameters found =
         read_usable_estimate(arguments.estimate, file, arguments.is_forced).parameters;
     const io::Configurations poses = io::read_program(arguments.poses, file);

@@ -108,6 +108,7 @@ Earlier read_usable_earlier(const std::string& path, const Campaign& campaign,
         print_warning(path + ": the campaign file said otherwise when it was made: " +
                       join_some(earlier.changes));
     }
+    if (!use.only.empty()) compute_from("--only", [&] { with_earlier(campaign, earlier); });
     Campaign judged = campaign;
     if (earlier.spread) judged.spread = *earlier.spread;
     const std::vector<std::string> faults = find_faults(judged, earlier.estimate);
@@ -140,12 +141,12 @@ io::CampaignFile read_planned(const PlanSources& sources, const EarlierUse& use,
     return file;
 }
 
-void warn_of_counting_twice(const EarlierArguments& arguments, const Measurements& measured) {
-    if (!arguments.is_prior) return;
-    if (io::measurements_checksum_of(arguments.from) != io::checksum_of(measured)) return;
-    print_warning(arguments.from +
-                  ": was made from these very measurements; as a prior beside them it "
-                  "counts them twice");
+void warn_of_counting_twice(const std::string& estimate, bool is_prior, const std::string& path,
+                            const Measurements& measured) {
+    if (!is_prior || !io::is_made_from(estimate, measured)) return;
+    print_warning(fmt::format(
+        "{}: was made from the measurements in {}; as a prior beside them it counts them twice",
+        estimate, path));
 }
 
 std::string describe_earlier(const std::string& path, const EarlierUse& use) {

@@ -67,7 +67,8 @@ io::CampaignFile read_planned(const PlanSources& sources, const EarlierUse& use,
                               std::optional<bool> prior, bool is_forced);
 
 /// Warns where measurements that an estimate was made from would count twice, it being the prior.
-void warn_of_counting_twice(const EarlierArguments& arguments, const Measurements& measured);
+void warn_of_counting_twice(const std::string& estimate, bool is_prior, const std::string& path,
+                            const Measurements& measured);
 
 /// A line: which estimate, and how it is used; nothing without one.
 std::string describe_earlier(const std::string& path, const EarlierUse& use);

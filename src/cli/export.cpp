@@ -23,13 +23,15 @@ Example:
   posewise export campaign.yaml estimate.json --ur-kinematics my_robot_calibration.yaml
 
 The estimate is what calibrate --out wrote. Every file is read back before it takes its place: its
-flange must be within 1e-9 m of the robot's at 1000 configurations.
+flange must be within 1e-9 m of the robot's at 1000 configurations (of --ur-kinematics within 1e-6 m
+and 3e-5 rad, by which a description may round: 1.5708).
 
 None of these forms can have errors that depend on the configuration (gravity, harmonics). With such
 errors in the estimate the geometry is written that is nearest over the workspace (--workspace; else
 the limits, and the cell if the campaign has one): that of least squares of the targets' positions,
-as if it were calibrated there, base and targets along with it. What is lost is printed. --geometry
-estimate writes the estimate's own geometry, for a program that adds the other errors itself.
+as if it were calibrated there, base and targets along with it. What is lost is printed, beside what
+the robot misses that is not calibrated. --geometry estimate writes the estimate's own geometry, for
+a program that adds the other errors itself.
 
 The URDF is the one the campaign's robot comes from, and stays as it is (names, order, comments,
 layout) but for the numbers of joint origins between base link and tip link. The base as the
@@ -51,16 +53,6 @@ struct ExportArguments {
     bool is_forced = false;
 };
 
-void check_urdf(const ExportArguments& arguments, const io::CampaignFile& file,
-                const CommonOptions& common) {
-    if (!file.urdf) {
-        throw input_error_at({arguments.campaign},
-                             "has a robot that does not come from a URDF; only such a one can go "
-                             "into one (--dh takes any)");
-    }
-    check_outputs({file.urdf->path}, {arguments.paths.urdf}, common);
-}
-
 io::ExportedRobot make_geometries(const ExportArguments& arguments, const io::CampaignFile& file,
                                   const Parameters& found) {
     GeometryOptions options;
@@ -72,6 +64,8 @@ io::ExportedRobot make_geometries(const ExportArguments& arguments, const io::Ca
     compute_from(arguments.workspace.empty() ? arguments.campaign : arguments.workspace, [&] {
         robot.estimated = estimated_geometry(file, found, options);
         if (!robot.terms.empty()) robot.nearest = nearest_geometry(file, found, options);
+        robot.nominal = nominal_loss(file, found, options);
+        robot.has_workspace = options.workspace.rows() > 0;
     });
     return robot;
 }
@@ -115,10 +109,14 @@ void export_estimate(const ExportArguments& arguments, const CommonOptions& comm
     if (paths.urdf.empty() && paths.dh.empty() && paths.ur_kinematics.empty()) {
         throw CLI::RequiredError("--urdf, --dh or --ur-kinematics");
     }
-    check_outputs({arguments.campaign, arguments.estimate, arguments.workspace},
-                  {paths.urdf, paths.dh, paths.ur_kinematics}, common);
     const io::CampaignFile file = io::read_campaign(arguments.campaign);
-    if (!paths.urdf.empty()) check_urdf(arguments, file, common);
+    check_outputs({&file}, {arguments.estimate, arguments.workspace},
+                  {paths.urdf, paths.dh, paths.ur_kinematics}, common);
+    if (!paths.urdf.empty() && !file.urdf) {
+        throw input_error_at({arguments.campaign},
+                             "has a robot that does not come from a URDF; only such a one can go "
+                             "into one (--dh takes any)");
+    }
     const Parameters found =
         read_usable_estimate(arguments.estimate, file, arguments.is_forced).parameters;
     io::ExportedRobot robot = make_robot(arguments, file, found);

@@ -65,8 +65,14 @@ void check_names(const std::vector<std::string>& inputs) {
 
 }  // namespace
 
-void check_outputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs,
+void check_outputs(const std::vector<const io::CampaignFile*>& campaigns,
+                   std::vector<std::string> inputs, const std::vector<std::string>& outputs,
                    const CommonOptions& common) {
+    for (const io::CampaignFile* const campaign : campaigns) {
+        if (campaign == nullptr) continue;
+        inputs.push_back(campaign->path);
+        if (campaign->urdf) inputs.push_back(campaign->urdf->path);
+    }
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const std::string& path = outputs[i];
         std::error_code ignored;

@@ -6,14 +6,17 @@
 
 #include "commands.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/io/campaign_file.hpp"
 
 /// What commands check about their files.
 namespace posewise::cli {
 
-/// Before anything is computed: throws InputError if an output is an input or another output (by
-/// whatever path or link), if no file can be written there, or if it is standard output, which with
-/// --json holds one document and nothing else. Empty paths do not count.
-void check_outputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs,
+/// Once the campaigns are read, before anything is computed: throws InputError if an output is an
+/// input (also a URDF that a campaign names) or another output (by whatever path or link), if no
+/// file can be written there, or if it is standard output, which with --json holds one document and
+/// nothing else. Empty paths and missing campaigns do not count.
+void check_outputs(const std::vector<const io::CampaignFile*>& campaigns,
+                   std::vector<std::string> inputs, const std::vector<std::string>& outputs,
                    const CommonOptions& common);
 
 /// What `compute` returns; its InputErrors, which are about the content of the file, name it.

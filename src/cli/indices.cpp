@@ -38,15 +38,16 @@ struct IndicesArguments {
 
 Measurements read_input(const IndicesArguments& arguments, const io::CampaignFile& file) {
     const auto& excluded = arguments.excluded;
-    const auto all = read_measured_without(excluded, arguments.paths.measurements, file);
-    return arguments.plan.empty() ? all : take(all, find_planned(file, all, arguments.plan, excluded));
+    const auto all =
+        read_measured_without(excluded, arguments.paths.measurements, file, arguments.earlier);
+    return arguments.plan.empty() ? all
+                                  : take(all, find_planned(file, all, arguments.plan, excluded));
 }
 
 void print_indices(const IndicesArguments& arguments, const CommonOptions& common) {
     auto file = read_with_prior(arguments.paths.campaign, arguments.prior);
     expect_earlier(file, arguments.earlier);
     const Measurements measurements = read_input(arguments, file);
-    warn_of_counting_twice(arguments.earlier, measurements);
     const Rating rating = compute_from(arguments.paths.measurements, [&] {
         return rate(file, measurements, arguments.directions);
     });

@@ -113,7 +113,7 @@ void inspect_urdf(const InspectArguments& arguments, const CommonOptions& common
                              "is a robot alone; --measurements and --from need a campaign file");
     }
     const std::string& written = arguments.written;
-    check_outputs({urdf}, {written}, common);
+    check_outputs({}, {urdf}, {written}, common);
     if (std::filesystem::exists(written)) {
         throw input_error_at({written}, "exists already; must be a new file");
     }

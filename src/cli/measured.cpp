@@ -49,8 +49,10 @@ Measurements read_measured(const std::string& path, const io::CampaignFile& file
 }
 
 Measurements read_measured_without(const std::vector<std::string>& excluded,
-                                   const std::string& path, const io::CampaignFile& file) {
+                                   const std::string& path, const io::CampaignFile& file,
+                                   const EarlierArguments& earlier) {
     const Measurements all = read_measured(path, file);
+    warn_of_counting_twice(earlier.from, earlier.is_prior, path, all);
     Measurements measured = compute_from(path, [&] { return leave_out(all, excluded); });
     const std::vector<Index> still = find_still_joints(file, measured.configurations);
     if (!still.empty()) print_warning(path + ": " + describe_still_joints(file, still));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "estimates.hpp"
 #include "posewise/io/measurements_file.hpp"
 
 namespace posewise::cli {
@@ -22,9 +23,11 @@ std::string describe_unused_planning(const io::CampaignFile& campaign);
 /// measured; a warning on standard error says so.
 Measurements read_measured(const std::string& path, const io::CampaignFile& file);
 
-/// The same less what was excluded by hand, leave_out(); a warning names joints that never move.
+/// The same less what was excluded by hand, leave_out(). Warns of joints that never move, and of
+/// what an earlier estimate would count twice.
 Measurements read_measured_without(const std::vector<std::string>& excluded,
-                                   const std::string& path, const io::CampaignFile& file);
+                                   const std::string& path, const io::CampaignFile& file,
+                                   const EarlierArguments& earlier);
 /// --exclude, as leave_out() takes it.
 void add_exclude_option(CLI::App& command, std::vector<std::string>& excluded);
 

@@ -120,12 +120,12 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     const PlanSources& sources = arguments.request.sources;
     const std::string out =
         arguments.out.empty() ? default_plan_out(sources.campaign) : arguments.out;
-    check_outputs({sources.campaign, arguments.earlier.from, sources.augment, sources.repaired,
-                   sources.workspace},
-                  {out, arguments.csv}, common);
     std::optional<InterruptFlag> interrupted(std::in_place);
     const StopSignal stop{interrupted->get(), deadline_after(arguments.request.time_limit)};
     const io::CampaignFile campaign = read_planned(arguments);
+    check_outputs({&campaign},
+                  {arguments.earlier.from, sources.augment, sources.repaired, sources.workspace},
+                  {out, arguments.csv}, common);
     const PlanRequest request = make_request(arguments, &campaign, Criterion::V);
     PlanningOptions options = read_planning_inputs(request, campaign);
     if (!sources.repaired.empty()) options.repaired = io::read_plan(sources.repaired);

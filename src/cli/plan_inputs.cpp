@@ -15,10 +15,20 @@ Blocks read_blocks(const PlanSources& sources, const std::string& path) {
     return compute_from(path, [&] { return make_equal_blocks(matrix, sources.rows_per_block); });
 }
 
+/// Poses measured already, --augment.
+std::optional<Measurements> read_held(const PlanRequest& request,
+                                      const io::CampaignFile& campaign) {
+    const PlanSources& sources = request.sources;
+    if (sources.augment.empty()) return std::nullopt;
+    Measurements held = read_measured(sources.augment, campaign);
+    warn_of_counting_twice(sources.estimate, request.earlier.is_prior, sources.augment, held);
+    return held;
+}
+
 Candidates read_candidates(const std::string& path, CandidateKind kind,
                            const io::CampaignFile& campaign) {
     if (kind == CandidateKind::Measurements) {
-        return measured_candidates(read_measured_without({}, path, campaign));
+        return measured_candidates(read_measured_without({}, path, campaign, {}));
     }
     auto [ids, joints, is_seen] = io::read_configurations(path, campaign);
     return {kind, std::move(ids), std::move(joints), is_seen.cast<double>(), std::nullopt};
@@ -41,7 +51,7 @@ void read_with_robot(ChoiceInputs& inputs, CandidateKind kind, Index count) {
     if (kind != CandidateKind::Random) {
         inputs.candidates = read_candidates(sources.candidates, kind, campaign);
     }
-    if (!sources.augment.empty()) options.held = read_measured(sources.augment, campaign);
+    options.held = read_held(options, campaign);
     if (kind == CandidateKind::Random) {
         inputs.candidates = random_candidates(campaign, count, options.seed);
     }
@@ -79,7 +89,7 @@ PlanningOptions read_planning_inputs(const PlanRequest& request, const io::Campa
     PlanningOptions options;
     static_cast<PlanRequest&>(options) = request;
     const PlanSources& sources = request.sources;
-    if (!sources.augment.empty()) options.held = read_measured(sources.augment, campaign);
+    options.held = read_held(options, campaign);
     if (!sources.workspace.empty()) {
         options.workspace = io::read_configurations(sources.workspace, campaign).joints;
     }

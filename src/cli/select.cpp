@@ -113,9 +113,10 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     const PlanSources& sources = request.sources;
     const bool has_default = arguments.out.empty() && !arguments.relaxes;
     const std::string out = has_default ? default_select_out(sources) : arguments.out;
-    check_outputs({sources.campaign, sources.estimate, sources.candidates, sources.augment,
-                   sources.test_poses, sources.groups},
-                  {out}, common);
+    check_outputs(
+        {file ? &*file : nullptr},
+        {sources.estimate, sources.candidates, sources.augment, sources.test_poses, sources.groups},
+        {out}, common);
     ChoiceInputs inputs =
         read_choice_inputs(request, kind_of(arguments), arguments.random, std::move(file));
     inputs.options.stop = stop;

@@ -60,8 +60,8 @@ Simulation simulate_as_asked(const SimulateArguments& arguments, const io::Campa
 }
 
 void run_simulation(SimulateArguments arguments, const CommonOptions& common) {
-    check_outputs({arguments.paths.campaign, arguments.configurations}, {arguments.out}, common);
     const auto file = io::read_campaign(arguments.paths.campaign);
+    check_outputs({&file}, {arguments.configurations}, {arguments.out}, common);
     arguments.options.seed = arguments.seed.value_or(file.seed);
     const Simulation simulation = simulate_as_asked(arguments, file);
     io::write_measurements_csv(arguments.out, file, simulation.measurements,

@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <memory>
 
 #include "../io/atomic_file.hpp"
@@ -66,12 +67,12 @@ std::vector<RobotModel> list_models(const std::vector<io::CampaignFile>& files) 
 void study(const StudyArguments& arguments, const CommonOptions& common) {
     const InputPaths& paths = arguments.paths;
     if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
-    check_outputs({paths.campaign, paths.measurements, arguments.earlier.from},
-                  {arguments.csv, arguments.plot}, common);
     const std::vector<io::CampaignFile> files = read_files(arguments);
     const io::CampaignFile& file = files.front();
-    const auto measurements = read_measured_without(arguments.excluded, paths.measurements, file);
-    warn_of_counting_twice(arguments.earlier, measurements);
+    check_outputs({&file}, {paths.measurements, arguments.earlier.from},
+                  {arguments.csv, arguments.plot}, common);
+    const auto measurements =
+        read_measured_without(arguments.excluded, paths.measurements, file, arguments.earlier);
     StudyOptions options = arguments.options;
     options.seed = arguments.seed.value_or(file.seed);
     options.criteria = arguments.criteria;
@@ -97,6 +98,7 @@ void study(const StudyArguments& arguments, const CommonOptions& common) {
         detail::write_file(arguments.csv,
                            compares ? study_csv(studies) : study_csv(studies.front()));
     }
+    std::fflush(stdout);  // gnuplot may take its time
     if (!arguments.plot.empty()) draw_plot(arguments.plot, studies);
 }
 

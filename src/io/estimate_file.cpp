@@ -6,6 +6,7 @@
 #include "atomic_file.hpp"
 #include "csv_reader.hpp"
 #include "doubts_json.hpp"
+#include "estimate_format.hpp"
 #include "json.hpp"
 #include "parameters_json.hpp"
 #include "posewise/io/json_reports.hpp"
@@ -17,7 +18,6 @@ namespace {
 using detail::Json;
 
 constexpr double mm = 1e3;
-constexpr int estimate_format = 1;
 
 Json metrics_to_json(const Metrics& metrics) {
     const auto millimetres = [](const std::array<double, 3>& xyz) {
@@ -127,6 +127,11 @@ Json without_outliers_to_json(const WithoutOutliers& others, const std::string& 
     return json;
 }
 
+Json moved_to_json(const Moved& moved) {
+    return {
+        {"parts", moved.parts}, {"base_mm", mm * moved.base}, {"targets_mm", mm * moved.targets}};
+}
+
 Json accuracy_to_json(const Calibration& calibration) {
     Json accuracy = {{"nominal", metrics_to_json(calibration.nominal)},
                      {"fit", metrics_to_json(calibration.estimate.fit)},
@@ -141,9 +146,11 @@ Json accuracy_to_json(const Calibration& calibration) {
     accuracy["expected"] = expected_to_json(calibration);
     if (calibration.left_out) accuracy["left_out"] = metrics_to_json(*calibration.left_out);
     if (calibration.validation) accuracy["validation"] = metrics_to_json(*calibration.validation);
-    if (const auto& moved = calibration.moved) {
-        accuracy["moved_before_validation"] = {{"base_mm", mm * moved->base},
-                                               {"targets_mm", mm * moved->targets}};
+    if (calibration.moved) {
+        accuracy["moved_before_validation"] = moved_to_json(*calibration.moved);
+    }
+    if (calibration.moved_since) {
+        accuracy["moved_since_earlier"] = moved_to_json(*calibration.moved_since);
     }
     if (!calibration.predicted.empty()) {
         accuracy["predicted"] = predictions_to_json(calibration.predicted);
@@ -233,12 +240,13 @@ Json estimate_to_json(const Calibration& calibration, const Provenance& made_fro
     const Campaign& campaign = calibration.campaign;
     const Estimate& estimate = calibration.estimate;
     const VectorXd sigmas = standard_deviations(estimate);
-    Json document = detail::make_document("estimate", estimate_format);
+    Json document = detail::make_document("estimate", detail::estimate_format);
     document["campaign"] = campaign.name;
     document["measurements"] = made_from.measurements;
     document["made_from"] = made_from_to_json(made_from);
     document["measured"] = measured_to_json(calibration.measured);
     if (!calibration.excluded.empty()) document["excluded"] = calibration.excluded;
+    if (!calibration.held.empty()) document["held"] = calibration.held;
     document["method"] = method_name(calibration.method);
     document["ending"] = ending_name(estimate.ending);
     if (!calibration.faults.empty()) document["faults"] = calibration.faults;

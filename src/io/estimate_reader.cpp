@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "../core/text.hpp"
+#include "estimate_format.hpp"
 #include "json.hpp"
 #include "json_reader.hpp"
 #include "posewise/io/estimate_file.hpp"
+#include "posewise/measurement/exclusion.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "robot_statement.hpp"
 #include "units.hpp"
@@ -243,15 +245,32 @@ std::vector<std::string> find_changes(const JsonValue& assumes, const Campaign& 
     return changes;
 }
 
+/// Throws InputError for a format that this version does not know.
+detail::Json read_estimate_document(const std::string& path) {
+    detail::Json document = detail::read_document(path, "estimate");
+    const JsonValue root(document, path);
+    if (!root.has("format")) {
+        throw input_error_at({path}, fmt::format("has no key format; must be {}, as posewise "
+                                                 "writes it",
+                                                 detail::estimate_format));
+    }
+    const JsonValue format = root["format"];
+    if (format.count(0) != detail::estimate_format) {
+        throw format.error(fmt::format("is {}; this posewise reads {}: calibrate again with it",
+                                       format.count(0), detail::estimate_format));
+    }
+    return document;
+}
+
 }  // namespace
 
 Estimate read_estimate(const std::string& path, const Campaign& campaign) {
-    const detail::Json document = detail::read_document(path, "estimate");
+    const detail::Json document = read_estimate_document(path);
     return read_estimate_of(JsonValue(document, path), campaign, true);
 }
 
 EarlierFile read_earlier(const std::string& path, const Campaign& campaign, const EarlierUse& use) {
-    const detail::Json document = detail::read_document(path, "estimate");
+    const detail::Json document = read_estimate_document(path);
     const JsonValue root(document, path);
     EarlierFile earlier;
     earlier.estimate = read_estimate_of(root, campaign, !use.has_new_targets);
@@ -262,12 +281,27 @@ EarlierFile read_earlier(const std::string& path, const Campaign& campaign, cons
     return earlier;
 }
 
-std::string measurements_checksum_of(const std::string& path) {
-    const detail::Json document = detail::read_document(path, "estimate");
-    const JsonValue root(document, path);
+bool are_of_checksum(const std::string& checksum, const Measurements& measurements,
+                     const std::vector<std::string>& excluded) {
+    if (checksum == checksum_of(measurements)) return true;
+    if (excluded.empty()) return false;
+    try {
+        return checksum == checksum_of(leave_out(measurements, excluded));
+    } catch (const InputError&) {  // they have no such configurations
+        return false;
+    }
+}
+
+bool is_made_from(const std::string& estimate_path, const Measurements& measurements) {
+    const detail::Json document = read_estimate_document(estimate_path);
+    const JsonValue root(document, estimate_path);
     constexpr const char* key = "measurements_checksum";
-    if (!root.has("made_from") || !root["made_from"].has(key)) return "";
-    return root["made_from"][key].text();
+    if (!root.has("made_from") || !root["made_from"].has(key)) return false;
+    std::vector<std::string> excluded;
+    if (root.has("excluded")) {
+        for (const JsonValue& id : root["excluded"].list()) excluded.push_back(id.text());
+    }
+    return are_of_checksum(root["made_from"][key].text(), measurements, excluded);
 }
 
 }  // namespace posewise::io

@@ -62,7 +62,7 @@ sensor:
 # base: {position_mm: [2500, 0, 0], rpy_deg: [0, 0, 180]}
 
 model_error_mm: 0.1      # what a rigid robot cannot express (gears, gravity), at your guess
-spread: {length_mm: 1, angle_mrad: 1}    # expected size of the robot's errors
+# spread: {length_mm: 1, angle_mrad: 1}  # expected size of the robot's errors, if not as others have
 )";
 
 }  // namespace

@@ -25,13 +25,20 @@ std::string describe_starts(const Calibration& calibration) {
                        calibration.starts_at_best > 1 ? "" : "; there may be a better one");
 }
 
+/// "15 of 86 parameters" where the others are held.
+std::string describe_parameter_count(const Calibration& calibration) {
+    const Index all = parameter_count(calibration.campaign);
+    const Index held = std::ssize(calibration.held);
+    const std::string count = detail::count_of(all, "parameter");
+    return held == 0 ? count : fmt::format("{} of {}, the others held", all - held, count);
+}
+
 std::string describe_measured(const Calibration& calibration) {
     const MeasuredCount& measured = calibration.measured;
-    std::string text =
-        fmt::format("{}: {}, {}, {}\n", calibration.campaign.name,
-                    detail::count_of(measured.configurations, "configuration"),
-                    detail::count_of(measured.samples, "sample"),
-                    detail::count_of(parameter_count(calibration.campaign), "parameter"));
+    std::string text = fmt::format("{}: {}, {}, {}\n", calibration.campaign.name,
+                                   detail::count_of(measured.configurations, "configuration"),
+                                   detail::count_of(measured.samples, "sample"),
+                                   describe_parameter_count(calibration));
     if (!calibration.excluded.empty()) {
         text += "excluded: " +
                 detail::escape_controls(fmt::format("{}", fmt::join(calibration.excluded, ", "))) +
@@ -210,14 +217,23 @@ std::string judge_compliances(const Calibration& calibration) {
            "motor's has the other sign), are weights, places and direction of gravity right?\n";
 }
 
-/// All parameters, or of many errors of the robot their classes beside base and sensor. The
-/// classes, too, where their sizes were learned.
+/// All parameters that were identified, or of many errors of the robot their classes beside base
+/// and sensor. The classes, too, where their sizes were learned.
 std::string format_values(const Calibration& calibration, bool has_all) {
     constexpr Index readable = 50;
     const Campaign& campaign = calibration.campaign;
     const std::string unknowns = campaign.sensor->words().unknowns;
     detail::Table values = detail::parameter_table(campaign, calibration.estimate);
     const Index count = campaign.robot.parameter_count();
+    if (!calibration.held.empty() && !has_all) {
+        std::erase_if(values.rows, [&](const std::vector<std::string>& row) {
+            return std::ranges::find(calibration.held, row.front()) != calibration.held.end();
+        });
+        return format_section(
+            fmt::format("Parameters identified ({} are held: --all-parameters, --out)",
+                        calibration.held.size()),
+            values);
+    }
     if (has_all || count <= readable) {
         return (calibration.stated_spread ? format_section("Errors of the robot by class",
                                                            detail::class_table(calibration))

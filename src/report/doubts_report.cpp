@@ -1,4 +1,8 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
 
 #include "../core/format.hpp"
 #include "../core/text.hpp"
@@ -37,23 +41,44 @@ std::string describe_orientations(const OrientationDoubt& doubt) {
                               advise(doubt.sense));
 }
 
+/// Where the campaign states the expected sizes of these: "spread.gravity_mrad (0.7 now)".
+std::string list_size_keys(const Campaign& campaign, const std::vector<SizeDoubt>& sizes) {
+    const std::vector<std::string> names = campaign.robot.parameter_names();
+    const std::vector<SharedSize> shared = shared_sizes(campaign.spread, campaign.robot);
+    std::set<std::string> keys;
+    for (const SizeDoubt& size : sizes) {
+        std::string key = "spread.parameters." + size.parameter;
+        for (const SharedSize& one : shared) {
+            const bool has_it = std::ranges::any_of(one.members, [&](Index k) {
+                return names[static_cast<std::size_t>(k)] == size.parameter;
+            });
+            if (!has_it) continue;
+            key = fmt::format("spread.{}_{} ({} now)", one.key, units_of(one.is_angle).error,
+                              detail::format_short(1e3 * one.size, 3));
+        }
+        keys.insert(key);
+    }
+    return fmt::format("{}", fmt::join(keys, " and "));
+}
+
 /// A prior holds values back.
-std::string describe_sizes(const std::vector<SizeDoubt>& sizes, bool has_prior) {
+std::string describe_sizes(const Campaign& campaign, const std::vector<SizeDoubt>& sizes) {
+    const bool has_prior = campaign.spread.is_prior;
     std::string words;
     for (const SizeDoubt& size : sizes) {
         words += (words.empty() ? "" : ", ") + size.parameter + " (";
         if (has_prior) words += detail::format_error(size.value, size.is_angle) + ", ";
         words += detail::format_short(size.times, 3) + " times)";
     }
-    if (has_prior) {
-        return "beyond three times the expected size, which holds them back: " + words +
-               "; are sign, unit and nominal value in the campaign right? If so, state a larger "
-               "size in spread";
-    }
-    return fmt::format(
-        "far above the expected size: {}; are sign, unit and nominal value in the campaign right, "
-        "and do the poses tell them apart? If so, state their size in spread",
-        words);
+    const bool are_terms = std::ranges::all_of(sizes, &SizeDoubt::is_term);
+    const std::string question = are_terms
+                                     ? "does the robot give way that much"
+                                     : "are sign, unit and nominal value in the campaign right";
+    return fmt::format("{}: {}; {}{}? If so, state a larger size in {}",
+                       has_prior ? "beyond three times the expected size, which holds them back"
+                                 : "far above the expected size",
+                       words, question, has_prior ? "" : ", and do the poses tell them apart",
+                       list_size_keys(campaign, sizes));
 }
 
 std::string describe_model_errors(const std::vector<ModelErrorDoubt>& errors) {
@@ -68,12 +93,17 @@ std::string describe_model_errors(const std::vector<ModelErrorDoubt>& errors) {
            "points are grossly wrong (try --loss cauchy)";
 }
 
-std::string describe_moved(const Moved& moved) {
-    return fmt::format(
-        "the validation was measured with another set-up, base {} mm and targets {} mm from those "
-        "calibrated with: --refit base,targets identifies them anew there",
-        detail::format_short(mm_per_m * moved.base, 3),
-        detail::format_short(mm_per_m * moved.targets, 3));
+/// "base 200 mm and targets 3 mm from where EARLIER: OPTION base,targets identifies them anew".
+std::string describe_moved(const Moved& moved, const char* earlier, const char* option) {
+    std::string distances;
+    for (const std::string& part : moved.parts) {
+        const double distance = part == "base" ? moved.base : moved.targets;
+        distances += fmt::format("{}{} {} mm", distances.empty() ? "" : " and ", part,
+                                 detail::format_short(mm_per_m * distance, 3));
+    }
+    return fmt::format("{} from where {}: {} {} identifies {} anew", distances, earlier, option,
+                       fmt::join(moved.parts, ","),
+                       moved.parts.front() == "base" && moved.parts.size() == 1 ? "it" : "them");
 }
 
 std::string describe_held_back(const HeldBackSize& size) {
@@ -93,12 +123,14 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     const Doubts& doubts = calibration.doubts;
     const std::string at = measurements.empty() ? "" : measurements + ": ";
     std::vector<std::string> sentences;
-    if (doubts.misfit) {
+    const bool has_moved = calibration.moved_since.has_value();  // much follows from it
+    if (doubts.misfit && !has_moved) {
         sentences.push_back(at + describe_misfit(calibration.campaign, *doubts.misfit));
     }
     if (!doubts.planes.empty()) sentences.push_back(at + describe_planes(doubts.planes));
-    if (!doubts.places.empty()) sentences.push_back(at + describe_places(doubts.places));
-    if (doubts.gross_error) {
+    if (!doubts.places.empty() && !has_moved)
+        sentences.push_back(at + describe_places(doubts.places));
+    if (doubts.gross_error && !has_moved) {
         sentences.push_back(fmt::format(
             "{}the nominal robot misses the {} by {} m (RMS); if some are grossly wrong, try "
             "--loss cauchy",
@@ -106,10 +138,14 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
             detail::format_short(*doubts.gross_error, 3)));
     }
     if (doubts.orientations) sentences.push_back(at + describe_orientations(*doubts.orientations));
-    if (!doubts.sizes.empty()) {
-        sentences.push_back(describe_sizes(doubts.sizes, calibration.campaign.spread.is_prior));
+    if (calibration.moved_since) {
+        sentences.push_back(at + "measured with another set-up than the earlier estimate, " +
+                            describe_moved(*calibration.moved_since, "that found it", "--moved"));
     }
-    if (!doubts.model_errors.empty()) {
+    if (!doubts.sizes.empty() && !has_moved) {
+        sentences.push_back(describe_sizes(calibration.campaign, doubts.sizes));
+    }
+    if (!doubts.model_errors.empty() && !has_moved) {
         sentences.push_back(describe_model_errors(doubts.model_errors));
     }
     if (doubts.small_residuals) {
@@ -118,7 +154,11 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
                         "stated in um? Then sigma_um or model_error_um is its key",
                         detail::format_short(*doubts.small_residuals, 2)));
     }
-    if (calibration.moved) sentences.push_back(describe_moved(*calibration.moved));
+    if (calibration.moved) {
+        sentences.push_back(
+            "the validation was measured with another set-up, " +
+            describe_moved(*calibration.moved, "the calibration has it", "--refit"));
+    }
     if (doubts.held_back) sentences.push_back(describe_held_back(*doubts.held_back));
     return sentences;
 }

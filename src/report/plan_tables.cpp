@@ -220,6 +220,15 @@ std::string describe_prediction(const Plan& plan) {
         detail::format_mm(total.upper));
 }
 
+/// A search that converged from few starts has not said much.
+std::string describe_ending(const Plan& plan) {
+    constexpr Index telling = 5;  // that starts end alike
+    if (plan.ending != Ending::Converged || plan.request.starts >= telling) {
+        return std::string(ending_name(plan.ending));
+    }
+    return "too few to say that none is better (more: --starts)";
+}
+
 }  // namespace
 
 std::string format_choice(const Plan& plan, int digits) {
@@ -228,7 +237,7 @@ std::string format_choice(const Plan& plan, int digits) {
         "efficiency: {} proven\nstarts:     {}, {}\n{}{}",
         describe_ids(plan), criterion_name(plan.request.criterion), describe_value(plan, digits),
         format_value(plan, plan.bound, digits), detail::format_fixed(plan.efficiency, 4),
-        describe_starts(plan, "here"), ending_name(plan.ending), describe_proof(plan),
+        describe_starts(plan, "here"), describe_ending(plan), describe_proof(plan),
         describe_prediction(plan));
 }
 

@@ -81,6 +81,16 @@ Index part_count(const Campaign& campaign, const CalibrationOptions& options, In
     return sets + 1 + folds;
 }
 
+/// Parameters of the first that the second does not have.
+std::vector<std::string> names_only_in(const Campaign& whole, const Campaign& part) {
+    std::vector<std::string> names = parameter_names(whole);
+    const std::vector<std::string> others = parameter_names(part);
+    std::erase_if(names, [&](const std::string& name) {
+        return std::find(others.begin(), others.end(), name) != others.end();
+    });
+    return names;
+}
+
 MeasuredCount count_measured(const Sensor& sensor, const Measurements& measurements) {
     const Index samples = measurements.observations.rows();
     return {measurements.configuration_count(), samples, samples * sensor.seen_at_once(),
@@ -109,11 +119,18 @@ void identify_by_method(const Work& work, const Parameters& registered, Calibrat
     result.starts_at_best = found.starts_at_best;
 }
 
-/// Base and targets fitted, as far as they are not known, the robot as its maker says.
+Metrics judge(const Campaign& campaign, const Parameters& parameters, const Measurements& others) {
+    return make_metrics(residuals(campaign, parameters, others),
+                        campaign.sensor->lengths_per_target());
+}
+
+/// Base and targets fitted, as far as they are not known, the robot as its maker says; as they are
+/// registered where that takes more configurations.
 Metrics fit_nominal(const Work& work, Parameters registered) {
     registered.robot.resize(0);
     const Campaign nominal = with_robot(work.campaign, without_parameters(work.whole.robot));
-    return identify(nominal, work.used, registered, work.beside()).fit;
+    const Estimate found = identify(nominal, work.used, registered, work.beside());
+    return found.undetermined.empty() ? found.fit : judge(nominal, registered, work.used);
 }
 
 /// Nothing if it was stopped on the way.
@@ -204,27 +221,22 @@ void calibrate_with(Work& work, Calibration& result) {
     result.expected = expected_error(result.campaign, result.estimate, work.used);
 }
 
-Metrics judge(const Campaign& campaign, const Parameters& parameters, const Measurements& others) {
-    return make_metrics(residuals(campaign, parameters, others),
-                        campaign.sensor->lengths_per_target());
-}
-
-/// The estimate with these parts of it identified anew, of the validation's campaign. Of another
-/// campaign it has no covariance that tells of all its parameters.
-Estimate find_refit(const Work& work, const Calibration& result, const Campaign& campaign,
-                    const std::vector<std::string>& refitted) {
-    const Measurements& others = *work.options.validation;
-    Estimate before = result.estimate;
-    VectorXd& robot = before.parameters.robot;
-    robot = errors_under_loads(result.campaign.robot, robot, campaign.robot);
-    const detail::KnownParameters known = detail::known_parameters(campaign, refitted);
-    const Campaign held = detail::with_known(campaign, known, before.parameters);
+/// The estimate with these parts of it identified anew by others' measurements.
+Estimate find_refit(const Work& work, const Campaign& campaign, const Estimate& before,
+                    const Measurements& others, const std::vector<std::string>& parts) {
+    const detail::KnownParameters known = detail::known_parameters(campaign, parts);
+    Campaign held = detail::with_known(campaign, known, before.parameters);
+    if (known.base && !held.has_nominal_targets) {  // these alone have to begin somewhere
+        held.nominal.sensor = before.parameters.sensor;
+        held.has_nominal_targets = true;
+    }
     const Registration registration = register_base_and_targets(held, others);
     Estimate found;
     found.undetermined = registration.undetermined;
     if (!registration.is_determined()) return found;
     found = identify(held, others, registration.parameters, work.beside());
     if (!found.undetermined.empty()) return found;
+    // Of another campaign it has no covariance that tells of all its parameters.
     if (work.options.validation_campaign == nullptr) {
         return detail::complete(campaign, before, known, held, others, found);
     }
@@ -234,35 +246,73 @@ Estimate find_refit(const Work& work, const Calibration& result, const Campaign&
 
 Estimate refit(const Work& work, const Calibration& result, const Campaign& campaign) {
     const std::vector<std::string>& refitted = work.options.refitted;
-    Estimate found = find_refit(work, result, campaign, refitted);
+    Estimate before = result.estimate;
+    VectorXd& robot = before.parameters.robot;
+    robot = errors_under_loads(result.campaign.robot, robot, campaign.robot);
+    Estimate found = find_refit(work, campaign, before, *work.options.validation, refitted);
     if (found.undetermined.empty()) return found;
     throw InputError(
-        fmt::format("{} of the validation: {}", fmt::join(refitted, " and "), found.undetermined));
+        fmt::format("{} cannot be refitted: {}", fmt::join(refitted, " and "), found.undetermined));
 }
 
-/// Nothing unless the validation is off by far more than is expected there, and fits with base and
-/// targets identified anew.
-std::optional<Moved> find_moved(const Work& work, const Calibration& result) {
-    constexpr double plain = 5;
-    const double off = result.validation->rms();
-    if (off <= plain * result.expected_validation->total()) return std::nullopt;
-    const Campaign& campaign = result.campaign;
-    const Estimate found = find_refit(work, result, campaign, {"base", "targets"});
-    if (!found.undetermined.empty()) return std::nullopt;
-    const Parameters& before = result.estimate.parameters;
-    const Parameters& refitted = found.parameters;
-    const Metrics left = judge(campaign, refitted, *work.options.validation);
-    if (plain * left.rms() > off) return std::nullopt;
+/// What of a set-up may have moved, the least first; nothing where all is known.
+std::vector<std::vector<std::string>> movable_parts(const Campaign& campaign) {
+    const bool has_base = base_parameter_count(campaign) > 0;
+    const bool has_targets = !campaign.sensor->unknown_names().empty();
+    std::vector<std::vector<std::string>> parts;
+    if (has_base) parts.push_back({"base"});
+    if (has_targets) parts.push_back({"targets"});
+    if (has_base && has_targets) parts.push_back({"base", "targets"});
+    return parts;
+}
+
+Moved measure_moved(const Campaign& campaign, const Parameters& before, const Parameters& after,
+                    const std::vector<std::string>& parts) {
     const Targets& targets = campaign.sensor->targets();
     Moved moved;
+    moved.parts = parts;
     moved.base =
-        (refitted.world_from_base.translation() - before.world_from_base.translation()).norm();
+        (after.world_from_base.translation() - before.world_from_base.translation()).norm();
     for (Index k = 0; k < targets.count(); ++k) {
         const double distance =
-            (targets.position(k, refitted.sensor) - targets.position(k, before.sensor)).norm();
+            (targets.position(k, after.sensor) - targets.position(k, before.sensor)).norm();
         moved.targets = std::max(moved.targets, distance);
     }
     return moved;
+}
+
+/// Nothing unless others are off by far more than the estimate expects there, and fit with base,
+/// targets or both identified anew: as few as it takes to be as expected, else both.
+std::optional<Moved> find_moved(const Work& work, const Campaign& campaign, const Estimate& before,
+                                const Measurements& others) {
+    constexpr double plain = 5;
+    const double expected = expected_error(campaign, before, others).total();
+    const double off = judge(campaign, before.parameters, others).rms();
+    if (off <= plain * expected) return std::nullopt;
+    for (const std::vector<std::string>& parts : movable_parts(campaign)) {
+        const Estimate found = find_refit(work, campaign, before, others, parts);
+        if (!found.undetermined.empty()) continue;
+        const double left = judge(campaign, found.parameters, others).rms();
+        if (plain * left > off) continue;
+        if (left > plain * expected && parts.size() == 1) continue;
+        return measure_moved(campaign, before.parameters, found.parameters, parts);
+    }
+    return std::nullopt;
+}
+
+/// Only where it matters: of what an earlier estimate tells as prior, or of what is held.
+void find_moved_since(const Work& work, Calibration& result) {
+    const auto& earlier = work.options.earlier;
+    if (!earlier || earlier->use.has_new_base || earlier->use.has_new_targets) return;
+    const bool is_prior = earlier->use.is_prior;
+    if (!is_prior && !work.known.base && !work.known.targets) return;
+    const Campaign then = with_model_error(work.whole, earlier->estimate);
+    auto moved = find_moved(work, then, earlier->estimate, work.used);
+    if (!moved) return;
+    std::erase_if(moved->parts, [&](const std::string& part) {
+        return !is_prior && !(part == "base" ? work.known.base : work.known.targets);
+    });
+    if (!moved->parts.empty()) result.moved_since = moved;
 }
 
 /// On the measurements of the validation.
@@ -279,7 +329,9 @@ void validate(const Work& work, Calibration& result) {
     // What else was identified there the estimate's covariance does not tell.
     if (options.validation_campaign != nullptr) return;
     result.expected_validation = expected_error(campaign, estimate, *options.validation);
-    if (options.refitted.empty()) result.moved = find_moved(work, result);
+    if (options.refitted.empty()) {
+        result.moved = find_moved(work, campaign, estimate, *options.validation);
+    }
 }
 
 }  // namespace
@@ -327,15 +379,21 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
     result.method = options.method;
     result.measured = count_measured(*campaign.sensor, used);
     result.excluded = options.excluded;
+    result.held = names_only_in(whole, work.campaign);
     calibrate_with(work, result);
     if (!result.is_identified()) return result;
+    find_moved_since(work, result);
     const auto left_out = all_but(measurements.configuration_count(), options.used);
     if (!options.used.empty() && !left_out.empty()) {
         const Measurements others = take(measurements, left_out);
         result.left_out = judge(campaign, result.estimate.parameters, others);
         result.expected_left_out = expected_error(result.campaign, result.estimate, others);
     }
-    validate(work, result);
+    try {
+        validate(work, result);
+    } catch (const InputError& error) {
+        throw ValidationError(error.what());
+    }
     if (options.predicted.rows() > 0) {
         result.predicted = predict_errors(result.campaign, result.estimate, options.predicted);
     }

@@ -137,8 +137,8 @@ std::vector<SizeDoubt> find_size_doubts(const Campaign& campaign, const Estimate
     for (Index k = 0; k < times.size(); ++k) {
         if (times[k] <= (campaign.spread.is_prior ? doubtful_under_prior : doubtful_size)) continue;
         doubts.push_back({estimate.names[static_cast<std::size_t>(robot_begin + k)], times[k],
-                          errors[k],
-                          campaign.robot.parameter_element(k).motion == Motion::Rotation});
+                          errors[k], campaign.robot.parameter_element(k).motion == Motion::Rotation,
+                          campaign.robot.parameter_term(k) != nullptr});
     }
     return doubts;
 }

@@ -176,13 +176,104 @@ TEST_F(From, AsPriorCountsWhatWasKnown) {
 
     const Outcome twice = run("indices c.yaml -m s.csv --from e.json --as-prior");
     EXPECT_EQ(twice.code, 0);
-    EXPECT_EQ(twice.err,
-              "posewise: warning: e.json: was made from these very measurements; as a prior beside "
-              "them it counts them twice\n");
+    EXPECT_EQ(
+        twice.err,
+        "posewise: warning: e.json: was made from the measurements in s.csv; as a prior beside "
+        "them it counts them twice\n");
     run_well("simulate c.yaml --truth 7 --seed 4 --poses 8 -o t.csv");
     const std::string known = run_well("indices c.yaml -m t.csv --from e.json --as-prior");
     EXPECT_GT(number_behind(known, "o3 "),
               number_behind(run_well("indices c.yaml -m t.csv"), "o3 "));
+}
+
+TEST_F(From, SaysWhatIsCountedTwiceOrNoValidation) {
+    const auto warning_of = [&](const std::string& arguments) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return outcome.err;
+    };
+    const std::string twice =
+        "posewise: warning: e.json: was made from the measurements in s.csv; as a prior beside "
+        "them it counts them twice\n";
+    const std::string as_prior = " --from e.json --as-prior ";
+    const std::string calibrate = "calibrate c.yaml --folds 0 -m ";
+    EXPECT_EQ(warning_of(calibrate + "s.csv --exclude 3,7:2" + as_prior), twice);
+    EXPECT_EQ(warning_of("select c.yaml --random 50 -k 9 --starts 1 -o p.json --augment s.csv" +
+                         as_prior),
+              twice);
+    EXPECT_EQ(warning_of("plan c.yaml -k 9 --pool 50 --starts 1 --workspace-poses 20 -o p.json "
+                         "--augment s.csv" +
+                         as_prior),
+              twice);
+    run_well(calibrate + "s.csv --exclude 3 -o less.json");
+    EXPECT_NE(warning_of(calibrate + "s.csv --from less.json --as-prior"), "");
+    run_well("simulate c.yaml --truth 7 --seed 4 --poses 8 -o t.csv");
+    EXPECT_EQ(warning_of(calibrate + "t.csv" + as_prior), "");
+
+    EXPECT_EQ(
+        warning_of(calibrate + "s.csv --validate s.csv"),
+        "posewise: warning: s.csv: it is calibrated from these very measurements; to validate "
+        "takes others\n");
+    EXPECT_NE(warning_of(calibrate + "s.csv --exclude 3 --validate s.csv"), "");
+    EXPECT_EQ(warning_of(calibrate + "t.csv --validate s.csv" + as_prior),
+              "posewise: warning: s.csv: e.json was made from these very measurements; to validate "
+              "takes others\n");
+    EXPECT_EQ(warning_of(calibrate + "t.csv --validate s.csv --from e.json"), "");
+    EXPECT_EQ(warning_of(calibrate + "s.csv --validate t.csv"), "");
+}
+
+TEST_F(From, SaysWhatWasMovedSince) {
+    std::string moved = campaign_;
+    moved.replace(moved.find("-557.6"), 6, "-457.6");
+    write_text("moved.yaml", moved);
+    run_well("simulate moved.yaml --truth 7 --seed 4 --poses 8 -o t.csv");
+    const std::string calibrate = "calibrate c.yaml -m t.csv --folds 0 --from e.json --as-prior";
+    const Outcome outcome = run(calibrate + " --force --json");
+    EXPECT_EQ(outcome.err.rfind("posewise: warning: t.csv: measured with another set-up than the "
+                                "earlier estimate, base 100 mm from where that found it: --moved "
+                                "base identifies it anew\n",
+                                0),
+              0U)
+        << outcome.err;
+    const Json since = Json::parse(outcome.out)["accuracy"]["moved_since_earlier"];
+    EXPECT_EQ(since["parts"], Json({"base"}));
+    EXPECT_NEAR(since["base_mm"].get<double>(), 100, 1);
+    EXPECT_EQ(run(calibrate + " --moved base").code, 0);
+}
+
+TEST_F(From, CalibrateSaysWhatItGoesOnFrom) {
+    run_well("simulate c.yaml --truth 7 --seed 4 --poses 8 -o t.csv");
+    const std::string calibrate = "calibrate c.yaml -m t.csv --folds 0 --from e.json";
+    EXPECT_NE(run_well(calibrate).find("from:       e.json: where it began\n"), std::string::npos);
+    EXPECT_NE(run_well(calibrate + " --as-prior").find("; it is the prior, but for drift\n"),
+              std::string::npos);
+    const std::string only = run_well(calibrate + " --only base,targets -o o.json");
+    EXPECT_NE(only.find("; to be identified: base, targets\n"), std::string::npos) << only;
+    EXPECT_NE(only.find(", 15 of 33 parameters, the others held\n"), std::string::npos) << only;
+    EXPECT_NE(only.find("Parameters identified (18 are held: "), std::string::npos) << only;
+    const std::string table = only.substr(only.find("Parameters identified"),
+                                          only.find("Strongest") - only.find("Parameters id"));
+    EXPECT_NE(table.find("\nbase.x "), std::string::npos) << table;
+    EXPECT_EQ(table.find("\ndq2 "), std::string::npos) << table;
+    EXPECT_EQ(Json::parse(text_of("o.json"))["held"].size(), 18U);
+    EXPECT_NE(run_well(calibrate + " --only base,targets --all-parameters").find("\ndq2 "),
+              std::string::npos);
+}
+
+TEST_F(From, AsPriorTakesOnePose) {
+    run_well("simulate c.yaml --truth 7 --seed 4 --poses 1 -o t.csv");
+    run_well("calibrate c.yaml -m t.csv --from e.json --as-prior");
+    run_well("indices c.yaml -m t.csv --from e.json --as-prior");
+    run_well("select c.yaml --random 50 -k 3 --augment t.csv --from e.json --as-prior -o p.json");
+}
+
+TEST_F(From, WhatIsWrongNamesTheFileThatItIsIn) {
+    run_well("simulate c.yaml --truth 7 --seed 4 --poses 1 -o one.csv");
+    expect_input_error("calibrate c.yaml -m s.csv --validate one.csv --refit base,targets",
+                       "posewise: one.csv: base and targets cannot be refitted: this "
+                       "configuration with 3 points");
+    expect_input_error("calibrate c.yaml -m s.csv --from e.json --only dq9",
+                       "posewise: --only: 'dq9' is no error of this robot");
 }
 
 TEST_F(From, TakesTheSizesLearned) {

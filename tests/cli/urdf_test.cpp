@@ -247,7 +247,25 @@ TEST_F(Urdf, IsNotOverwrittenNorMadeFromAnotherRobot) {
     expect_input_error("export c.yaml none.json --urdf o.urdf", "none.json: cannot be read");
     expect_input_error("export " + fanuc_design + " e.json --urdf o.urdf",
                        "has a robot that does not come from a URDF");
+    for (const char* const command :
+         {"calibrate c.yaml -m m.csv --out",
+          "calibrate c.yaml -m m.csv --predict p.csv --predict-out", "plan c.yaml --poses 20 --out",
+          "plan c.yaml --poses 20 --csv", "select c.yaml -m m.csv -k 3 --out",
+          "study c.yaml -m m.csv --csv", "simulate c.yaml --poses 5 --out",
+          "correct c.yaml e.json --poses p.csv --out", "export c.yaml e.json --dh",
+          "export c.yaml e.json --ur-kinematics"}) {
+        expect_input_error(std::string(command) + " ./arm.urdf", "is read and shall be written");
+    }
+    fill_in("c.yaml");
+    write_text("other.urdf", urdf);
+    rewrite("c.yaml", "other.yaml", {{"arm.urdf", "other.urdf"}});
+    run_well("simulate c.yaml --poses 20 -o m.csv");
+    expect_input_error(
+        "calibrate c.yaml -m m.csv --validate m.csv --refit base,targets --validate-campaign "
+        "other.yaml --out other.urdf",
+        "other.urdf: is read and shall be written");
     EXPECT_EQ(text_of("arm.urdf"), urdf);
+    EXPECT_EQ(text_of("other.urdf"), urdf);
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
     const Example example(16);
     Calibration calibration = calibrate(example.campaign, example.measurements, {.folds = 0});
     calibration.doubts.gross_error = 0.25;
-    calibration.doubts.sizes = {{"dq2", 40}, {"Tx1", 25.5}};
+    calibration.doubts.sizes = {{"dq2", 40, 0, true, false}, {"Tx1", 25.5, 0, false, false}};
     calibration.doubts.orientations = OrientationDoubt{0.5, OrientationSense::RealPartLast, 0.001};
     EXPECT_EQ(
         describe_doubts(calibration, "m.csv"),
@@ -97,9 +97,10 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
             "qz, qw",
             "far above the expected size: dq2 (40 times), Tx1 (25.5 times); are sign, unit and "
             "nominal value in the campaign right, and do the poses tell them apart? If so, state "
-            "their size in spread"}));
+            "a larger size in spread.angle_mrad (1 now) and spread.length_mm (1 now)"}));
     calibration.doubts = {};
-    calibration.doubts.sizes = {{"dq2", 3.5, 0.07, true}};
+    calibration.doubts.sizes = {{"dq2", 3.5, 0.07, true, true}};
+    calibration.campaign.spread.by_name["dq2"] = 0.02;
     calibration.campaign.spread.is_prior = true;
     calibration.doubts.model_errors = {{9, 9e-4, false}};
     calibration.doubts.held_back = HeldBackSize{{"offset", 2e-4, true, {0}}, 0.012};
@@ -108,8 +109,10 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
     EXPECT_EQ(sentences[2],
               "the size learned for spread.offset_mrad, 0.2 mrad, holds its errors back, the one "
               "stated is too small: 12 mrad would fit");
-    EXPECT_TRUE(sentences[0].starts_with(
-        "beyond three times the expected size, which holds them back: dq2 (70 mrad, 3.5 times);"));
+    EXPECT_EQ(sentences[0],
+              "beyond three times the expected size, which holds them back: dq2 (70 mrad, 3.5 "
+              "times); does the robot give way that much? If so, state a larger size in "
+              "spread.parameters.dq2");
     EXPECT_TRUE(sentences[1].starts_with(
         "the model error found is 0.9 mm, 9 times what is expected: error terms are missing"));
 }

@@ -162,6 +162,66 @@ TEST(EarlierEstimate, AsPriorMakesFourPosesAlmostAsGoodAsSixteen) {
     RecordProperty("coverage", std::to_string(share));
 }
 
+TEST(EarlierEstimate, AsPriorOnePoseIsEnough) {
+    const Campaign campaign = held_campaign();
+    Parameters truth = draw_truth(campaign, 5);
+    CalibrationOptions options = without_folds();
+    const Calibration first = calibrate(campaign, measure(campaign, truth, 24, 1), options);
+    options.earlier = Earlier{first.estimate, {.is_prior = true}};
+    const Index dq3 = base_parameter_count(campaign) + 7;
+    for (const Index count : {1, 2}) {
+        const Calibration found = calibrate(campaign, measure(campaign, truth, count, 2), options);
+        ASSERT_EQ(found.estimate.ending, Ending::Converged) << found.estimate.undetermined;
+        EXPECT_TRUE(found.faults.empty());
+        EXPECT_FALSE(found.moved_since);
+        EXPECT_LT(standard_deviations(found.estimate)[dq3],
+                  std::hypot(standard_deviations(first.estimate)[dq3], 1e-4));
+        EXPECT_GT(found.nominal.distance_rms, 1e-4) << "the robot as its maker says";
+        options.earlier->use.has_new_targets = true;
+        EXPECT_TRUE(calibrate(campaign, measure(campaign, truth, 2, 2), options).is_identified() ==
+                    campaign.has_nominal_targets);
+        options.earlier->use.has_new_targets = false;
+    }
+    // Of base and targets nothing was known then.
+    options.earlier->use = {};
+    EXPECT_FALSE(calibrate(campaign, measure(campaign, truth, 2, 2), options).is_identified());
+}
+
+TEST(EarlierEstimate, SaysWhatWasMovedSince) {
+    const Campaign campaign = held_campaign();
+    const Parameters truth = draw_truth(campaign, 6);
+    CalibrationOptions options = without_folds();
+    options.earlier = Earlier{
+        calibrate(campaign, measure(campaign, truth, 24, 1), options).estimate, {.is_prior = true}};
+    const auto moved_since = [&](const Parameters& now) {
+        return calibrate(campaign, measure(campaign, now, 8, 2), options).moved_since;
+    };
+    EXPECT_FALSE(moved_since(truth));
+    Parameters now = truth;
+    now.world_from_base.translation().x() += 0.5;
+    ASSERT_TRUE(moved_since(now));
+    EXPECT_EQ(moved_since(now)->parts, std::vector<std::string>{"base"});
+    EXPECT_NEAR(moved_since(now)->base, 0.5, 1e-3);
+    now.sensor[4] += 0.02;
+    ASSERT_TRUE(moved_since(now));
+    EXPECT_EQ(moved_since(now)->parts, (std::vector<std::string>{"base", "targets"}));
+    now.world_from_base = truth.world_from_base;
+    ASSERT_TRUE(moved_since(now));
+    EXPECT_EQ(moved_since(now)->parts, std::vector<std::string>{"targets"});
+    EXPECT_NEAR(moved_since(now)->targets, 0.02, 1e-3);
+    // What is identified anew may have moved, what is held may not.
+    options.earlier->use = {.only = {"targets"}};
+    EXPECT_FALSE(moved_since(now));
+    options.earlier->use.only = {"base"};
+    ASSERT_TRUE(moved_since(now));
+    options.earlier->use = {.is_prior = true, .has_new_targets = true};
+    EXPECT_FALSE(moved_since(now));
+    now.robot[7] += 0.02;  // that is no move
+    options.earlier->use = {.is_prior = true};
+    now.sensor = truth.sensor;
+    EXPECT_FALSE(moved_since(now));
+}
+
 /// Of measurements taken after base and targets were moved, by 1 m and 5 mm.
 struct Moved {
     Estimate first;

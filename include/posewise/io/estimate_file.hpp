@@ -48,7 +48,12 @@ struct EarlierFile : Earlier {
 };
 EarlierFile read_earlier(const std::string& path, const Campaign& campaign, const EarlierUse& use);
 
-/// Provenance::measurements_checksum of an estimate; empty if it does not say.
-std::string measurements_checksum_of(const std::string& path);
+/// Whether measurements are those of a checksum, all of them or less what is excluded of them.
+bool are_of_checksum(const std::string& checksum, const Measurements& measurements,
+                     const std::vector<std::string>& excluded);
+
+/// Whether an estimate says that it was made from these measurements, or from them less what it
+/// says was excluded.
+bool is_made_from(const std::string& estimate_path, const Measurements& measurements);
 
 }  // namespace posewise::io

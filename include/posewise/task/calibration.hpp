@@ -6,6 +6,7 @@
 
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/model_selection.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/core/progress.hpp"
 #include "posewise/task/doubts.hpp"
 #include "posewise/task/earlier.hpp"
@@ -80,8 +81,9 @@ struct WithoutOutliers {
 
 /// A set-up that is another one than that calibrated with.
 struct Moved {
-    double base = 0;     ///< m
-    double targets = 0;  ///< the farthest of them in the flange frame, m
+    std::vector<std::string> parts;  ///< that it takes to say so: "base", "targets" or both
+    double base = 0;                 ///< m
+    double targets = 0;              ///< the farthest of them in the flange frame, m
 };
 
 /// A calibration: parameters, how sure they are, how accurate the robot is with them.
@@ -93,6 +95,7 @@ struct Calibration {
     CalibrationMethod method = CalibrationMethod::Joint;
     MeasuredCount measured;             ///< that was calibrated with
     std::vector<std::string> excluded;  ///< CalibrationOptions::excluded
+    std::vector<std::string> held;      ///< parameters that are as the earlier estimate has them
     /// Its ending says whether there is a calibration: where it is NotIdentifiable, nothing below
     /// but `selection` is filled in, and `undetermined` says why.
     Estimate estimate;
@@ -109,8 +112,10 @@ struct Calibration {
     std::vector<ErrorPrediction> predicted;
     std::optional<Metrics> left_out;    ///< on the configurations not used
     std::optional<Metrics> validation;  ///< on CalibrationOptions::validation
-    /// By how much base and targets have moved up to the validation, m, where that is plain.
+    /// By how much base and targets have moved up to the validation, where that is plain.
     std::optional<Moved> moved;
+    /// The same since the earlier estimate, if that tells of both.
+    std::optional<Moved> moved_since;
     std::optional<WithoutOutliers> without_outliers;  ///< if there are some
     std::optional<ModelSelection> selection;          ///< if asked for
     Doubts doubts;
@@ -121,10 +126,16 @@ struct Calibration {
     bool is_identified() const { return estimate.ending != Ending::NotIdentifiable; }
 };
 
+/// What is wrong with CalibrationOptions::validation, not with what is calibrated with.
+struct ValidationError : InputError {
+    using InputError::InputError;
+};
+
 /// Finds base and targets from nothing, once, then identifies all parameters together and judges
 /// them: on the samples, on configurations held out, on those not used, on the validation.
-/// Throws InputError for measurements that do not fit the campaign and for options that contradict
-/// each other; measurements that do not identify the model are a result.
+/// Throws InputError for measurements that do not fit the campaign (ValidationError for those of
+/// the validation) and for options that contradict each other; measurements that do not identify
+/// the model are a result.
 Calibration calibrate(const Campaign& campaign, const Measurements& measurements,
                       const CalibrationOptions& options = {});
 

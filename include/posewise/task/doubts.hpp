@@ -106,6 +106,7 @@ struct SizeDoubt {
     double times = 0;  ///< the expected size
     double value = 0;  ///< m or rad
     bool is_angle = false;
+    bool is_term = false;  ///< depends on the configuration: no nominal value has it
 };
 
 /// A model error found that is larger than two standard deviations of what is expected.
