@@ -191,6 +191,7 @@ TEST_F(Urdf, BecomesACampaignThatLoads) {
     const std::string campaign = text_of("cell/campaign.yaml");
     EXPECT_NE(campaign.find("urdf: \"../arm.urdf\""), std::string::npos) << campaign;
     EXPECT_NE(campaign.find("FILL IN"), std::string::npos);
+    EXPECT_EQ(campaign.find("\nspread:"), std::string::npos) << "the model's own sizes act";
     const std::string text = run_well("inspect cell/campaign.yaml");
     EXPECT_NE(text.find("33 of its 45 parameters"), std::string::npos) << text;
     expect_input_error("inspect arm.urdf --tip tool0 --write-campaign cell/campaign.yaml",
