@@ -57,8 +57,7 @@ void check_options(const CalibrationOptions& options) {
         throw InputError("what is refitted for the validation must be base, targets or both");
     }
     const Campaign* const other = options.validation_campaign;
-    const bool has_base = other != nullptr && base_parameter_count(*other) > 0;
-    if (other != nullptr && ((has_base && base == 0) || targets == 0)) {
+    if (other != nullptr && (targets == 0 || (base == 0 && base_parameter_count(*other) > 0))) {
         throw InputError("for a validation of another campaign both base and targets are refitted");
     }
     if (!is_joint && options.joint.loss.kind != LossKind::Squares) {
@@ -85,9 +84,7 @@ Index part_count(const Campaign& campaign, const CalibrationOptions& options, In
 std::vector<std::string> names_only_in(const Campaign& whole, const Campaign& part) {
     std::vector<std::string> names = parameter_names(whole);
     const std::vector<std::string> others = parameter_names(part);
-    std::erase_if(names, [&](const std::string& name) {
-        return std::find(others.begin(), others.end(), name) != others.end();
-    });
+    std::erase_if(names, [&](const auto& name) { return std::ranges::count(others, name) > 0; });
     return names;
 }
 
