@@ -95,6 +95,7 @@ TEST_F(PlanCommand, ChecksThePlanItRepairs) {
     auto& pose = *std::find_if(plan.at("poses").begin(), plan.at("poses").end(),
                                [](const auto& other) { return other.at("id") == "p4"; });
     const auto joints = pose.at("joints");
+    pose.erase("readable");
     pose.at("joints").at("q1_rad") = 1e6;
     expect_refused(plan,
                    "e.json: pose 'p4' is beyond the joint limits (less their margin): q1 is ");
