@@ -185,7 +185,7 @@ TEST_F(PlanCommand, RefusesFewerPosesThanIdentify) {
 
 TEST_F(PlanCommand, RefusesAPlanThatSeesADirectionByRoundingOnly) {
     expect_input_error("plan " + cell_design + " -k 5 --pool 1500 --starts 1 -o p.json",
-                       "leaves the parameter direction 0.");
+                       "no choice was found that identifies all 33 parameters");
     expect_input_error("plan " + seed_design + " -k 12" + quick,
                        "unseen (0.61 Tx2 - 0.56 dq2 + 0.56 dq3)");
 }

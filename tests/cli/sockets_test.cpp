@@ -100,7 +100,8 @@ TEST_F(Sockets, ThatCannotBeAreNamed) {
     expect_refused("sensor:", "base: {position_mm: [0, 0, 0], rpy_deg: [0, 0, 0]}\nsensor:",
                    "calibrate bad.yaml -m m.csv", "must be left out");
     expect_refused("- {name: s3", "- {name: s9, position_mm: [0, 0, 0]}\n    - {name: s3",
-                   "calibrate bad.yaml -m m.csv", "'s9' is touched in none of these 40 configurations");
+                   "calibrate bad.yaml -m m.csv",
+                   "'s9' is touched in none of these 40 configurations");
     expect_refused("name: s3", "name: slot3", "calibrate bad.yaml -m m.csv",
                    "socket is 's3'; did you mean 's0'?");
     expect_refused("[350, 300, 500]", "[3500, 300, 500]", "simulate bad.yaml --poses 5 -o no.csv",

@@ -99,10 +99,14 @@ TEST_F(Verify, NoticesEditedPoses) {
                  "poses");
     expect_found(
         [](Json& plan) {
-            plan["poses"][0]["visible_targets"] = {1, 7};
+            plan["poses"][0]["visible_targets"] = {1, 2};
         },
         "are not the candidate's", "poses");
     Json plan = Json::parse(text_of("p.json"));
+    plan["poses"][0]["visible_targets"] = {1, 7};
+    write_text("e.json", plan.dump());
+    expect_input_error("verify e.json", "poses[0].visible_targets[1]: is 7, the campaign has 3");
+    plan = Json::parse(text_of("p.json"));
     plan["poses"][2]["id"] = "ghost";
     write_text("e.json", plan.dump());
     expect_input_error("verify e.json", "poses[2].id: 'ghost' is not among the candidates");

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "posewise/measurement/sensors.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise {
@@ -77,6 +78,8 @@ TEST(FormatPlanning, SaysTheSameBesideTheUnit) {
     planning.plan.value = 4e6;
     planning.plan.value_rms = 5e-4;
     planning.plan.predicted.emplace();
+    planning.campaign.sensor =
+        std::make_shared<PointSensor>(Targets({Vector3d(0, 0, 1)}), IsotropicNoise{1e-4});
     planning.campaign.has_nominal_base = planning.campaign.has_nominal_targets = true;
     EXPECT_NE(format_planning(planning).find(
                   "value:       4000000 /m^2 (predicted 0.5000 mm RMS by the parameters)\n"),
