@@ -187,6 +187,7 @@ class MutatedPlans : public ::testing::Test {
                     "/candidates/count",
                     "/poses/#/id",
                     "/poses/#/kept",
+                    "/poses/#/readable",  // may be left out; beside joints it must agree
                     "/poses/#/way_is_blocked",
                     "/poses/#/via/q1_rad",
                     "/poses/#/via/q2_rad",
