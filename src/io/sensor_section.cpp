@@ -261,8 +261,13 @@ struct SocketsSection {
 };
 
 SocketsSection read_socket_list(const YamlValue& list) {
+    constexpr std::size_t most = 100;
     SocketsSection section;
-    for (const YamlValue& item : list.list()) {
+    const std::vector<YamlValue> items = list.list();
+    if (items.size() > most) {
+        throw list.error(fmt::format("lists {} sockets; must be at most {}", items.size(), most));
+    }
+    for (const YamlValue& item : items) {
         bool has_position = false;
         section.sockets.push_back(read_socket(item, section.sockets, has_position));
         section.has_position.push_back(has_position);

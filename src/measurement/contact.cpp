@@ -94,12 +94,14 @@ ShownPoses draw_poses(const Campaign& campaign, const Parameters& parameters, In
                       const std::function<RowMatrixXd(Index count)>& draw) {
     const std::vector<std::string> contacts = campaign.sensor->contact_names();
     if (contacts.empty()) return {draw(count), all_seen(count, campaign.sensor->target_count())};
+    const bool is_stated = campaign.has_nominal_targets;  // else some place may be out of reach
     const Index least = std::max(2 * count, 16 * std::ssize(contacts));
     ShownPoses poses;
     for (const Index share : {1, 4, 32}) {
         poses = bring_to_contacts(campaign, parameters, draw(share * least), 0,
                                   limits_of(campaign.robot));
-        if (poses.configurations.rows() < count || !poses.is_seen.colwise().any().all()) continue;
+        const bool reaches_all = poses.is_seen.colwise().any().all();
+        if (poses.configurations.rows() < count || (is_stated && !reaches_all)) continue;
         poses.configurations.conservativeResize(count, Eigen::NoChange);
         poses.is_seen.conservativeResize(count, Eigen::NoChange);
         return poses;

@@ -17,20 +17,24 @@ VectorXd draw_normal(RandomStream& stream, Index count) {
     return z;
 }
 
-/// Joints as they are where the robot touches what it shows, give or take the noise.
+/// Joints as they are where the robot touches what it shows, give or take the noise: q was about
+/// there.
 VectorXd touching_joints(const Campaign& campaign, const Parameters& truth, const VectorXd& q,
                          const SeenTargets& is_seen, const VectorXd& noise) {
     const Index width = campaign.sensor->rows_per_target();
     const Index contact = targets_seen(is_seen).front();
+    constexpr double near = 0.2;  // rad or m
     for (const auto& range :
          {detail::limits_of(campaign.robot), detail::unlimited(campaign.robot)}) {
         auto joints = detail::bring_to_contact(campaign, truth, q, contact, range,
                                                noise.segment(width * contact, width));
-        if (joints) return std::move(*joints);
+        if (joints && (*joints - q).cwiseAbs().maxCoeff() <= near) return std::move(*joints);
     }
-    throw InputError("a simulated robot cannot reach " +
-                     campaign.sensor->contact_names()[static_cast<std::size_t>(contact)] +
-                     " near a configuration that shows it; its expected errors must be smaller");
+    throw InputError(
+        "the simulated robot does not reach " +
+        campaign.sensor->contact_names()[static_cast<std::size_t>(contact)] +
+        " near a configuration that shows it; the configurations must touch, or the expected "
+        "errors be smaller");
 }
 
 void check_contacts(const Campaign& campaign, const Seen& is_seen, Index repeats) {
@@ -132,8 +136,11 @@ Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
     }
     if (!campaign.has_nominal_base || !campaign.has_nominal_targets) {
         throw InputError(
-            "to simulate, the campaign must state where base and targets are (keys 'base' and "
-            "'sensor.targets.position_mm' or 'sensor.tool')");
+            campaign.sensor->contact_names().empty()
+                ? "to simulate, the campaign must state where base and targets are (keys 'base' "
+                  "and 'sensor.targets.position_mm' or 'sensor.tool')"
+                : "to simulate, the campaign must state where the ball and all sockets are "
+                  "(position_mm of 'sensor.targets' and of each of 'sensor.sockets')");
     }
     if (is_seen.rows() != configurations.rows() ||
         is_seen.cols() != campaign.sensor->target_count()) {

@@ -41,6 +41,14 @@ bool can_assume_places(const Campaign& campaign) {
            (campaign.sensor->lengths_per_target() == 3 && has_constant_noise(campaign));
 }
 
+InputError unstated_contacts(const Campaign& campaign) {
+    return InputError(campaign.name +
+                      ": the campaign file does not say where the ball and all that it is to touch "
+                      "are; must state it, if only roughly (position_mm of sensor.targets and of "
+                      "each of sensor.sockets, base where those are known), or an estimate "
+                      "(--from) or measured poses must tell it");
+}
+
 Parameters register_measured(const Campaign& campaign, const Measurements& measured,
                              const std::string& name) {
     return compute_from(name, [&] {

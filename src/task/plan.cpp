@@ -48,8 +48,8 @@ std::string describe_columns(const Plan& plan, const std::vector<std::string>& w
 }
 
 /// What a plan of another robot or campaign has not, which may well have the same ids.
-void check_is_measured_pose(const PlannedPose& pose, const VectorXd& measured) {
-    constexpr double tolerance = 2e-3;  // rad or m: what was read back may differ from the plan
+/// The tolerance is in rad or m.
+void check_is_measured_pose(const PlannedPose& pose, const VectorXd& measured, double tolerance) {
     if (pose.configuration.size() == measured.size() &&
         (pose.configuration - measured).cwiseAbs().maxCoeff() <= tolerance) {
         return;
@@ -149,6 +149,8 @@ std::string describe_mismatch(const Plan& plan, const Campaign& campaign) {
 std::vector<Index> find_planned(const Plan& plan, const Campaign& campaign,
                                 const Measurements& measured,
                                 const std::vector<std::string>& excluded) {
+    // What was read back may differ from the plan; what was guided to a contact by hand does.
+    const double tolerance = campaign.sensor->contact_names().empty() ? 2e-3 : 0.2;
     check_is_whole(plan, campaign);
     std::vector<Index> planned;
     for (const PlannedPose& pose : plan.poses) {
@@ -160,7 +162,8 @@ std::vector<Index> find_planned(const Plan& plan, const Campaign& campaign,
         }
         planned.push_back(found - measured.ids.begin());
         if (plan.kind == CandidateKind::Blocks) continue;
-        check_is_measured_pose(pose, measured.configurations.row(planned.back()).transpose());
+        check_is_measured_pose(pose, measured.configurations.row(planned.back()).transpose(),
+                               tolerance);
     }
     if (planned.empty()) throw InputError("all poses of the plan are excluded");
     return planned;

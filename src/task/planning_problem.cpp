@@ -31,14 +31,7 @@ Campaign with_base(Campaign campaign, const PlanningOptions& options) {
         return campaign;
     }
     if (!measured && can_assume_places(campaign)) return campaign;
-    if (!measured && campaign.has_nominal_base) {
-        throw InputError(
-            campaign.name +
-            ": the campaign file does not state where all that is to be touched is, nor the "
-            "ball; must state them to plan (position_mm of sensor.targets and of each of "
-            "sensor.sockets, if only roughly), or an estimate (--from) or measured poses "
-            "(--augment) must tell them");
-    }
+    if (!measured && !campaign.sensor->contact_names().empty()) throw unstated_contacts(campaign);
     if (!measured) {
         throw InputError(campaign.name +
                          ": the campaign file states no base, on which what this sensor tells "

@@ -79,6 +79,14 @@ TEST_F(Sockets, ArePlannedFor) {
     EXPECT_EQ(run("verify p.json").code, 0);
     run_well("simulate c.yaml --configurations p.csv -o m.csv");
     run_well("calibrate c.yaml -m m.csv -o e.json");
+    run_well("calibrate c.yaml -m m.csv --plan p.json");
+    std::string hand = text_of("p.json");
+    const auto begin = hand.find("\"visible_targets\": [") + 20;
+    write_text("none.json", hand.erase(begin, hand.find(']', begin) - begin));
+    expect_input_error("verify none.json", "visible_targets: is empty");
+    write_text("off.csv",
+               "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,socket\n0,0,80,0,0,0,0,s0\n");
+    expect_input_error("simulate c.yaml --configurations off.csv -o no.csv", "does not reach s0");
     run_well(
         "plan c.yaml -k 10 --pool 300 --workspace-poses 40 --starts 1 --from e.json -o next.json");
 }
