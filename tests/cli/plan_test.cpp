@@ -107,7 +107,7 @@ TEST_F(PlanCommand, ChecksThePlanItRepairs) {
     run_well("plan " + cell_design + " --plan e.json --drop p4 --pool 1500 --starts 1 -o r.json");
     pose.at("joints") = joints;
     pose.at("visible_targets") = nlohmann::json::array();
-    expect_refused(plan, "e.json: pose 'p4' shows no target");
+    expect_refused(plan, "e.json: poses[3].visible_targets: is empty");
     pose.at("visible_targets") = {1};
     pose.at("id") = "p5";
     expect_refused(plan, "'p5' occurs before in poses[");
