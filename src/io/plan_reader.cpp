@@ -295,9 +295,10 @@ PlannedPose read_pose(const JsonValue& json) {
             }
             pose.targets.push_back(shown);
         }
-        if (pose.targets.empty())
+        if (pose.targets.empty()) {
             throw json["visible_targets"].error(
                 "is empty: the pose shows no target; must name one");
+        }
     }
     if (json.has("via") && !json["via"].is_null()) pose.via = read_configuration(json["via"]);
     if (json.has("way_is_blocked")) pose.is_blocked = json["way_is_blocked"].boolean();
