@@ -145,10 +145,7 @@ Registration register_beside(const Prior& prior, Campaign campaign,
     if (prior.has_base && prior.has_sensor) return {told, {}};
     campaign.prior.reset();
     if (prior.has_base) campaign.base_is_known.fill(true);
-    if (prior.has_sensor && told.sensor.size() > 0) {
-        campaign.sensor = std::make_shared<detail::KnownSensor>(campaign.sensor, told.sensor);
-        campaign.nominal.sensor.resize(0);
-    }
+    if (prior.has_sensor) campaign = detail::with_known_sensor(std::move(campaign), told.sensor);
     Registration registered = register_base_and_targets(campaign, measurements);
     if (prior.has_sensor) registered.parameters.sensor = told.sensor;
     return registered;

@@ -125,9 +125,8 @@ void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& ar
 /// Which estimate it goes on from.
 std::string describe_start(const CalibrateArguments& arguments) {
     const EarlierArguments& earlier = arguments.earlier;
-    const bool builds_on = earlier.is_prior || !earlier.only.empty();
     if (earlier.from.empty()) return "";
-    if (builds_on) return '\n' + describe_earlier(earlier);
+    if (earlier.builds_on()) return '\n' + describe_earlier(earlier);
     return fmt::format("\nfrom:       {}: where it began\n", detail::escape_controls(earlier.from));
 }
 

@@ -47,6 +47,8 @@ struct EarlierArguments {
     bool is_forced = false;
 
     EarlierUse use() const;
+    /// Whether more than a start comes from the estimate.
+    bool builds_on() const { return is_prior || !only.empty(); }
 };
 
 /// --from and --force.

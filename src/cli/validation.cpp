@@ -25,8 +25,8 @@ void warn_of_no_validation(const CalibrateArguments& arguments, const Validation
                            const io::Provenance& made_from) {
     if (!validation.measured) return;
     const EarlierArguments& earlier = arguments.earlier;
-    const bool builds_on = earlier.is_prior || !earlier.only.empty();
-    const bool is_of_earlier = builds_on && io::is_made_from(earlier.from, *validation.measured);
+    const bool is_of_earlier =
+        earlier.builds_on() && io::is_made_from(earlier.from, *validation.measured);
     if (!is_of_earlier && !io::are_of_checksum(made_from.measurements_checksum,
                                                *validation.measured, arguments.options.excluded)) {
         return;

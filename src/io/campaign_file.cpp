@@ -6,6 +6,7 @@
 
 #include "../core/checksum.hpp"
 #include "../model/complete_model.hpp"
+#include "../model/joint_limits.hpp"
 #include "../model/sampling.hpp"
 #include "atomic_file.hpp"
 #include "campaign_sections.hpp"
@@ -49,11 +50,9 @@ void place_within_reach(const std::vector<Index>& reached, Campaign& campaign) {
     const Chain& robot = campaign.robot;
     const RowMatrixXd drawn =
         detail::random_configurations(robot, static_cast<Index>(reached.size()), seed);
+    const detail::JointRange range = detail::limits_of(robot);
     VectorXd middle = drawn.row(0).transpose();
-    for (Index j = 0; j < robot.joint_count(); ++j) {
-        const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
-        middle[j] = (joint.lower + joint.upper) / 2;
-    }
+    middle.head(robot.joint_count()) = (range.lower + range.upper) / 2;
     const Targets& targets = campaign.sensor->targets();
     for (std::size_t k = 0; k < reached.size(); ++k) {
         const VectorXd q = (middle + drawn.row(static_cast<Index>(k)).transpose()) / 2;

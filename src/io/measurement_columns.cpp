@@ -39,7 +39,7 @@ std::vector<WantedColumn> wanted_columns(const Campaign& campaign) {
         wanted.push_back(
             {torque_stem(joint_of(robot, torque)), Role::Joint, next++, Quantity::Torque});
     }
-    if (!campaign.sensor->contact_names().empty()) return wanted;
+    if (campaign.sensor->has_contacts()) return wanted;
     Index k = 0;
     for (const std::string& name : campaign.sensor->observation_names()) {
         const Quantity quantity = campaign.sensor->is_angle(k) ? Quantity::Angle : Quantity::Length;
@@ -78,7 +78,7 @@ std::string joint_cells(const Campaign& campaign, const VectorXd& q) {
 }
 
 std::string_view seen_header(const Campaign& campaign) {
-    return campaign.sensor->contact_names().empty() ? visible_targets : contact;
+    return campaign.sensor->has_contacts() ? contact : visible_targets;
 }
 
 std::string seen_cell(const Campaign& campaign, const SeenTargets& is_seen) {

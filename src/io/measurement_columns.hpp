@@ -15,7 +15,7 @@ namespace posewise::detail {
 /// Of a configuration: the numbers of the targets it shows, from 1, separated by blanks.
 inline constexpr std::string_view visible_targets = "visible_targets";
 /// Of a sample or a configuration: the name of what the robot touches, of sensors with
-/// contact_names(); it stands for the columns observed, and for visible_targets.
+/// has_contacts(); it stands for the columns observed, and for visible_targets.
 inline constexpr std::string_view contact = "socket";
 
 enum class Role {

@@ -19,7 +19,7 @@ class HeaderReader {
           joints_(campaign.robot.joints()),
           wanted_(wanted_columns(campaign)),
           has_orientation_(campaign.sensor->has_orientation()),
-          has_contact_(!campaign.sensor->contact_names().empty()),
+          has_contact_(campaign.sensor->has_contacts()),
           examples_{"config"} {
         if (!is_optional(Role::Sample)) examples_.emplace_back("sample");
         for (const WantedColumn& column : wanted_) {

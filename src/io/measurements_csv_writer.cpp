@@ -75,7 +75,7 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
             joint_factors.push_back(column.quantity == detail::Quantity::Length ? 1e3 : 1);
         }
     }
-    const bool has_contact = !campaign.sensor->contact_names().empty();
+    const bool has_contact = campaign.sensor->has_contacts();
     if (has_contact) fmt::format_to(out, ",{}", detail::contact);
     text += '\n';
     for (Index i = 0; i < measurements.configuration_count(); ++i) {

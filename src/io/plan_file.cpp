@@ -129,14 +129,8 @@ Json configuration_to_json(const std::vector<std::string>& columns, const Vector
 Json readable_to_json(const std::vector<std::string>& columns, const VectorXd& q) {
     Json json;
     for (Index j = 0; j < q.size(); ++j) {
-        const std::string& column = columns[static_cast<std::size_t>(j)];
-        for (const AmountUnits& units : {angle_units, length_units}) {
-            const std::string suffix = '_' + std::string(units.si);
-            if (!column.ends_with(suffix)) continue;
-            const std::string name = column.substr(0, column.size() - suffix.size());
-            json[name + '_' + std::string(units.reading)] =
-                std::round(1e4 * units.to_reading(q[j])) / 1e4;
-        }
+        const auto readable = detail::readable_joint(columns[static_cast<std::size_t>(j)], q[j]);
+        if (readable) json[readable->name] = std::round(1e4 * readable->value) / 1e4;
     }
     return json;
 }
@@ -276,3 +270,17 @@ void write_configurations_csv(const std::string& path, const Campaign& campaign,
 }
 
 }  // namespace posewise::io
+
+namespace posewise::detail {
+
+std::optional<NamedNumber> readable_joint(const std::string& column, double value) {
+    for (const AmountUnits& units : {angle_units, length_units}) {
+        const std::string suffix = '_' + std::string(units.si);
+        if (!column.ends_with(suffix)) continue;
+        const std::string name = column.substr(0, column.size() - suffix.size());
+        return NamedNumber{name + '_' + std::string(units.reading), units.to_reading(value)};
+    }
+    return std::nullopt;
+}
+
+}  // namespace posewise::detail

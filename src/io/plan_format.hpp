@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -23,6 +25,10 @@ inline constexpr std::array<std::pair<CandidateKind, std::string_view>, 5> candi
 
 inline constexpr std::array plan_endings{Ending::Converged, Ending::Optimal, Ending::TimeLimit,
                                          Ending::Interrupted, Ending::NotRun};
+
+/// A joint in degrees or mm, its column's name with that unit; nothing of a column that is neither
+/// in rad nor in m.
+std::optional<NamedNumber> readable_joint(const std::string& column, double value);
 
 /// A document of a pose plan of format 1 as one of format 2. What it lacks stays missing.
 Json upgrade_pose_plan(const Json& old);

@@ -9,7 +9,6 @@
 #include "json_reader.hpp"
 #include "plan_format.hpp"
 #include "plan_paths.hpp"
-#include "posewise/core/units.hpp"
 #include "posewise/io/plan_file.hpp"
 
 namespace posewise::io {
@@ -263,20 +262,14 @@ void check_readable(const JsonValue& readable, const JsonValue& joints) {
     constexpr double rounding = 1e-3;  // deg or mm
     const std::vector<std::string> columns = keys_of(joints.json());
     const auto values = joints.values();
-    for (const AmountUnits& units : {angle_units, length_units}) {
-        const std::string suffix = '_' + std::string(units.si);
-        for (std::size_t j = 0; j < columns.size(); ++j) {
-            if (!columns[j].ends_with(suffix)) continue;
-            const std::string name = columns[j].substr(0, columns[j].size() - suffix.size()) + '_' +
-                                     std::string(units.reading);
-            const double value = units.to_reading(values[j].number());
-            const JsonValue stated = readable[name];
-            if (std::abs(stated.number() - value) <= rounding) continue;
-            throw stated.error(
-                fmt::format("is {}, but joints.{} says {:.4f}; must be the same, or readable "
-                            "left out",
-                            stated.number(), columns[j], value));
-        }
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+        const auto readable_value = detail::readable_joint(columns[j], values[j].number());
+        if (!readable_value) continue;
+        const JsonValue stated = readable[readable_value->name];
+        if (std::abs(stated.number() - readable_value->value) <= rounding) continue;
+        throw stated.error(
+            fmt::format("is {}, but joints.{} says {:.4f}; must be the same, or readable left out",
+                        stated.number(), columns[j], readable_value->value));
     }
 }
 

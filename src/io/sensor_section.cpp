@@ -88,6 +88,12 @@ PointNoise read_noise(const YamlValue& value, const YamlMap& sensor) {
     return axes;
 }
 
+/// Whether such a key is there and says so.
+bool is_true(const YamlMap& map, std::string_view key) {
+    const auto value = map.find(key);
+    return value && value->boolean();
+}
+
 /// Standard deviation of a sensor that returns lengths.
 double read_sigma(const YamlMap& sensor) { return read_positive(sensor.require_measure("sigma")); }
 
@@ -155,8 +161,7 @@ SensorSection read_poses(const YamlValue& value) {
     }
     const YamlMap tool(*tool_value, {"position_<length>", "rpy_<angle>", "known"});
     const Isometry3d nominal = read_frame(tool);
-    const auto known = tool.find("known");
-    if (known && known->boolean()) {
+    if (is_true(tool, "known")) {
         return {std::make_shared<PoseSensor>(nominal, noise, sigma), VectorXd(), true};
     }
     return {std::make_shared<PoseSensor>(std::nullopt, noise, sigma), tool_unknowns(nominal), true};
@@ -168,22 +173,17 @@ VectorXd join(const VectorXd& first, const VectorXd& second) {
     return joined;
 }
 
-bool is_known(const YamlMap& map) {
-    const auto known = map.find("known");
-    return known && known->boolean();
-}
-
 SensorSection read_distances(const YamlValue& value) {
     const YamlMap sensor(value, {"kind", "sigma_<length>", "anchors", "targets"});
     const YamlMap anchors(sensor.require("anchors"), {"position_<length>", "known"});
     const std::vector<Vector3d> positions =
         stated_positions(anchors.require_measure("position"), "anchor");
     TargetsSection targets = read_targets(sensor.require("targets"));
-    VectorXd own(is_known(anchors) ? 0 : 3 * static_cast<Index>(positions.size()));
+    VectorXd own(is_true(anchors, "known") ? 0 : 3 * static_cast<Index>(positions.size()));
     for (Index k = 0; k < own.size(); ++k)
         own[k] = positions[static_cast<std::size_t>(k / 3)][k % 3];
     return {std::make_shared<DistanceSensor>(std::move(targets.targets), positions,
-                                             is_known(anchors), read_sigma(sensor)),
+                                             is_true(anchors, "known"), read_sigma(sensor)),
             join(targets.unknowns, own), targets.has_positions};
 }
 
@@ -206,8 +206,7 @@ SensorSection read_planes(const YamlValue& value) {
     std::vector<Plane> planes;
     for (const YamlValue& item : list.list()) planes.push_back(read_plane(item));
     if (planes.empty()) throw list.error("is empty; must list at least one plane");
-    const auto known = sensor.find("known_planes");
-    const bool are_known = known && known->boolean();
+    const bool are_known = is_true(sensor, "known_planes");
     TargetsSection targets = read_targets(sensor.require("targets"));
     VectorXd own = VectorXd::Zero(are_known ? 0 : 3 * static_cast<Index>(planes.size()));
     for (Index k = 2; k < own.size(); k += 3)
@@ -280,12 +279,11 @@ SensorSection read_sockets(const YamlValue& value) {
     const YamlMap sensor(value, {"kind", "sigma_<length>", "sockets", "known_sockets", "targets"});
     const YamlValue list = sensor.require("sockets");
     const SocketsSection section = read_socket_list(list);
-    const auto known = sensor.find("known_sockets");
-    const bool are_known = known && known->boolean();
+    const bool are_known = is_true(sensor, "known_sockets");
     const auto& stated = section.has_position;
     const bool has_positions = std::all_of(stated.begin(), stated.end(), [](bool b) { return b; });
     if (are_known && !has_positions) {
-        throw known->error("is true; needs position_mm of every socket");
+        throw sensor.require("known_sockets").error("is true; needs position_mm of every socket");
     }
     const YamlValue targets_value = sensor.require("targets");
     TargetsSection targets = read_targets(targets_value);

@@ -11,21 +11,6 @@
 
 namespace posewise::detail {
 
-JointRange limits_of(const Chain& robot) {
-    JointRange range = unlimited(robot);
-    for (Index j = 0; j < robot.joint_count(); ++j) {
-        range.lower[j] = robot.joints()[static_cast<std::size_t>(j)].lower;
-        range.upper[j] = robot.joints()[static_cast<std::size_t>(j)].upper;
-    }
-    return range;
-}
-
-JointRange unlimited(const Chain& robot) {
-    const VectorXd infinite =
-        VectorXd::Constant(robot.joint_count(), std::numeric_limits<double>::infinity());
-    return {-infinite, infinite};
-}
-
 std::optional<VectorXd> bring_to_contact(const Campaign& campaign, const Parameters& parameters,
                                          VectorXd q, Index contact, const JointRange& range,
                                          const VectorXd& readings) {
@@ -71,7 +56,7 @@ ShownPoses bring_to_contacts(const Campaign& campaign, const Parameters& paramet
                              const RowMatrixXd& candidates, Index first, const JointRange& range) {
     const Sensor& sensor = *campaign.sensor;
     const Index targets = sensor.target_count();
-    if (sensor.contact_names().empty()) return {candidates, all_seen(candidates.rows(), targets)};
+    if (!sensor.has_contacts()) return {candidates, all_seen(candidates.rows(), targets)};
     const VectorXd touching = VectorXd::Zero(sensor.rows_per_target());
     ShownPoses poses{RowMatrixXd(candidates.rows(), candidates.cols()),
                      Seen::Constant(candidates.rows(), targets, false)};

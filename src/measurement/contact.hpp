@@ -3,19 +3,12 @@
 #include <functional>
 #include <optional>
 
+#include "../model/joint_limits.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/seen.hpp"
 
-/// Poses that a sensor with contact_names() can measure: what the robot touches it has to reach.
+/// Poses that a sensor with has_contacts() can measure: what the robot touches it has to reach.
 namespace posewise::detail {
-
-/// Where each joint may be, rad or m; both ends the same: it stays.
-struct JointRange {
-    VectorXd lower;
-    VectorXd upper;
-};
-JointRange limits_of(const Chain& robot);
-JointRange unlimited(const Chain& robot);
 
 /// The configuration near q at which this contact's readings are `readings` (m; 0: it touches), by
 /// least steps of the joints [Whitney 1969]; nothing if there is none within the range.

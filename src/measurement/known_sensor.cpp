@@ -41,4 +41,12 @@ std::optional<ObservedPoints> KnownSensor::observed_points() const {
                           [](const VectorXd& coordinates) { return coordinates; }};
 }
 
+Campaign with_known_sensor(Campaign campaign, const VectorXd& unknowns) {
+    if (unknowns.size() == 0) return campaign;
+    campaign.sensor = std::make_shared<KnownSensor>(campaign.sensor, unknowns);
+    campaign.nominal.sensor.resize(0);
+    campaign.has_nominal_targets = true;
+    return campaign;
+}
+
 }  // namespace posewise::detail

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/sensor.hpp"
 
 namespace posewise::detail {
@@ -59,5 +60,8 @@ class KnownSensor final : public Sensor {
     VectorXd unknowns_;
     Targets targets_;
 };
+
+/// The campaign with these values of the sensor's unknowns, if it has some, known.
+Campaign with_known_sensor(Campaign campaign, const VectorXd& unknowns);
 
 }  // namespace posewise::detail

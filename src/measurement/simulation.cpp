@@ -1,6 +1,7 @@
 #include "posewise/measurement/simulation.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "contact.hpp"
 #include "noise.hpp"
@@ -24,8 +25,10 @@ VectorXd touching_joints(const Campaign& campaign, const Parameters& truth, cons
     const Index width = campaign.sensor->rows_per_target();
     const Index contact = targets_seen(is_seen).front();
     constexpr double near = 0.2;  // rad or m
-    for (const auto& range :
-         {detail::limits_of(campaign.robot), detail::unlimited(campaign.robot)}) {
+    const VectorXd infinite =
+        VectorXd::Constant(campaign.robot.joint_count(), std::numeric_limits<double>::infinity());
+    const detail::JointRange unlimited{-infinite, infinite};
+    for (const auto& range : {detail::limits_of(campaign.robot), unlimited}) {
         auto joints = detail::bring_to_contact(campaign, truth, q, contact, range,
                                                noise.segment(width * contact, width));
         if (joints && (*joints - q).cwiseAbs().maxCoeff() <= near) return std::move(*joints);
@@ -38,7 +41,7 @@ VectorXd touching_joints(const Campaign& campaign, const Parameters& truth, cons
 }
 
 void check_contacts(const Campaign& campaign, const Seen& is_seen, Index repeats) {
-    if (campaign.sensor->contact_names().empty()) return;
+    if (!campaign.sensor->has_contacts()) return;
     if (repeats != 1) {
         throw InputError(
             "repeats must be 1: the robot touches once a configuration, and is "
@@ -77,7 +80,7 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
     const Sensor& sensor = *campaign.sensor;
     const Index rows = sensor.row_count();
     const VectorXd model_error = detail::model_error_of_rows(campaign);
-    const bool has_contacts = !sensor.contact_names().empty();
+    const bool has_contacts = sensor.has_contacts();
     Measurements measurements;
     measurements.configurations = configurations;
     measurements.observations.resize(configurations.rows() * repeats, rows);
@@ -136,11 +139,11 @@ Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
     }
     if (!campaign.has_nominal_base || !campaign.has_nominal_targets) {
         throw InputError(
-            campaign.sensor->contact_names().empty()
-                ? "to simulate, the campaign must state where base and targets are (keys 'base' "
-                  "and 'sensor.targets.position_mm' or 'sensor.tool')"
-                : "to simulate, the campaign must state where the ball and all sockets are "
-                  "(position_mm of 'sensor.targets' and of each of 'sensor.sockets')");
+            campaign.sensor->has_contacts()
+                ? "to simulate, the campaign must state where the ball and all sockets are "
+                  "(position_mm of 'sensor.targets' and of each of 'sensor.sockets')"
+                : "to simulate, the campaign must state where base and targets are (keys 'base' "
+                  "and 'sensor.targets.position_mm' or 'sensor.tool')");
     }
     if (is_seen.rows() != configurations.rows() ||
         is_seen.cols() != campaign.sensor->target_count()) {

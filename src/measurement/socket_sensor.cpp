@@ -50,6 +50,13 @@ void check_distances(const std::vector<Socket>& sockets) {
     }
 }
 
+/// Of a socket from the one that its distance is known from.
+detail::TiltedDirection direction_to(const Socket& socket, const std::vector<Socket>& sockets,
+                                     const Eigen::Vector2d& tilts) {
+    const Socket& from = sockets[static_cast<std::size_t>(socket.from)];
+    return detail::tilt((socket.position - from.position).normalized(), tilts[0], tilts[1]);
+}
+
 }  // namespace
 
 SocketSensor::SocketSensor(Targets ball, std::vector<Socket> sockets, bool are_known, double sigma)
@@ -107,10 +114,9 @@ Vector3d SocketSensor::socket_position(Index socket, const VectorXd& unknowns) c
     if (are_known_) return of(socket).position;
     const Index first = unknown_index_[static_cast<std::size_t>(socket)];
     if (!has_distance(socket)) return unknowns.segment<3>(first);
-    const Index from = of(socket).from;
-    const Vector3d expected = (of(socket).position - of(from).position).normalized();
-    return socket_position(from, unknowns) +
-           of(socket).distance * detail::tilt(expected, unknowns[first], unknowns[first + 1]).value;
+    return socket_position(of(socket).from, unknowns) +
+           of(socket).distance *
+               direction_to(of(socket), sockets_, unknowns.segment<2>(first)).value;
 }
 
 VectorXd SocketSensor::predict(const Isometry3d& world_from_flange,
@@ -136,9 +142,8 @@ void SocketSensor::differentiate(const Isometry3d& world_from_flange, const Twis
         Index socket = k;
         for (; has_distance(socket); socket = of(socket).from) {
             const Index first = unknown_index_[static_cast<std::size_t>(socket)];
-            const Vector3d expected =
-                (of(socket).position - of(of(socket).from).position).normalized();
-            const auto direction = detail::tilt(expected, unknowns[first], unknowns[first + 1]);
+            const detail::TiltedDirection direction =
+                direction_to(of(socket), sockets_, unknowns.segment<2>(first));
             J.col(twists.cols() + first) -= of(socket).distance * direction.by_tilt1;
             J.col(twists.cols() + first + 1) -= of(socket).distance * direction.by_tilt2;
         }

@@ -4,6 +4,15 @@
 
 namespace posewise::detail {
 
+JointRange limits_of(const Chain& robot) {
+    JointRange range{VectorXd(robot.joint_count()), VectorXd(robot.joint_count())};
+    for (Index j = 0; j < robot.joint_count(); ++j) {
+        range.lower[j] = robot.joint(j).lower;
+        range.upper[j] = robot.joint(j).upper;
+    }
+    return range;
+}
+
 std::string describe_limit_violation(const Chain& robot, const VectorXd& q) {
     constexpr double rounding = 1e-6;
     for (Index j = 0; j < robot.joint_count(); ++j) {

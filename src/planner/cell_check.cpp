@@ -159,6 +159,14 @@ void check_cell(const Cell& cell, const Chain& robot, const std::vector<Vector3d
     check_motion(cell, robot);
 }
 
+JointRange joint_range(const Chain& robot, const Cell& cell) {
+    JointRange range = limits_of(robot);
+    for (const auto& [joint, value] : cell.fixed_joints) {
+        range.lower[joint] = range.upper[joint] = value;
+    }
+    return range;
+}
+
 std::vector<std::pair<std::size_t, std::size_t>> colliding_pairs(const std::vector<Link>& links) {
     std::set<Index> frames;
     for (const Link& link : links) frames.insert(link.frame);

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "../model/joint_limits.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/model/cell.hpp"
 
@@ -16,6 +17,9 @@ std::vector<Vector3d> nominal_targets(const Campaign& campaign, const Cell& cell
 /// Throws InputError for all else that is wrong with a cell (see Constraints). `robot` has the
 /// margin applied.
 void check_cell(const Cell& cell, const Chain& robot, const std::vector<Vector3d>& targets);
+
+/// The limits of a robot, of joints that the cell fixes their value.
+JointRange joint_range(const Chain& robot, const Cell& cell);
 
 /// Pairs of links that may collide: the frames links are fixed to, in order along the chain, are
 /// neither the same nor next to each other, so that they share no joint.

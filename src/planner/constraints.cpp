@@ -65,8 +65,8 @@ double ConstraintReport::margin() const {
 
 Constraints::Constraints(const Campaign& campaign, Cell cell, bool needs_contact)
     : cell_(std::move(cell)),
-      contact_(needs_contact && !campaign.sensor->contact_names().empty() ? std::optional(campaign)
-                                                                          : std::nullopt),
+      contact_(needs_contact && campaign.sensor->has_contacts() ? std::optional(campaign)
+                                                                : std::nullopt),
       robot_(without_parameters(detail::with_margin(campaign.robot, cell_.limit_margin))),
       target_count_(campaign.sensor->target_count()),
       tracker_from_base_(campaign.nominal.world_from_base),
@@ -168,11 +168,8 @@ void Constraints::check_contact(const VectorXd& q, ConstraintReport& report) con
 
 RowMatrixXd Constraints::bring_to_contacts(const RowMatrixXd& candidates, Index first) const {
     if (!contact_) return candidates;
-    detail::JointRange range = detail::limits_of(robot_);
-    for (const auto& [joint, value] : cell_.fixed_joints) {
-        range.lower[joint] = range.upper[joint] = value;
-    }
-    return detail::bring_to_contacts(*contact_, contact_->nominal, candidates, first, range)
+    return detail::bring_to_contacts(*contact_, contact_->nominal, candidates, first,
+                                     detail::joint_range(robot_, cell_))
         .configurations;
 }
 

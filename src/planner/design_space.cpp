@@ -8,6 +8,7 @@
 #include "../core/decompositions.hpp"
 #include "../core/text.hpp"
 #include "../jacobian/pose_information.hpp"
+#include "cell_check.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::detail {
@@ -15,17 +16,14 @@ namespace posewise::detail {
 DesignSpace make_design_space(const Campaign& campaign, const Parameters& parameters,
                               double repeats, const Constraints* constraints) {
     const auto pose = std::make_shared<PoseInformation>(campaign, parameters, repeats);
-    const Chain& robot = constraints == nullptr ? campaign.robot : constraints->robot();
     DesignSpace space;
     space.parameter_count = pose->parameter_count();
     space.parameter_names = parameter_names(campaign);
-    space.lower.resize(robot.joint_count());
-    space.upper.resize(robot.joint_count());
-    for (Index j = 0; j < robot.joint_count(); ++j) {
-        const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
-        space.lower[j] = joint.lower;
-        space.upper[j] = joint.upper;
-    }
+    const JointRange range = constraints == nullptr
+                                 ? limits_of(campaign.robot)
+                                 : joint_range(constraints->robot(), constraints->cell());
+    space.lower = range.lower;
+    space.upper = range.upper;
     const auto seen = [constraints](const VectorXd& q) {
         return constraints == nullptr ? SeenTargets() : constraints->seen(q);
     };
@@ -35,9 +33,6 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
     };
     if (constraints == nullptr) return space;
     space.is_pool_only = constraints->needs_contact();
-    for (const auto& [joint, value] : constraints->cell().fixed_joints) {
-        space.lower[joint] = space.upper[joint] = value;
-    }
     space.least_joint_distance = constraints->cell().least_joint_distance;
     const Cell& cell = constraints->cell();
     if (!cell.sight && cell.target_boxes.empty() && cell.links.empty()) return space;

@@ -88,7 +88,7 @@ Parameters find_parameters(const Campaign& campaign, const Candidates& candidate
     if (is_stated) return campaign.nominal;
     if (options.held) return register_measured(campaign, *options.held, held);
     if (can_assume_places(campaign)) return campaign.nominal;
-    if (!campaign.sensor->contact_names().empty()) throw unstated_contacts(campaign);
+    if (campaign.sensor->has_contacts()) throw unstated_contacts(campaign);
     throw InputError(campaign.name +
                      ": the campaign file states no base, on which what this sensor tells depends, "
                      "and nothing was measured to find it from; state base there, or use "

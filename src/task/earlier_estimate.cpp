@@ -114,11 +114,7 @@ Campaign with_known(const Campaign& campaign, const KnownParameters& known,
         changed.nominal.world_from_base = values.world_from_base;
         changed.has_nominal_base = true;
     }
-    if (known.targets && values.sensor.size() > 0) {
-        changed.sensor = std::make_shared<KnownSensor>(campaign.sensor, values.sensor);
-        changed.nominal.sensor.resize(0);
-        changed.has_nominal_targets = true;
-    }
+    if (known.targets) changed = with_known_sensor(std::move(changed), values.sensor);
     changed = with_robot(changed, with_known_errors(campaign.robot, values.robot, known.robot));
     changed.nominal.robot = values.robot(numbers_of(known.robot, false));
     return changed;

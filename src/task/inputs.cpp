@@ -36,7 +36,7 @@ RowMatrixXd turning_joints(const Chain& robot, const RowMatrixXd& configurations
 
 bool can_assume_places(const Campaign& campaign) {
     // What is to be touched has to be where it is said to be.
-    if (!campaign.sensor->contact_names().empty()) return false;
+    if (campaign.sensor->has_contacts()) return false;
     return campaign.has_nominal_base ||
            (campaign.sensor->lengths_per_target() == 3 && has_constant_noise(campaign));
 }

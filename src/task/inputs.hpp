@@ -39,7 +39,7 @@ RowMatrixXd turning_joints(const Chain& robot, const RowMatrixXd& configurations
 /// little depends on them. That is the base where every target's place is measured with the same
 /// noise everywhere.
 bool can_assume_places(const Campaign& campaign);
-/// Of a sensor with contact_names(): poses must reach what is to be touched.
+/// Of a sensor with has_contacts(): poses must reach what is to be touched.
 InputError unstated_contacts(const Campaign& campaign);
 
 /// Base and targets from what was measured. Throws InputError, which begins with the name of where

@@ -150,7 +150,7 @@ std::vector<Index> find_planned(const Plan& plan, const Campaign& campaign,
                                 const Measurements& measured,
                                 const std::vector<std::string>& excluded) {
     // What was read back may differ from the plan; what was guided to a contact by hand does.
-    const double tolerance = campaign.sensor->contact_names().empty() ? 2e-3 : 0.2;
+    const double tolerance = campaign.sensor->has_contacts() ? 0.2 : 2e-3;
     check_is_whole(plan, campaign);
     std::vector<Index> planned;
     for (const PlannedPose& pose : plan.poses) {

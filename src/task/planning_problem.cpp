@@ -31,7 +31,7 @@ Campaign with_base(Campaign campaign, const PlanningOptions& options) {
         return campaign;
     }
     if (!measured && can_assume_places(campaign)) return campaign;
-    if (!measured && !campaign.sensor->contact_names().empty()) throw unstated_contacts(campaign);
+    if (!measured && campaign.sensor->has_contacts()) throw unstated_contacts(campaign);
     if (!measured) {
         throw InputError(campaign.name +
                          ": the campaign file states no base, on which what this sensor tells "

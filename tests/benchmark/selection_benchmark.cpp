@@ -1,12 +1,12 @@
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Cholesky>
-#include <numeric>
 
 #include "../../src/core/sensitivities.hpp"
 #include "../../src/selection/bound.hpp"
 #include "../../src/selection/gains.hpp"
 #include "../../src/selection/relaxation.hpp"
+#include "support/designs.hpp"
 #include "support/fanuc_pool.hpp"
 
 /// Speed of selection on pools of the FANUC robot (blocks of 9 x 33), each kernel beside a plain
@@ -15,12 +15,7 @@ namespace posewise {
 namespace {
 
 using namespace detail;
-
-std::vector<Index> indices_below(Index count) {
-    std::vector<Index> indices(static_cast<std::size_t>(count));
-    std::iota(indices.begin(), indices.end(), Index{0});
-    return indices;
-}
+using test::indices_below;
 
 MatrixXd information_of_plan(const Blocks& pool, Index pose_count) {
     return information(pool, indices_below(pose_count));

@@ -26,7 +26,7 @@ TEST(EverySensor, CalibratesTheRobotToWhatItsNoiseAllows) {
         SCOPED_TRACE(name);
         Campaign campaign = irreducible(declared);
         campaign.model_error = campaign.model_error_orientation = 0;
-        const Index repeats = campaign.sensor->contact_names().empty() ? 2 : 1;
+        const Index repeats = campaign.sensor->has_contacts() ? 1 : 2;
         const Simulation simulated =
             simulate(campaign, {.pose_count = 120, .repeats = repeats, .truth_seed = 6, .seed = 5});
         const Measurements& measured = simulated.measurements;

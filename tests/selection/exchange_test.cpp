@@ -255,18 +255,23 @@ TEST(SelectByExchange, EndsWhenTenStartsAgree) {
     EXPECT_EQ(stated.poses, agreed.poses);
 }
 
+/// On so many threads.
+Choice select_on(int threads, const Blocks& candidates, const SelectOptions& options) {
+    const int before = omp_get_max_threads();
+    omp_set_num_threads(threads);
+    Choice choice = select_poses(candidates, options);
+    omp_set_num_threads(before);
+    return choice;
+}
+
 TEST(SelectByExchange, NeedsTheSameStartsForAnyNumberOfThreads) {
     const Blocks candidates = test::random_blocks(200, 1, 12, 3);
-    const int threads = omp_get_max_threads();
     SelectOptions options;
     options.pose_count = 14;
     options.kicks = 0;
     options.proof = 0;
-    omp_set_num_threads(1);
-    const Choice serial = select_poses(candidates, options);
-    omp_set_num_threads(4);
-    const Choice parallel = select_poses(candidates, options);
-    omp_set_num_threads(threads);
+    const Choice serial = select_on(1, candidates, options);
+    const Choice parallel = select_on(4, candidates, options);
     EXPECT_GT(serial.starts, 5);
     EXPECT_EQ(serial.starts, parallel.starts);
     EXPECT_EQ(serial.starts_at_best, parallel.starts_at_best);
@@ -279,11 +284,8 @@ TEST(SelectByExchange, TakesFewerStartsWhereEachTakesLong) {
     options.kicks = 0;
     options.proof = 0;
     const Blocks candidates = test::random_blocks(300, 12, 90, 1);
-    const int threads = omp_get_max_threads();
     const Choice parallel = select_poses(candidates, options);
-    omp_set_num_threads(1);
-    const Choice serial = select_poses(candidates, options);
-    omp_set_num_threads(threads);
+    const Choice serial = select_on(1, candidates, options);
     EXPECT_EQ(parallel.starts, 4);
     EXPECT_EQ(serial.poses, parallel.poses);
     EXPECT_EQ(serial.starts_at_best, parallel.starts_at_best);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <numeric>
 
 #include "../../src/core/sensitivities.hpp"
 #include "../../src/selection/gains.hpp"
@@ -14,12 +13,7 @@ namespace posewise {
 namespace {
 
 using namespace detail;
-
-std::vector<Index> indices_below(Index count) {
-    std::vector<Index> indices(static_cast<std::size_t>(count));
-    std::iota(indices.begin(), indices.end(), Index{0});
-    return indices;
-}
+using test::indices_below;
 
 TEST(Lanes, GainsMatchTheirDefinitionForEveryHeight) {
     constexpr Index L = 11;
@@ -65,40 +59,42 @@ VectorXd everything_known(Gains& gains, const Blocks& candidates) {
     return known;
 }
 
-TEST(Gains, AreTheSameByUpdatesAsFromTheStart) {
+/// Calls `check` with 40 candidates of several heights, for the determinant and for a trace.
+template <class Check>
+void check_gains(const Check& check) {
     for (const Index rows : {1, 3, 9, 13}) {  // 13: no kernel
         constexpr Index L = 15;
         const Blocks candidates = test::random_blocks(40, rows, L, 1);
         const Shortlist shortlist = make_shortlist(candidates, indices_below(40));
         const MatrixXd C_root = test::random_blocks(L, 1, L, 2).matrix;
-        for (const MatrixXd& root : {MatrixXd(), C_root}) {
-            std::vector<Index> poses = indices_below(20);
-            Gains updated(candidates, shortlist);
-            updated.move_to(information(candidates, poses), root);
-            for (Index i = 1; i < 20; ++i) {
-                ASSERT_TRUE(updated.remove(candidates[i]));
-                poses[static_cast<std::size_t>(i)] = i + 20;
-                updated.exchange(candidates[i + 20], information(candidates, poses));
-            }
-            Gains anew(candidates, shortlist);
-            anew.move_to(information(candidates, poses), root);
-            const VectorXd expected = everything_known(anew, candidates);
-            const VectorXd found = everything_known(updated, candidates);
-            for (Index k = 0; k < expected.size(); ++k) {
-                EXPECT_NEAR(found[k], expected[k], 1e-9 * std::abs(expected[k]))
-                    << rows << ' ' << k;
-            }
-        }
+        for (const MatrixXd& root : {MatrixXd(), C_root}) check(rows, candidates, shortlist, root);
     }
 }
 
+TEST(Gains, AreTheSameByUpdatesAsFromTheStart) {
+    check_gains([](Index rows, const Blocks& candidates, const Shortlist& shortlist,
+                   const MatrixXd& root) {
+        std::vector<Index> poses = indices_below(20);
+        Gains updated(candidates, shortlist);
+        updated.move_to(information(candidates, poses), root);
+        for (Index i = 1; i < 20; ++i) {
+            ASSERT_TRUE(updated.remove(candidates[i]));
+            poses[static_cast<std::size_t>(i)] = i + 20;
+            updated.exchange(candidates[i + 20], information(candidates, poses));
+        }
+        Gains anew(candidates, shortlist);
+        anew.move_to(information(candidates, poses), root);
+        const VectorXd expected = everything_known(anew, candidates);
+        const VectorXd found = everything_known(updated, candidates);
+        for (Index k = 0; k < expected.size(); ++k) {
+            EXPECT_NEAR(found[k], expected[k], 1e-9 * std::abs(expected[k])) << rows << ' ' << k;
+        }
+    });
+}
+
 TEST(Gains, RuleOutWhatIsNoBetterThanTheRemovedBlock) {
-    for (const Index rows : {1, 3, 9, 13}) {  // 13: no kernel
-        constexpr Index L = 15;
-        const Blocks candidates = test::random_blocks(40, rows, L, 1);
-        const Shortlist shortlist = make_shortlist(candidates, indices_below(40));
-        const MatrixXd C_root = test::random_blocks(L, 1, L, 2).matrix;
-        for (const MatrixXd& root : {MatrixXd(), C_root}) {
+    check_gains(
+        [](Index rows, const Blocks& candidates, const Shortlist& shortlist, const MatrixXd& root) {
             Gains gains(candidates, shortlist);
             gains.move_to(information(candidates, indices_below(20)), root);
             for (Index i = 0; i < 20; ++i) {
@@ -107,8 +103,7 @@ TEST(Gains, RuleOutWhatIsNoBetterThanTheRemovedBlock) {
                 EXPECT_LE(gains.least_gain(), own);
                 EXPECT_GE(gains.least_gain(), own * (1 - 2e-8)) << rows << ' ' << i;
             }
-        }
-    }
+        });
 }
 
 TEST(Gains, RuleOutExactlyWhatPredictsATestPoseTooBadly) {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 #include "support/designs.hpp"
 
@@ -24,16 +23,11 @@ struct Exchanges {
     Exchanges(Criterion criterion, Index rows, Index parameters, std::uint64_t seed)
         : candidates(test::random_blocks(41, rows, parameters, seed)),  // the last lanes not full
           objective(make_objective(criterion, parameters)),
-          shortlist(make_shortlist(candidates, first(41))),
-          M(information(candidates, first(parameters))),
+          shortlist(make_shortlist(candidates, test::indices_below(41))),
+          M(information(candidates, test::indices_below(parameters))),
           ritz(objective, candidates, shortlist) {
         ritz.move_to(M);
         ritz.remove(removed);
-    }
-    static std::vector<Index> first(Index count) {
-        std::vector<Index> indices(static_cast<std::size_t>(count));
-        std::iota(indices.begin(), indices.end(), Index{0});
-        return indices;
     }
     MatrixXd with(Index added) const {
         const auto out = candidates[removed];

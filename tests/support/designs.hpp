@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 #include "posewise/core/blocks.hpp"
@@ -9,6 +10,13 @@
 
 /// Candidate sets with known properties, for tests of criteria and selection.
 namespace posewise::test {
+
+/// 0, 1, ... count - 1.
+inline std::vector<Index> indices_below(Index count) {
+    std::vector<Index> indices(static_cast<std::size_t>(count));
+    std::iota(indices.begin(), indices.end(), Index{0});
+    return indices;
+}
 
 /// Blocks of standard normal entries.
 inline Blocks random_blocks(Index count, Index rows, Index parameters, std::uint64_t seed) {

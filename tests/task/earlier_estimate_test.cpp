@@ -16,42 +16,24 @@
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/inspection.hpp"
-#include "support/campaigns.hpp"
+#include "support/held_robot.hpp"
 
 /// calibrate() with an earlier estimate.
 namespace posewise {
 namespace {
 
-Campaign held_campaign() {
-    const Chain bare = without_parameters(testing::fanuc());
-    Campaign campaign = with_robot(testing::tracked_campaign(bare), detail::complete_model(bare));
-    campaign.spread = population_spread(bare);
-    campaign.sensor =
-        std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(3, std::nullopt), 5e-5);
-    return campaign;
-}
-
-Measurements measure(const Campaign& campaign, const Parameters& truth, Index count,
-                     std::uint64_t seed) {
-    return simulate_measurements(
-        campaign, truth, detail::random_configurations(campaign.robot, count, seed), 1, seed);
-}
-
-CalibrationOptions without_folds() {
-    CalibrationOptions options;
-    options.folds = 0;
-    return options;
-}
+using namespace testing;
 
 TEST(EarlierEstimate, HoldsTheRobotWhileBaseAndTargetsAreFound) {
     const Campaign campaign = held_campaign();
     Parameters truth = draw_truth(campaign, 3);
-    const Calibration first = calibrate(campaign, measure(campaign, truth, 24, 1), without_folds());
+    const Calibration first =
+        calibrate(campaign, measure_at_random(campaign, truth, 24, 1), without_folds());
     Isometry3d move = Isometry3d::Identity();
     move.translate(Vector3d(1, -2, 0.5)).rotate(Eigen::AngleAxisd(0.7, Vector3d::UnitZ()));
-    const Measurements before = measure(campaign, truth, 20, 2);
+    const Measurements before = measure_at_random(campaign, truth, 20, 2);
     truth.world_from_base = move * truth.world_from_base;
-    const Measurements after = measure(campaign, truth, 20, 2);
+    const Measurements after = measure_at_random(campaign, truth, 20, 2);
 
     CalibrationOptions options = without_folds();
     options.earlier = Earlier{first.estimate};
@@ -92,7 +74,7 @@ TEST(EarlierEstimate, HoldsTheRobotWhileBaseAndTargetsAreFound) {
     }
     judged.validation = &before;
     judged.refitted = {"base", "targets"};
-    const Measurements used = measure(campaign, first.estimate.parameters, 24, 1);
+    const Measurements used = measure_at_random(campaign, first.estimate.parameters, 24, 1);
     const Calibration refitted = calibrate(campaign, used, judged);
     EXPECT_LT(refitted.expected_validation->total(), 2 * refitted.expected.total());
     const double here = refitted.validation->distance_rms;
@@ -107,94 +89,28 @@ TEST(EarlierEstimate, FindsTheErrorsThatAreNamed) {
     Parameters truth = draw_truth(campaign, 4);
     CalibrationOptions options = without_folds();
     options.earlier =
-        Earlier{calibrate(campaign, measure(campaign, truth, 24, 1), options).estimate};
+        Earlier{calibrate(campaign, measure_at_random(campaign, truth, 24, 1), options).estimate};
     const std::vector<std::string> names = campaign.robot.parameter_names();
     const Index dq3 = std::find(names.begin(), names.end(), "dq3") - names.begin();
     truth.robot[dq3] += 5e-3;  // a motor was replaced
     options.earlier->use.only = {"base", "targets", "dq3"};
-    const Calibration found = calibrate(campaign, measure(campaign, truth, 8, 2), options);
+    const Calibration found =
+        calibrate(campaign, measure_at_random(campaign, truth, 8, 2), options);
     const VectorXd change =
         found.estimate.parameters.robot - options.earlier->estimate.parameters.robot;
     EXPECT_NEAR(change[dq3], 5e-3, 2e-4);
     EXPECT_EQ((change.array() != 0).count(), 1);
 }
 
-TEST(EarlierEstimate, AsPriorMakesFourPosesAlmostAsGoodAsSixteen) {
-    const Campaign campaign = held_campaign();
-    constexpr int robots = 40;
-    std::vector<double> ratios;
-    Index inside = 0;
-    Index intervals = 0;
-    for (std::uint64_t seed = 0; seed < robots; ++seed) {
-        Parameters truth = draw_truth(campaign, seed);
-        CalibrationOptions options = without_folds();
-        options.earlier =
-            Earlier{calibrate(campaign, measure(campaign, truth, 12, seed), options).estimate,
-                    {.is_prior = true}};
-        const Index count = campaign.robot.parameter_count();
-        RandomStream stream(1000 + seed);
-        for (Index k = 0; k < count; ++k) {
-            const bool is_offset = !campaign.robot.parameter_element(k).joints.empty();
-            if (is_offset) truth.robot[k] += options.earlier->use.drift.offset * stream.normal();
-        }
-        const Measurements sixteen = measure(campaign, truth, 16, 500 + seed);
-        const Calibration few = calibrate(campaign, take(sixteen, {0, 1, 2, 3}), options);
-        const Calibration many = calibrate(campaign, sixteen, without_folds());
-        const Measurements fresh = measure(campaign, truth, 40, 900 + seed);
-        const auto held_out = [&](const Calibration& calibration) {
-            return make_metrics(residuals(campaign, calibration.estimate.parameters, fresh))
-                .distance_rms;
-        };
-        ratios.push_back(held_out(few) / held_out(many));
-        const Index begin = base_parameter_count(campaign);
-        const VectorXd sigmas = standard_deviations(few.estimate).segment(begin, count);
-        const VectorXd off = few.estimate.parameters.robot - truth.robot;
-        inside += (off.array().abs() < 1.96 * sigmas.array()).count();
-        intervals += count;
-    }
-    std::nth_element(ratios.begin(), ratios.begin() + robots / 2, ratios.end());
-    // What 0.1 mrad in each of six joints has changed, four poses find in part.
-    EXPECT_LE(ratios[robots / 2], 1.1);
-    const double share = static_cast<double>(inside) / static_cast<double>(intervals);
-    EXPECT_GE(share, 0.93);
-    EXPECT_LE(share, 0.97);
-    RecordProperty("median_ratio", std::to_string(ratios[robots / 2]));
-    RecordProperty("coverage", std::to_string(share));
-}
-
-TEST(EarlierEstimate, AsPriorOnePoseIsEnough) {
-    const Campaign campaign = held_campaign();
-    Parameters truth = draw_truth(campaign, 5);
-    CalibrationOptions options = without_folds();
-    const Calibration first = calibrate(campaign, measure(campaign, truth, 24, 1), options);
-    options.earlier = Earlier{first.estimate, {.is_prior = true}};
-    const Index dq3 = base_parameter_count(campaign) + 7;
-    for (const Index count : {1, 2}) {
-        const Calibration found = calibrate(campaign, measure(campaign, truth, count, 2), options);
-        ASSERT_EQ(found.estimate.ending, Ending::Converged) << found.estimate.undetermined;
-        EXPECT_TRUE(found.faults.empty());
-        EXPECT_FALSE(found.moved_since);
-        EXPECT_LT(standard_deviations(found.estimate)[dq3],
-                  std::hypot(standard_deviations(first.estimate)[dq3], 1e-4));
-        EXPECT_GT(found.nominal.distance_rms, 1e-4) << "the robot as its maker says";
-        options.earlier->use.has_new_targets = true;
-        EXPECT_TRUE(calibrate(campaign, measure(campaign, truth, 2, 2), options).is_identified() ==
-                    campaign.has_nominal_targets);
-        options.earlier->use.has_new_targets = false;
-    }
-    // Of base and targets nothing was known then.
-    options.earlier->use = {};
-    EXPECT_FALSE(calibrate(campaign, measure(campaign, truth, 2, 2), options).is_identified());
-}
-
 TEST(EarlierEstimate, SaysWhatWasMovedSince) {
     const Campaign campaign = held_campaign();
     const Parameters truth = draw_truth(campaign, 6);
     CalibrationOptions options = without_folds();
-    options.earlier = Earlier{
-        calibrate(campaign, measure(campaign, truth, 24, 1), options).estimate, {.is_prior = true}};
+    options.earlier =
+        Earlier{calibrate(campaign, measure_at_random(campaign, truth, 24, 1), options).estimate,
+                {.is_prior = true}};
     const auto moved_since = [&](const Parameters& now) {
-        return calibrate(campaign, measure(campaign, now, 8, 2), options).moved_since;
+        return calibrate(campaign, measure_at_random(campaign, now, 8, 2), options).moved_since;
     };
     EXPECT_FALSE(moved_since(truth));
     Parameters now = truth;
@@ -232,11 +148,12 @@ Moved measure_moved(const Campaign& campaign, bool moves_base, bool moves_target
     Moved moved;
     moved.truth = draw_truth(campaign, 3);
     moved.first =
-        calibrate(campaign, measure(campaign, moved.truth, 24, 1), without_folds()).estimate;
+        calibrate(campaign, measure_at_random(campaign, moved.truth, 24, 1), without_folds())
+            .estimate;
     if (moves_base) moved.truth.world_from_base.pretranslate(Vector3d(1, 0, 0.2));
     if (moves_base) moved.truth.world_from_base.rotate(Eigen::AngleAxisd(0.9, Vector3d::UnitZ()));
     if (moves_targets) moved.truth.sensor.head<3>() += Vector3d(5e-3, -5e-3, 5e-3);
-    moved.measured = measure(campaign, moved.truth, 12, 2);
+    moved.measured = measure_at_random(campaign, moved.truth, 12, 2);
     return moved;
 }
 
@@ -283,7 +200,7 @@ TEST(EarlierEstimate, HoldsTargetsOrBaseAlone) {
 
         // Judged on them, what was moved alone is refitted.
         CalibrationOptions judged = without_folds();
-        const Measurements used = measure(campaign, draw_truth(campaign, 3), 24, 1);
+        const Measurements used = measure_at_random(campaign, draw_truth(campaign, 3), 24, 1);
         judged.validation = &base.measured;
         judged.refitted = {"base"};
         const double refitted = calibrate(campaign, used, judged).validation->distance_rms;
@@ -295,9 +212,9 @@ TEST(EarlierEstimate, HoldsTargetsOrBaseAlone) {
 
 TEST(EarlierEstimate, PlansThePosesThatReRegisterAsPredicted) {
     const Campaign campaign = held_campaign();
-    Earlier earlier{
-        calibrate(campaign, measure(campaign, draw_truth(campaign, 3), 24, 1), without_folds())
-            .estimate};
+    Earlier earlier{calibrate(campaign, measure_at_random(campaign, draw_truth(campaign, 3), 24, 1),
+                              without_folds())
+                        .estimate};
     earlier.estimate.model_error = 0;  // the robot is as it was found
     earlier.use.only = {"base", "targets"};
     const Campaign held = with_earlier(campaign, earlier);
@@ -337,9 +254,9 @@ TEST(EarlierEstimate, PlansThePosesThatReRegisterAsPredicted) {
 
 TEST(EarlierEstimate, TellsWhereRobotBaseAndTargetsAre) {
     const Campaign campaign = held_campaign();
-    Earlier earlier{
-        calibrate(campaign, measure(campaign, draw_truth(campaign, 3), 24, 1), without_folds())
-            .estimate};
+    Earlier earlier{calibrate(campaign, measure_at_random(campaign, draw_truth(campaign, 3), 24, 1),
+                              without_folds())
+                        .estimate};
     earlier.spread = campaign.spread;
     earlier.spread->length = 3e-3;
     const Parameters& found = earlier.estimate.parameters;
@@ -355,7 +272,7 @@ TEST(EarlierEstimate, TellsWhereRobotBaseAndTargetsAre) {
                     .nominal.world_from_base.isApprox(campaign.nominal.world_from_base, 0));
 
     // Measurements register the robot as it was found, no other.
-    const Measurements measured = measure(campaign, draw_truth(campaign, 3), 20, 8);
+    const Measurements measured = measure_at_random(campaign, draw_truth(campaign, 3), 20, 8);
     const auto missed = [&](const Campaign& one) {
         const Parameters registered = determined(register_base_and_targets(one, measured));
         return make_metrics(residuals(one, registered, measured)).distance_rms;
@@ -364,32 +281,16 @@ TEST(EarlierEstimate, TellsWhereRobotBaseAndTargetsAre) {
     EXPECT_GT(missed(campaign), 1e-3);
 }
 
-TEST(EarlierEstimate, AsPriorCountsInRatings) {
-    const Campaign campaign = held_campaign();
-    Earlier earlier{
-        calibrate(campaign, measure(campaign, draw_truth(campaign, 3), 24, 1), without_folds())
-            .estimate,
-        {.is_prior = true}};
-    const Campaign known = with_earlier(campaign, earlier);
-    const Measurements measured = measure(campaign, draw_truth(campaign, 3), 6, 8);
-    const Parameters registered = determined(register_base_and_targets(known, measured));
-    const MatrixXd M = information(make_blocks(known, registered, measured.configurations, 1.0)) +
-                       prior_information(known);
-    const Rating rating = rate(known, measured, 0);
-    const auto d = static_cast<std::size_t>(
-        std::find(all_criteria.begin(), all_criteria.end(), Criterion::D) - all_criteria.begin());
-    EXPECT_NEAR(rating.scaled.values[d], evaluate(Criterion::D, M, 6), 1e-6);
-}
-
 TEST(EarlierEstimate, HoldsWhatGivesWayUnderMeasuredTorques) {
     Campaign campaign = testing::tracked_campaign(
         with_measured_compliance(without_parameters(testing::fanuc()), {{1, 300}, {2, 200}}));
     const Parameters truth = draw_truth(campaign, 3);
     CalibrationOptions options = without_folds();
-    const Measurements measured = measure(campaign, truth, 12, 1);
+    const Measurements measured = measure_at_random(campaign, truth, 12, 1);
     options.earlier = Earlier{calibrate(campaign, measured, options).estimate};
     options.earlier->use.only = {"base", "targets"};
-    const Calibration found = calibrate(campaign, measure(campaign, truth, 12, 2), options);
+    const Calibration found =
+        calibrate(campaign, measure_at_random(campaign, truth, 12, 2), options);
     ASSERT_TRUE(found.is_identified());
     EXPECT_EQ(found.estimate.parameters.robot, options.earlier->estimate.parameters.robot);
     EXPECT_LT(found.estimate.fit.distance_rms, 4e-4);
@@ -408,7 +309,7 @@ TEST(EarlierEstimate, ScalesWhatGivesWayWithTheLoad) {
 
 TEST(EarlierEstimate, RefusesWhatMakesNoSense) {
     const Campaign campaign = held_campaign();
-    const Measurements measured = measure(campaign, draw_truth(campaign, 3), 12, 1);
+    const Measurements measured = measure_at_random(campaign, draw_truth(campaign, 3), 12, 1);
     CalibrationOptions options = without_folds();
     options.earlier = Earlier{calibrate(campaign, measured, without_folds()).estimate};
     options.earlier->use.only = {"base", "targets", "dq9"};

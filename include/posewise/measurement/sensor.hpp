@@ -99,8 +99,9 @@ class Sensor {
     /// What the robot touches, if each pose shows one of these and no other, and that it is there:
     /// all readings are 0, and files have a column of these names instead. Empty: readings differ.
     virtual std::vector<std::string> contact_names() const { return {}; }
+    bool has_contacts() const { return !contact_names().empty(); }
     /// How many a pose can show at once.
-    Index seen_at_once() const { return contact_names().empty() ? target_count() : 1; }
+    Index seen_at_once() const { return has_contacts() ? 1 : target_count(); }
     /// Which of targets() it belongs to.
     Index point_of(Index target) const { return target * targets().count() / target_count(); }
     /// Where the point of each target is in the flange frame, m.

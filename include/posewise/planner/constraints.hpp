@@ -19,7 +19,7 @@ enum class Constraint {
     TargetBoxes,    ///< every target in one of them
     KeepOuts,       ///< links that move, against keep-outs
     SelfCollision,  ///< links against links, but for those fixed to the same or the next frame
-    Contact,        ///< of sensors with contact_names(): one of them is touched, to 1 nm
+    Contact,        ///< of sensors with has_contacts(): one of them is touched, to 1 nm
     Range,          ///< this and the next four: as many targets as must be seen, each by itself
     Azimuth,
     Elevation,
@@ -56,7 +56,7 @@ class Constraints {
     /// the limits, a number of normals other than that of targets, targets within a link that
     /// hides them, a cell that speaks of targets or the tracker where the sensor has no targets or
     /// the campaign does not state its base and targets.
-    /// `needs_contact`: whether a sensor with contact_names() is to measure there.
+    /// `needs_contact`: whether a sensor with has_contacts() is to measure there.
     Constraints(const Campaign& campaign, Cell cell, bool needs_contact = true);
 
     const Cell& cell() const { return cell_; }
