@@ -17,6 +17,7 @@
 #include "branch_and_bound.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
+#include "recombination.hpp"
 #include "relaxation.hpp"
 #include "validation.hpp"
 
@@ -97,8 +98,8 @@ ScoredPoses make_identifying(const SearchProblem& problem, const Shortlist& shor
                              const ScoredPoses& choice, RandomStream& random) {
     if (choice.score.identifies || problem.objective.criterion == Criterion::D) return choice;
     const detail::Objective determinant;
-    SearchProblem by_determinant{problem.candidates, problem.options, determinant, problem.held,
-                                 problem.ridge};
+    SearchProblem by_determinant{problem.candidates, problem.options, determinant,
+                                 problem.held,       problem.ridge,   problem.ruggedness};
     const ScoredPoses changed = improve_with_kicks(
         by_determinant, detail::make_shortlist(problem.candidates, shortlist.members),
         make_choice(by_determinant, choice.poses), random);
@@ -119,10 +120,10 @@ Index start_count(const Shortlist& shortlist, const SearchProblem& problem) {
     const double rows = detail::mean_rows(problem.candidates);
     const double work = rows * rows * static_cast<double>(problem.candidates.parameter_count()) *
                         static_cast<double>(options.pose_count) *
-                        static_cast<double>(shortlist.members.size()) * detail::ruggedness(problem);
+                        static_cast<double>(shortlist.members.size()) * problem.ruggedness;
     const bool is_quick = detail::has_exact_gains(problem.objective);
     return static_cast<Index>(
-        std::clamp(5e8 / work, is_quick ? 4.0 : 2.0, is_quick ? 100.0 : 20.0));
+        std::clamp(8e8 / work, is_quick ? 12.0 : 4.0, is_quick ? 100.0 : 30.0));
 }
 
 /// The most sensitive candidates at the relaxed optimum that are not excluded.
@@ -148,11 +149,9 @@ Index count_at_best(std::span<const ScoredPoses> choices, double best) {
     });
 }
 
-/// Whether so many starts that ended at the best are enough to end the search. Few starts may by
-/// chance agree on a plan that is not the best.
-bool is_enough(Index at_best, Index starts) {
-    return at_best >= 10 || (at_best >= 5 && starts >= 30);
-}
+/// Starts that ended at the best, to end the search after. Fewer may by chance agree on a plan that
+/// is not the best.
+constexpr Index enough = 10;
 
 /// What the starts ended at, in their order whichever ended first. Where they may agree, those
 /// after the first ones of which enough ended at the best of them are not needed.
@@ -174,7 +173,7 @@ class Ends {
             first_.push_back(*ends_[first_.size()]);
             const auto& [identifies, value] = first_.back().score;
             if (identifies) best_ = std::max(best_, value);
-            if (may_agree_ && is_enough(count_at_best(first_, best_), counted())) {
+            if (may_agree_ && count_at_best(first_, best_) >= enough) {
                 needed_ = counted();
             }
         }
@@ -213,10 +212,36 @@ struct Outcome {
     double bound = std::numeric_limits<double>::infinity();
 };
 
+/// Exchanges with every candidate that could improve the choice, shortlisted or not, until none
+/// does.
+ScoredPoses sweep_all(const SearchProblem& problem, ScoredPoses choice) {
+    for (Index sweep = 0; sweep < sweep_limit && !problem.options.stop.is_set(); ++sweep) {
+        const VectorXd d = detail::sensitivities(
+            problem.candidates,
+            gradient(problem.objective, problem.regularised_information(choice.poses)));
+        double least = std::numeric_limits<double>::infinity();
+        for (const Index pose : choice.poses) least = std::min(least, d[pose]);
+        const std::vector<Index> capacity =
+            detail::capacities(problem.candidates.count(), problem.options);
+        std::vector<Index> members;
+        for (const Index i : by_decreasing(d)) {
+            if (d[i] <= least || static_cast<Index>(members.size()) == sweep_size) break;
+            if (capacity[static_cast<std::size_t>(i)] > 0) members.push_back(i);
+        }
+        if (members.empty()) break;
+        const Shortlist shortlist = detail::make_shortlist(problem.candidates, std::move(members));
+        const ScoredPoses improved = improve(problem, shortlist, choice);
+        if (!is_better(improved.score, choice.score)) break;
+        choice = improved;
+    }
+    return choice;
+}
+
 ScoredPoses search_from(const SearchProblem& problem, const Shortlist& shortlist,
                         const ScoredPoses& start, RandomStream& random) {
-    return improve_with_kicks(problem, shortlist,
-                              make_identifying(problem, shortlist, start, random), random);
+    return sweep_all(
+        problem, improve_with_kicks(problem, shortlist,
+                                    make_identifying(problem, shortlist, start, random), random));
 }
 
 /// What the start of the relaxation ends at.
@@ -260,31 +285,6 @@ void run_starts(const SearchProblem& problem, const Relaxation& relaxation,
     }
 }
 
-/// Exchanges with every candidate that could improve the choice, shortlisted or not, until none
-/// does.
-ScoredPoses sweep_all(const SearchProblem& problem, ScoredPoses choice) {
-    for (Index sweep = 0; sweep < sweep_limit && !problem.options.stop.is_set(); ++sweep) {
-        const VectorXd d = detail::sensitivities(
-            problem.candidates,
-            gradient(problem.objective, problem.regularised_information(choice.poses)));
-        double least = std::numeric_limits<double>::infinity();
-        for (const Index pose : choice.poses) least = std::min(least, d[pose]);
-        const std::vector<Index> capacity =
-            detail::capacities(problem.candidates.count(), problem.options);
-        std::vector<Index> members;
-        for (const Index i : by_decreasing(d)) {
-            if (d[i] <= least || static_cast<Index>(members.size()) == sweep_size) break;
-            if (capacity[static_cast<std::size_t>(i)] > 0) members.push_back(i);
-        }
-        if (members.empty()) break;
-        const Shortlist shortlist = detail::make_shortlist(problem.candidates, std::move(members));
-        const ScoredPoses improved = improve(problem, shortlist, choice);
-        if (!is_better(improved.score, choice.score)) break;
-        choice = improved;
-    }
-    return choice;
-}
-
 /// Whether the best is proven to be optimal; once more from what that found, so that whoever has
 /// the plan can repeat it.
 bool prove(const SearchProblem& problem, const Relaxation& relaxation,
@@ -302,8 +302,9 @@ bool prove(const SearchProblem& problem, const Relaxation& relaxation,
 
 /// What the start of the relaxation ends at may leave few enough other choices to rule them out;
 /// else all starts, and a proof of what they find.
-Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
+Outcome search(SearchProblem problem, const Relaxation& relaxation) {
     const Shortlist shortlist = shortlist_by_sensitivity(problem, relaxation);
+    problem.ruggedness = detail::ruggedness(problem, shortlist);
     const Index starts = start_count(shortlist, problem);
     const std::optional<double> asked = problem.options.proof;
     const double usual = std::min(asked.value_or(detail::usual_proof), detail::usual_proof);
@@ -319,7 +320,8 @@ Outcome search(const SearchProblem& problem, const Relaxation& relaxation) {
     }
     const detail::Score tried = outcome.best.score;
     run_starts(problem, relaxation, shortlist, starts, first, outcome);
-    outcome.best = sweep_all(problem, outcome.best);
+    outcome.best =
+        sweep_all(problem, detail::recombine(problem, shortlist, outcome.best, outcome.starts));
     if (!problem.options.stop.is_set() && (asked || is_better(outcome.best.score, tried))) {
         prove(problem, relaxation, {.seconds = asked.value_or(usual), .is_only_if_likely = !asked},
               outcome);

@@ -132,7 +132,7 @@ class LocalSearch {
 /// Kicks without success to give up after.
 Index patience(const SearchProblem& problem) {
     return static_cast<Index>(
-        std::lround(static_cast<double>(problem.options.kicks) * ruggedness(problem)));
+        std::lround(static_cast<double>(problem.options.kicks) * problem.ruggedness));
 }
 
 /// The first better choice that kicks of the best lead to; the best itself where too many in a row
@@ -162,11 +162,16 @@ double mean_rows(const Blocks& candidates) {
            static_cast<double>(std::max<Index>(1, candidates.count()));
 }
 
-double ruggedness(const SearchProblem& problem) {
+double ruggedness(const SearchProblem& problem, const Shortlist& shortlist) {
     const double poses = static_cast<double>(problem.options.pose_count);
-    const double needed = static_cast<double>(problem.candidates.parameter_count()) /
-                          (poses * mean_rows(problem.candidates));
-    const double square = std::min(1.0, needed * needed);
+    const double share = poses / static_cast<double>(shortlist.members.size());
+    const MatrixXd told =
+        share * symmetric_gram(take(problem.candidates, shortlist.members).matrix);
+    MatrixXd M = problem.held + told;
+    M.diagonal().array() += problem.ridge;
+    const double parameters = M.ldlt().solve(told).trace();
+    const double needed = parameters / (poses * mean_rows(problem.candidates));
+    const double square = std::clamp(needed * needed, 0.0, 1.0);
     return 1 + 9 * square * square;
 }
 

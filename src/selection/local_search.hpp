@@ -21,6 +21,8 @@ struct SearchProblem {
     const Objective& objective;
     MatrixXd held;
     double ridge = 0;  ///< times the identity: small, but makes every matrix positive definite
+    /// From 1 to 10: choices with hardly more rows than parameters to tell have many local optima.
+    double ruggedness = 10;
 
     MatrixXd regularised_information(const std::vector<Index>& poses) const;
     Score score(const MatrixXd& regularised) const;
@@ -31,9 +33,9 @@ double ridge_of(const Blocks& candidates);
 
 double mean_rows(const Blocks& candidates);
 
-/// From 1 to 10: plans with hardly more rows than parameters, which hardly identify them, have many
-/// local optima.
-double ruggedness(const SearchProblem& problem);
+/// Of a SearchProblem, by the parameters that poses like those of the shortlist tell beyond what is
+/// held: tr((H + M)^-1 M), all without a prior.
+double ruggedness(const SearchProblem& problem, const Shortlist& shortlist);
 
 /// A choice of candidates in the search, and how good it is.
 struct ScoredPoses {

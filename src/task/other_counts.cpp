@@ -20,7 +20,6 @@ SelectOptions quick_options(const Planning& planning) {
     options.held = planning.search.held.information;
     options.held_pose_count = planning.search.held_pose_count;
     options.starts = 4;  // one alone may be far off where poses hardly suffice
-    options.kicks = 8;
     options.proof = 0;
     options.gap = 1e-2;
     options.seed = planning.search.seed;

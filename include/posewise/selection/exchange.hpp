@@ -29,13 +29,13 @@ struct SelectOptions {
     double least_distance = 0;    ///< Euclidean, between any two different poses chosen
     std::vector<std::string> column_names;  ///< for messages; empty: columns are numbered from 1
 
-    /// Independent searches. 0: until ten of them agree on the best value, or five of thirty, at
-    /// most 100 (20 by E, G and O2 to O5), fewer (2 at least) where blocks of many rows and
-    /// parameters make each take seconds.
+    /// Independent searches. 0: until ten of them agree on the best value, at most 100 (30 by E, G
+    /// and O2 to O5), fewer (12 at least, or 4) where blocks of many rows and parameters make each
+    /// take seconds.
     Index starts = 0;
     /// Perturbations of each start's plan without success until it ends; up to ten times as many
-    /// where the poses have hardly more rows than there are parameters.
-    Index kicks = 20;
+    /// where the poses have hardly more rows than there are parameters to tell beyond what is held.
+    Index kicks = 6;
     /// Candidates searched; all are looked at in the last sweeps. 0: from 800 for large blocks to
     /// 5000 for small ones.
     Index shortlist = 0;
@@ -51,13 +51,14 @@ struct SelectOptions {
 
 /// The best K of the candidates, and a proven bound. The continuous relaxation gives the bound, a
 /// shortlist and the starts; block exchange with kicks (iterated local search) improves each start,
-/// over OpenMP threads whose number does not matter; last sweeps over all candidates end where no
-/// exchange improves (for O5 and parameters of interest: none of those estimated to be good, but
-/// all in the last sweeps). Where branch and bound rules out or tries all others in time, the
-/// plan is optimal. Ends NotIdentifiable if all candidates together do not identify the parameters
-/// (naming the columns of the unseen directions), or if no start found K poses that do. Throws
-/// InputError if K is not in [1, candidates x repeats], if the limits leave fewer than K, or for
-/// options that contradict the candidates.
+/// over OpenMP threads whose number does not matter; what they end at is crossed (memetic search);
+/// last sweeps over all candidates end where no exchange improves (for O5 and parameters of
+/// interest: none of those estimated to be good, but all in the last sweeps). Where branch and
+/// bound rules out or tries all others in time, the plan is optimal. Ends NotIdentifiable if all
+/// candidates together do not identify the parameters (naming the columns of the unseen
+/// directions), or if no start found K poses that do. Throws InputError if K is not in [1,
+/// candidates x repeats], if the limits leave fewer than K, or for options that contradict the
+/// candidates.
 Choice select_poses(const Blocks& candidates, const SelectOptions& options);
 
 }  // namespace posewise

@@ -1,0 +1,128 @@
+#include "recombination.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "../core/parallel.hpp"
+#include "limits.hpp"
+
+namespace posewise::detail {
+namespace {
+
+constexpr std::size_t population_size = 12;
+constexpr Index children = 12;  // of a generation
+constexpr Index patience = 3;   // generations that change nothing, to end after
+
+using Poses = std::vector<Index>;
+
+void shuffle(Poses& poses, RandomStream& random) {
+    for (std::size_t i = poses.size(); i > 1; --i) {
+        std::swap(poses[i - 1],
+                  poses[static_cast<std::size_t>(random.index(static_cast<Index>(i)))]);
+    }
+}
+
+/// K poses: what both have, then those of either in random order, then any of the shortlist, as the
+/// limits allow. Fewer where they leave no more.
+Poses cross(const SearchProblem& problem, const Shortlist& shortlist, const Poses& a,
+            const Poses& b, RandomStream& random) {
+    Poses order;
+    Poses either;
+    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(order));
+    std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(),
+                                  std::back_inserter(either));
+    shuffle(either, random);
+    order.insert(order.end(), either.begin(), either.end());
+    order.insert(order.end(), shortlist.members.begin(), shortlist.members.end());
+    Occupancy occupancy(problem.candidates.count(), problem.options);
+    Poses child;
+    for (const Index pose : order) {
+        if (static_cast<Index>(child.size()) == problem.options.pose_count) break;
+        if (!occupancy.allows(pose)) continue;
+        occupancy.add(pose);
+        child.push_back(pose);
+    }
+    return child;
+}
+
+/// Choices that all differ, the best first; as many as `population_size` at most.
+class Population {
+  public:
+    const std::vector<ScoredPoses>& members() const { return members_; }
+
+    /// Of all members, each once.
+    Poses poses() const {
+        Poses all;
+        for (const ScoredPoses& member : members_) {
+            all.insert(all.end(), member.poses.begin(), member.poses.end());
+        }
+        std::sort(all.begin(), all.end());
+        all.erase(std::unique(all.begin(), all.end()), all.end());
+        return all;
+    }
+
+    /// Whether it is new and good enough.
+    bool would_take(ScoredPoses choice) const {
+        std::sort(choice.poses.begin(), choice.poses.end());
+        const bool is_known =
+            std::any_of(members_.begin(), members_.end(),
+                        [&](const ScoredPoses& member) { return member.poses == choice.poses; });
+        return !is_known && choice.score.identifies &&
+               (members_.size() < population_size ||
+                choice.score.value > members_.back().score.value);
+    }
+
+    /// Whether it was taken.
+    bool add(ScoredPoses choice) {
+        if (!would_take(choice)) return false;
+        std::sort(choice.poses.begin(), choice.poses.end());
+        const auto place = std::find_if(
+            members_.begin(), members_.end(),
+            [&](const ScoredPoses& member) { return choice.score.value > member.score.value; });
+        members_.insert(place, std::move(choice));
+        if (members_.size() > population_size) members_.pop_back();
+        return true;
+    }
+
+  private:
+    std::vector<ScoredPoses> members_;
+};
+
+}  // namespace
+
+ScoredPoses recombine(const SearchProblem& problem, const Shortlist& shortlist,
+                      const ScoredPoses& best, const std::vector<ScoredPoses>& choices) {
+    Population population;
+    for (const ScoredPoses& choice : choices) population.add(choice);
+    const SelectOptions& options = problem.options;
+    Index unchanged = 0;
+    for (Index generation = 0; unchanged < patience && !options.stop.is_set(); ++generation) {
+        const std::vector<ScoredPoses>& parents = population.members();
+        const auto count = static_cast<Index>(parents.size());
+        if (count < 2) break;
+        std::vector<ScoredPoses> born(static_cast<std::size_t>(children));
+        const Shortlist known = make_shortlist(problem.candidates, population.poses());
+        for_each_index(children, [&](Index child) {
+            constexpr Index stream = Index{1} << 32;  // far from those of the starts
+            RandomStream random(options.seed,
+                                static_cast<std::uint64_t>(stream + generation * children + child));
+            const std::vector<Index> pair = random.subset(count, 2);
+            Poses poses =
+                cross(problem, shortlist, parents[static_cast<std::size_t>(pair[0])].poses,
+                      parents[static_cast<std::size_t>(pair[1])].poses, random);
+            if (static_cast<Index>(poses.size()) < options.pose_count) return;
+            const Score score = problem.score(problem.regularised_information(poses));
+            ScoredPoses improved = improve(problem, known, {std::move(poses), score});
+            born[static_cast<std::size_t>(child)] = improve(problem, shortlist, improved);
+        });
+        bool is_changed = false;
+        for (ScoredPoses& child : born) {
+            if (!child.poses.empty() && population.add(std::move(child))) is_changed = true;
+        }
+        unchanged = is_changed ? 0 : unchanged + 1;
+    }
+    const std::vector<ScoredPoses>& found = population.members();
+    return !found.empty() && is_better(found.front().score, best.score) ? found.front() : best;
+}
+
+}  // namespace posewise::detail
