@@ -102,12 +102,19 @@ VectorXd read_targets(const JsonValue& targets, const Sensor& sensor) {
     return unknowns;
 }
 
+/// What to do where the estimate has more or fewer unknowns than the campaign.
+constexpr const char* as_then =
+    "; what is known of base and sensor must be stated as when the estimate was made, unless "
+    "'calibrate --moved' says that they are others";
+
 VectorXd read_unknowns(const JsonValue& values, const Sensor& sensor) {
     const std::vector<std::string> names = sensor.unknown_names();
     const std::vector<bool> is_angle = sensor.unknown_is_angle();
     VectorXd unknowns(static_cast<Index>(names.size()));
     for (std::size_t k = 0; k < names.size(); ++k) {
-        const JsonValue value = values[names[k] + detail::si_suffix(is_angle[k])];
+        const std::string key = names[k] + detail::si_suffix(is_angle[k]);
+        if (!values.has(key)) throw values.error("has no " + key + as_then);
+        const JsonValue value = values[key];
         unknowns[static_cast<Index>(k)] =
             check_size(value.number(), is_angle[k] ? Quantity::Angle : Quantity::Length, value);
     }
@@ -150,8 +157,8 @@ MatrixXd read_covariance(const JsonValue& covariance, const std::vector<std::str
     const std::vector<JsonValue> rows = covariance["rows_si"].list();
     const bool is_short = listed.size() < names.size() || rows.size() < names.size();
     if (is_short || (is_all && (listed.size() > names.size() || rows.size() > names.size()))) {
-        throw covariance.error(fmt::format("has {} parameters in {} rows; must have {}",
-                                           listed.size(), rows.size(), names.size()));
+        throw covariance.error(fmt::format("has {} parameters in {} rows, the campaign {}{}",
+                                           listed.size(), rows.size(), names.size(), as_then));
     }
     MatrixXd matrix(std::ssize(names), std::ssize(names));
     for (std::size_t k = 0; k < names.size(); ++k) {

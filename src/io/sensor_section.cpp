@@ -187,11 +187,16 @@ SensorSection read_distances(const YamlValue& value) {
             join(targets.unknowns, own), targets.has_positions};
 }
 
-Plane read_plane(const YamlValue& value) {
-    const YamlMap map(value, {"normal", "offset_<length>"});
+/// With what the list's own key says of all planes, if the plane says nothing of itself.
+Plane read_plane(const YamlValue& value, bool are_known) {
+    const YamlMap map(value, {"normal", "offset_<length>", "known"});
     const YamlValue normal = map.require("normal");
     const std::vector<double> xyz = normal.numbers(3);
-    const Plane plane{{xyz[0], xyz[1], xyz[2]}, map.require_measure("offset").to_si()};
+    const auto known = map.find("known");
+    const std::vector<bool> is_known =
+        known ? read_known(*known, {"normal", "offset"}) : std::vector<bool>(2, are_known);
+    const Plane plane{
+        {xyz[0], xyz[1], xyz[2]}, map.require_measure("offset").to_si(), is_known[0], is_known[1]};
     const double length = plane.normal.stableNorm();
     if (!(length > 1e-9 && length < 1e9)) {
         throw normal.error(fmt::format(
@@ -203,17 +208,19 @@ Plane read_plane(const YamlValue& value) {
 SensorSection read_planes(const YamlValue& value) {
     const YamlMap sensor(value, {"kind", "sigma_<length>", "planes", "known_planes", "targets"});
     const YamlValue list = sensor.require("planes");
-    std::vector<Plane> planes;
-    for (const YamlValue& item : list.list()) planes.push_back(read_plane(item));
-    if (planes.empty()) throw list.error("is empty; must list at least one plane");
     const bool are_known = is_true(sensor, "known_planes");
+    std::vector<Plane> planes;
+    std::vector<double> own;
+    for (const YamlValue& item : list.list()) {
+        planes.push_back(read_plane(item, are_known));
+        if (!planes.back().normal_is_known) own.insert(own.end(), {0, 0});
+        if (!planes.back().offset_is_known) own.push_back(planes.back().offset);
+    }
+    if (planes.empty()) throw list.error("is empty; must list at least one plane");
     TargetsSection targets = read_targets(sensor.require("targets"));
-    VectorXd own = VectorXd::Zero(are_known ? 0 : 3 * static_cast<Index>(planes.size()));
-    for (Index k = 2; k < own.size(); k += 3)
-        own[k] = planes[static_cast<std::size_t>(k / 3)].offset;
-    return {std::make_shared<PlaneSensor>(std::move(targets.targets), planes, are_known,
-                                          read_sigma(sensor)),
-            join(targets.unknowns, own), targets.has_positions};
+    const Eigen::Map<const VectorXd> unknowns(own.data(), std::ssize(own));
+    return {std::make_shared<PlaneSensor>(std::move(targets.targets), planes, read_sigma(sensor)),
+            join(targets.unknowns, unknowns), targets.has_positions};
 }
 
 // ---- Sockets ----

@@ -19,7 +19,9 @@ KnownSensor::KnownSensor(std::shared_ptr<const Sensor> sensor, VectorXd unknowns
 SensorWords KnownSensor::words() const {
     SensorWords words = sensor_->words();
     const std::pair<std::string, std::string> changes[] = {
-        {describe(sensor_->targets()), describe(targets_)}, {"(to be identified)", "(known)"}};
+        {describe(sensor_->targets()), describe(targets_)},
+        {"(to be identified)", "(known)"},
+        {"(known in part)", "(known)"}};
     for (const auto& [open, known] : changes) {
         const auto place = words.sentence.find(open);
         if (place != std::string::npos) words.sentence.replace(place, open.size(), known);

@@ -10,19 +10,19 @@ namespace {
 
 // ---- Planes ----
 
-/// The campaign with the base as stated and all planes unknown.
+/// The campaign with the base as stated and nothing known of all planes.
 Campaign with_unknown_planes(const Campaign& campaign, const PlaneSensor& sensor) {
     Campaign changed = campaign;
     changed.base_is_known.fill(true);
-    changed.sensor =
-        std::make_shared<PlaneSensor>(sensor.targets(), sensor.planes(), false, sensor.sigma());
+    std::vector<Plane> planes = sensor.planes();
     Index next = sensor.targets().unknown_count();
-    changed.nominal.sensor.conservativeResize(
-        static_cast<Index>(changed.sensor->unknown_names().size()));
-    for (const Plane& plane : sensor.planes()) {
+    changed.nominal.sensor.conservativeResize(next + 3 * std::ssize(planes));
+    for (Plane& plane : planes) {
+        plane.normal_is_known = plane.offset_is_known = false;
         changed.nominal.sensor.segment<3>(next) << 0, 0, plane.offset;
         next += 3;
     }
+    changed.sensor = std::make_shared<PlaneSensor>(sensor.targets(), planes, sensor.sigma());
     return changed;
 }
 
@@ -53,21 +53,20 @@ std::vector<PlaneDoubt> find_plane_doubts(const Campaign& campaign, const Measur
     const auto* const sensor = dynamic_cast<const PlaneSensor*>(campaign.sensor.get());
     if (sensor == nullptr) return {};
     const Campaign freed = with_unknown_planes(campaign, *sensor);
-    const bool are_known = campaign.nominal.sensor.size() < freed.nominal.sensor.size();
     const Registration registered = register_base_and_targets(freed, measured);
     if (!registered.is_determined()) return {};  // too few to tell
-    const VectorXd& fitted = registered.parameters.sensor;
+    const auto& free_sensor = static_cast<const PlaneSensor&>(*freed.sensor);
     std::vector<PlaneDoubt> doubts;
-    Index next = sensor->targets().unknown_count();
-    for (std::size_t k = 0; k < sensor->planes().size(); ++k, next += 3) {
-        const Plane& stated = sensor->planes()[k];
-        const bool is_reversed = std::cos(fitted.segment<2>(next).norm()) < 0;
-        const double offset = fitted[next + 2];
+    for (Index k = 0; k < std::ssize(sensor->planes()); ++k) {
+        const Plane& stated = sensor->planes()[static_cast<std::size_t>(k)];
+        const Plane fitted = free_sensor.plane(k, registered.parameters.sensor);
+        const bool is_reversed = fitted.normal.dot(stated.normal) < 0;
         const bool is_opposite =
-            are_known && std::abs(offset + stated.offset) < 0.1 * std::abs(offset - stated.offset);
+            stated.offset_is_known &&
+            std::abs(fitted.offset + stated.offset) < 0.1 * std::abs(fitted.offset - stated.offset);
         if (!is_reversed && !is_opposite) continue;
         const Vector3d normal = is_reversed ? Vector3d(-stated.normal) : stated.normal;
-        doubts.push_back({static_cast<Index>(k), stated, {normal, offset}});
+        doubts.push_back({k, stated, {normal, fitted.offset}});
     }
     return doubts;
 }
@@ -78,11 +77,11 @@ std::vector<detail::TurnedPlane> detail::find_turned_planes(const Campaign& camp
     const auto* const sensor = dynamic_cast<const PlaneSensor*>(campaign.sensor.get());
     if (sensor == nullptr) return {};
     std::vector<TurnedPlane> turned;
-    const Index first = sensor->targets().unknown_count();
-    for (Index next = first; next < unknowns.size(); next += 3) {
-        const double tilt = unknowns.segment<2>(next).norm();
-        if (std::abs(std::cos(tilt)) >= least_cosine) continue;
-        turned.push_back({(next - first) / 3, std::acos(std::cos(tilt))});
+    for (Index k = 0; k < std::ssize(sensor->planes()); ++k) {
+        const Vector3d& stated = sensor->planes()[static_cast<std::size_t>(k)].normal;
+        const double cosine = sensor->plane(k, unknowns).normal.dot(stated);
+        if (std::abs(cosine) >= least_cosine) continue;
+        turned.push_back({k, std::acos(cosine)});
     }
     return turned;
 }

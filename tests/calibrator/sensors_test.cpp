@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <stdexcept>
+
 #include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
@@ -41,6 +44,60 @@ TEST(EverySensor, CalibratesTheRobotToWhatItsNoiseAllows) {
         const VectorXd error = estimate.parameters.robot - simulated.truth.robot;
         EXPECT_LT(error.cwiseQuotient(robot_sigma).cwiseAbs().maxCoeff(), 5);
     }
+}
+
+/// A campaign of every sensor by its name, with what it can identify and no model error.
+Campaign exact_campaign(const std::string& called) {
+    for (const auto& [name, declared] : campaigns_of_every_sensor(fanuc())) {
+        if (name != called) continue;
+        Campaign campaign = irreducible(declared);
+        campaign.model_error = 0;
+        return campaign;
+    }
+    throw std::logic_error(called);
+}
+
+TEST(PlaneSensor, IsCalibratedWithWhatIsKnownOfEachPlaneAsItsCovarianceSays) {
+    const Campaign campaign = exact_campaign("planes known in part");
+    constexpr std::uint64_t sets = 30;
+    double squares = 0;
+    for (std::uint64_t i = 0; i < sets; ++i) {
+        const Simulation simulated =
+            simulate(campaign, {.pose_count = 60, .truth_seed = 6 + i, .seed = 100 + i});
+        const Estimate estimate =
+            identify(campaign, simulated.measurements,
+                     register_base_and_targets(campaign, simulated.measurements).parameters);
+        EXPECT_EQ(estimate.ending, Ending::Converged);
+        VectorXd error(estimate.covariance.rows());
+        error << estimate.parameters.robot - simulated.truth.robot,
+            estimate.parameters.sensor - simulated.truth.sensor;
+        squares += error.dot(estimate.covariance.llt().solve(error)) / estimate.variance_factor;
+    }
+    const auto count = static_cast<double>(sets * parameter_count(campaign));
+    // Chi-square over all parameters of all sets, four of its standard deviations.
+    EXPECT_NEAR(squares / count, 1, 4 * std::sqrt(2 / count));
+}
+
+TEST(PlaneSensor, TellsMoreWhereMoreIsKnownOfItsPlanes) {
+    const Campaign partly = exact_campaign("planes known in part");
+    const Campaign open = with_robot(exact_campaign("unknown planes"), partly.robot);
+    const Measurements measured = simulate(partly, {.pose_count = 60}).measurements;
+    const auto deviations = [&](const Campaign& campaign) {
+        const Estimate estimate =
+            identify(campaign, measured, register_base_and_targets(campaign, measured).parameters);
+        const VectorXd sigmas = standard_deviations(estimate) / std::sqrt(estimate.variance_factor);
+        std::map<std::string, double> by_name;
+        for (std::size_t k = 0; k < estimate.names.size(); ++k) {
+            by_name[estimate.names[k]] = sigmas[static_cast<Index>(k)];
+        }
+        return by_name;
+    };
+    const auto with_all = deviations(open);
+    const auto with_some = deviations(partly);
+    EXPECT_EQ(with_all.size(), with_some.size() + 3);
+    for (const auto& [name, sigma] : with_some) EXPECT_LT(sigma, 1.01 * with_all.at(name)) << name;
+    EXPECT_LT(with_some.at("plane2.tilt1"), 0.9 * with_all.at("plane2.tilt1"));
+    EXPECT_LT(with_some.at("plane1.offset"), 0.9 * with_all.at("plane1.offset"));
 }
 
 TEST(PoseSensor, IdentifiesFourARevoluteJointAndSix) {

@@ -203,10 +203,29 @@ TEST(DistanceSensor, MeasuresFromItsAnchor) {
 }
 
 TEST(PlaneSensor, IsPositiveWhereTheNormalPoints) {
-    const PlaneSensor sensor(Targets({Vector3d(0, 0, 0.5)}), {{{0, 0, 2}, 1}}, true, 1e-5);
+    const PlaneSensor sensor(Targets({Vector3d(0, 0, 0.5)}), {{{0, 0, 2}, 1, true, true}}, 1e-5);
     Isometry3d flange = Isometry3d::Identity();
     flange.translation() = Vector3d(1, 3, 4);
     EXPECT_DOUBLE_EQ(sensor.predict(flange, VectorXd())[0], 3.5);
+}
+
+TEST(PlaneSensor, LeavesUnknownWhatIsNotKnownOfEachPlane) {
+    const PlaneSensor sensor(
+        Targets({Vector3d(0, 0, 0.5)}),
+        {{{0, 0, 2}, 1, true, false}, {{1, 0, 0}, 2, false, true}, {{0, 1, 0}, 3}}, 1e-5);
+    EXPECT_EQ(sensor.unknown_names(),
+              (std::vector<std::string>{"plane1.offset", "plane2.tilt1", "plane2.tilt2",
+                                        "plane3.tilt1", "plane3.tilt2", "plane3.offset"}));
+    EXPECT_EQ(sensor.unknown_is_angle(), (std::vector<bool>{false, true, true, true, true, false}));
+    VectorXd unknowns(6);
+    unknowns << 1.5, 0, 0, 0.1, 0, 2.5;
+    const Plane first = sensor.plane(0, unknowns);
+    EXPECT_EQ(first.normal, Vector3d::UnitZ());
+    EXPECT_EQ(first.offset, 1.5);
+    EXPECT_EQ(sensor.plane(1, unknowns).offset, 2);
+    EXPECT_NEAR(sensor.plane(2, unknowns).normal.dot(Vector3d::UnitY()), std::cos(0.1), 1e-15);
+    EXPECT_NE(sensor.words().sentence.find("3 planes (known in part)"), std::string::npos)
+        << sensor.words().sentence;
 }
 
 TEST(Sensors, RefuseWhatIsNoSensor) {
@@ -217,7 +236,9 @@ TEST(Sensors, RefuseWhatIsNoSensor) {
     EXPECT_THROW(DistanceSensor(one, {}, true, 1e-5), InputError);
     EXPECT_THROW(DistanceSensor(one, {Vector3d(0, nan, 0)}, true, 1e-5), InputError);
     EXPECT_THROW(DistanceSensor(one, {Vector3d::Zero()}, true, nan), InputError);
-    EXPECT_THROW(PlaneSensor(one, {{Vector3d::Zero(), 0}}, true, 1e-5), InputError);
+    EXPECT_THROW(PlaneSensor(one, {{Vector3d::Zero(), 0}}, 1e-5), InputError);
+    EXPECT_THROW(PlaneSensor(one, {{Vector3d::UnitZ(), nan}}, 1e-5), InputError);
+    EXPECT_THROW(PlaneSensor(one, {}, 1e-5), InputError);
 }
 
 TEST(RotationVectors, AreThereAndBack) {

@@ -39,6 +39,13 @@ inline std::vector<SensorCampaign> campaigns_of_every_sensor(const Chain& robot)
     for (Index k = 0; k < 3; ++k) {
         on_planes.segment<3>(6 + 3 * k) << 0.02, -0.01, planes[static_cast<std::size_t>(k)].offset;
     }
+    std::vector<Plane> all_known = planes;
+    for (Plane& plane : all_known) plane.normal_is_known = plane.offset_is_known = true;
+    std::vector<Plane> partly_known = planes;
+    partly_known[0].normal_is_known = true;
+    partly_known[1].offset_is_known = true;
+    VectorXd on_partly_known(12);
+    on_partly_known << both, planes[0].offset, 0.02, -0.01, -0.03, 0.01, planes[2].offset;
     std::vector<Socket> sockets{{"s0"}, {"s1"}, {"s2", Vector3d::Zero(), 1, 0.3}};
     for (std::size_t k = 0; k < sockets.size(); ++k) {
         const double turn = 0.2 + 0.1 * static_cast<double>(k);
@@ -68,10 +75,12 @@ inline std::vector<SensorCampaign> campaigns_of_every_sensor(const Chain& robot)
                                                       false, 5e-5),
                      anchored, true)},
         {"known planes",
-         with_sensor(points, std::make_shared<PlaneSensor>(unknown, planes, true, 5e-5), both)},
-        {"unknown planes",
-         with_sensor(points, std::make_shared<PlaneSensor>(unknown, planes, false, 5e-5), on_planes,
-                     true)},
+         with_sensor(points, std::make_shared<PlaneSensor>(unknown, all_known, 5e-5), both)},
+        {"unknown planes", with_sensor(points, std::make_shared<PlaneSensor>(unknown, planes, 5e-5),
+                                       on_planes, true)},
+        {"planes known in part",
+         with_sensor(points, std::make_shared<PlaneSensor>(unknown, partly_known, 5e-5),
+                     on_partly_known, true)},
         {"known sockets",
          with_sensor(points, std::make_shared<SocketSensor>(ball, sockets, true, 5e-5), two[0])},
         {"unknown sockets",

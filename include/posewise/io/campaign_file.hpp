@@ -86,8 +86,9 @@ void set_prior(CampaignFile& campaign, bool is_prior);
 /// those of the cell unless that states its own.
 ///
 /// The sensor is of `kind: points` (with `targets`), `poses` (`tool`, `sigma_orientation_mrad`),
-/// `distances` (`anchors`, `targets`) or `planes` (`planes`, `known_planes`, `targets`). `known` of
-/// targets lists axes or is a boolean, that of the base lists x .. rz or is a boolean.
+/// `distances` (`anchors`, `targets`), `planes` (`planes`, `known_planes`, `targets`) or `sockets`
+/// (`sockets`, `known_sockets`, `targets`). `known` is a boolean or lists what is: of targets axes,
+/// of the base x .. rz, of a plane `normal` and `offset`.
 ///
 /// The sensor's noise is `sigma_mm` (one number, or three for x, y and z) or that of a laser
 /// tracker, `noise: {range_um: 10, angle_urad: 15}`. The section `cell` states the constraints of

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -116,9 +117,11 @@ class ScalarSensor : public Sensor {
     double sigma() const { return sigma_; }
 
     const Targets& targets() const final { return targets_; }
-    Index row_count() const final { return targets_.count() * feature_count_; }
+    Index row_count() const final { return targets_.count() * feature_count(); }
     Index target_count() const final { return row_count(); }
     std::vector<std::string> observation_names() const final;
+    std::vector<std::string> unknown_names() const final;
+    std::vector<bool> unknown_is_angle() const final;
     VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const final;
     void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                        const VectorXd& unknowns,
@@ -132,33 +135,46 @@ class ScalarSensor : public Sensor {
     SensorWords words() const final;
 
   protected:
+    /// What the features are called, and the three values that describe one.
+    struct FeatureWords {
+        std::string name;                    ///< of unknowns: "anchor", "plane"
+        std::string letter;                  ///< of observations: "a", "plane"
+        std::array<std::string, 3> values;   ///< "x", "y", "z"
+        std::array<bool, 3> value_is_angle;  ///< (rad), else a length (m)
+        std::string known_key;               ///< of the campaign file: that they are known
+    };
     /// A length as a function of the target's position x in the world and of the feature.
     struct Length {
         double value = 0;
         Vector3d gradient;       ///< by x
         Matrix3d gradient_by_x;  ///< derivative of the gradient by x
-        Vector3d by_feature;     ///< by the feature's three unknowns
+        Vector3d by_feature;     ///< by the feature's three values
         Matrix3d feature_by_x;   ///< row k: derivative of by_feature[k] by x
     };
-    /// Throws InputError if there is no feature, or sigma (m) is not finite or below 1e-15.
-    ScalarSensor(Targets targets, Index feature_count, bool are_known, std::string letter,
+    /// `stated[k]` are the values of feature k, of which those marked are known; others are
+    /// unknowns and not looked at. Throws InputError if there is no feature, if a value that is
+    /// known is not finite, or if sigma (m) is not finite or below 1e-15.
+    ScalarSensor(Targets targets, std::vector<Vector3d> stated,
+                 const std::vector<std::array<bool, 3>>& is_known, FeatureWords feature_words,
                  double sigma);
-    /// "anchors", "planes".
-    virtual std::string features() const = 0;
-    /// The key of the campaign file that says that they are known.
-    virtual std::string known_key() const = 0;
-    virtual Length measure(const Vector3d& x, Index feature, const VectorXd& unknowns) const = 0;
+    /// The length of a target at x to the feature with these values.
+    virtual Length measure(const Vector3d& x, Index feature, const Vector3d& values) const = 0;
 
-    Index feature_count() const { return feature_count_; }
-    bool are_known() const { return are_known_; }
-    /// Index of a feature's first unknown; they follow the targets'.
-    Index unknown_index(Index feature) const { return targets_.unknown_count() + 3 * feature; }
+    /// The values of a feature: those that are known, and the others among the unknowns.
+    Vector3d feature_values(Index feature, const VectorXd& unknowns) const;
+    bool is_known(Index feature, Index value) const { return unknown_index(feature, value) < 0; }
 
   private:
+    Index feature_count() const { return static_cast<Index>(stated_.size()); }
+    /// Where a value is among the unknowns, after the targets'; -1 if it is known.
+    Index unknown_index(Index feature, Index value) const {
+        return unknown_index_[static_cast<std::size_t>(feature)][static_cast<std::size_t>(value)];
+    }
+
     Targets targets_;
-    Index feature_count_;
-    bool are_known_;
-    std::string letter_;  ///< of a feature in observation names
+    std::vector<Vector3d> stated_;
+    std::vector<std::array<Index, 3>> unknown_index_;
+    FeatureWords feature_words_;
     double sigma_;
 };
 
@@ -171,41 +187,36 @@ class DistanceSensor final : public ScalarSensor {
     DistanceSensor(Targets targets, std::vector<Vector3d> anchors, bool are_known, double sigma);
 
     bool is_distance(Index) const override { return true; }
-    std::vector<std::string> unknown_names() const override;
 
   protected:
-    std::string features() const override { return "anchors"; }
-    std::string known_key() const override { return "sensor.anchors.known"; }
-    Length measure(const Vector3d& x, Index anchor, const VectorXd& unknowns) const override;
-
-  private:
-    std::vector<Vector3d> anchors_;
+    Length measure(const Vector3d& x, Index anchor, const Vector3d& position) const override;
 };
 
 /// A plane in the world: the points x with normal . x = offset.
 struct Plane {
     Vector3d normal = Vector3d::UnitZ();
     double offset = 0;  ///< m
+    /// What of it is as stated; the rest is unknown.
+    bool normal_is_known = false;
+    bool offset_is_known = false;
 };
 
 /// Signed distances of n targets from planes fixed in the world (a touch probe on ground faces:
-/// 0 where it touches), m, positive on the side the normal points to. Planes are known, or have
-/// three unknowns each: plane1.tilt1 and .tilt2 (rad, from the stated normal, about two axes in
-/// the plane; a rotation vector) and plane1.offset (m).
+/// 0 where it touches), m, positive on the side the normal points to. What is not known of a plane
+/// is unknown: its normal plane1.tilt1 and .tilt2 (rad, from the stated normal, about two axes in
+/// the plane; a rotation vector), its offset plane1.offset (m).
 class PlaneSensor final : public ScalarSensor {
   public:
     /// Throws InputError as ScalarSensor does, or if a plane is not finite or a normal zero.
-    PlaneSensor(Targets targets, std::vector<Plane> planes, bool are_known, double sigma);
+    PlaneSensor(Targets targets, std::vector<Plane> planes, double sigma);
 
+    /// As stated.
     const std::vector<Plane>& planes() const { return planes_; }
-
-    std::vector<std::string> unknown_names() const override;
-    std::vector<bool> unknown_is_angle() const override;
+    /// With these values of the unknowns.
+    Plane plane(Index plane, const VectorXd& unknowns) const;
 
   protected:
-    std::string features() const override { return "planes"; }
-    std::string known_key() const override { return "sensor.known_planes"; }
-    Length measure(const Vector3d& x, Index plane, const VectorXd& unknowns) const override;
+    Length measure(const Vector3d& x, Index plane, const Vector3d& tilts_and_offset) const override;
 
   private:
     std::vector<Plane> planes_;  ///< normals of length 1
