@@ -138,15 +138,20 @@ Registration find_start(const Campaign& campaign, const Measurements& measuremen
     return {campaign.nominal, {}};
 }
 
-/// Where a prior expects them, what it tells of base and sensor; the rest registered beside it.
-Registration register_beside(const Prior& prior, Campaign campaign,
-                             const Measurements& measurements) {
-    const Parameters told = campaign.nominal;
-    if (prior.has_base && prior.has_sensor) return {told, {}};
+/// What a prior leaves open of base and sensor, as if what it tells were known.
+Campaign beside(const Prior& prior, Campaign campaign) {
+    const VectorXd told = campaign.nominal.sensor;
     campaign.prior.reset();
     if (prior.has_base) campaign.base_is_known.fill(true);
-    if (prior.has_sensor) campaign = detail::with_known_sensor(std::move(campaign), told.sensor);
-    Registration registered = register_base_and_targets(campaign, measurements);
+    return prior.has_sensor ? detail::with_known_sensor(std::move(campaign), told) : campaign;
+}
+
+/// Where a prior expects them, what it tells of base and sensor; the rest registered beside it.
+Registration register_beside(const Prior& prior, const Campaign& campaign,
+                             const Measurements& measurements) {
+    const Parameters& told = campaign.nominal;
+    if (prior.has_base && prior.has_sensor) return {told, {}};
+    Registration registered = register_base_and_targets(beside(prior, campaign), measurements);
     if (prior.has_sensor) registered.parameters.sensor = told.sensor;
     return registered;
 }
@@ -180,6 +185,11 @@ Registration register_base_and_targets(const Campaign& campaign, const Measureme
 }
 
 Index least_calibration_count(const Campaign& campaign) {
+    if (campaign.prior && can_begin_at(*campaign.prior, campaign)) {
+        const Campaign open = beside(*campaign.prior, campaign);
+        const bool is_all_told = base_parameter_count(open) == 0 && open.nominal.sensor.size() == 0;
+        return is_all_told ? 1 : least_calibration_count(open);
+    }
     const Index least = std::max(least_pose_count(campaign), campaign.fitted_pose_count);
     const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
     const std::optional<ObservedPoints> observed = registered_points(nominal);

@@ -25,7 +25,8 @@ constexpr const char* calibrate_footer = R"(
 Example:
   posewise calibrate campaign.yaml -m measurements.csv --out estimate.json
 
-Finds base and targets from nothing, then identifies all parameters together, and prints
+Finds base and targets (or tool; of sockets ball and sockets: they need a column socket instead of
+readings) from nothing, then identifies all parameters together, and prints
   - the error left, in mm: nominal (only base and targets fitted), calibrated (all samples), means
     (of each configuration's samples), held out (each configuration predicted by a calibration
     without it: what to expect at poses that were not measured);

@@ -76,7 +76,8 @@ void add_earlier_options(CLI::App& command, EarlierArguments& arguments) {
     }
     add_parts_option(command, "--moved", arguments.moved,
                      "With --from: base, targets or both (base,targets) were moved since; they are "
-                     "as the campaign says, targets perhaps more or fewer")
+                     "as the campaign says, targets perhaps more or fewer. Here and in --only and "
+                     "--refit tool, anchors, planes and sockets count as targets")
         ->needs(from);
     command
         .add_option("--drift-mm", arguments.drift_mm,

@@ -33,7 +33,8 @@ Example:
 Proposes configurations to measure: draws a pool within the joint limits, keeps what the campaign's
 cell allows, chooses from it, moves each pose continuously to where it tells most, and puts the
 poses in an order that is quick to visit. Nothing needs to be measured before; base and targets must
-be stated in the campaign file, if only roughly. Prints
+be stated in the campaign file, if only roughly. With sockets each pose of the pool is moved by least
+joint steps until the ball sits in one: state where ball and sockets are, or use --from. Prints
   pool         which constraint rejected how many candidates
   predicted    position error of the calibrated robot over the workspace, by the covariance alone
   pool bound   proven: no choice from the pool has a larger value

@@ -220,7 +220,7 @@ CampaignFile parse(const std::string& content, const std::string& path,
         file.mat = read_mat_mapping(*measurements, sensor.sensor->target_count());
     }
     if (const auto cell = map.find("cell")) {
-        file.cell = read_cell(*cell, campaign.robot, sensor.sensor->target_count());
+        file.cell = read_cell(*cell, campaign.robot, *sensor.sensor);
     }
     if (file.cell.speed.size() == 0) file.cell.speed = robot.speed;
     return file;

@@ -39,7 +39,7 @@ struct SensorSection {
 SensorSection read_sensor(const YamlValue& sensor);
 
 /// `robot` gives the joints' names and limits.
-Cell read_cell(const YamlValue& cell, const Chain& robot, Index target_count);
+Cell read_cell(const YamlValue& cell, const Chain& robot, const Sensor& sensor);
 
 /// Position and `rpy` of a frame.
 Isometry3d read_frame(const YamlMap& map);

@@ -257,7 +257,7 @@ void read_margin(const YamlMap& map, const Chain& robot, Cell& cell) {
 
 }  // namespace
 
-Cell read_cell(const YamlValue& value, const Chain& robot, Index target_count) {
+Cell read_cell(const YamlValue& value, const Chain& robot, const Sensor& sensor) {
     const YamlMap map(
         value, {"margin_<angle>", "slide_margin_<length>", "fixed", "least_joint_distance_<angle>",
                 "target_boxes_<length>", "floor_z_<length>", "keep_out", "links",
@@ -273,8 +273,14 @@ Cell read_cell(const YamlValue& value, const Chain& robot, Index target_count) {
     const auto tracker = map.find("tracker");
     const auto reflectors = map.find("reflectors");
     if (tracker || reflectors) cell.sight = Sight{};
+    if (cell.sight && sensor.has_contacts()) {
+        throw(tracker ? tracker : reflectors)
+            ->error(
+                "states what an instrument can see, but a ball in sockets is seen by none; "
+                "must be left out");
+    }
     if (tracker) read_tracker(*tracker, *cell.sight);
-    if (reflectors) read_reflectors(*reflectors, target_count, *cell.sight);
+    if (reflectors) read_reflectors(*reflectors, sensor.target_count(), *cell.sight);
     read_motion(map, robot, cell);
     return cell;
 }

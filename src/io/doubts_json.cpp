@@ -98,6 +98,13 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
     if (!doubts.model_errors.empty()) {
         json["model_errors"] = model_errors_to_json(doubts.model_errors);
     }
+    if (doubts.lacks_length) json["lacks_length"] = true;
+    if (const auto& distance = doubts.distance) {
+        json["distance"] = {{"socket", distance->socket},
+                            {"from", distance->from},
+                            {"stated_mm", mm_per_m * distance->stated},
+                            {"measured_mm", mm_per_m * distance->found}};
+    }
     if (const auto& size = doubts.held_back) {
         const std::string unit = error_suffix(size->held.is_angle);
         json["held_back_size"] = {{"key", size->held.key + unit},

@@ -169,14 +169,17 @@ Json measured_to_json(const MeasuredCount& measured) {
             {"readings_seen", measured.readings_seen}};
 }
 
-Json outliers_to_json(const Estimate& estimate) {
+Json outliers_to_json(const Sensor& sensor, const Estimate& estimate) {
+    const std::vector<std::string> contacts = sensor.contact_names();
     Json list = Json::array();
     for (const Outlier& outlier : estimate.outliers) {
-        list.push_back({{"configuration", outlier.id},
-                        {"target", "target" + std::to_string(outlier.target + 1)},
-                        {"distance_mm", mm * outlier.distance},
-                        {"standard_deviations", outlier.deviations},
-                        {"weight", outlier.weight}});
+        list.push_back(
+            {{"configuration", outlier.id},
+             {"target", contacts.empty() ? "target" + std::to_string(outlier.target + 1)
+                                         : contacts[static_cast<std::size_t>(outlier.target)]},
+             {"distance_mm", mm * outlier.distance},
+             {"standard_deviations", outlier.deviations},
+             {"weight", outlier.weight}});
     }
     return list;
 }
@@ -265,7 +268,7 @@ Json estimate_to_json(const Calibration& calibration, const Provenance& made_fro
     if (estimate.loss.kind != LossKind::Squares) {
         document["loss"] = {{"kind", loss_name(estimate.loss.kind)},
                             {"width_standard_deviations", estimate.loss.width}};
-        document["outliers"] = outliers_to_json(estimate);
+        document["outliers"] = outliers_to_json(*campaign.sensor, estimate);
     }
     if (calibration.selection)
         document["model_selection"] = selection_to_json(*calibration.selection);

@@ -29,8 +29,10 @@ void SampleCollector::add(const Sample& sample, const LocateJoint& locate, bool 
         ids_.push_back(sample.id);
         configurations_.push_back(sample.joints);
         first_places_.push_back(locate(0));
+        first_seen_.push_back(sample.is_seen);
     } else {
         check_same_joints(i, sample.joints, locate);
+        check_same_contact(i, sample.is_seen, locate(0));
         const Index torques = sample.joints.size() - campaign_.robot.joint_count();
         configurations_[static_cast<std::size_t>(i)].tail(torques) += sample.joints.tail(torques);
     }
@@ -52,6 +54,21 @@ void SampleCollector::check_same_joints(Index configuration, const VectorXd& joi
                         quote(ids_[i]), campaign_.robot.joints()[static_cast<std::size_t>(j)].name,
                         joints[j], first, in_line(first_places_[i])));
     }
+}
+
+void SampleCollector::check_same_contact(Index configuration, const SeenTargets& is_seen,
+                                         const FileLocation& location) const {
+    const auto i = static_cast<std::size_t>(configuration);
+    const std::vector<std::string> contacts = campaign_.sensor->contact_names();
+    if (contacts.empty() || (is_seen == first_seen_[i]).all()) return;
+    const auto name = [&](const SeenTargets& seen) {
+        return contacts[static_cast<std::size_t>(targets_seen(seen).front())];
+    };
+    throw input_error_at(
+        location, fmt::format("configuration {} touches {} here and {} before{}; must be one of "
+                              "them, the ball is in one place",
+                              quote(ids_[i]), name(is_seen), name(first_seen_[i]),
+                              in_line(first_places_[i])));
 }
 
 void SampleCollector::check_torques(const VectorXd& configuration,

@@ -28,9 +28,9 @@ class SampleCollector {
     explicit SampleCollector(const Campaign& campaign) : campaign_(campaign) {}
 
     /// One more sample. Throws InputError if its joint values differ by over 1e-6 from those of the
-    /// configuration's first sample, or a torque is over twice the largest that occurs. Torques may
-    /// differ: the configuration's are their means. One that is apart is a configuration by itself,
-    /// whatever its id.
+    /// configuration's first sample, or what it touches is another, or a torque is over twice the
+    /// largest that occurs. Torques may differ: the configuration's are their means. One that is
+    /// apart is a configuration by itself, whatever its id.
     void add(const Sample& sample, const LocateJoint& locate, bool is_apart = false);
 
     /// Samples grouped by configuration, in the order the configurations first occurred. Throws
@@ -41,6 +41,8 @@ class SampleCollector {
   private:
     void check_same_joints(Index configuration, const VectorXd& joints,
                            const LocateJoint& locate) const;
+    void check_same_contact(Index configuration, const SeenTargets& is_seen,
+                            const FileLocation& location) const;
     void check_torques(const VectorXd& configuration, const LocateJoint& locate) const;
     void check_all_different() const;
 
@@ -48,6 +50,7 @@ class SampleCollector {
     std::unordered_map<std::string, Index> configuration_of_id_;
     std::vector<std::string> ids_;
     std::vector<VectorXd> configurations_;    // of the first sample, torques added up
+    std::vector<SeenTargets> first_seen_;     // of each configuration
     std::vector<FileLocation> first_places_;  // of each configuration
     std::vector<Index> configuration_;        // of each sample
     std::vector<double> observations_;        // of all samples, one after another

@@ -200,8 +200,8 @@ std::string format_outliers(const Calibration& calibration) {
         text += format_without_outliers(*calibration.without_outliers,
                                         !calibration.campaign.sensor->has_lengths());
     }
-    text +=
-        format_section("Outliers, farthest first", detail::outlier_table(estimate, outliers_shown));
+    text += format_section("Outliers, farthest first",
+                           detail::outlier_table(calibration.campaign, estimate, outliers_shown));
     if (count > outliers_shown) text += fmt::format("... and {} more\n", count - outliers_shown);
     return text;
 }
@@ -251,6 +251,10 @@ std::string format_values(const Calibration& calibration, bool has_all) {
 std::string format_parameters(const Calibration& calibration, bool has_all) {
     const Campaign& campaign = calibration.campaign;
     std::string text = format_values(calibration, has_all);
+    const detail::Table sockets = detail::socket_table(campaign, calibration.estimate);
+    if (!sockets.rows.empty()) {
+        text += format_section("Sockets at a known distance, in the world", sockets);
+    }
     const detail::Table compliance = detail::compliance_table(campaign, calibration.estimate);
     if (!compliance.rows.empty()) {
         text += format_section("Compliances", compliance) + judge_compliances(calibration);

@@ -6,6 +6,7 @@
 
 #include "../core/format.hpp"
 #include "posewise/core/units.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/model/transforms.hpp"
 
@@ -124,17 +125,34 @@ Table correlation_table(const Estimate& estimate, Index count) {
     return table;
 }
 
-Table outlier_table(const Estimate& estimate, Index count) {
+Table outlier_table(const Campaign& campaign, const Estimate& estimate, Index count) {
+    const std::vector<std::string> contacts = campaign.sensor->contact_names();
     std::vector<Outlier> outliers = estimate.outliers;
     std::stable_sort(outliers.begin(), outliers.end(), [](const Outlier& a, const Outlier& b) {
         return a.deviations > b.deviations;
     });
     outliers.resize(std::min(outliers.size(), static_cast<std::size_t>(std::max<Index>(count, 0))));
-    Table table{{"configuration", "target", "error/mm", "std. devs.", "weight"}, {}};
+    Table table{{"configuration", contacts.empty() ? "target" : "socket", "error/mm", "std. devs.",
+                 "weight"},
+                {}};
     for (const Outlier& outlier : outliers) {
-        table.rows.push_back({outlier.id, std::to_string(outlier.target + 1),
+        table.rows.push_back({outlier.id,
+                              contacts.empty() ? std::to_string(outlier.target + 1)
+                                               : contacts[static_cast<std::size_t>(outlier.target)],
                               format_mm(outlier.distance), format_fixed(outlier.deviations, 1),
                               format_fixed(outlier.weight, 3)});
+    }
+    return table;
+}
+
+Table socket_table(const Campaign& campaign, const Estimate& estimate) {
+    Table table{{"socket", "x/mm", "y/mm", "z/mm"}, {}};
+    const auto* const sensor = dynamic_cast<const SocketSensor*>(campaign.sensor.get());
+    for (Index k = 0; sensor != nullptr && k < sensor->target_count(); ++k) {
+        if (!sensor->has_distance(k)) continue;
+        const Vector3d at = sensor->socket_position(k, estimate.parameters.sensor);
+        table.rows.push_back({sensor->sockets()[static_cast<std::size_t>(k)].name,
+                              format_mm(at.x()), format_mm(at.y()), format_mm(at.z())});
     }
     return table;
 }

@@ -27,7 +27,10 @@ Table compliance_table(const Campaign& campaign, const Estimate& estimate);
 Table correlation_table(const Estimate& estimate, Index count);
 
 /// The `count` outliers that are farthest off, farthest first.
-Table outlier_table(const Estimate& estimate, Index count);
+Table outlier_table(const Campaign& campaign, const Estimate& estimate, Index count);
+/// Where sockets at a known distance are, of which the parameters are tilts; empty if there are
+/// none.
+Table socket_table(const Campaign& campaign, const Estimate& estimate);
 
 /// Each parameter set with its errors in mm; the best and the recommended are marked.
 Table model_table(const ModelSelection& selection);

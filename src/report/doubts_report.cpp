@@ -106,6 +106,17 @@ std::string describe_moved(const Moved& moved, const char* earlier, const char* 
                        moved.parts.front() == "base" && moved.parts.size() == 1 ? "it" : "them");
 }
 
+std::string describe_distance(const DistanceDoubt& distance) {
+    return fmt::format(
+        "socket {} is stated {} mm from {}, measured at about {} mm: is distance_mm right?",
+        detail::quote(distance.socket), detail::format_short(mm_per_m * distance.stated, 4),
+        detail::quote(distance.from), detail::format_short(mm_per_m * distance.found, 4));
+}
+
+constexpr const char* no_length =
+    "no length is stated: how large the robot is follows from its nominal lengths alone; state the "
+    "distance of two sockets of one body, keys from and distance_mm";
+
 std::string describe_held_back(const HeldBackSize& size) {
     const bool is_angle = size.held.is_angle;
     return fmt::format(
@@ -148,6 +159,8 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     if (!doubts.model_errors.empty() && !has_moved) {
         sentences.push_back(describe_model_errors(doubts.model_errors));
     }
+    if (doubts.lacks_length) sentences.push_back(no_length);
+    if (doubts.distance) sentences.push_back(at + describe_distance(*doubts.distance));
     if (doubts.small_residuals) {
         sentences.push_back(
             fmt::format("the residuals are {} times what sigma and model error say: is one of them "

@@ -1,8 +1,13 @@
 #include "choice_problem.hpp"
 
+#include <fmt/format.h>
+
 #include "../core/checksum.hpp"
+#include "../core/format.hpp"
+#include "../core/text.hpp"
 #include "inputs.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/planner/planning.hpp"
 
@@ -93,6 +98,29 @@ Parameters find_parameters(const Campaign& campaign, const Candidates& candidate
                      ": the campaign file states no base, on which what this sensor tells depends, "
                      "and nothing was measured to find it from; state base there, or use "
                      "--measurements");
+}
+
+/// Throws InputError for a candidate that is nowhere near what it is said to touch.
+void check_contacts(const ChoiceProblem& problem, const Campaign& campaign,
+                    const Parameters& parameters) {
+    constexpr double near = 0.1;  // m: as far as places may be off that are stated roughly
+    const Sensor& sensor = *campaign.sensor;
+    const std::vector<std::string> names = sensor.contact_names();
+    const Index width = sensor.rows_per_target();
+    for (Index i = 0; i < problem.configurations.rows() && !names.empty(); ++i) {
+        const VectorXd q = problem.configurations.row(i).transpose();
+        const VectorXd misses =
+            sensor.predict(world_from_flange(campaign, parameters, q), parameters.sensor);
+        for (Index k = 0; k < std::ssize(names); ++k) {
+            const double miss = misses.segment(width * k, width).norm();
+            if (problem.share(i, k) <= 0 || miss <= near) continue;
+            throw InputError(fmt::format(
+                "candidate {} is {} mm from {}; must touch it, within 100 mm of where the campaign "
+                "or --from says that it is: plan and --random find poses that do",
+                quote(problem.ids[static_cast<std::size_t>(i)]), format_short(mm_per_m * miss, 4),
+                names[static_cast<std::size_t>(k)]));
+        }
+    }
 }
 
 void hold_measured(ChoiceProblem& problem, const Campaign& campaign, const Parameters& parameters,
@@ -193,6 +221,10 @@ ChoiceProblem state_choice(const Campaign& campaign, const Candidates& candidate
     if (candidates.kind == CandidateKind::Random) {
         make_random_blocks(problem, campaign, parameters, stop);
     } else {
+        if (!candidates.measured) {
+            compute_from(request.sources.candidates,
+                         [&] { check_contacts(problem, campaign, parameters); });
+        }
         problem.blocks = make_blocks(campaign, parameters, problem.configurations,
                                      RowMatrixXd(request.repeats * problem.share));
     }

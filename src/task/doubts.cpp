@@ -316,6 +316,8 @@ void add_doubts(const Campaign& campaign, const Measurements& measured, const Es
     doubts.residual_ratio = find_residual_ratio(estimate);
     doubts.small_residuals = find_small_residuals(campaign, estimate);
     doubts.missing_errors = find_missing_errors(campaign, measured, estimate);
+    doubts.lacks_length = lacks_length(campaign);
+    doubts.distance = find_distance_doubt(campaign, measured, estimate);
     doubts.negative_compliances = find_negative_compliances(campaign, estimate);
 }
 

@@ -60,7 +60,7 @@ void hold(PlanningProblem& problem, const MatrixXd& information, const RowMatrix
 
 /// Throws InputError for a pose that cannot be measured.
 void check_kept(const PlanningProblem& problem, const PlannedPose& pose) {
-    const std::string fault = describe_violation(problem.constraints, pose);
+    const std::string fault = describe_violation(problem, pose);
     if (fault.empty()) return;
     throw input_error_at({problem.request.sources.repaired},
                          fmt::format("pose {} {}; find another for it with --drop {}",
@@ -208,7 +208,8 @@ std::vector<NamedNumber> standard_deviations(const Campaign& campaign, const Mat
     return named;
 }
 
-std::string describe_violation(const Constraints& constraints, const PlannedPose& pose) {
+std::string describe_violation(const PlanningProblem& problem, const PlannedPose& pose) {
+    const Constraints& constraints = problem.constraints;
     constexpr double rounding = 1e-9;  // m or rad
     const VectorXd& q = pose.configuration;
     const std::string beyond = describe_limit_violation(constraints.robot(), q);
@@ -218,6 +219,12 @@ std::string describe_violation(const Constraints& constraints, const PlannedPose
         const auto constraint = static_cast<Constraint>(k);
         if (report[constraint] >= -rounding || constraint == Constraint::JointLimits) continue;
         return std::string("does not meet ") + constraint_name(constraint);
+    }
+    const std::vector<std::string> contacts = problem.campaign.sensor->contact_names();
+    for (const Index target : pose.targets) {
+        if (report.is_seen[target]) continue;
+        return contacts.empty() ? fmt::format("does not show target {}", target + 1)
+                                : "does not touch " + contacts[static_cast<std::size_t>(target)];
     }
     return pose.targets.empty() ? "shows no target" : "";
 }

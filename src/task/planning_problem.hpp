@@ -40,8 +40,8 @@ MatrixXd held_information(const PlanningProblem& problem);
 /// Expected standard deviation of every parameter by the information matrix, m or rad.
 std::vector<NamedNumber> standard_deviations(const Campaign& campaign, const MatrixXd& M);
 
-/// The constraint that a pose does not meet, in words ("does not meet keep_out"), or "shows no
-/// target"; empty if it meets all, to rounding.
-std::string describe_violation(const Constraints& constraints, const PlannedPose& pose);
+/// The constraint that a pose does not meet, in words ("does not meet keep_out"), or the
+/// target that it does not show or touch, though it says so; empty if it meets all, to rounding.
+std::string describe_violation(const PlanningProblem& problem, const PlannedPose& pose);
 
 }  // namespace posewise::detail

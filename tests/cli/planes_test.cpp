@@ -35,9 +35,9 @@ TEST_F(Planes, AreCalibratedWithWhatIsKnownOfThem) {
     const std::string found = run_well("calibrate c.yaml -m m.csv -o e.json");
     const std::string with_all = run_well("calibrate open.yaml -m m.csv --folds 0");
     for (const char* const name : {"plane1.offset", "plane2.tilt1", "plane2.tilt2"}) {
-        const double sigma = number_behind(found, name, 1);
+        const double sigma = number_behind(found, name, 2);
         EXPECT_NEAR(number_behind(found, name), number_behind(truth, name), 4 * sigma) << name;
-        EXPECT_LT(sigma, number_behind(with_all, name, 1)) << name;
+        EXPECT_LT(sigma, number_behind(with_all, name, 2)) << name;
     }
     for (const char* const known : {"plane1.tilt1", "plane2.offset"}) {
         EXPECT_EQ(found.find(known), std::string::npos) << known;
@@ -53,8 +53,7 @@ TEST_F(Planes, AreTakenByEveryCommand) {
     run_well("indices c.yaml -m m.csv");
     run_well("select c.yaml -m m.csv -k 16 --starts 2 --proof 0.1 -o s.json");
     EXPECT_EQ(run("verify s.json").code, 0);
-    run_well(
-        "plan c.yaml -k 14 --pool 200 --workspace-poses 30 --starts 1 --from e.json -o p.json");
+    run_well("plan c.yaml -k 9 --pool 40 --workspace-poses 30 --starts 1 --from e.json -o p.json");
     EXPECT_EQ(run("verify p.json").code, 0);
     run_well("study c.yaml -m m.csv -k 20 --splits 2 --random 3");
     run_well("export c.yaml e.json --dh dh.yaml");

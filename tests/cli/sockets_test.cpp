@@ -120,6 +120,78 @@ TEST_F(Sockets, ThatCannotBeAreNamed) {
     expect_input_error("simulate c.yaml --poses 5 --repeats 2 -o no.csv", "repeats must be 1");
 }
 
+TEST_F(Sockets, WithoutALengthOrWithAWrongOneAreNamed) {
+    run_well("simulate c.yaml --poses 80 -o m.csv");
+    EXPECT_EQ(run("calibrate c.yaml -m m.csv --folds 0").err, "");
+    const std::string distance = ", from: s0, distance_mm: 120";
+    std::string text = arm + sockets;
+    write_text("none.yaml", text.erase(text.find(distance), distance.size()));
+    EXPECT_NE(run("calibrate none.yaml -m m.csv --folds 0").err.find("no length is stated"),
+              std::string::npos);
+    text = arm + sockets;
+    write_text("wrong.yaml", text.replace(text.find("120,"), 3, "140"));
+    const std::string err =
+        run("calibrate wrong.yaml -m m.csv --folds 0 --force -o wrong.json").err;
+    const auto said = err.find("socket 's1' is stated 140 mm from 's0', measured at about ");
+    ASSERT_NE(said, std::string::npos) << err;
+    EXPECT_NEAR(std::stod(err.substr(err.find("about ", said) + 6)), 120, 1);
+    EXPECT_NE(text_of("wrong.json").find("\"measured_mm\": 1"), std::string::npos);
+}
+
+TEST_F(Sockets, AreWhereTheyAreSaidToBe) {
+    run_well("simulate c.yaml --poses 80 -o m.csv");
+    const std::string found = run_well("calibrate c.yaml -m m.csv --folds 0 -o e.json");
+    const std::string at = found.substr(found.find("Sockets at a known distance"));
+    EXPECT_NEAR(number_behind(at, "s1", 0), 450, 3);
+    EXPECT_NEAR(number_behind(at, "s1", 1), 220, 3);
+    // A calibration beside an earlier one, and a plan for it, need one pose.
+    run_well(
+        "plan c.yaml --from e.json --as-prior -k 1 --pool 60 --workspace-poses 20 --starts 1 "
+        "-o one.json");
+    std::istringstream lines(text_of("m.csv"));
+    std::string one;
+    int rows = 0;
+    for (std::string line; std::getline(lines, line) && rows < 2;) {
+        if (line[0] == '#') continue;
+        one += line + '\n';
+        ++rows;
+    }
+    write_text("one.csv", one);
+    run_well("calibrate c.yaml -m one.csv --from e.json --as-prior --folds 0");
+    // Sockets are named in tables of outliers.
+    run_well("simulate c.yaml --poses 40 --seed 3 -o more.csv");
+    const std::string robust = run_well("calibrate c.yaml -m more.csv --folds 0 --loss cauchy");
+    EXPECT_EQ(robust.find("configuration  target"), std::string::npos) << robust;
+}
+
+TEST_F(Sockets, ThatArePlannedButNotTouchedAreNamed) {
+    write_text("far.csv",
+               "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,socket\na,0,80,0,0,0,0,s0\n");
+    expect_input_error("select c.yaml --candidates far.csv -k 1", " mm from s0; must touch it");
+    run_well("plan c.yaml -k 16 --pool 200 --workspace-poses 20 --starts 1 -o p.json");
+    std::string hand = text_of("p.json");
+    const auto begin = hand.find("\"visible_targets\": [") + 20;
+    const auto end = hand.find(']', begin);
+    const int shown = std::stoi(hand.substr(begin, end - begin));
+    write_text("hand.json", hand.replace(begin, end - begin, std::to_string(shown % 4 + 1)));
+    const std::string other = "does not touch s" + std::to_string(shown % 4);
+    const Outcome outcome = run("verify hand.json");
+    EXPECT_NE((outcome.out + outcome.err).find(other), std::string::npos) << outcome.out;
+    expect_input_error("plan c.yaml --plan hand.json --drop p5 --pool 200 -o no.json",
+                       other + "; find another for it");
+}
+
+TEST_F(Sockets, TwoForOneConfigurationAndWhatSeesThemAreRefused) {
+    write_text("two.csv",
+               "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,socket\n"
+               "a,0,80,0,0,0,0,s0\na,0,80,0,0,0,0,s1\n");
+    expect_input_error("calibrate c.yaml -m two.csv",
+                       "configuration 'a' touches s1 here and s0 before (line 2); must be one");
+    run_well("simulate c.yaml --poses 20 -o m.csv");
+    write_text("seen.yaml", arm + sockets + "cell: {tracker: {range_mm: [1500, 8000]}}\n");
+    expect_input_error("calibrate seen.yaml -m m.csv", "seen by none; must be left out");
+}
+
 TEST_F(Sockets, OfARealPandaAreFittedAsIndependently) {
     const std::string data = std::string(POSEWISE_REAL_DATA) + "/panda_sockets/measurements.csv";
     if (!std::filesystem::exists(data)) GTEST_SKIP() << "no real campaign at " << data;

@@ -68,27 +68,6 @@ TEST(ReadSensor, TakesPosesWithTheirTool) {
     EXPECT_EQ(read(fixed).nominal.sensor.size(), 0);
 }
 
-TEST(ReadSensor, TakesWhatIsKnownOfEachPlane) {
-    const auto names = [](const std::string& first, const std::string& second, bool all = false) {
-        std::string text = replaced(planes, "offset_mm: 300", "offset_mm: 300" + first);
-        text = replaced(text, "offset_mm: 900", "offset_mm: 900" + second);
-        return read(all ? replaced(text, "  targets", "  known_planes: true\n  targets") : text)
-            .sensor->unknown_names();
-    };
-    using Names = std::vector<std::string>;
-    EXPECT_EQ(names(", known: [normal]", ", known: [offset]"),
-              (Names{"plane1.offset", "plane2.tilt1", "plane2.tilt2"}));
-    EXPECT_EQ(names(", known: true", ", known: [offset, normal]"), Names{});
-    // The key of all is what holds of those that say nothing.
-    EXPECT_EQ(names(", known: [normal]", "", true), Names{"plane1.offset"});
-    EXPECT_EQ(names("", ", known: []", true),
-              (Names{"plane2.tilt1", "plane2.tilt2", "plane2.offset"}));
-    const Campaign campaign =
-        read(replaced(planes, "offset_mm: 900", "offset_mm: 900, known: [normal]"));
-    EXPECT_EQ(campaign.nominal.sensor.size(), 4);
-    EXPECT_DOUBLE_EQ(campaign.nominal.sensor[3], 0.9);
-}
-
 TEST(ReadSensor, TakesWhatIsKnownOfTheBase) {
     const Campaign campaign = read(poses);
     EXPECT_EQ(base_parameter_count(campaign), 4);
@@ -201,7 +180,7 @@ TEST(ReadSensor, TellsWhatIsWrongAndWhere) {
          {"offset_mm: 300", "offset: 300",
           "11:32: unknown key 'offset' in sensor.planes[1]; did you mean 'offset_mm'?"},
          {"offset_mm: 300", "offset_mm: 300, known: [distance]",
-          "11:56: sensor.planes[1].known[1] is 'distance'; must be one of 'normal', 'offset'"},
+          "11:56: sensor.planes[1].known[1] is 'distance'; must be normal or offset"},
          {"offset_mm: 300", "offset_mm: 300, known: [normal, normal]",
           "11:64: sensor.planes[1].known[2] is 'normal' again; keep one"},
          {"offset_mm: 300", "offset_mm: 300, known: normal", "11:55: sensor.planes[1].known[...]"},

@@ -34,7 +34,8 @@ Registration register_roughly(const Campaign& campaign, const Measurements& meas
 
 /// Smallest number of generic configurations that a calibration can do with: they identify what can
 /// be identified (least_pose_count()) and, where no nominal values are needed for it, determine
-/// base and targets. No fewer than Campaign::fitted_pose_count.
+/// base and targets, or what an earlier estimate that is the prior leaves open of them. No fewer
+/// than Campaign::fitted_pose_count, unless there is such an estimate.
 Index least_calibration_count(const Campaign& campaign);
 
 /// The parameters, for those to whom measurements that do not determine them are no input: throws

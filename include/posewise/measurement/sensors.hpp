@@ -247,6 +247,8 @@ class SocketSensor final : public Sensor {
     double sigma() const { return sigma_; }
     const std::vector<Socket>& sockets() const { return sockets_; }
     Vector3d socket_position(Index socket, const VectorXd& unknowns) const;
+    /// Whether its unknowns are two tilts.
+    bool has_distance(Index socket) const { return of(socket).from >= 0 && !are_known_; }
 
     const Targets& targets() const override { return ball_; }
     Index target_count() const override { return static_cast<Index>(sockets_.size()); }
@@ -270,7 +272,6 @@ class SocketSensor final : public Sensor {
     SensorWords words() const override;
 
   private:
-    bool has_distance(Index socket) const { return of(socket).from >= 0 && !are_known_; }
     const Socket& of(Index socket) const { return sockets_[static_cast<std::size_t>(socket)]; }
 
     Targets ball_;

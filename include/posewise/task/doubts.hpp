@@ -116,6 +116,23 @@ struct ModelErrorDoubt {
     bool is_angle = false;
 };
 
+/// A distance of two sockets that the measurements contradict.
+struct DistanceDoubt {
+    std::string socket;
+    std::string from;
+    double stated = 0;  ///< m
+    double found = 0;   ///< where it is unknown, too, m
+};
+/// The one that most is explained without, if residuals are far above what is stated and less than
+/// half of them are left then.
+std::optional<DistanceDoubt> find_distance_doubt(const Campaign& campaign,
+                                                 const Measurements& measurements,
+                                                 const Estimate& estimate);
+
+/// Whether nothing but the robot's lengths, which are identified, says how large all is: sockets
+/// without a distance known.
+bool lacks_length(const Campaign& campaign);
+
 /// All doubts about a calibration.
 struct Doubts {
     std::optional<Misfit> misfit;
@@ -129,6 +146,8 @@ struct Doubts {
     /// About how much of the squares left over follows bending and periodic errors of joints that
     /// the model has not, 0 to 1; if that is clear, and more than a twentieth.
     std::optional<double> missing_errors;
+    bool lacks_length = false;  ///< see lacks_length()
+    std::optional<DistanceDoubt> distance;
     std::optional<HeldBackSize> held_back;  ///< where sizes were learned
     /// Residuals in units of those stated, if clearly not as stated: more than 1.2 times larger or
     /// smaller, and beyond what chi squared of the degrees of freedom is once in a thousand times.
