@@ -119,6 +119,7 @@ void ParameterUnits::unscale(MatrixXd& covariance) const {
 }
 
 std::string describe_unseen_target(const Campaign& campaign, const Measurements& measurements) {
+    if (campaign.prior && campaign.prior->has_sensor) return "";
     const Sensor& sensor = *campaign.sensor;
     const Targets& targets = sensor.targets();
     const Index seen_of_each = sensor.target_count() / targets.count();
@@ -135,7 +136,7 @@ std::string describe_unseen_target(const Campaign& campaign, const Measurements&
     for (Index k = 0; k < std::ssize(contacts); ++k) {
         if (measurements.is_seen.col(k).any()) continue;
         return fmt::format(
-            "{} is touched in none of {}, so its place cannot be found; touch it, or leave it out "
+            "{} is not touched in {}, so its place cannot be found; touch it, or leave it out "
             "of the campaign's sockets",
             quote(contacts[static_cast<std::size_t>(k)]),
             these(measurements.configuration_count(), "configuration"));

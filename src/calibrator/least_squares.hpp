@@ -66,7 +66,7 @@ struct IdentificationProblem {
 IdentificationProblem make_problem(const Campaign& campaign, const Measurements& measurements);
 
 /// Says that a target whose position is unknown is seen in no sample, by its number; empty if there
-/// is none.
+/// is none, or an earlier estimate that is the prior tells where they are.
 std::string describe_unseen_target(const Campaign& campaign, const Measurements& measurements);
 
 /// The same, or that there are fewer equations than parameters.

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "posewise/measurement/sensors.hpp"
 #include "support/campaigns.hpp"
 
 namespace posewise {
@@ -68,11 +69,17 @@ TEST(CorrelationTable, NamesTheStrongest) {
 TEST(OutlierTable, ShowsTheFarthestFirst) {
     Estimate estimate;
     estimate.outliers = {{3, "left", 0, 1e-3, 6.04, 0.5}, {9, "up", 2, 5e-3, 50, 0.01}};
-    const Table table = outlier_table(estimate, 5);
+    Campaign campaign = testing::tracked_campaign(testing::planar_arm({1, 0.5}));
+    const Table table = outlier_table(campaign, estimate, 5);
     ASSERT_EQ(table.rows.size(), 2u);
     EXPECT_EQ(table.rows[0], (Row{"up", "3", "5.0000", "50.0", "0.010"}));
     EXPECT_EQ(table.rows[1], (Row{"left", "1", "1.0000", "6.0", "0.500"}));
-    EXPECT_EQ(outlier_table(estimate, 1).rows.size(), 1u);
+    EXPECT_EQ(outlier_table(campaign, estimate, 1).rows.size(), 1u);
+    campaign.sensor = std::make_shared<SocketSensor>(
+        Targets({std::nullopt}), std::vector<Socket>{{"s0"}, {"s1"}, {"left"}}, false, 1e-4);
+    const Table of_sockets = outlier_table(campaign, estimate, 5);
+    EXPECT_EQ(of_sockets.header[1], "socket");
+    EXPECT_EQ(of_sockets.rows[0][1], "left");
 }
 
 TEST(ModelTable, MarksTheBestAndTheRecommended) {
