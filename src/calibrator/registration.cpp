@@ -184,13 +184,13 @@ Registration register_base_and_targets(const Campaign& campaign, const Measureme
     return registered;
 }
 
-Index least_calibration_count(const Campaign& campaign) {
+Index least_calibration_count(const Campaign& campaign, const StopSignal& stop) {
     if (campaign.prior && can_begin_at(*campaign.prior, campaign)) {
         const Campaign open = beside(*campaign.prior, campaign);
         const bool is_all_told = base_parameter_count(open) == 0 && open.nominal.sensor.size() == 0;
-        return is_all_told ? 1 : least_calibration_count(open);
+        return is_all_told ? 1 : least_calibration_count(open, stop);
     }
-    const Index least = std::max(least_pose_count(campaign), campaign.fitted_pose_count);
+    const Index least = std::max(least_pose_count(campaign, stop), campaign.fitted_pose_count);
     const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
     const std::optional<ObservedPoints> observed = registered_points(nominal);
     if (!observed) return least;
@@ -203,6 +203,7 @@ Index least_calibration_count(const Campaign& campaign) {
     // More than as many as there are unknowns do not help: what is open then is open always.
     const Index most = least + 12 + observed->points.unknown_count();
     for (Index count = least; count < most; ++count) {
+        stop.check("finding how many poses register base and targets");
         if (are_enough(count)) return count;
     }
     return least;

@@ -128,9 +128,9 @@ void expect_earlier(io::CampaignFile& file, const EarlierArguments& arguments) {
 }
 
 io::CampaignFile read_planned(const PlanSources& sources, const EarlierUse& use,
-                              std::optional<bool> prior, bool is_forced) {
-    if (sources.estimate.empty()) return io::read_planned_campaign(sources.campaign, prior);
-    io::CampaignFile file = read_with_prior(sources.campaign, prior);
+                              std::optional<bool> prior, bool is_forced, const StopSignal& stop) {
+    if (sources.estimate.empty()) return io::read_planned_campaign(sources.campaign, prior, stop);
+    io::CampaignFile file = read_with_prior(sources.campaign, prior, stop);
     if (file.planned_model) {
         print_warning(fmt::format("{}: planning.errors, {}, is not used: {} is of robot.errors",
                                   sources.campaign, io::error_model_name(*file.planned_model),

@@ -66,7 +66,8 @@ void expect_earlier(io::CampaignFile& file, const EarlierArguments& arguments);
 /// The campaign that poses are planned with: as an estimate says, if the sources name one, then
 /// with the errors of robot.errors; else as its file says.
 io::CampaignFile read_planned(const PlanSources& sources, const EarlierUse& use,
-                              std::optional<bool> prior, bool is_forced);
+                              std::optional<bool> prior, bool is_forced,
+                              const StopSignal& stop = {});
 
 /// Warns where measurements that an estimate was made from would count twice, it being the prior.
 void warn_of_counting_twice(const std::string& estimate, bool is_prior, const std::string& path,

@@ -20,9 +20,10 @@ void warn_beyond_limits(const std::string& path, const io::CampaignFile& file,
 
 }  // namespace
 
-io::CampaignFile read_with_prior(const std::string& path, std::optional<bool> prior) {
-    io::CampaignFile file = io::read_campaign(path);
-    io::set_prior(file, prior.value_or(file.spread.is_prior));
+io::CampaignFile read_with_prior(const std::string& path, std::optional<bool> prior,
+                                 const StopSignal& stop) {
+    io::CampaignFile file = io::read_campaign(path, stop);
+    io::set_prior(file, prior.value_or(file.spread.is_prior), stop);
     return file;
 }
 

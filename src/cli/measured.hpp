@@ -11,7 +11,8 @@
 namespace posewise::cli {
 
 /// The campaign of a file, its expected sizes priors or not as asked, else as it says.
-io::CampaignFile read_with_prior(const std::string& path, std::optional<bool> prior);
+io::CampaignFile read_with_prior(const std::string& path, std::optional<bool> prior,
+                                 const StopSignal& stop = {});
 
 /// Noise, scales and errors that poses are planned with, a line each.
 std::string describe_planned(const io::CampaignFile& campaign, double repeats);

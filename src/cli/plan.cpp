@@ -51,6 +51,8 @@ sight not asked for; --workspace or --workspace-box-mm state another.
 --augment counts what was measured already. --plan with --drop keeps the other poses of a plan as
 they are and finds new ones, at least 5 deg in some joint from those that could not be reached.
 Ctrl-C or --time end the search with the best plan so far, marked as interrupted; exit code 0.
+Before there is one, while it looks for what is identifiable, they end it with an error. What a
+limit that was not kept went to is said.
 The same seed gives the same plan, on any number of threads, unless time ended it.)";
 
 struct PlanArguments : RequestArguments {
@@ -123,7 +125,7 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
         arguments.out.empty() ? default_plan_out(sources.campaign) : arguments.out;
     std::optional<InterruptFlag> interrupted(std::in_place);
     const StopSignal stop{interrupted->get(), deadline_after(arguments.request.time_limit)};
-    const io::CampaignFile campaign = read_planned(arguments);
+    const io::CampaignFile campaign = read_planned(arguments, stop);
     check_outputs({&campaign},
                   {arguments.earlier.from, sources.augment, sources.repaired, sources.workspace},
                   {out, arguments.csv}, common);
@@ -131,7 +133,9 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     PlanningOptions options = read_planning_inputs(request, campaign);
     if (!sources.repaired.empty()) options.repaired = io::read_plan(sources.repaired);
     options.stop = stop;
+    const auto read = std::chrono::steady_clock::now();
     const Planning planning = plan_with_progress(campaign, options, arguments.progress);
+    note_overtime(request.time_limit, stop, read, "plan");
     io::write_plan(out, planning.plan, arguments.csv, planning.campaign);
     interrupted.reset();
     print_planning(planning, campaign, out, common);

@@ -1,5 +1,8 @@
 #include "plan_options.hpp"
 
+#include <algorithm>
+#include <cstdio>
+
 #include "common.hpp"
 #include "options.hpp"
 
@@ -46,7 +49,9 @@ void add_workspace_options(CLI::App& command, PlanRequest& request) {
 void add_search_options(CLI::App& command, RequestArguments& arguments,
                         const std::string& seed_help, const std::string& default_out) {
     command.add_option("--seed", arguments.seed, seed_help)->check(whole_number(0, largest_seed));
-    command.add_option("--time", arguments.request.time_limit, "Seconds after which to stop")
+    command
+        .add_option("--time", arguments.request.time_limit,
+                    "Seconds after which to stop, reading included")
         ->check(real_number(1e-3, 1e9));
     command
         .add_option("-o,--out", arguments.out,
@@ -59,11 +64,25 @@ void add_progress_flag(CLI::App& command, RequestArguments& arguments) {
                      "Show progress on standard error even if it is no terminal");
 }
 
-io::CampaignFile read_planned(const RequestArguments& arguments) {
+io::CampaignFile read_planned(const RequestArguments& arguments, const StopSignal& stop) {
     const EarlierArguments& earlier = arguments.earlier;
     PlanSources sources = arguments.request.sources;
     sources.estimate = earlier.from;
-    return read_planned(sources, earlier.use(), arguments.prior, earlier.is_forced);
+    return read_planned(sources, earlier.use(), arguments.prior, earlier.is_forced, stop);
+}
+
+void note_overtime(double limit, const StopSignal& stop, std::chrono::steady_clock::time_point read,
+                   const char* what) {
+    constexpr double most = 0.5;  // s
+    using Seconds = std::chrono::duration<double>;
+    const auto now = std::chrono::steady_clock::now();
+    if (limit == 0 || Seconds(now - stop.deadline).count() < std::max(most, 0.1 * limit)) return;
+    const double planned = Seconds(now - read).count();
+    const double all = limit + Seconds(now - stop.deadline).count();
+    std::fprintf(stderr,
+                 "posewise: took %.1f s, --time is %g: %.1f s to read the campaign and what goes "
+                 "with it, %.1f s to %s; its single steps are not cut short\n",
+                 all, limit, all - planned, planned, what);
 }
 
 PlanRequest make_request(const RequestArguments& arguments, const io::CampaignFile* campaign,

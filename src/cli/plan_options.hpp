@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -34,7 +35,12 @@ void add_search_options(CLI::App& command, RequestArguments& arguments,
 void add_progress_flag(CLI::App& command, RequestArguments& arguments);
 
 /// The campaign that poses are planned with, as its file and the command line say.
-io::CampaignFile read_planned(const RequestArguments& arguments);
+io::CampaignFile read_planned(const RequestArguments& arguments, const StopSignal& stop);
+
+/// Says on standard error what a time limit that was not kept went to: up to `read`, the inputs,
+/// then `what` was done.
+void note_overtime(double limit, const StopSignal& stop, std::chrono::steady_clock::time_point read,
+                   const char* what);
 
 /// What is asked for; prior and seed are as the campaign says where the command line does not, the
 /// criterion the `usual` one, or D where that is V and base and targets do not count.

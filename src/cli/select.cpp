@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -47,6 +48,7 @@ matrix), each --rows of them one candidate, named 0, 1, ... One of --groups: col
 -k in sum, by what an experiment that could be split at will would take of each, and proves the bound.
 
 Ctrl-C or --time end the search with the best plan so far, written with its bound; exit code 0.
+Before there is one, while it looks for what is identifiable, they end it with an error.
 The same seed gives the same plan, on any number of threads, unless time ended it.)";
 
 CandidateKind kind_of(const SelectArguments& arguments) {
@@ -108,7 +110,7 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     std::optional<InterruptFlag> interrupted(std::in_place);
     const StopSignal stop{interrupted->get(), deadline_after(arguments.request.time_limit)};
     std::optional<io::CampaignFile> file;
-    if (!arguments.request.sources.campaign.empty()) file = read_planned(arguments);
+    if (!arguments.request.sources.campaign.empty()) file = read_planned(arguments, stop);
     const PlanRequest request = complete_request(arguments, file ? &*file : nullptr);
     const PlanSources& sources = request.sources;
     const bool has_default = arguments.out.empty() && !arguments.relaxes;
@@ -120,10 +122,12 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     ChoiceInputs inputs =
         read_choice_inputs(request, kind_of(arguments), arguments.random, std::move(file));
     inputs.options.stop = stop;
+    const auto read = std::chrono::steady_clock::now();
     if (arguments.relaxes) {
         const ApproximateDesign design =
             inputs.campaign ? relax_choice(*inputs.campaign, inputs.candidates, inputs.options)
                             : relax_choice(inputs.blocks, inputs.options);
+        note_overtime(request.time_limit, stop, read, "weight the candidates");
         warn_of_few(design.candidate_count, arguments.random);
         if (!out.empty()) io::write_weights(out, design);
         interrupted.reset();
@@ -133,6 +137,7 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     inputs.options.progress = [&](const Progress& state) { line(state); };
     const Plan plan = inputs.campaign ? choose(*inputs.campaign, inputs.candidates, inputs.options)
                                       : choose(inputs.blocks, inputs.options);
+    note_overtime(request.time_limit, stop, read, "choose");
     warn_of_few(plan.candidate_count, arguments.random);
     io::write_plan(out, plan);
     interrupted.reset();

@@ -11,6 +11,11 @@ StopSignal StopSignal::with_half_the_time() const {
     return {interrupted, now + (deadline - now) / 2};
 }
 
+void StopSignal::check(const std::string& what) const {
+    if (is_interrupted()) throw InputError("interrupted while " + what);
+    if (is_late()) throw InputError("the time was up while " + what + "; must be given more");
+}
+
 Ending StopSignal::ending_or(Ending ending) const {
     if (is_interrupted()) return Ending::Interrupted;
     return is_late() ? Ending::TimeLimit : ending;

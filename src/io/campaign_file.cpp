@@ -141,11 +141,11 @@ Criterion read_criterion(const YamlValue& value) {
     }
 }
 
-Campaign make_complete(const Campaign& campaign, const YamlValue& robot) {
+Campaign make_complete(const Campaign& campaign, const YamlValue& robot, const StopSignal& stop) {
     try {
-        return with_robot(campaign, irreducible_model(campaign));
+        return with_robot(campaign, irreducible_model(campaign, stop));
     } catch (const InputError& problem) {
-        throw robot.error(std::string("has no irreducible model: ") + problem.what());
+        throw robot.error(std::string("no irreducible model was found: ") + problem.what());
     }
 }
 
@@ -171,7 +171,7 @@ ErrorModel read_planned_model(const YamlValue& value, ErrorModel fitted) {
 
 /// With that error model, if one is asked for, else with the one that the file says.
 CampaignFile parse(const std::string& content, const std::string& path,
-                   std::optional<ErrorModel> errors) {
+                   std::optional<ErrorModel> errors, const StopSignal& stop) {
     const YamlMap map(
         detail::parse_yaml(content, path),
         {"name", "robot", "sensor", "model_error_<length>", "model_error_orientation_<angle>",
@@ -196,7 +196,7 @@ CampaignFile parse(const std::string& content, const std::string& path,
     campaign = with_robot(campaign, robot.declared);
     if (!sensor.reached.empty()) place_within_reach(sensor.reached, campaign);
     if (robot.error_model == ErrorModel::Complete) {
-        campaign = make_complete(campaign, map.require("robot"));
+        campaign = make_complete(campaign, map.require("robot"), stop);
     }
     if (robot.error_model == ErrorModel::Full) {
         const Chain full = detail::full_model(robot.declared, robot.gravity);
@@ -209,7 +209,7 @@ CampaignFile parse(const std::string& content, const std::string& path,
     if (const auto spread = map.find("spread")) {
         campaign.spread = read_spread(*spread, campaign, !errors);
     }
-    if (const auto prior = map.find("prior")) set_prior(file, prior->boolean());
+    if (const auto prior = map.find("prior")) set_prior(file, prior->boolean(), stop);
     if (const auto planning = map.find("planning")) {
         file.planned_model =
             read_planned_model(*planning, errors ? ErrorModel::Stated : file.error_model);
@@ -243,15 +243,15 @@ ErrorModel parse_error_model(const std::string& name) {
     throw InputError("is " + detail::quote(name) + "; " + detail::suggest(name, names));
 }
 
-void set_prior(CampaignFile& campaign, bool is_prior) {
+void set_prior(CampaignFile& campaign, bool is_prior, const StopSignal& stop) {
     const bool is_dropped = campaign.spread.is_prior && !is_prior;
     campaign.spread.is_prior = is_prior;
     if (!is_dropped || campaign.error_model != ErrorModel::Full) return;
-    static_cast<Campaign&>(campaign) = with_robot(campaign, irreducible_model(campaign));
+    static_cast<Campaign&>(campaign) = with_robot(campaign, irreducible_model(campaign, stop));
 }
 
-CampaignFile read_campaign(const std::string& path) {
-    return parse_campaign(detail::read_file(path, most_bytes), path);
+CampaignFile read_campaign(const std::string& path, const StopSignal& stop) {
+    return parse_campaign(detail::read_file(path, most_bytes), path, stop);
 }
 
 std::vector<CampaignFile> read_campaign(const std::string& path,
@@ -260,7 +260,7 @@ std::vector<CampaignFile> read_campaign(const std::string& path,
     const CampaignFile stated = parse_campaign(content, path);  // says what is wrong with it
     std::vector<CampaignFile> files;
     for (const ErrorModel model : models) {
-        files.push_back(parse(content, path, model));
+        files.push_back(parse(content, path, model, {}));
         if (model == stated.error_model || files.back().robot.parameter_count() > 0) continue;
         throw input_error_at({path},
                              fmt::format("has no errors to fit as {}, none is named in brackets; "
@@ -270,19 +270,21 @@ std::vector<CampaignFile> read_campaign(const std::string& path,
     return files;
 }
 
-CampaignFile read_planned_campaign(const std::string& path, std::optional<bool> prior) {
+CampaignFile read_planned_campaign(const std::string& path, std::optional<bool> prior,
+                                   const StopSignal& stop) {
     const std::string content = detail::read_file(path, most_bytes);
-    CampaignFile file = parse_campaign(content, path);
-    set_prior(file, prior.value_or(file.spread.is_prior));
+    CampaignFile file = parse_campaign(content, path, stop);
+    set_prior(file, prior.value_or(file.spread.is_prior), stop);
     if (!file.planned_model) return file;
-    CampaignFile planned = parse(content, path, file.planned_model);
-    set_prior(planned, prior.value_or(planned.spread.is_prior));
-    planned.fitted_pose_count = least_calibration_count(file);
+    CampaignFile planned = parse(content, path, file.planned_model, stop);
+    set_prior(planned, prior.value_or(planned.spread.is_prior), stop);
+    planned.fitted_pose_count = least_calibration_count(file, stop);
     return planned;
 }
 
-CampaignFile parse_campaign(const std::string& content, const std::string& path) {
-    return parse(content, path, std::nullopt);
+CampaignFile parse_campaign(const std::string& content, const std::string& path,
+                            const StopSignal& stop) {
+    return parse(content, path, std::nullopt, stop);
 }
 
 }  // namespace posewise::io

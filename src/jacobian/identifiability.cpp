@@ -1,5 +1,7 @@
 #include "posewise/jacobian/identifiability.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -48,13 +50,43 @@ std::vector<Index> make_priority(const Campaign& campaign) {
     return priority;
 }
 
-MatrixXd stack_at_nominal(const Campaign& campaign, Index pose_count) {
+/// Beside these values rank is nearly lost only.
+Parameters nominal_of(const Campaign& campaign) {
     Parameters nominal = campaign.nominal;
-    nominal.robot.setZero(campaign.robot.parameter_count());  // beside it rank is nearly lost only
-    const detail::ShownPoses poses =
-        detail::random_poses(campaign, nominal, pose_count, configuration_seed);
-    return make_plain_blocks(campaign, nominal, poses.configurations, times_seen(poses.is_seen, 1))
+    nominal.robot.setZero(campaign.robot.parameter_count());
+    return nominal;
+}
+
+detail::ShownPoses draw_poses(const Campaign& campaign, Index count) {
+    return detail::random_poses(campaign, nominal_of(campaign), count, configuration_seed);
+}
+
+MatrixXd stack_at_nominal(const Campaign& campaign, const detail::ShownPoses& poses, Index first,
+                          Index count) {
+    return make_plain_blocks(campaign, nominal_of(campaign),
+                             poses.configurations.middleRows(first, count),
+                             times_seen(poses.is_seen.middleRows(first, count), 1))
         .matrix;
+}
+
+/// The triangular factor of the Jacobian over as many poses as twice the parameters, which is made
+/// in parts: all that tells how columns depend on each other, and no more rows than columns.
+MatrixXd factor_at_nominal(const Campaign& campaign, const StopSignal& stop) {
+    const Index L = parameter_count(campaign);
+    const std::string what = fmt::format("finding what is identifiable of {} parameters", L);
+    stop.check(what);
+    const detail::ShownPoses poses = draw_poses(campaign, 2 * L);
+    const Index at_once = std::max<Index>(1, 4 * L / campaign.sensor->row_count());
+    MatrixXd R(0, L);
+    for (Index first = 0; first < poses.configurations.rows(); first += at_once) {
+        const Index count = std::min(at_once, poses.configurations.rows() - first);
+        const MatrixXd part = stack_at_nominal(campaign, poses, first, count);
+        MatrixXd both(R.rows() + part.rows(), L);
+        both << R, part;
+        R = detail::triangular_factor(std::move(both));
+        stop.check(what);
+    }
+    return R;
 }
 
 /// How the dropped columns follow from the kept ones: kept x dropped, in the columns' own units.
@@ -76,7 +108,7 @@ MatrixXd express_dropped(const MatrixXd& J, const Identifiability& result) {
 }  // namespace
 
 Identifiability find_independent_columns(const MatrixXd& J, const std::vector<Index>& priority,
-                                         double tolerance) {
+                                         double tolerance, const StopSignal& stop) {
     const double largest = J.colwise().norm().maxCoeff();
     Identifiability result;
     MatrixXd Q(J.rows(), std::min(J.rows(), J.cols()));
@@ -86,6 +118,7 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
         std::vector<Index> rest;
         result.largest_dropped_residual = 0;
         for (const Index k : open) {
+            stop.check(fmt::format("telling {} parameters apart", J.cols()));
             const double norm = J.col(k).norm();
             const VectorXd residual = norm > negligible_share * largest
                                           ? residual_outside(Q.leftCols(rank), J.col(k) / norm)
@@ -123,9 +156,9 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
     return result;
 }
 
-Identifiability find_identifiable(const Campaign& campaign) {
-    return find_independent_columns(stack_at_nominal(campaign, 2 * parameter_count(campaign)),
-                                    make_priority(campaign));
+Identifiability find_identifiable(const Campaign& campaign, const StopSignal& stop) {
+    return find_independent_columns(factor_at_nominal(campaign, stop), make_priority(campaign),
+                                    least_residual, stop);
 }
 
 bool has_clear_gap(const Identifiability& found) {
@@ -134,8 +167,7 @@ bool has_clear_gap(const Identifiability& found) {
 
 std::vector<Index> weakest_kept(const Campaign& campaign, const Identifiability& found,
                                 Index count) {
-    const MatrixXd J = stack_at_nominal(campaign, 2 * parameter_count(campaign));
-    MatrixXd kept = J(Eigen::all, found.kept);
+    MatrixXd kept = factor_at_nominal(campaign, {})(Eigen::all, found.kept);
     kept.colwise().normalize();
     std::vector<Index> parameters;
     const std::vector<WeakDirection> weakest = weakest_directions(kept, 1, count);
@@ -181,27 +213,28 @@ Chain without_errors_of_base(const Chain& chain) {
     return keep_parameters(chain, kept);
 }
 
-Chain irreducible_model(const Campaign& campaign) {
+Chain irreducible_model(const Campaign& campaign, const StopSignal& stop) {
     const Campaign complete = with_robot(campaign, detail::complete_model(campaign.robot));
     const auto names = parameter_names(complete);
     std::vector<std::string> kept;
-    for (const Index k : find_identifiable(complete).kept) {
+    for (const Index k : find_identifiable(complete, stop).kept) {
         kept.push_back(names[static_cast<std::size_t>(k)]);
     }
     return keep_parameters(complete.robot, kept);
 }
 
-Index least_pose_count(const Campaign& stated) {
+Index least_pose_count(const Campaign& stated, const StopSignal& stop) {
     // What has a prior needs no pose.
     const Campaign campaign =
         stated.spread.is_prior ? with_robot(stated, without_parameters(stated.robot)) : stated;
-    const Identifiability all = find_identifiable(campaign);
+    const Identifiability all = find_identifiable(campaign, stop);
     const auto rank = static_cast<Index>(all.kept.size());
     const Index rows = campaign.sensor->rows_per_target() * campaign.sensor->seen_at_once();
-    const MatrixXd J = stack_at_nominal(campaign, 2 * parameter_count(campaign));
+    const detail::ShownPoses poses = draw_poses(campaign, 2 * parameter_count(campaign));
     const auto suffices = [&](Index count) {
-        if (count * rows >= J.rows()) return true;
-        const auto some = find_independent_columns(J.topRows(count * rows), all.kept);
+        if (count >= poses.configurations.rows()) return true;
+        const MatrixXd J = stack_at_nominal(campaign, poses, 0, count);
+        const auto some = find_independent_columns(J, all.kept, least_residual, stop);
         return static_cast<Index>(some.kept.size()) == rank;
     };
     Index least = (rank + rows - 1) / rows;  // nothing less can

@@ -103,7 +103,9 @@ double search_bound(const DesignSpace& space, const Objective& objective,
     const auto K = static_cast<double>(options.pose_count);
     if (space.margin) iterations = (iterations + 3) / 4;  // ten times as long along constraints
     Support support;
-    for (Index i = 0; i < plan.rows(); ++i) support.add(space, plan.row(i).transpose());
+    for (Index i = 0; i < plan.rows() && !stop.is_set(); ++i) {
+        support.add(space, plan.row(i).transpose());
+    }
     for (Index t = 0; t < iterations && !stop.is_set(); ++t) {
         const Certificate relaxed = relax(objective, support.blocks, anywhere).certificate;
         Objective softened = objective;

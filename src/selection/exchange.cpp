@@ -357,8 +357,9 @@ Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     if (!best.score.identifies) {
         return unidentified(
             fmt::format("pose count is {}: no choice was found that identifies all {} parameters; "
-                        "ask for more poses{}",
+                        "ask for more {}{}",
                         options.pose_count, candidates.parameter_count(),
+                        options.stop.is_set() ? "time, poses" : "poses",
                         options.held.size() == 0 ? " or state a prior" : ""));
     }
     Choice plan;

@@ -132,7 +132,8 @@ Plan choose(const Campaign& campaign, const Candidates& candidates, const Choice
     if (campaign.spread.is_prior) {  // else selection says if they are too few
         detail::compute_from(options.sources.campaign, [&] {
             detail::check_enough_poses(campaign, options.pose_count,
-                                       options.held ? options.held->configuration_count() : 0);
+                                       options.held ? options.held->configuration_count() : 0,
+                                       options.stop);
         });
     }
     ChoiceProblem problem =

@@ -91,8 +91,9 @@ void check_memory(const Campaign& campaign, Index count, const std::string& opti
                     needed / bytes_per_gb, there / bytes_per_gb, option));
 }
 
-void check_enough_poses(const Campaign& campaign, Index count, Index measured) {
-    const Index least = least_calibration_count(campaign) - measured;
+void check_enough_poses(const Campaign& campaign, Index count, Index measured,
+                        const StopSignal& stop) {
+    const Index least = least_calibration_count(campaign, stop) - measured;
     if (count >= least) return;
     if (campaign.fitted_pose_count > 0) {
         throw InputError(

@@ -61,6 +61,7 @@ void check_memory(const Campaign& campaign, Index count, const std::string& opti
 
 /// Throws InputError where so many poses beside those measured already are fewer than a calibration
 /// needs (least_calibration_count()).
-void check_enough_poses(const Campaign& campaign, Index count, Index measured);
+void check_enough_poses(const Campaign& campaign, Index count, Index measured,
+                        const StopSignal& stop);
 
 }  // namespace posewise::detail

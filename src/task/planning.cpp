@@ -106,7 +106,7 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
 
 Planning make_plan(const Campaign& campaign, const PlanningOptions& options) {
     PlanningProblem problem = detail::state_planning(campaign, options);
-    detail::count_new_poses(problem);
+    detail::count_new_poses(problem, options.stop);
     const Index asked_for = problem.request.pool_count;
     Pool pool =
         make_pool(problem.constraints, asked_for, options.seed, options.stop.with_half_the_time());

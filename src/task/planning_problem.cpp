@@ -144,7 +144,7 @@ PlanningProblem state_planning(const Campaign& given, const PlanningOptions& opt
     return problem;
 }
 
-void count_new_poses(PlanningProblem& problem) {
+void count_new_poses(PlanningProblem& problem, const StopSignal& stop) {
     const auto kept = static_cast<Index>(problem.kept.size());
     Index& count = problem.request.pose_count;
     if (count == 0) count = kept + static_cast<Index>(problem.request.dropped.size());
@@ -153,8 +153,9 @@ void count_new_poses(PlanningProblem& problem) {
                                      count, kept, problem.request.sources.repaired));
     }
     problem.search.pose_count = count - kept;
-    compute_from(problem.request.sources.campaign,
-                 [&] { check_enough_poses(problem.campaign, count, problem.measured_count); });
+    compute_from(problem.request.sources.campaign, [&] {
+        check_enough_poses(problem.campaign, count, problem.measured_count, stop);
+    });
 }
 
 void draw_workspace(PlanningProblem& problem, const PlanningOptions& options) {

@@ -22,8 +22,9 @@ struct PlanningProblem {
 /// All but pool and workspace; poses of a repaired plan are kept. Throws InputError as make_plan().
 PlanningProblem state_planning(const Campaign& campaign, const PlanningOptions& options);
 
-/// How many poses are new; completes the request. Throws InputError if that is none, or too few.
-void count_new_poses(PlanningProblem& problem);
+/// How many poses are new; completes the request. Throws InputError if that is none, or too few,
+/// and where it is stopped.
+void count_new_poses(PlanningProblem& problem, const StopSignal& stop);
 
 /// Draws the workspace, unless `options` state it.
 void draw_workspace(PlanningProblem& problem, const PlanningOptions& options);

@@ -135,6 +135,40 @@ TEST_F(PlanCommand, TimeCoversThePool) {
     EXPECT_NE(text.find("left out, planning was stopped"), std::string::npos) << text;
 }
 
+/// A snake of so many joints in turn about z and y.
+std::string snake_campaign(int joints, const std::string& errors) {
+    std::string limits, elements;
+    for (int j = 1; j <= joints; ++j) {
+        const std::string name = 'q' + std::to_string(j);
+        limits += (j > 1 ? ", " : "") + name + ": {limits_deg: [-100, 100]}";
+        elements += (j > 1 ? ", " : "") + std::string(j % 2 == 1 ? "Rz " : "Ry ") + name +
+                    ", Tx 50 mm, Tz 100 mm";
+    }
+    return "name: snake\nrobot:\n  errors: " + errors + "\n  joints: {" + limits +
+           "}\n  elements: [" + elements +
+           "]\nsensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n";
+}
+
+TEST_F(PlanCommand, TimeCoversTheIrreducibleModel) {
+    write_text("snake.yaml", snake_campaign(100, "geometric"));
+    for (const std::string& rest :
+         {"plan snake.yaml -k 60", "select snake.yaml --random 99 -k 60"}) {
+        const Outcome outcome = run(rest + " --time 0.02 -o p.json");
+        EXPECT_EQ(outcome.code, 1);
+        EXPECT_NE(outcome.err.find("no irreducible model was found: the time was up while finding "
+                                   "what is identifiable of "),
+                  std::string::npos)
+            << outcome.err;
+    }
+}
+
+TEST_F(PlanCommand, SaysWhatALimitThatWasNotKeptWentTo) {
+    write_text("snake.yaml", snake_campaign(24, "full"));
+    const Outcome outcome = run("plan snake.yaml -k 20 --pool 300 --time 0.02 -o p.json");
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.err.find(" s, --time is 0.02: "), std::string::npos) << outcome.err;
+}
+
 TEST_F(PlanCommand, CountsWhatWasMeasuredAlready) {
     run_well("simulate " + fanuc_design + " -k 8 --repeats 2 -o m.csv");
     const std::string text =

@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 
 #include "../../src/model/complete_model.hpp"
 #include "../../src/model/sampling.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/random.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "support/campaigns.hpp"
@@ -194,6 +198,33 @@ TEST(FindIdentifiable, DroppedColumnIsTheStatedCombination) {
         }
         EXPECT_LT((combination - J.col(dropped.parameter)).norm(), 1e-9 * combination.norm());
     }
+}
+
+TEST(IrreducibleModel, IsNotFoundWhenStopped) {
+    const Campaign campaign = tracked_campaign(testing::fanuc());
+    StopSignal late;
+    late.deadline = std::chrono::steady_clock::now();
+    EXPECT_THROW(irreducible_model(campaign, late), InputError);
+    EXPECT_THROW(least_pose_count(campaign, late), InputError);
+    std::atomic<bool> flag = true;
+    const StopSignal interrupted{&flag};
+    EXPECT_THROW(
+        find_independent_columns(MatrixXd::Identity(3, 3), {0, 1, 2}, least_residual, interrupted),
+        InputError);
+}
+
+TEST(FindIdentifiable, LooksAtManyTargetsInParts) {
+    Campaign campaign = tracked_campaign(complete_model(testing::fanuc()));
+    const Identifiability three = find_identifiable(campaign);
+    const auto targets = std::vector<std::optional<Vector3d>>(40, std::nullopt);
+    campaign.sensor = std::make_shared<PointSensor>(targets, 5e-5);
+    campaign.nominal.sensor.resize(3 * 40);
+    RandomStream random(1);
+    for (double& coordinate : campaign.nominal.sensor) coordinate = 0.3 * random.normal();
+    const Identifiability many = find_identifiable(campaign);
+    EXPECT_EQ(many.kept.size(), three.kept.size() + 3 * 37);
+    EXPECT_TRUE(has_clear_gap(many));
+    EXPECT_EQ(many.dropped.size(), three.dropped.size());
 }
 
 TEST(LeastPoseCount, IsFiveForThreeTargetsAndNineForOne) {

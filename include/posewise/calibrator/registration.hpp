@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "posewise/core/progress.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 
@@ -36,7 +37,7 @@ Registration register_roughly(const Campaign& campaign, const Measurements& meas
 /// be identified (least_pose_count()) and, where no nominal values are needed for it, determine
 /// base and targets, or what an earlier estimate that is the prior leaves open of them. No fewer
 /// than Campaign::fitted_pose_count, unless there is such an estimate.
-Index least_calibration_count(const Campaign& campaign);
+Index least_calibration_count(const Campaign& campaign, const StopSignal& stop = {});
 
 /// The parameters, for those to whom measurements that do not determine them are no input: throws
 /// InputError with the reason.

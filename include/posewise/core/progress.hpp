@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <limits>
+#include <string>
 #include <string_view>
 
 #include "posewise/core/types.hpp"
@@ -42,6 +43,8 @@ struct StopSignal {
     bool is_set() const { return is_interrupted() || is_late(); }
     /// With half of the time that is left.
     StopSignal with_half_the_time() const;
+    /// Throws InputError if it is set: for `what`, of which nothing is of use before its end.
+    void check(const std::string& what) const;
     /// Interrupted or TimeLimit if it is set, else `ending`.
     Ending ending_or(Ending ending) const;
 };

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "posewise/core/progress.hpp"
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/measurement/campaign.hpp"
@@ -52,8 +53,8 @@ struct CampaignFile : Campaign {
 };
 
 /// Says whether the expected sizes are priors, whatever the file says. Without them a full model is
-/// reduced to what poses can tell apart.
-void set_prior(CampaignFile& campaign, bool is_prior);
+/// reduced to what poses can tell apart. Throws InputError if it is stopped at that.
+void set_prior(CampaignFile& campaign, bool is_prior, const StopSignal& stop = {});
 
 /// Reads a campaign from YAML. Throws InputError with path:line:column for anything missing,
 /// misspelt or out of range.
@@ -93,15 +94,19 @@ void set_prior(CampaignFile& campaign, bool is_prior);
 /// The sensor's noise is `sigma_mm` (one number, or three for x, y and z) or that of a laser
 /// tracker, `noise: {range_um: 10, angle_urad: 15}`. The section `cell` states the constraints of
 /// poses; designs/cell_demo/campaign.yaml has each of its keys.
-CampaignFile read_campaign(const std::string& path);
+///
+/// What stops it ends the search for an irreducible model, with an error.
+CampaignFile read_campaign(const std::string& path, const StopSignal& stop = {});
 
 /// The same from a text that is not in its file (yet). Paths in it are from the folder of `path`.
-CampaignFile parse_campaign(const std::string& content, const std::string& path);
+CampaignFile parse_campaign(const std::string& content, const std::string& path,
+                            const StopSignal& stop = {});
 
 /// The campaign of a file as poses are planned for it: with the error model that it states under
 /// `planning`, if it does, and then with the Campaign::fitted_pose_count of the one that it states
 /// under `robot`. The expected sizes are priors as asked, else as the file says.
-CampaignFile read_planned_campaign(const std::string& path, std::optional<bool> prior = {});
+CampaignFile read_planned_campaign(const std::string& path, std::optional<bool> prior = {},
+                                   const StopSignal& stop = {});
 
 /// The campaign of a file with each of these error models in turn, whatever it states under
 /// `errors`; expected sizes of single parameters that a model does not have are left out.

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "posewise/core/progress.hpp"
 #include "posewise/measurement/campaign.hpp"
 
 namespace posewise {
@@ -30,20 +31,25 @@ struct Identifiability {
     double largest_dropped_residual = 0;
 };
 
+/// A column is a combination of others if less than this part of it is outside their span.
+inline constexpr double least_residual = 1e-8;
+
 /// Walks the columns of J in `priority` order (a permutation of them) and keeps one if its
 /// residual on the kept ones exceeds a part of its norm (twice orthogonalised Gram-Schmidt): 1e-2
 /// in the first walk, then 1e-4 and so on down to `tolerance`, so that a column which is nearly a
 /// combination of others (axes that are parallel but for the rounding of their angles) does not
-/// displace one that is not. A column below 1e-12 of the largest moves nothing.
+/// displace one that is not. A column below 1e-12 of the largest moves nothing. Throws InputError
+/// if it is stopped.
 Identifiability find_independent_columns(const MatrixXd& J, const std::vector<Index>& priority,
-                                         double tolerance = 1e-8);
+                                         double tolerance = least_residual,
+                                         const StopSignal& stop = {});
 
 /// What a campaign can identify at best: its Jacobian at nominal parameters over random
 /// configurations within the limits (as many as twice the parameters). Priority: base, sensor,
 /// joint offsets, translations, other rotations, error terms, each from base to flange. The test is
 /// at nominal values because off nominal a lost rank is only nearly lost. Targets and base that the
-/// campaign does not state are put at generic places.
-Identifiability find_identifiable(const Campaign& campaign);
+/// campaign does not state are put at generic places. Throws InputError if it is stopped.
+Identifiability find_identifiable(const Campaign& campaign, const StopSignal& stop = {});
 
 /// Whether the tolerance has no part in what was kept: a factor of 1000 at least between the least
 /// residual of a kept column and the largest of a dropped one.
@@ -61,12 +67,13 @@ Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names)
 /// zero does: where all is found in its base frame they mean nothing.
 Chain without_errors_of_base(const Chain& chain);
 
-/// The irreducible form: with complete errors, then only those that are identifiable.
-Chain irreducible_model(const Campaign& campaign);
+/// The irreducible form: with complete errors, then only those that are identifiable. Throws
+/// InputError if it is stopped.
+Chain irreducible_model(const Campaign& campaign, const StopSignal& stop = {});
 
 /// Smallest number of generic configurations that identifies all that is identifiable; where the
-/// robot's errors have priors, base and sensor.
-Index least_pose_count(const Campaign& campaign);
+/// robot's errors have priors, base and sensor. Throws InputError if it is stopped.
+Index least_pose_count(const Campaign& campaign, const StopSignal& stop = {});
 
 /// A direction in parameter space, in units of each parameter's expected error (scaled), that the
 /// poses at hand hardly see.
