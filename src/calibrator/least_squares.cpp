@@ -337,6 +337,7 @@ void finish(const IdentificationProblem& problem, const Triangle& at_estimate, E
     estimate.names = parameter_names(problem.campaign);
     estimate.model_error = problem.campaign.model_error;
     estimate.model_error_orientation = problem.campaign.model_error_orientation;
+    estimate.model_error_within = problem.campaign.known_within.model_error;
     estimate.loss = problem.loss;
     if (is_robust) estimate.outliers = find_outliers(problem, estimate.parameters);
     const Index lengths = problem.campaign.sensor->lengths_per_target();

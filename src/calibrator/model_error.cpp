@@ -230,19 +230,25 @@ std::pair<double, double> climb(const Function& f, double x) {
     return {at[1], value[1]};
 }
 
+/// Of x, where exp(f) is its density, by the curvature at the maximum, `highest` at x.
+template <typename Function>
+double deviation_at(const Function& f, double x, double highest) {
+    constexpr double step = 0.25;
+    const double least_curvature = 1 / (log_factor * log_factor);
+    if (!std::isfinite(highest)) return log_factor;
+    const double curvature = (2 * highest - f(x - step) - f(x + step)) / (step * step);
+    return 1 / std::sqrt(std::max(least_curvature, curvature));
+}
+
 /// log of the root of what exp(2 x) is on average where exp(f) is the density of x, by its maximum,
 /// `highest` at x:
 /// with few poses larger numbers remain possible, the more as the density is skew, and count.
 /// Adaptive Gauss-Hermite quadrature with five points [Liu & Pierce 1994].
 template <typename Function>
-double average(const Function& f, double x, double highest) {
-    constexpr double step = 0.25;
-    const double least_curvature = 1 / (log_factor * log_factor);
+double average(const Function& f, double x, double highest, double deviation) {
     constexpr std::array<std::pair<double, double>, 2> nodes_and_weights{
         {{1.3556261799742659, 0.2220759220056126}, {2.8569700138728056, 0.0112574113277207}}};
     if (!std::isfinite(highest)) return x;
-    const double curvature = (2 * highest - f(x - step) - f(x + step)) / (step * step);
-    const double deviation = 1 / std::sqrt(std::max(least_curvature, curvature));
     double density = 8.0 / 15;
     double squares = density;
     for (const auto& [node, weight] : nodes_and_weights) {
@@ -268,6 +274,7 @@ bool is_model_error_open(const Campaign& campaign) {
 
 Campaign find_model_error(const IdentificationProblem& problem, const Parameters& parameters,
                           const Campaign& expected) {
+    Campaign found = expected;
     const PredictiveScore score(problem, parameters, expected);
     LogErrors errors{std::log(problem.campaign.model_error),
                      std::log(problem.campaign.model_error_orientation)};
@@ -283,10 +290,13 @@ Campaign find_model_error(const IdentificationProblem& problem, const Parameters
             };
             const auto [most_probable, highest] = climb(along, errors[kind]);
             errors[kind] = most_probable;
-            if (sweep + 1 == sweeps) averages[kind] = average(along, most_probable, highest);
+            if (sweep + 1 < sweeps) continue;
+            const double deviation = deviation_at(along, most_probable, highest);
+            averages[kind] = average(along, most_probable, highest, deviation);
+            const double within = std::min(std::exp(deviation), model_error_factor);
+            if (kind == 0) found.known_within.model_error = within;
         }
     }
-    Campaign found = expected;
     found.model_error = within_reach(std::exp(averages[0]), expected.model_error);
     found.model_error_orientation =
         within_reach(std::exp(averages[1]), expected.model_error_orientation);

@@ -47,6 +47,7 @@ will be. The workspace is drawn within the limits and the cell's target boxes, c
 sight not asked for; --workspace or --workspace-box-mm state another.
 
 --from plans for the robot as an earlier calibration found it, --as-prior for what that left open;
+the 90 % interval is then as narrow as that knows the model error, and sizes that it learned;
 --only base,targets for finding them again after the instrument or the tool was moved.
 --augment counts what was measured already. --plan with --drop keeps the other poses of a plan as
 they are and finds new ones, at least 5 deg in some joint from those that could not be reached.

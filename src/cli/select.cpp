@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "../core/text.hpp"
 #include "commands.hpp"
@@ -125,8 +126,9 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     const auto read = std::chrono::steady_clock::now();
     if (arguments.relaxes) {
         const ApproximateDesign design =
-            inputs.campaign ? relax_choice(*inputs.campaign, inputs.candidates, inputs.options)
-                            : relax_choice(inputs.blocks, inputs.options);
+            inputs.campaign
+                ? relax_choice(*inputs.campaign, std::move(inputs.candidates), inputs.options)
+                : relax_choice(std::move(inputs.blocks), inputs.options);
         note_overtime(request.time_limit, stop, read, "weight the candidates");
         warn_of_few(design.candidate_count, arguments.random);
         if (!out.empty()) io::write_weights(out, design);
@@ -135,8 +137,9 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     }
     ProgressLine line("selecting", arguments.progress);
     inputs.options.progress = [&](const Progress& state) { line(state); };
-    const Plan plan = inputs.campaign ? choose(*inputs.campaign, inputs.candidates, inputs.options)
-                                      : choose(inputs.blocks, inputs.options);
+    const Plan plan = inputs.campaign
+                          ? choose(*inputs.campaign, std::move(inputs.candidates), inputs.options)
+                          : choose(std::move(inputs.blocks), inputs.options);
     note_overtime(request.time_limit, stop, read, "choose");
     warn_of_few(plan.candidate_count, arguments.random);
     io::write_plan(out, plan);

@@ -258,6 +258,7 @@ Json estimate_to_json(const Calibration& calibration, const Provenance& made_fro
     document["variance_factor"] = estimate.variance_factor;
     document["model_error_m"] = estimate.model_error;
     document["model_error_rad"] = estimate.model_error_orientation;
+    document["model_error_within"] = estimate.model_error_within;
     document["readings"] = campaign.sensor->words().readings;
     document["chain"] = detail::robot_statement(campaign.robot);
     document.update(detail::parameters_to_json(campaign, estimate.parameters, &sigmas));

@@ -204,6 +204,15 @@ void check_readings(const JsonValue& value, const Sensor& sensor) {
                       sensor.words().readings + "; must be an estimate of this campaign");
 }
 
+/// Files written before have none.
+double read_model_error_within(const JsonValue& root) {
+    if (!root.has("model_error_within")) return model_error_factor;
+    const JsonValue within = root["model_error_within"];
+    const double factor = within.number();
+    if (factor >= 1 && factor <= model_error_factor) return factor;
+    throw within.error(fmt::format("is {:g}; must be from 1 to {:g}", factor, model_error_factor));
+}
+
 Estimate read_estimate_of(const JsonValue& root, const Campaign& campaign, bool has_same_targets) {
     if (has_same_targets) check_readings(root["readings"], *campaign.sensor);
     detail::check_is_of_robot(root["chain"], campaign.robot);
@@ -217,6 +226,7 @@ Estimate read_estimate_of(const JsonValue& root, const Campaign& campaign, bool 
     estimate.variance_factor = read_size(root["variance_factor"]);
     estimate.model_error = read_size(root["model_error_m"]);
     estimate.model_error_orientation = read_size(root["model_error_rad"]);
+    estimate.model_error_within = read_model_error_within(root);
     return estimate;
 }
 

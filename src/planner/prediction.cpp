@@ -44,10 +44,10 @@ PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_err
         const double p = std::clamp(random.uniform(), 1e-12, 1 - 1e-12);
         const double square = detail::chi_squared_quantile(p, accuracy.degrees_of_freedom) /
                               accuracy.degrees_of_freedom;
-        const double model = detail::power(model_error_factor, random.normal());
+        const double model = detail::power(accuracy.known_within.model_error, random.normal());
         double growth = 1;
         if (accuracy.prior_share) {
-            const double sizes = detail::power(error_size_factor, random.normal());
+            const double sizes = detail::power(accuracy.known_within.error_size, random.normal());
             growth = detail::power(sizes, *accuracy.prior_share) *
                      detail::power(model_error > 0 ? model : 1, 1 - *accuracy.prior_share);
         }
@@ -97,6 +97,13 @@ PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
         accuracy.prior_share = by_parameter.cwiseProduct(prior * by_parameter).sum() / sum;
     }
     accuracy.percentile95 = quantile(std::move(errors), 0.95, detail::QuantileRule::Upper);
+    return accuracy;
+}
+
+PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
+                                   const Campaign& campaign) {
+    PredictedAccuracy accuracy = predict_accuracy(prediction, M, prior_information(campaign));
+    accuracy.known_within = campaign.known_within;
     return accuracy;
 }
 

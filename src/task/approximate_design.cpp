@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "../criteria/prediction.hpp"
 #include "../selection/bound.hpp"
@@ -53,17 +54,17 @@ ApproximateDesign weigh(ChoiceProblem& problem, const ChoiceOptions& options) {
 
 }  // namespace
 
-ApproximateDesign relax_choice(const Campaign& campaign, const Candidates& candidates,
+ApproximateDesign relax_choice(const Campaign& campaign, Candidates candidates,
                                const ChoiceOptions& options) {
-    ChoiceProblem problem =
-        detail::state_choice(campaign, candidates, options, options.stop.with_half_the_time());
+    ChoiceProblem problem = detail::state_choice(campaign, std::move(candidates), options,
+                                                 options.stop.with_half_the_time());
     ApproximateDesign design = weigh(problem, options);
     design.campaign = campaign.name;
     return design;
 }
 
-ApproximateDesign relax_choice(const Blocks& candidates, const ChoiceOptions& options) {
-    ChoiceProblem problem = detail::state_choice(candidates, options);
+ApproximateDesign relax_choice(Blocks candidates, const ChoiceOptions& options) {
+    ChoiceProblem problem = detail::state_choice(std::move(candidates), options);
     return weigh(problem, options);
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <utility>
 
 #include "../measurement/contact.hpp"
 #include "../measurement/noise.hpp"
@@ -63,7 +64,7 @@ Plan solve(ChoiceProblem& problem, const ChoiceOptions& options) {
 std::optional<PredictedAccuracy> predict(const Campaign& campaign, const ChoiceProblem& problem,
                                          const std::vector<PlannedPose>& poses) {
     constexpr Index most_configurations = 500;
-    const detail::CandidateIndex index(problem.ids);
+    const detail::CandidateIndex index(problem.ids, detail::ids_of(poses));
     std::vector<Index> chosen;
     for (const PlannedPose& pose : poses) {
         const Index candidate = index.find(pose.id, "pose");
@@ -76,7 +77,7 @@ std::optional<PredictedAccuracy> predict(const Campaign& campaign, const ChoiceP
     return predict_accuracy(
         make_prediction_blocks(campaign, problem.parameters,
                                RowMatrixXd(problem.configurations(workspace, Eigen::all))),
-        M, prior_information(campaign));
+        M, campaign);
 }
 
 /// Plan::value_rms. Where whitening divided every coordinate of every target at every test pose by
@@ -128,7 +129,7 @@ Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_
     return candidates;
 }
 
-Plan choose(const Campaign& campaign, const Candidates& candidates, const ChoiceOptions& options) {
+Plan choose(const Campaign& campaign, Candidates candidates, const ChoiceOptions& options) {
     if (campaign.spread.is_prior) {  // else selection says if they are too few
         detail::compute_from(options.sources.campaign, [&] {
             detail::check_enough_poses(campaign, options.pose_count,
@@ -136,8 +137,8 @@ Plan choose(const Campaign& campaign, const Candidates& candidates, const Choice
                                        options.stop);
         });
     }
-    ChoiceProblem problem =
-        detail::state_choice(campaign, candidates, options, options.stop.with_half_the_time());
+    ChoiceProblem problem = detail::state_choice(campaign, std::move(candidates), options,
+                                                 options.stop.with_half_the_time());
     Plan plan = solve(problem, options);
     plan.campaign = campaign.name;
     plan.columns = configuration_columns(campaign);
@@ -147,8 +148,8 @@ Plan choose(const Campaign& campaign, const Candidates& candidates, const Choice
     return plan;
 }
 
-Plan choose(const Blocks& candidates, const ChoiceOptions& options) {
-    ChoiceProblem problem = detail::state_choice(candidates, options);
+Plan choose(Blocks candidates, const ChoiceOptions& options) {
+    ChoiceProblem problem = detail::state_choice(std::move(candidates), options);
     return solve(problem, options);
 }
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <unordered_set>
+#include <utility>
+
 #include "../core/checksum.hpp"
 #include "../core/format.hpp"
 #include "../core/text.hpp"
@@ -154,7 +157,7 @@ void state_limits(ChoiceProblem& problem, const std::vector<Index>& groups) {
     if (problem.kind == CandidateKind::Random && groups.size() > problem.ids.size()) {
         options.groups.resize(problem.ids.size());  // of those there was time for
     }
-    const CandidateIndex index(problem.ids);
+    const CandidateIndex index(problem.ids, request.excluded);
     for (const std::string& id : request.excluded) {
         options.excluded.push_back(index.find(id, "excluded candidate"));
     }
@@ -171,8 +174,19 @@ void check_test_poses(const ChoiceOptions& options) {
 
 }  // namespace
 
-CandidateIndex::CandidateIndex(const std::vector<std::string>& ids) {
-    for (std::size_t i = 0; i < ids.size(); ++i) index_.emplace(ids[i], static_cast<Index>(i));
+std::vector<std::string> ids_of(const std::vector<PlannedPose>& poses) {
+    std::vector<std::string> ids;
+    for (const PlannedPose& pose : poses) ids.push_back(pose.id);
+    return ids;
+}
+
+CandidateIndex::CandidateIndex(const std::vector<std::string>& ids,
+                               const std::vector<std::string>& wanted) {
+    const std::unordered_set<std::string> among(wanted.begin(), wanted.end());
+    if (among.empty()) return;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        if (among.contains(ids[i])) index_.emplace(ids[i], static_cast<Index>(i));
+    }
 }
 
 Index CandidateIndex::find(const std::string& id, const std::string& what) const {
@@ -183,15 +197,15 @@ Index CandidateIndex::find(const std::string& id, const std::string& what) const
     return found->second;
 }
 
-ChoiceProblem state_choice(const Blocks& candidates, const ChoiceOptions& options) {
+ChoiceProblem state_choice(Blocks candidates, const ChoiceOptions& options) {
     check_test_poses(options);
     ChoiceProblem problem;
     problem.request = options;
     if (problem.request.repeats == 0) problem.request.repeats = 1;
-    problem.blocks = candidates;
-    problem.ids = number_ids(candidates.count());
+    problem.blocks = std::move(candidates);
+    problem.ids = number_ids(problem.blocks.count());
     Checksum checksum;
-    checksum.add(candidates.matrix);
+    checksum.add(problem.blocks.matrix);
     problem.checksum = checksum.text();
     if (options.has_prior) held(problem).diagonal().array() += 1;
     if (options.held_blocks.count() > 0) hold_blocks(problem, options.held_blocks);
@@ -203,15 +217,15 @@ ChoiceProblem state_choice(const Blocks& candidates, const ChoiceOptions& option
     return problem;
 }
 
-ChoiceProblem state_choice(const Campaign& campaign, const Candidates& candidates,
+ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
                            const ChoiceOptions& options, const StopSignal& stop) {
     check_test_poses(options);
     ChoiceProblem problem;
     PlanRequest& request = problem.request = options;
     problem.kind = candidates.kind;
-    problem.ids = candidates.ids;
-    problem.configurations = candidates.configurations;
-    problem.share = candidates.share;
+    problem.ids = std::move(candidates.ids);
+    problem.configurations = std::move(candidates.configurations);
+    problem.share = std::move(candidates.share);
     request.has_prior = campaign.spread.is_prior;
     if (request.repeats == 0) {
         request.repeats = candidates.measured ? mean_repeats(*candidates.measured) : 1;

@@ -25,14 +25,17 @@ struct ChoiceProblem {
 };
 
 /// Of random candidates fewer are used if `stop` comes. Throws InputError as choose().
-ChoiceProblem state_choice(const Campaign& campaign, const Candidates& candidates,
+ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
                            const ChoiceOptions& options, const StopSignal& stop = {});
-ChoiceProblem state_choice(const Blocks& candidates, const ChoiceOptions& options);
+ChoiceProblem state_choice(Blocks candidates, const ChoiceOptions& options);
 
-/// Index of a candidate. Throws InputError, beginning with `what`, if there is none of that id.
+std::vector<std::string> ids_of(const std::vector<PlannedPose>& poses);
+
+/// Where some of the candidates are.
 class CandidateIndex {
   public:
-    explicit CandidateIndex(const std::vector<std::string>& ids);
+    CandidateIndex(const std::vector<std::string>& ids, const std::vector<std::string>& wanted);
+    /// Of one of them. Throws InputError, beginning with `what`, if it is not among the candidates.
     Index find(const std::string& id, const std::string& what) const;
 
   private:

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "../core/text.hpp"
@@ -60,6 +61,30 @@ Prior make_prior(const Campaign& campaign, const Campaign& reduced, const Earlie
         told.erase(told.begin(), told.begin() + base_parameter_count(reduced));
     prior.covariance = drifted(campaign, earlier)(told, told);
     return prior;
+}
+
+/// Of what is as surely known as that, on another day and elsewhere: on real robots what is found
+/// differs by so much from what many poses predicted.
+double elsewhere(double within) {
+    constexpr double factor = 1.2;
+    return std::exp(std::hypot(std::log(within), std::log(factor)));
+}
+
+/// How surely sizes are known that were learned along, in the mean of them: the more, the more of
+/// the errors that share one the estimate tells. `learned` has them as its spread.
+double sizes_within(const Campaign& learned, const Estimate& estimate) {
+    const std::vector<SharedSize> sizes = shared_sizes(learned.spread, learned.robot);
+    const VectorXd variances = estimate.covariance.diagonal().segment(
+        base_parameter_count(learned), learned.robot.parameter_count());
+    double told = 0;
+    for (const SharedSize& shared : sizes) {
+        for (const Index k : shared.members) {
+            told += std::max(0.0, 1 - variances[k] / (shared.size * shared.size));
+        }
+    }
+    const double population = std::log(error_size_factor);
+    const double each = told / static_cast<double>(std::max<std::size_t>(1, sizes.size()));
+    return std::exp(1 / std::sqrt(1 / (population * population) + 2 * each));
 }
 
 /// By how much what was found moves where what was known is off: by e, then by the d of least
@@ -165,8 +190,12 @@ Campaign with_earlier(const Campaign& campaign, const Earlier& earlier) {
     }
     Campaign expected = campaign;
     if (earlier.spread) expected.spread = *earlier.spread;
-    expected.model_error = estimate.model_error;
-    expected.model_error_orientation = estimate.model_error_orientation;
+    expected = with_model_error(expected, estimate);
+    expected.known_within.model_error = elsewhere(estimate.model_error_within);
+    // Where the prior is drift besides, that is stated as roughly as sizes are.
+    if (earlier.spread && !use.is_prior) {
+        expected.known_within.error_size = elsewhere(sizes_within(expected, estimate));
+    }
     if (!use.has_new_base) {
         expected.nominal.world_from_base = estimate.parameters.world_from_base;
         expected.has_nominal_base = true;

@@ -26,15 +26,14 @@ SelectOptions quick_options(const Planning& planning) {
     return options;
 }
 
-std::optional<PredictedAccuracy> predict_choice(const Blocks& prediction, const Blocks& blocks,
-                                                const SelectOptions& options,
-                                                const MatrixXd& prior) {
+std::optional<PredictedAccuracy> predict_choice(const Planning& planning, const Blocks& blocks,
+                                                const SelectOptions& options) {
     if (options.pose_count > blocks.count()) return std::nullopt;
     const Choice choice = select_poses(blocks, options);
     if (choice.ending == Ending::NotIdentifiable) return std::nullopt;
     MatrixXd M = information(blocks, choice.poses);
     if (options.held.size() > 0) M += options.held;
-    return predict_accuracy(prediction, M, prior);
+    return predict_accuracy(planning.prediction, M, planning.campaign);
 }
 
 }  // namespace
@@ -48,13 +47,12 @@ std::vector<CountAccuracy> predict_other_counts(const Planning& planning) {
     SelectOptions options = quick_options(planning);
     const Index count = planning.search.pose_count;
     const Index least = least_calibration_count(planning.campaign) - options.held_pose_count;
-    const MatrixXd prior = prior_information(planning.campaign);
     std::vector<CountAccuracy> rows;
     for (const Index k : std::set<Index>{std::max<Index>(1, count / 2), count, 2 * count}) {
         options.pose_count = k;
         rows.push_back({k, false, std::nullopt});
         if (k >= least) {
-            rows.back().accuracy = predict_choice(planning.prediction, blocks, options, prior);
+            rows.back().accuracy = predict_choice(planning, blocks, options);
         }
         if (k == count) rows.push_back({k, true, planning.plan.predicted});
     }

@@ -90,8 +90,7 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.request.starts = planned.starts;
     plan.starts_at_best = planned.starts_at_best;
     plan.ending = Ending::Converged;
-    plan.predicted = predict_accuracy(problem.prediction, planned.information,
-                                      prior_information(problem.campaign));
+    plan.predicted = predict_accuracy(problem.prediction, planned.information, campaign);
     if (needs_test_poses(plan.request.criterion)) {
         const auto positions = static_cast<double>(problem.prediction[0].rows()) / 3;
         plan.value_rms = 1 / std::sqrt(plan.value * positions);

@@ -50,7 +50,7 @@ bool has_same_targets(const ChoiceProblem& problem, const PlannedPose& pose, Ind
 /// Candidate indices of the plan's poses, repeats listed (no more than show that there are too
 /// many).
 std::vector<Index> find_poses(const Plan& plan, const ChoiceProblem& problem, Findings& findings) {
-    const detail::CandidateIndex index(problem.ids);
+    const detail::CandidateIndex index(problem.ids, detail::ids_of(plan.poses));
     std::vector<Index> poses;
     for (std::size_t k = 0; k < plan.poses.size(); ++k) {
         const PlannedPose& pose = plan.poses[k];

@@ -266,6 +266,7 @@ TEST_F(EstimateFile, HoldsTheWholeCovarianceAndHowTheIdentificationEnded) {
     expected.degrees_of_freedom = 42;
     expected.variance_factor = 1.25;
     expected.model_error = 2e-4;
+    expected.model_error_within = 1.5;
     expected.ending = Ending::IterationLimit;
     calibration_.faults = {"it did not converge (iteration limit)"};
     const Json document = written();
@@ -278,7 +279,12 @@ TEST_F(EstimateFile, HoldsTheWholeCovarianceAndHowTheIdentificationEnded) {
     EXPECT_EQ(estimate.degrees_of_freedom, 42);
     EXPECT_EQ(estimate.variance_factor, 1.25);
     EXPECT_EQ(estimate.model_error, 2e-4);
+    EXPECT_EQ(estimate.model_error_within, 1.5);
     EXPECT_EQ(estimate.ending, Ending::IterationLimit);
+    Json before = document;  // as written by earlier versions
+    before.erase("model_error_within");
+    folder_.write("estimate.json", before.dump());
+    EXPECT_EQ(read_estimate(path_, campaign_).model_error_within, model_error_factor);
 
     const auto error_with = [&](const char* pointer, const Json& value) {
         Json changed = document;
@@ -293,6 +299,8 @@ TEST_F(EstimateFile, HoldsTheWholeCovarianceAndHowTheIdentificationEnded) {
               "estimate.json: covariance.rows_si[3]: has 2 values; must have 4");
     EXPECT_EQ(error_with("/covariance/parameters/2", "x"),
               "estimate.json: covariance.parameters[2]: is 'x'; must be 'base.z'");
+    EXPECT_EQ(error_with("/model_error_within", 0.5),
+              "estimate.json: model_error_within: is 0.5; must be from 1 to 2.5");
     EXPECT_EQ(error_with("/variance_factor", -1),
               "estimate.json: variance_factor: is -1; must be at least 0");
 }

@@ -83,6 +83,9 @@ struct Estimate {
     /// it; where expected sizes are priors, what was found about that.
     double model_error = 0;
     double model_error_orientation = 0;
+    /// One standard deviation of that of lengths is this factor; as large as among robots where it
+    /// was not found.
+    double model_error_within = model_error_factor;
     Metrics fit;        ///< all samples
     Metrics fit_means;  ///< means of each configuration
     Loss loss;          ///< as used

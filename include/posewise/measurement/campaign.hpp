@@ -39,6 +39,13 @@ inline constexpr double model_error_factor = 2.5;
 /// And the sizes of the errors that parameters express this one.
 inline constexpr double error_size_factor = 2;
 
+/// How surely they are known before measuring: one standard deviation is a factor of so much. Of
+/// robots nobody has measured, or as an earlier estimate tells.
+struct KnownWithin {
+    double model_error = model_error_factor;
+    double error_size = error_size_factor;
+};
+
 /// The size of this error of the robot by its kind; `by_name` may state another.
 double& size_of(ParameterSpread& spread, const Chain& robot, Index parameter);
 
@@ -79,6 +86,7 @@ struct Campaign {
     double model_error = 1e-4;
     /// The same of measured orientations (rad).
     double model_error_orientation = 1e-4;
+    KnownWithin known_within{};  ///< for the interval of what is predicted
     /// Standard deviation of each joint about where it was sent (rad or m): one error a
     /// configuration, the same for all its repeats. Empty: none.
     VectorXd joint_repeatability;

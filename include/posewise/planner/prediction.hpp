@@ -20,6 +20,7 @@ struct PredictedAccuracy {
     /// By which part its square follows that of the expected sizes if they are stated larger or
     /// smaller; it follows that of the noise by the rest. Nothing without a prior.
     std::optional<double> prior_share{};
+    KnownWithin known_within{};
 };
 
 /// The same with what the model cannot express, which no number of poses reduces: RMS over
@@ -30,10 +31,9 @@ struct PredictedTotal {
     double upper = 0;  ///< error and, with a prior, the size of all errors, log-normal (see below)
 };
 
-/// Of 4000 draws from stream (seed, 0). The standard deviation of the model error is a factor of
-/// model_error_factor, that of the sizes one of error_size_factor, by which the parameters' errors
-/// grow as PredictedAccuracy::prior_share says: by the model error, too, which is taken for most of
-/// the noise.
+/// Of 4000 draws from stream (seed, 0). Model error and sizes are drawn as PredictedAccuracy says
+/// they are known; the parameters' errors grow with the sizes as PredictedAccuracy::prior_share
+/// says: by the model error, too, which is taken for most of the noise.
 PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_error,
                              std::uint64_t seed = 1);
 
@@ -50,5 +50,9 @@ Blocks make_prediction_blocks(const Campaign& campaign, const Parameters& parame
 /// not positive definite or there are no blocks.
 PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
                                    const MatrixXd& prior = {}, std::uint64_t seed = 1);
+
+/// The same with the campaign's prior, and known as surely as that says.
+PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
+                                   const Campaign& campaign);
 
 }  // namespace posewise

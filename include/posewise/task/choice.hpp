@@ -40,10 +40,10 @@ struct ChoiceOptions : PlanRequest {
 /// held measurements. Of random candidates only those are used whose blocks can be made in half of
 /// the time there is; Plan::candidate_count says how many. Throws InputError as select_poses(), for
 /// ids that are not among the candidates, and if base or targets are known from nowhere.
-Plan choose(const Campaign& campaign, const Candidates& candidates, const ChoiceOptions& options);
+Plan choose(const Campaign& campaign, Candidates candidates, const ChoiceOptions& options);
 
 /// The same of plain blocks, named 0, 1, ..., without a robot.
-Plan choose(const Blocks& candidates, const ChoiceOptions& options);
+Plan choose(Blocks candidates, const ChoiceOptions& options);
 
 /// A candidate and how often it would be measured if that could be any number.
 struct WeightedCandidate {
@@ -66,8 +66,8 @@ struct ApproximateDesign {
 
 /// The weights that tell most about the parameters, from the inputs of choose(). Throws InputError
 /// as it does, and for what weights cannot keep: groups and a least distance.
-ApproximateDesign relax_choice(const Campaign& campaign, const Candidates& candidates,
+ApproximateDesign relax_choice(const Campaign& campaign, Candidates candidates,
                                const ChoiceOptions& options);
-ApproximateDesign relax_choice(const Blocks& candidates, const ChoiceOptions& options);
+ApproximateDesign relax_choice(Blocks candidates, const ChoiceOptions& options);
 
 }  // namespace posewise

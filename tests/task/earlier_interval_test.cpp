@@ -1,0 +1,87 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "posewise/core/random.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/planner/prediction.hpp"
+#include "support/held_robot.hpp"
+
+/// What is predicted from an earlier estimate on, and how surely.
+namespace posewise {
+namespace {
+
+using namespace testing;
+
+double width_of(const PredictedTotal& total) { return std::log(total.upper / total.lower); }
+
+PredictedAccuracy predict(const Campaign& campaign, const RowMatrixXd& poses,
+                          const RowMatrixXd& workspace) {
+    const MatrixXd M = information(make_blocks(campaign, campaign.nominal, poses, 1.0)) +
+                       prior_information(campaign);
+    return predict_accuracy(make_prediction_blocks(campaign, campaign.nominal, workspace), M,
+                            campaign);
+}
+
+/// Of targets at configurations of the workspace, with the model error of the robot that `truth`
+/// is.
+double total_error(const Campaign& truth, const Parameters& parameters, const Parameters& found,
+                   const RowMatrixXd& workspace) {
+    Campaign exact = truth;
+    exact.model_error = 0;
+    exact.sensor =
+        std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(3, std::nullopt), 1e-9);
+    const Measurements there = simulate_measurements(exact, parameters, workspace, 1, 1);
+    const double rms = make_metrics(residuals(truth, found, there)).distance_rms;
+    return std::sqrt(rms * rms + 3 * truth.model_error * truth.model_error);
+}
+
+TEST(EarlierEstimate, NarrowsTheIntervalToWhatItTells) {
+    constexpr int robots = 60;
+    int inside = 0;
+    for (std::uint64_t seed = 0; seed < robots; ++seed) {
+        const Campaign stated = held_campaign();
+        Campaign campaign = stated;  // robots differ in what the model lacks
+        campaign.model_error *= std::pow(model_error_factor, RandomStream(seed, 7).normal());
+        const Parameters truth = draw_truth(campaign, seed);
+        CalibrationOptions options = without_folds();
+        options.earlier = Earlier{
+            calibrate(stated, measure_at_random(campaign, truth, 24, seed), options).estimate};
+        const Campaign known = with_earlier(stated, *options.earlier);
+        const RowMatrixXd workspace = detail::random_configurations(stated.robot, 60, 3000 + seed);
+        const Measurements next = measure_at_random(campaign, truth, 12, 500 + seed);
+        PredictedAccuracy accuracy = predict(known, next.configurations, workspace);
+        const PredictedTotal total = predict_total(accuracy, known.model_error);
+        accuracy.known_within = {};
+        const PredictedTotal of_any = predict_total(accuracy, known.model_error);
+        EXPECT_LT(width_of(total), 0.5 * width_of(of_any));
+        EXPECT_DOUBLE_EQ(total.rms, of_any.rms);
+        const double found = total_error(
+            campaign, truth, calibrate(stated, next, options).estimate.parameters, workspace);
+        inside += found >= total.lower && found <= total.upper ? 1 : 0;
+    }
+    EXPECT_GE(inside, 0.8 * robots);  // 0.9 expected, less two standard deviations and a half
+}
+
+TEST(EarlierEstimate, KnowsSizesAsWellAsItsErrorsTellThem) {
+    const Campaign campaign = held_campaign();
+    const Parameters truth = draw_truth(campaign, 2);
+    const auto within_of = [&](Index count) {
+        CalibrationOptions options = without_folds();
+        options.learns_sizes = true;
+        const Calibration found =
+            calibrate(campaign, measure_at_random(campaign, truth, count, 4), options);
+        const Earlier earlier{found.estimate, {}, found.campaign.spread};
+        EXPECT_EQ(with_earlier(campaign, {found.estimate}).known_within.error_size,
+                  error_size_factor);
+        return with_earlier(campaign, earlier).known_within.error_size;
+    };
+    const double few = within_of(6);
+    const double many = within_of(40);
+    EXPECT_LT(many, few);
+    EXPECT_LT(few, error_size_factor);
+    EXPECT_GT(many, 1.2);
+}
+
+}  // namespace
+}  // namespace posewise
