@@ -203,7 +203,7 @@ Index least_calibration_count(const Campaign& campaign, const StopSignal& stop) 
     // More than as many as there are unknowns do not help: what is open then is open always.
     const Index most = least + 12 + observed->points.unknown_count();
     for (Index count = least; count < most; ++count) {
-        stop.check("finding how many poses register base and targets");
+        if (count > least) stop.check("finding how many poses register base and targets");
         if (are_enough(count)) return count;
     }
     return least;

@@ -72,19 +72,19 @@ MatrixXd stack_at_nominal(const Campaign& campaign, const detail::ShownPoses& po
 /// The triangular factor of the Jacobian over as many poses as twice the parameters, which is made
 /// in parts: all that tells how columns depend on each other, and no more rows than columns.
 MatrixXd factor_at_nominal(const Campaign& campaign, const StopSignal& stop) {
+    constexpr Index least_part = 1'000'000;  // numbers; less takes no time
     const Index L = parameter_count(campaign);
-    const std::string what = fmt::format("finding what is identifiable of {} parameters", L);
-    stop.check(what);
     const detail::ShownPoses poses = draw_poses(campaign, 2 * L);
-    const Index at_once = std::max<Index>(1, 4 * L / campaign.sensor->row_count());
+    const Index rows = std::max(4 * L, least_part / std::max<Index>(1, L));
+    const Index at_once = std::max<Index>(1, rows / campaign.sensor->row_count());
     MatrixXd R(0, L);
     for (Index first = 0; first < poses.configurations.rows(); first += at_once) {
+        if (first > 0) stop.check(fmt::format("finding what is identifiable of {} parameters", L));
         const Index count = std::min(at_once, poses.configurations.rows() - first);
         const MatrixXd part = stack_at_nominal(campaign, poses, first, count);
         MatrixXd both(R.rows() + part.rows(), L);
         both << R, part;
         R = detail::triangular_factor(std::move(both));
-        stop.check(what);
     }
     return R;
 }
@@ -113,12 +113,13 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
     Identifiability result;
     MatrixXd Q(J.rows(), std::min(J.rows(), J.cols()));
     Index rank = 0;
+    constexpr Index quick = 100;  // columns, that take no time
     std::vector<Index> open = priority;
     for (double least = std::max(1e-2, tolerance);; least = std::max(1e-2 * least, tolerance)) {
         std::vector<Index> rest;
         result.largest_dropped_residual = 0;
         for (const Index k : open) {
-            stop.check(fmt::format("telling {} parameters apart", J.cols()));
+            if (rank >= quick) stop.check(fmt::format("telling {} parameters apart", J.cols()));
             const double norm = J.col(k).norm();
             const VectorXd residual = norm > negligible_share * largest
                                           ? residual_outside(Q.leftCols(rank), J.col(k) / norm)

@@ -120,16 +120,23 @@ std::string describe_order(const Tour& tour) {
     return indent_lines(text);
 }
 
+/// Whether an earlier estimate tells more of the model error than of any robot is known.
+bool is_told(const PredictedAccuracy& accuracy) {
+    return accuracy.known_within.model_error < model_error_factor;
+}
+
 /// What robots are found to be off by after calibration: not by their parameters alone.
 std::string describe_total(const Planning& planning) {
     const PredictedTotal total =
         predict_total(*planning.plan.predicted, planning.campaign.model_error);
     return fmt::format(
-        "             {} mm with a model error of {} mm a coordinate; {} to {} mm (90 %), as that "
-        "differs\n             from robot to robot\n",
+        "             {} mm with a model error of {} mm a coordinate; {} to {} mm (90 %), as "
+        "{}\n",
         detail::format_mm(total.rms),
         detail::format_short(mm_per_m * planning.campaign.model_error),
-        detail::format_mm(total.lower), detail::format_mm(total.upper));
+        detail::format_mm(total.lower), detail::format_mm(total.upper),
+        is_told(*planning.plan.predicted) ? "surely as\n             the estimate tells that"
+                                          : "that differs\n             from robot to robot");
 }
 
 std::string describe_made_up(const Campaign& campaign) {
@@ -214,10 +221,12 @@ std::string describe_prediction(const Plan& plan) {
     const PredictedTotal total = predict_total(*plan.predicted, *model_error);
     return fmt::format(
         "predicted:  {} mm RMS over the candidates by the parameters, {} with a model error of {} "
-        "mm;\n            {} to {} (90 %), as that differs from robot to robot\n",
+        "mm;\n            {} to {} (90 %), as {}\n",
         detail::format_mm(plan.predicted->rms), detail::format_mm(total.rms),
         detail::format_short(mm_per_m * *model_error, 4), detail::format_mm(total.lower),
-        detail::format_mm(total.upper));
+        detail::format_mm(total.upper),
+        is_told(*plan.predicted) ? "surely as the estimate tells that"
+                                 : "that differs from robot to robot");
 }
 
 /// A search that converged from few starts has not said much.

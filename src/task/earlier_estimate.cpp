@@ -64,10 +64,10 @@ Prior make_prior(const Campaign& campaign, const Campaign& reduced, const Earlie
 }
 
 /// Of what is as surely known as that, on another day and elsewhere: on real robots what is found
-/// differs by so much from what many poses predicted.
-double elsewhere(double within) {
+/// differs by so much from what many poses predicted. Never less surely than of any robot.
+double elsewhere(double within, double of_any) {
     constexpr double factor = 1.2;
-    return std::exp(std::hypot(std::log(within), std::log(factor)));
+    return std::min(std::exp(std::hypot(std::log(within), std::log(factor))), of_any);
 }
 
 /// How surely sizes are known that were learned along, in the mean of them: the more, the more of
@@ -191,10 +191,11 @@ Campaign with_earlier(const Campaign& campaign, const Earlier& earlier) {
     Campaign expected = campaign;
     if (earlier.spread) expected.spread = *earlier.spread;
     expected = with_model_error(expected, estimate);
-    expected.known_within.model_error = elsewhere(estimate.model_error_within);
+    expected.known_within.model_error = elsewhere(estimate.model_error_within, model_error_factor);
     // Where the prior is drift besides, that is stated as roughly as sizes are.
     if (earlier.spread && !use.is_prior) {
-        expected.known_within.error_size = elsewhere(sizes_within(expected, estimate));
+        expected.known_within.error_size =
+            elsewhere(sizes_within(expected, estimate), error_size_factor);
     }
     if (!use.has_new_base) {
         expected.nominal.world_from_base = estimate.parameters.world_from_base;

@@ -151,7 +151,7 @@ std::string snake_campaign(int joints, const std::string& errors) {
 
 TEST_F(PlanCommand, TimeCoversTheIrreducibleModel) {
     write_text("snake.yaml", snake_campaign(100, "geometric"));
-    for (const std::string& rest :
+    for (const std::string rest :
          {"plan snake.yaml -k 60", "select snake.yaml --random 99 -k 60"}) {
         const Outcome outcome = run(rest + " --time 0.02 -o p.json");
         EXPECT_EQ(outcome.code, 1);

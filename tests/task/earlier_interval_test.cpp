@@ -60,6 +60,7 @@ TEST(EarlierEstimate, NarrowsTheIntervalToWhatItTells) {
             campaign, truth, calibrate(stated, next, options).estimate.parameters, workspace);
         inside += found >= total.lower && found <= total.upper ? 1 : 0;
     }
+    RecordProperty("inside", inside);
     EXPECT_GE(inside, 0.8 * robots);  // 0.9 expected, less two standard deviations and a half
 }
 
