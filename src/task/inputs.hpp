@@ -6,6 +6,7 @@
 
 #include "posewise/core/blocks.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 
