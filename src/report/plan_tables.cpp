@@ -18,7 +18,8 @@ using detail::Table;
 /// How many starts agree; those that a stop cut short tell nothing.
 std::string describe_starts(const Plan& plan, const char* where) {
     if (plan.request.starts == 0) return "none ended before the stop";
-    return fmt::format("{} of {} ended {}", plan.starts_at_best, plan.request.starts, where);
+    return fmt::format("{} of {} ended {}{}", plan.starts_at_best, plan.request.starts, where,
+                       plan.starts_at_best > 0 ? "" : " (found after them)");
 }
 
 /// Says, where little is proven about a plan, what tells more.

@@ -320,8 +320,10 @@ Outcome search(SearchProblem problem, const Relaxation& relaxation) {
     }
     const detail::Score tried = outcome.best.score;
     run_starts(problem, relaxation, shortlist, starts, first, outcome);
-    outcome.best =
-        sweep_all(problem, detail::recombine(problem, shortlist, outcome.best, outcome.starts));
+    if (count_at_best(outcome.starts, outcome.best.score.value) < enough) {
+        outcome.best =
+            sweep_all(problem, detail::recombine(problem, shortlist, outcome.best, outcome.starts));
+    }
     if (!problem.options.stop.is_set() && (asked || is_better(outcome.best.score, tried))) {
         prove(problem, relaxation, {.seconds = asked.value_or(usual), .is_only_if_likely = !asked},
               outcome);

@@ -60,15 +60,17 @@ TEST(FormatChoice, SaysThatNoStartEndedBeforeTheStop) {
         << text;
     EXPECT_NE(text.find("note:       the bound is loose at so few poses\n"), std::string::npos);
     plan.request.starts = 4;
-    EXPECT_NE(format_choice(plan).find("starts:     0 of 4 ended here, interrupted\n"),
-              std::string::npos);
+    EXPECT_NE(
+        format_choice(plan).find("starts:     0 of 4 ended here (found after them), interrupted\n"),
+        std::string::npos);
     plan.ending = Ending::Converged;
-    EXPECT_NE(format_choice(plan).find("starts:     0 of 4 ended here, too few to say that none is "
-                                       "better (more: --starts)\n"),
+    EXPECT_NE(format_choice(plan).find("starts:     0 of 4 ended here (found after them), too few "
+                                       "to say that none is better (more: --starts)\n"),
               std::string::npos);
     plan.request.starts = 5;
-    EXPECT_NE(format_choice(plan).find("starts:     0 of 5 ended here, converged\n"),
-              std::string::npos);
+    EXPECT_NE(
+        format_choice(plan).find("starts:     0 of 5 ended here (found after them), converged\n"),
+        std::string::npos);
 }
 
 TEST(FormatPlanning, SaysTheSameBesideTheUnit) {

@@ -21,7 +21,7 @@ SelectOptions make_options(Criterion criterion, Index pose_count) {
     options.criterion = criterion;
     options.pose_count = pose_count;
     options.proof = 0;  // so that it is the search that finds
-    options.starts = 6;
+    options.starts = 20;
     return options;
 }
 
@@ -286,7 +286,7 @@ TEST(SelectByExchange, TakesFewerStartsWhereEachTakesLong) {
     const Blocks candidates = test::random_blocks(300, 12, 90, 1);
     const Choice parallel = select_poses(candidates, options);
     const Choice serial = select_on(1, candidates, options);
-    EXPECT_EQ(parallel.starts, 4);
+    EXPECT_EQ(parallel.starts, 12);
     EXPECT_EQ(serial.poses, parallel.poses);
     EXPECT_EQ(serial.starts_at_best, parallel.starts_at_best);
     EXPECT_EQ(serial.bound, parallel.bound);
