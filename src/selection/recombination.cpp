@@ -9,9 +9,8 @@
 namespace posewise::detail {
 namespace {
 
-constexpr std::size_t population_size = 12;
-constexpr Index children = 12;  // of a generation
-constexpr Index patience = 3;   // generations that change nothing, to end after
+constexpr std::size_t most_members = 12;
+constexpr Index patience = 3;  // generations that change nothing, to end after
 
 using Poses = std::vector<Index>;
 
@@ -45,9 +44,11 @@ Poses cross(const SearchProblem& problem, const Shortlist& shortlist, const Pose
     return child;
 }
 
-/// Choices that all differ, the best first; as many as `population_size` at most.
+/// Choices that all differ, the best first.
 class Population {
   public:
+    explicit Population(std::size_t most) : most_(most) {}
+
     const std::vector<ScoredPoses>& members() const { return members_; }
 
     /// Of all members, each once.
@@ -61,30 +62,24 @@ class Population {
         return all;
     }
 
-    /// Whether it is new and good enough.
-    bool would_take(ScoredPoses choice) const {
+    /// Whether it was new and good enough to be taken.
+    bool add(ScoredPoses choice) {
         std::sort(choice.poses.begin(), choice.poses.end());
         const bool is_known =
             std::any_of(members_.begin(), members_.end(),
                         [&](const ScoredPoses& member) { return member.poses == choice.poses; });
-        return !is_known && choice.score.identifies &&
-               (members_.size() < population_size ||
-                choice.score.value > members_.back().score.value);
-    }
-
-    /// Whether it was taken.
-    bool add(ScoredPoses choice) {
-        if (!would_take(choice)) return false;
-        std::sort(choice.poses.begin(), choice.poses.end());
+        if (is_known || !choice.score.identifies) return false;
         const auto place = std::find_if(
             members_.begin(), members_.end(),
             [&](const ScoredPoses& member) { return choice.score.value > member.score.value; });
+        if (place == members_.end() && members_.size() == most_) return false;
         members_.insert(place, std::move(choice));
-        if (members_.size() > population_size) members_.pop_back();
+        if (members_.size() > most_) members_.pop_back();
         return true;
     }
 
   private:
+    std::size_t most_;
     std::vector<ScoredPoses> members_;
 };
 
@@ -92,9 +87,10 @@ class Population {
 
 ScoredPoses recombine(const SearchProblem& problem, const Shortlist& shortlist,
                       const ScoredPoses& best, const std::vector<ScoredPoses>& choices) {
-    Population population;
+    Population population(std::min(most_members, choices.size()));
     for (const ScoredPoses& choice : choices) population.add(choice);
     const SelectOptions& options = problem.options;
+    const auto children = static_cast<Index>(population.members().size());
     Index unchanged = 0;
     for (Index generation = 0; unchanged < patience && !options.stop.is_set(); ++generation) {
         const std::vector<ScoredPoses>& parents = population.members();

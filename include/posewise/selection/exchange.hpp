@@ -30,7 +30,7 @@ struct SelectOptions {
     std::vector<std::string> column_names;  ///< for messages; empty: columns are numbered from 1
 
     /// Independent searches. 0: until ten of them agree on the best value, at most 100 (30 by E, G
-    /// and O2 to O5), fewer (12 at least, or 4) where blocks of many rows and parameters make each
+    /// and O2 to O5), fewer (6 at least, or 4) where blocks of many rows and parameters make each
     /// take seconds.
     Index starts = 0;
     /// Perturbations of each start's plan without success until it ends; up to ten times as many
