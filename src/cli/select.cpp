@@ -36,7 +36,8 @@ Chooses the candidates that tell most about the parameters, writes them as a pla
 calibrate --plan and verify, prints the chosen ids, the criterion's value and what is proven:
   bound       no choice of as many candidates has a larger value
   efficiency  part of the best possible information per measurement that is surely reached
-  starts      how many of the starts ended at this same value; ten that agree end the search
+  starts      how many of the starts ended at this same value; ten that agree end the search,
+              the ends of fewer are combined, too
   proof       optimal: branch and bound ruled out or tried all other choices; else what it tried
 
 Measurements register the base and the targets; other candidates need them in the campaign file (or
