@@ -123,7 +123,7 @@ Index start_count(const Shortlist& shortlist, const SearchProblem& problem) {
                         static_cast<double>(shortlist.members.size()) * problem.ruggedness;
     const bool is_quick = detail::has_exact_gains(problem.objective);
     return static_cast<Index>(
-        std::clamp(8e8 / work, is_quick ? 6.0 : 4.0, is_quick ? 100.0 : 30.0));
+        std::clamp(8e8 / work, is_quick ? 6.0 : 4.0, is_quick ? 100.0 : 20.0));
 }
 
 /// The most sensitive candidates at the relaxed optimum that are not excluded.

@@ -29,7 +29,7 @@ struct SelectOptions {
     double least_distance = 0;    ///< Euclidean, between any two different poses chosen
     std::vector<std::string> column_names;  ///< for messages; empty: columns are numbered from 1
 
-    /// Independent searches. 0: until ten of them agree on the best value, at most 100 (30 by E, G
+    /// Independent searches. 0: until ten of them agree on the best value, at most 100 (20 by E, G
     /// and O2 to O5), fewer (6 at least, or 4) where blocks of many rows and parameters make each
     /// take seconds.
     Index starts = 0;
