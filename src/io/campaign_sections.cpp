@@ -31,7 +31,10 @@ Isometry3d read_frame(const YamlMap& map) {
 }
 
 std::vector<bool> read_known(const YamlValue& known, const std::vector<std::string>& names) {
-    if (!known.is_list()) return std::vector<bool>(names.size(), known.boolean());
+    if (!known.is_list()) {
+        const std::string list = fmt::format(", or a list of {}", fmt::join(names, ", "));
+        return std::vector<bool>(names.size(), known.boolean(list));
+    }
     std::vector<bool> marks(names.size(), false);
     for (const YamlValue& item : known.list()) {
         const std::string name = item.text();

@@ -127,9 +127,11 @@ std::uint64_t YamlValue::natural_number() const {
     return number;
 }
 
-bool YamlValue::boolean() const {
+bool YamlValue::boolean(const std::string& or_else) const {
     const std::string word = node_.IsScalar() ? node_.Scalar() : "";
-    if (word != "true" && word != "false") throw error(describe(node_) + "; must be true or false");
+    if (word != "true" && word != "false") {
+        throw error(describe(node_) + "; must be true or false" + or_else);
+    }
     return word == "true";
 }
 

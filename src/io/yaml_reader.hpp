@@ -33,7 +33,8 @@ class YamlValue {
     FileLocation text_location() const;
     double number() const;
     std::uint64_t natural_number() const;
-    bool boolean() const;
+    /// `or_else`: what else the caller takes, for the message: ", or a list".
+    bool boolean(const std::string& or_else = "") const;
     bool is_list() const { return node_.IsSequence(); }
     bool is_map() const { return node_.IsMap(); }
     /// Items of a list.

@@ -183,7 +183,9 @@ TEST(ReadSensor, TellsWhatIsWrongAndWhere) {
           "11:56: sensor.planes[1].known[1] is 'distance'; must be normal or offset"},
          {"offset_mm: 300", "offset_mm: 300, known: [normal, normal]",
           "11:64: sensor.planes[1].known[2] is 'normal' again; keep one"},
-         {"offset_mm: 300", "offset_mm: 300, known: normal", "11:55: sensor.planes[1].known[...]"},
+         {"offset_mm: 300", "offset_mm: 300, known: normal",
+          "11:55: sensor.planes[1].known is 'normal'; must be true or false, or a list of normal, "
+          "offset"},
          {"[[0, 0, 150]], known: true", "[]", "[...]at least one target[...]"}},
         error, "c.yaml:");
 }
