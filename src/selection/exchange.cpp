@@ -42,24 +42,6 @@ std::vector<Index> by_decreasing(const VectorXd& values) {
     return order;
 }
 
-/// K poses in the given order, as the limits allow; rounds repeat it for repeated poses. Fewer
-/// where the limits leave no more.
-std::vector<Index> take_in_order(const SearchProblem& problem, const std::vector<Index>& order) {
-    const SelectOptions& options = problem.options;
-    detail::Occupancy occupancy(problem.candidates.count(), options);
-    std::vector<Index> poses;
-    const auto K = static_cast<std::size_t>(options.pose_count);
-    for (Index round = 0; round < options.repeat_limit && poses.size() < K; ++round) {
-        for (const Index i : order) {
-            if (poses.size() == K) break;
-            if (!occupancy.allows(i)) continue;
-            poses.push_back(i);
-            occupancy.add(i);
-        }
-    }
-    return poses;
-}
-
 ScoredPoses make_choice(const SearchProblem& problem, std::vector<Index> poses) {
     const detail::Score score = problem.score(problem.regularised_information(poses));
     return {std::move(poses), score};
@@ -67,7 +49,7 @@ ScoredPoses make_choice(const SearchProblem& problem, std::vector<Index> poses) 
 
 /// The poses of the largest relaxed weights.
 ScoredPoses make_first_start(const SearchProblem& problem, const Relaxation& relaxation) {
-    std::vector<Index> poses = take_in_order(problem, by_decreasing(relaxation.weights));
+    std::vector<Index> poses = detail::take_in_order(problem, by_decreasing(relaxation.weights));
     if (static_cast<Index>(poses.size()) < problem.options.pose_count) {
         const bool is_one = poses.size() == 1;
         throw InputError(fmt::format(
@@ -87,7 +69,7 @@ std::optional<ScoredPoses> make_random_start(const SearchProblem& problem,
     // Keys log(u) / w order a draw without replacement [Efraimidis, Spirakis 2006].
     VectorXd keys = relaxation.weights;
     for (double& key : keys) key = detail::logarithm(1 - random.uniform()) / std::max(key, least);
-    std::vector<Index> poses = take_in_order(problem, by_decreasing(keys));
+    std::vector<Index> poses = detail::take_in_order(problem, by_decreasing(keys));
     if (static_cast<Index>(poses.size()) < problem.options.pose_count) return std::nullopt;
     return make_choice(problem, std::move(poses));
 }

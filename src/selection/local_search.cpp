@@ -194,6 +194,22 @@ Score SearchProblem::score(const MatrixXd& regularised) const {
     return {false, evaluate(objective, regularised)};
 }
 
+std::vector<Index> take_in_order(const SearchProblem& problem, const std::vector<Index>& order) {
+    const SelectOptions& options = problem.options;
+    Occupancy occupancy(problem.candidates.count(), options);
+    std::vector<Index> poses;
+    const auto K = static_cast<std::size_t>(options.pose_count);
+    for (Index round = 0; round < options.repeat_limit && poses.size() < K; ++round) {
+        for (const Index i : order) {
+            if (poses.size() == K) break;
+            if (!occupancy.allows(i)) continue;
+            poses.push_back(i);
+            occupancy.add(i);
+        }
+    }
+    return poses;
+}
+
 ScoredPoses improve(const SearchProblem& problem, const Shortlist& shortlist,
                     const ScoredPoses& choice) {
     LocalSearch search(problem, shortlist, std::numeric_limits<Index>::max());

@@ -43,6 +43,10 @@ struct ScoredPoses {
     Score score;
 };
 
+/// K poses in the given order, as the limits allow; rounds repeat it for repeated poses. Fewer
+/// where the limits leave no more.
+std::vector<Index> take_in_order(const SearchProblem& problem, const std::vector<Index>& order);
+
 /// Exchanges each pose for the best of the shortlist, in turn, until no exchange improves.
 ScoredPoses improve(const SearchProblem& problem, const Shortlist& shortlist,
                     const ScoredPoses& choice);

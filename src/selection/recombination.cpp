@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include "../core/parallel.hpp"
-#include "limits.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -33,15 +32,7 @@ Poses cross(const SearchProblem& problem, const Shortlist& shortlist, const Pose
     shuffle(either, random);
     order.insert(order.end(), either.begin(), either.end());
     order.insert(order.end(), shortlist.members.begin(), shortlist.members.end());
-    Occupancy occupancy(problem.candidates.count(), problem.options);
-    Poses child;
-    for (const Index pose : order) {
-        if (static_cast<Index>(child.size()) == problem.options.pose_count) break;
-        if (!occupancy.allows(pose)) continue;
-        occupancy.add(pose);
-        child.push_back(pose);
-    }
-    return child;
+    return take_in_order(problem, order);
 }
 
 /// Choices that all differ, the best first.
