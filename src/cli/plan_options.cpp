@@ -76,9 +76,10 @@ void note_overtime(double limit, const StopSignal& stop, std::chrono::steady_clo
     constexpr double most = 0.5;  // s
     using Seconds = std::chrono::duration<double>;
     const auto now = std::chrono::steady_clock::now();
-    if (limit == 0 || Seconds(now - stop.deadline).count() < std::max(most, 0.1 * limit)) return;
+    const double late = Seconds(now - stop.deadline).count();
+    if (limit == 0 || late < std::max(most, 0.1 * limit)) return;
     const double planned = Seconds(now - read).count();
-    const double all = limit + Seconds(now - stop.deadline).count();
+    const double all = limit + late;
     std::fprintf(stderr,
                  "posewise: took %.1f s, --time is %g: %.1f s to read the campaign and what goes "
                  "with it, %.1f s to %s; its single steps are not cut short\n",

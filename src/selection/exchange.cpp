@@ -155,9 +155,7 @@ class Ends {
             first_.push_back(*ends_[first_.size()]);
             const auto& [identifies, value] = first_.back().score;
             if (identifies) best_ = std::max(best_, value);
-            if (may_agree_ && count_at_best(first_, best_) >= enough) {
-                needed_ = counted();
-            }
+            if (may_agree_ && count_at_best(first_, best_) >= enough) needed_ = counted();
         }
     }
 

@@ -14,12 +14,12 @@ namespace {
 using namespace detail;
 using namespace testing;
 
-constexpr auto R = Motion::Rotation;
 const Vector3d gravity = Vector3d(0, 0, -9.80665);
 
 TEST(GravityTorque, OfAPendulumIsItsWeightTimesItsArm) {
     // Positive about y turns x to -z: the weight helps it.
-    const Chain arm({{"q1", -2, 2}}, {driven(R, Axis::Y, 0), translation(Axis::X, 1)});
+    const Chain arm({{"q1", -2, 2}},
+                    {driven(Motion::Rotation, Axis::Y, 0), translation(Axis::X, 1)});
     const GravityTorque torque(arm, 0, gravity, {{1, 3, Vector3d(0.5, 0, 0)}});
     EXPECT_NEAR(torque.largest(), 3 * 9.80665 * 0.5, 1e-4);
     EXPECT_TRUE(torque.varies());
@@ -34,8 +34,8 @@ TEST(GravityTorque, OfAPendulumIsItsWeightTimesItsArm) {
 }
 
 TEST(GravityTorque, IsTheForceAlongAnAxisThatSlides) {
-    const Chain lift({{"z", 0, 1}, {"q", -1, 1}},
-                     {driven(Motion::Translation, Axis::Z, 0), driven(R, Axis::X, 1)});
+    const Chain lift({{"z", 0, 1}, {"q", -1, 1}}, {driven(Motion::Translation, Axis::Z, 0),
+                                                   driven(Motion::Rotation, Axis::X, 1)});
     const GravityTorque force(lift, 0, gravity, {{1, 2, Vector3d::Zero()}, {3, 1, {0, 0.4, 0}}});
     EXPECT_NEAR(force.largest(), 3 * 9.80665, 1e-12);
     EXPECT_FALSE(force.varies());
@@ -75,11 +75,11 @@ double potential(Chain robot, const std::vector<Load>& loads, std::size_t elemen
 
 TEST(GravityTorque, IsWhatTakesThePotentialEnergyOfAnyRobot) {
     const Chain coupled({{"q1", -3, 3}, {"q2", -3, 3}, {"s", -1, 1}},
-                        {driven(R, Axis::Y, 0),
+                        {driven(Motion::Rotation, Axis::Y, 0),
                          translation(Axis::X, 0.7),
-                         {R, Axis::X, 0.2, {{0, -0.5}, {1, 1}}, ""},
+                         {Motion::Rotation, Axis::X, 0.2, {{0, -0.5}, {1, 1}}, ""},
                          driven(Motion::Translation, Axis::Z, 2),
-                         driven(R, Axis::Z, 1, "", 2)});
+                         driven(Motion::Rotation, Axis::Z, 1, "", 2)});
     std::uint64_t seed = 0;
     for (const Chain& robot :
          {fanuc(), ur_type(), seven_joint_arm(), gantry_with_wrist(), rail_with_fanuc(), coupled}) {

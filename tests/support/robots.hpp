@@ -167,4 +167,19 @@ inline Chain random_robot(RandomStream& stream) {
     return Chain(std::move(joints), std::move(elements));
 }
 
+/// Sine, cosine, coupling and transmission ratio as errors, beside a constant one and alone.
+inline Chain with_every_term() {
+    using Shape = JointFunction::Shape;
+    Element shoulder = driven(Motion::Rotation, Axis::Y, 0, "a", -0.8);
+    shoulder.terms = {{"sine", {Shape::Sine, {{0, 1}, {1, -2}}, 0}},
+                      {"cosine", {Shape::Sine, {{1, 1.5}}, std::numbers::pi / 2}}};
+    Element slide = driven(Motion::Translation, Axis::X, 2);
+    slide.terms = {{"coupling", {Shape::Linear, {{0, 0.7}, {2, 1}}, 0.2}}};
+    Element link = translation(Axis::Z, 0.5);
+    link.terms = {{"sag", {Shape::Sine, {{0, 2}}, 0.3}}, {"ratio", {Shape::Linear, {{1, 1}}, 0}}};
+    return Chain({{"q1", -3, 3}, {"q2", -3, 3}, {"s", -1, 1}},
+                 {rotation(Axis::X, 0.3, "b"), shoulder, link, driven(Motion::Rotation, Axis::Z, 1),
+                  slide, translation(Axis::Y, 0.2, "c")});
+}
+
 }  // namespace posewise::testing
