@@ -28,4 +28,5 @@
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"
 #include "posewise/task/study.hpp"
+#include "posewise/task/trials.hpp"
 #include "posewise/task/verification.hpp"
