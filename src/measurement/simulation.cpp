@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../core/elementary.hpp"
 #include "contact.hpp"
 #include "noise.hpp"
 #include "posewise/core/errors.hpp"
@@ -62,6 +63,17 @@ Parameters draw_truth(const Campaign& campaign, std::uint64_t seed) {
         error = std::abs(error);
     }
     return advance(campaign, campaign.nominal, errors);
+}
+
+DrawnRobot draw_robot(const Campaign& campaign, std::uint64_t seed) {
+    RandomStream stream(seed, 1);  // draw_truth() draws from stream (seed, 0)
+    const double errors = detail::power(campaign.known_within.error_size, stream.normal());
+    const double model = detail::power(campaign.known_within.model_error, stream.normal());
+    DrawnRobot robot{draw_truth(campaign, seed), model * campaign.model_error,
+                     model * campaign.model_error_orientation};
+    const VectorXd& nominal = campaign.nominal.robot;
+    robot.truth.robot = nominal + errors * (robot.truth.robot - nominal);
+    return robot;
 }
 
 Measurements simulate_measurements(const Campaign& campaign, const Parameters& truth,

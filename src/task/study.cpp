@@ -8,25 +8,17 @@
 #include <map>
 #include <set>
 
-#include "../core/parallel.hpp"
-#include "../core/progress_counter.hpp"
+#include "../core/checksum.hpp"
 #include "inputs.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/selection/exchange.hpp"
 #include "posewise/task/doubts.hpp"
+#include "study_cases.hpp"
 
 namespace posewise {
 namespace {
-
-constexpr double proof_seconds = 0.01;
-
-/// Of many candidates two kicks find choices as good as any, for all that calibrating can tell; of
-/// few more are needed, and take no longer.
-Index kick_count(Index candidates) {
-    return std::clamp<Index>(2000 / candidates, 2, SelectOptions{}.kicks);
-}
 
 /// Configurations to choose from, and those that all subsets are judged on (none: on the rest).
 struct Split {
@@ -151,44 +143,39 @@ std::vector<Index> choose_poses(const Setting& setting, const Job& job, const Sp
         const auto item = (static_cast<std::uint64_t>(job.pose_count) << 32) + job.number;
         return RandomStream(setting.options.seed, item).subset(all, job.pose_count);
     }
-    SelectOptions options;
-    options.criterion = setting.options.criteria[job.number];
-    options.pose_count = job.pose_count;
-    options.starts = setting.options.starts;
-    options.kicks = kick_count(all);
-    options.proof = proof_seconds;
-    if (setting.campaign.spread.is_prior) options.held = prior_information(setting.campaign);
+    SelectOptions options =
+        detail::study_selection(setting.options, setting.campaign, job.number, job.pose_count, all);
     options.positions = split.positions;
-    options.least_distance = setting.options.least_distance;
-    options.seed = setting.options.seed;
     return select_poses(split.blocks, options).poses;
 }
 
-/// Leaves the case "not identified" if its poses cannot be found or do not identify the model:
-/// that is what a study is to show.
-void run(const Setting& setting, const Job& job) {
-    StudyCase& result = *job.result;
+/// A case that is "not identified" if its poses cannot be found or do not identify the model: that
+/// is what a study is to show.
+StudyCase run(const Setting& setting, const Job& job) {
+    StudyCase result;
+    result.split = job.result->split;
     const Split& split = setting.splits[static_cast<std::size_t>(result.split)];
     for (const Index chosen : choose_poses(setting, job, split)) {
         result.poses.push_back(split.pool[static_cast<std::size_t>(chosen)]);
     }
-    if (result.poses.empty()) return;
+    if (result.poses.empty()) return result;
     const Measurements& measurements = setting.measurements;
-    const Measurements chosen = take(measurements, result.poses);
-    const Registration start = register_base_and_targets(setting.campaign, chosen);
-    if (!start.is_determined()) return;
-    const Estimate estimate = identify(setting.campaign, chosen, start.parameters);
-    if (estimate.ending == Ending::NotIdentifiable) return;
+    const auto estimate =
+        detail::calibrate_subset(setting.campaign, take(measurements, result.poses));
+    if (!estimate) return result;
     const auto judged =
         split.test.empty() ? all_but(measurements.configuration_count(), result.poses) : split.test;
     if (!judged.empty()) {
         const Measurements others = take(measurements, judged);
-        result.held_out =
-            make_metrics(mean_residuals(setting.campaign, estimate.parameters, others),
+        const Metrics metrics =
+            make_metrics(mean_residuals(setting.campaign, estimate->parameters, others),
                          setting.campaign.sensor->lengths_per_target());
-        result.expected = expected_error(setting.campaign, estimate, others).total();
+        result.held_out = {metrics.point_count, metrics.distance_rms, metrics.distance_p95,
+                           metrics.distance_max};
+        result.expected = expected_error(setting.campaign, *estimate, others).total();
     }
     result.identified = true;
+    return result;
 }
 
 /// The cases of all rows; pointers into `rows`, which must not be resized any more.
@@ -220,24 +207,58 @@ std::vector<StudyRow> make_rows(const std::vector<Index>& counts, const StudyOpt
     return rows;
 }
 
-/// Runs all cases; of a study that is stopped, those rows stay that are complete.
-void run_all(const Setting& setting, std::vector<StudyRow>& rows) {
+/// Runs all cases; of a study that is stopped, or of a part of the cases, those rows stay that are
+/// complete. False in a process that does not lead.
+bool run_all(const Setting& setting, const TrialSeries& cases, std::vector<StudyRow>& rows) {
     const std::vector<Job> jobs = list_jobs(rows, setting.splits.size());
-    std::vector<char> is_done(jobs.size(), 0);
-    const auto count = static_cast<Index>(jobs.size());
-    detail::ProgressCounter counter(setting.options.progress, count);
-    detail::for_each_index(count, [&](Index i) {
-        if (setting.options.stop.is_set()) return;
-        const auto k = static_cast<std::size_t>(i);
-        run(setting, jobs[k]);
-        is_done[k] = 1;
-        counter.count();
+    const auto compute = [&](const TrialId& id) {
+        std::vector<double> values;
+        detail::append_case(run(setting, jobs[static_cast<std::size_t>(id.number)]), values);
+        return values;
+    };
+    bool has_led = false;
+    setting.options.crew(compute, [&](const RunTrials& run_trials) {
+        const std::vector<TrialSeries> series{cases};
+        detail::TrialRuns runs(series, setting.options);
+        runs.run(run_trials, {static_cast<Index>(jobs.size())});
+        std::set<Index> open;
+        for (std::size_t k = 0; k < jobs.size(); ++k) {
+            const auto found = runs.finished(0).find(static_cast<Index>(k));
+            if (found == runs.finished(0).end()) {
+                open.insert(jobs[k].pose_count);
+                continue;
+            }
+            const Index split = jobs[k].result->split;
+            *jobs[k].result = detail::read_case(found->second.data(), found->second.size());
+            jobs[k].result->split = split;
+        }
+        std::erase_if(rows, [&](const StudyRow& row) { return open.contains(row.pose_count); });
+        has_led = true;
     });
-    std::set<Index> open;
-    for (std::size_t k = 0; k < jobs.size(); ++k) {
-        if (is_done[k] == 0) open.insert(jobs[k].pose_count);
-    }
-    std::erase_if(rows, [&](const StudyRow& row) { return open.contains(row.pose_count); });
+    return has_led;
+}
+
+/// What the cases depend on, in words and numbers.
+TrialSeries series_of(const Study& study, const Setting& setting) {
+    const StudyOptions& options = setting.options;
+    TrialSeries series;
+    series.campaign = study.campaign;
+    series.variation = study.model;
+    series.seed = options.seed;
+    series.criteria = study.criteria;
+    for (const StudyRow& row : study.rows) series.pose_counts.push_back(row.pose_count);
+    series.random_subsets = options.random_subsets;
+    series.splits = study.splits;
+    series.test_count = study.test_count;
+    series.ids = study.ids;
+    detail::Checksum checksum;
+    checksum.add(setting.measurements.configurations);
+    checksum.add(setting.measurements.observations);
+    for (const Split& split : setting.splits) checksum.add(split.blocks.matrix);
+    checksum.add(fmt::format("{} {} {} {}", options.holdout, options.least_distance, options.starts,
+                             setting.campaign.spread.is_prior));
+    series.checksum = checksum.text();
+    return series;
 }
 
 /// The least pose count that the defaults begin at; 0 if pose counts are asked for.
@@ -251,8 +272,9 @@ Index largest_least_count(const std::vector<RobotModel>& models, const StudyOpti
 }
 
 /// With pose counts from `least` if none are asked for.
-Study study_from(Index least, const Campaign& campaign, const Measurements& measurements,
+Study study_from(Index least, const RobotModel& model, const Measurements& measurements,
                  const StudyOptions& options) {
+    const Campaign& campaign = model.campaign;
     const Registration registration = register_base_and_targets(campaign, measurements);
     check_is_of_robot(campaign, measurements, registration);
     check_options(options);
@@ -267,6 +289,7 @@ Study study_from(Index least, const Campaign& campaign, const Measurements& meas
                            least, split_count > 0);
     Study study;
     study.campaign = campaign.name;
+    study.model = model.name;
     study.ids = measurements.ids;
     study.criteria = options.criteria;
     study.ending = Ending::NotIdentifiable;
@@ -284,7 +307,10 @@ Study study_from(Index least, const Campaign& campaign, const Measurements& meas
     }
     const Setting setting{campaign, measurements, options, std::move(splits)};
     study.rows = make_rows(counts, options, setting.splits.size());
-    run_all(setting, study.rows);
+    if (!run_all(setting, series_of(study, setting), study.rows)) {
+        study.ending = Ending::NotRun;
+        return study;
+    }
     study.ending = options.stop.ending_or(Ending::Converged);
     return study;
 }
@@ -321,8 +347,7 @@ std::vector<Study> compare_models(const std::vector<RobotModel>& models,
             if (!options.progress) return;
             options.progress({before * progress.total + progress.done, count * progress.total});
         };
-        studies.push_back(study_from(least, model.campaign, measurements, of_model));
-        studies.back().model = model.name;
+        studies.push_back(study_from(least, model, measurements, of_model));
     }
     if (options.stop.is_set()) keep_common_rows(studies);
     return studies;

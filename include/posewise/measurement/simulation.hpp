@@ -24,6 +24,17 @@ struct Simulation {
 /// positive.
 Parameters draw_truth(const Campaign& campaign, std::uint64_t seed);
 
+/// A robot of which nothing is known but what the campaign says.
+struct DrawnRobot {
+    Parameters truth;
+    double model_error = 0;              ///< m, in the place of the campaign's
+    double model_error_orientation = 0;  ///< rad
+};
+
+/// draw_truth() with all of the robot's errors larger or smaller by one factor, and another factor
+/// of the model errors, each as surely as the campaign's KnownWithin says.
+DrawnRobot draw_robot(const Campaign& campaign, std::uint64_t seed);
+
 /// Observations of given configurations (m x joints) by a robot with the true parameters: sensor
 /// noise on every sample; model error and joint errors on every configuration (the same for all its
 /// samples).

@@ -10,8 +10,17 @@
 #include "posewise/core/progress.hpp"
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/task/trials.hpp"
 
 namespace posewise {
+
+/// Distances that a calibrated robot is off by at configurations it was not calibrated with, m.
+struct HeldOut {
+    Index point_count = 0;  ///< 0: there were none
+    double distance_rms = 0;
+    double distance_p95 = 0;
+    double distance_max = 0;
+};
 
 /// How well one subset calibrates the robot.
 struct StudyCase {
@@ -19,8 +28,8 @@ struct StudyCase {
     bool identified = false;  ///< false: these poses cannot identify the model
     /// Means of the configurations held out of the split, else of all that were not chosen (so that
     /// repeat noise does not blur the comparison); no points if none is left.
-    Metrics held_out;
-    double expected = 0;  ///< what the calibration says held_out.rms() will be, expected_error()
+    HeldOut held_out;
+    double expected = 0;  ///< what the calibration says held_out.distance_rms will be
     Index split = 0;
 };
 
@@ -46,8 +55,11 @@ struct StudyOptions {
     double least_distance = 0;  ///< rad, of any two in a planned subset, as PlanRequest has it
     Index starts = 4;           ///< of the exchange
     std::uint64_t seed = 1;
-    StopSignal stop{};            ///< ends it with the pose counts that are complete
-    ProgressCallback progress{};  ///< of the cases
+    TrialStore store{};               ///< of cases that are finished; none: they are run anew
+    TrialCrew crew = run_on_threads;  ///< runs the cases
+    Shard shard{};                    ///< of the cases that are run
+    StopSignal stop{};                ///< ends it with the pose counts that are complete
+    ProgressCallback progress{};      ///< of the cases
 };
 
 /// Accuracy against number of poses.

@@ -45,6 +45,14 @@ struct TrialStore {
     std::function<void(const TrialSeries&, const Trial&)> keep;
 };
 
+/// The part of all trials that is run: those of number `number` - 1, `number` - 1 + `count`, ...
+struct Shard {
+    Index number = 1;
+    Index count = 1;
+
+    bool has(Index trial) const { return trial % count == number - 1; }
+};
+
 /// One of the trials to run: its series, by position in a list, and its number in that.
 struct TrialId {
     Index series = 0;

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "posewise/selection/exchange.hpp"
+#include "posewise/task/study.hpp"
+
+/// What studies of measured and of simulated configurations share.
+namespace posewise::detail {
+
+/// How a study chooses from so many candidates: quickly, for one case of many.
+SelectOptions study_selection(const StudyOptions& options, const Campaign& campaign,
+                              std::size_t criterion, Index pose_count, Index candidate_count);
+
+/// Calibrated from registration on; nothing if the measurements do not identify the model.
+std::optional<Estimate> calibrate_subset(const Campaign& campaign, const Measurements& chosen);
+
+/// A case as numbers to keep: case_width of them and its poses.
+inline constexpr std::size_t case_width = 6;
+void append_case(const StudyCase& study_case, std::vector<double>& values);
+/// The case whose numbers begin there; its poses are as many as fill `width`.
+StudyCase read_case(const double* values, std::size_t width);
+
+/// Trials of some series: those that a store has, and those that are run.
+class TrialRuns {
+  public:
+    /// Reads what the store has. Both must live as long as this.
+    TrialRuns(const std::vector<TrialSeries>& series, const StudyOptions& options);
+
+    /// Runs those among the first counts[s] trials of each series that are not finished and of the
+    /// shard.
+    void run(const RunTrials& run_trials, const std::vector<Index>& counts);
+
+    /// Values of the finished trials of a series, by number.
+    const std::map<Index, std::vector<double>>& finished(std::size_t series) const {
+        return finished_[series];
+    }
+
+  private:
+    const std::vector<TrialSeries>& series_;
+    const StudyOptions& options_;
+    std::vector<std::map<Index, std::vector<double>>> finished_;
+};
+
+}  // namespace posewise::detail
