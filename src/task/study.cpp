@@ -20,6 +20,8 @@
 namespace posewise {
 namespace {
 
+using detail::MeasuredCase;
+
 /// Configurations to choose from, and those that all subsets are judged on (none: on the rest).
 struct Split {
     std::vector<Index> pool;
@@ -34,14 +36,6 @@ struct Setting {
     const Measurements& measurements;
     const StudyOptions& options;
     std::vector<Split> splits;  ///< one of all configurations if nothing is held out
-};
-
-/// One subset to be chosen, calibrated with and judged; cases are independent of each other.
-struct Job {
-    Index pose_count = 0;
-    StudyCase* result = nullptr;
-    bool is_random = false;
-    std::size_t number = 0;  ///< which criterion, or which random subset
 };
 
 /// Why not even all configurations identify the model; empty: they do.
@@ -136,26 +130,26 @@ std::vector<Split> make_splits(Index all, Index count, const StudyOptions& optio
 }
 
 /// Of the split's configurations; none if no choice identifies the model.
-std::vector<Index> choose_poses(const Setting& setting, const Job& job, const Split& split) {
+std::vector<Index> choose_poses(const Setting& setting, const MeasuredCase& job, Index pose_count,
+                                const Split& split) {
     const auto all = static_cast<Index>(split.pool.size());
     if (job.is_random) {
         // The stream depends on size and number only, so more subsets or sizes change no other.
-        const auto item = (static_cast<std::uint64_t>(job.pose_count) << 32) + job.number;
-        return RandomStream(setting.options.seed, item).subset(all, job.pose_count);
+        const auto item = (static_cast<std::uint64_t>(pose_count) << 32) + job.number;
+        return RandomStream(setting.options.seed, item).subset(all, pose_count);
     }
     SelectOptions options =
-        detail::study_selection(setting.options, setting.campaign, job.number, job.pose_count, all);
+        detail::study_selection(setting.options, setting.campaign, job.number, pose_count, all);
     options.positions = split.positions;
     return select_poses(split.blocks, options).poses;
 }
 
 /// A case that is "not identified" if its poses cannot be found or do not identify the model: that
 /// is what a study is to show.
-StudyCase run(const Setting& setting, const Job& job) {
+StudyCase run(const Setting& setting, const MeasuredCase& job, Index pose_count) {
     StudyCase result;
-    result.split = job.result->split;
-    const Split& split = setting.splits[static_cast<std::size_t>(result.split)];
-    for (const Index chosen : choose_poses(setting, job, split)) {
+    const Split& split = setting.splits[static_cast<std::size_t>(job.split)];
+    for (const Index chosen : choose_poses(setting, job, pose_count, split)) {
         result.poses.push_back(split.pool[static_cast<std::size_t>(chosen)]);
     }
     if (result.poses.empty()) return result;
@@ -178,75 +172,36 @@ StudyCase run(const Setting& setting, const Job& job) {
     return result;
 }
 
-/// The cases of all rows; pointers into `rows`, which must not be resized any more.
-std::vector<Job> list_jobs(std::vector<StudyRow>& rows, std::size_t split_count) {
-    std::vector<Job> jobs;
-    for (StudyRow& row : rows) {
-        for (std::size_t i = 0; i < row.optimal.size(); ++i) {
-            row.optimal[i].split = static_cast<Index>(i % split_count);
-            jobs.push_back({row.pose_count, &row.optimal[i], false, i / split_count});
-        }
-        for (std::size_t i = 0; i < row.random.size(); ++i) {
-            row.random[i].split = static_cast<Index>(i % split_count);
-            jobs.push_back({row.pose_count, &row.random[i], true, i});
-        }
-    }
-    return jobs;
-}
-
-std::vector<StudyRow> make_rows(const std::vector<Index>& counts, const StudyOptions& options,
-                                std::size_t split_count) {
-    std::vector<StudyRow> rows;
-    for (const Index count : counts) {
-        StudyRow row;
-        row.pose_count = count;
-        row.optimal.resize(options.criteria.size() * split_count);
-        row.random.resize(static_cast<std::size_t>(options.random_subsets));
-        rows.push_back(std::move(row));
-    }
-    return rows;
-}
-
 /// Runs all cases; of a study that is stopped, or of a part of the cases, those rows stay that are
-/// complete. False in a process that does not lead.
-bool run_all(const Setting& setting, const TrialSeries& cases, std::vector<StudyRow>& rows) {
-    const std::vector<Job> jobs = list_jobs(rows, setting.splits.size());
+/// complete. Nothing in a process that does not lead.
+std::optional<Study> run_all(const Setting& setting, const TrialSeries& cases) {
+    const std::vector<MeasuredCase> jobs = detail::list_cases(cases);
     const auto compute = [&](const TrialId& id) {
+        const MeasuredCase& job = jobs[static_cast<std::size_t>(id.number)];
         std::vector<double> values;
-        detail::append_case(run(setting, jobs[static_cast<std::size_t>(id.number)]), values);
+        detail::append_case(run(setting, job, cases.pose_counts[job.row]), values);
         return values;
     };
-    bool has_led = false;
+    std::optional<Study> study;
     setting.options.crew(compute, [&](const RunTrials& run_trials) {
         const std::vector<TrialSeries> series{cases};
         detail::TrialRuns runs(series, setting.options);
         runs.run(run_trials, {static_cast<Index>(jobs.size())});
-        std::set<Index> open;
-        for (std::size_t k = 0; k < jobs.size(); ++k) {
-            const auto found = runs.finished(0).find(static_cast<Index>(k));
-            if (found == runs.finished(0).end()) {
-                open.insert(jobs[k].pose_count);
-                continue;
-            }
-            const Index split = jobs[k].result->split;
-            *jobs[k].result = detail::read_case(found->second.data(), found->second.size());
-            jobs[k].result->split = split;
-        }
-        std::erase_if(rows, [&](const StudyRow& row) { return open.contains(row.pose_count); });
-        has_led = true;
+        study = study_of_trials(cases, runs.list(0));
     });
-    return has_led;
+    return study;
 }
 
 /// What the cases depend on, in words and numbers.
-TrialSeries series_of(const Study& study, const Setting& setting) {
+TrialSeries series_of(const Study& study, const std::vector<Index>& pose_counts,
+                      const Setting& setting) {
     const StudyOptions& options = setting.options;
     TrialSeries series;
     series.campaign = study.campaign;
     series.variation = study.model;
     series.seed = options.seed;
     series.criteria = study.criteria;
-    for (const StudyRow& row : study.rows) series.pose_counts.push_back(row.pose_count);
+    series.pose_counts = pose_counts;
     series.random_subsets = options.random_subsets;
     series.splits = study.splits;
     series.test_count = study.test_count;
@@ -306,12 +261,11 @@ Study study_from(Index least, const RobotModel& model, const Measurements& measu
         if (options.least_distance != 0) split.positions = positions(split.pool, Eigen::all);
     }
     const Setting setting{campaign, measurements, options, std::move(splits)};
-    study.rows = make_rows(counts, options, setting.splits.size());
-    if (!run_all(setting, series_of(study, setting), study.rows)) {
-        study.ending = Ending::NotRun;
-        return study;
+    if (auto found = run_all(setting, series_of(study, counts, setting))) {
+        found->ending = options.stop.ending_or(Ending::Converged);
+        return *found;
     }
-    study.ending = options.stop.ending_or(Ending::Converged);
+    study.ending = Ending::NotRun;
     return study;
 }
 

@@ -64,6 +64,20 @@ StudyCase read_case(const double* values, std::size_t width) {
     return study_case;
 }
 
+std::vector<MeasuredCase> list_cases(const TrialSeries& series) {
+    const auto splits = static_cast<std::size_t>(std::max<Index>(1, series.splits));
+    std::vector<MeasuredCase> cases;
+    for (std::size_t row = 0; row < series.pose_counts.size(); ++row) {
+        for (std::size_t i = 0; i < series.criteria.size() * splits; ++i) {
+            cases.push_back({row, false, i / splits, static_cast<Index>(i % splits)});
+        }
+        for (std::size_t i = 0; i < static_cast<std::size_t>(series.random_subsets); ++i) {
+            cases.push_back({row, true, i, static_cast<Index>(i % splits)});
+        }
+    }
+    return cases;
+}
+
 TrialRuns::TrialRuns(const std::vector<TrialSeries>& series, const StudyOptions& options)
     : series_(series), options_(options), finished_(series.size()) {
     const Shard& shard = options.shard;
@@ -102,6 +116,14 @@ void TrialRuns::run(const RunTrials& run_trials, const std::vector<Index>& count
         counter.count();
     };
     run_trials(open, accept, options_.stop);
+}
+
+std::vector<Trial> TrialRuns::list(std::size_t series, Index count) const {
+    std::vector<Trial> trials;
+    for (const auto& [number, values] : finished_[series]) {
+        if (number < count) trials.push_back({number, values});
+    }
+    return trials;
 }
 
 }  // namespace posewise::detail

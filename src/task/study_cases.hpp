@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -23,6 +24,16 @@ void append_case(const StudyCase& study_case, std::vector<double>& values);
 /// The case whose numbers begin there; its poses are as many as fill `width`.
 StudyCase read_case(const double* values, std::size_t width);
 
+/// One case of a series of measured configurations, which is one trial of it.
+struct MeasuredCase {
+    std::size_t row = 0;  ///< of its pose count
+    bool is_random = false;
+    std::size_t number = 0;  ///< which criterion, or which random subset
+    Index split = 0;
+};
+/// In the order of their trials.
+std::vector<MeasuredCase> list_cases(const TrialSeries& series);
+
 /// Trials of some series: those that a store has, and those that are run.
 class TrialRuns {
   public:
@@ -33,10 +44,9 @@ class TrialRuns {
     /// shard.
     void run(const RunTrials& run_trials, const std::vector<Index>& counts);
 
-    /// Values of the finished trials of a series, by number.
-    const std::map<Index, std::vector<double>>& finished(std::size_t series) const {
-        return finished_[series];
-    }
+    /// The finished trials of a series, by number: all, or the first of `count`.
+    std::vector<Trial> list(std::size_t series,
+                            Index count = std::numeric_limits<Index>::max()) const;
 
   private:
     const std::vector<TrialSeries>& series_;

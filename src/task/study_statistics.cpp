@@ -22,13 +22,13 @@ std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& r
 std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
                                            std::size_t criterion, const StudyRow& other_row) {
     if (study.splits == 0) return std::nullopt;
+    std::vector<std::vector<StudyCase>> random(static_cast<std::size_t>(study.splits));
+    for (const StudyCase& other : other_row.random) {
+        random[static_cast<std::size_t>(other.split)].push_back(other);
+    }
     std::vector<double> logarithms;
     for (const StudyCase& planned : planned_cases(row, criterion, study.criteria.size())) {
-        std::vector<StudyCase> random;
-        for (const StudyCase& other : other_row.random) {
-            if (other.split == planned.split) random.push_back(other);
-        }
-        const auto median = held_out_quantile(random, 0.5);
+        const auto median = held_out_quantile(random[static_cast<std::size_t>(planned.split)], 0.5);
         const auto found = held_out_quantile({planned}, 0.5);
         if (!median || !found) return std::nullopt;
         logarithms.push_back(std::log(*found / *median));

@@ -71,9 +71,10 @@ struct Study {
     Ending ending = Ending::NotRun;
     /// Where it is NotIdentifiable, why not even all configurations identify the model.
     std::string undetermined;
-    Index splits = 0;      ///< 0: each subset was judged on what it leaves
-    Index test_count = 0;  ///< configurations that each split judges on
-    std::string model{};   ///< which of several error models (compare_models())
+    Index splits = 0;           ///< 0: each subset was judged on what it leaves
+    Index test_count = 0;       ///< configurations that each split judges on
+    std::string model{};        ///< which of several error models (compare_models()), or variations
+    bool is_simulated = false;  ///< a split is a robot that was drawn (simulate_study())
 };
 
 /// Chooses k of the measured configurations by each criterion and at random, calibrates with them
@@ -84,6 +85,11 @@ struct Study {
 /// for other options out of range.
 Study study(const Campaign& campaign, const Measurements& measurements,
             const StudyOptions& options = {});
+
+/// The study that finished trials of a series make, of which there may be fewer than it has. Pose
+/// counts of measured configurations that are not complete are left out. Throws InputError for
+/// trials that are none of it.
+Study study_of_trials(const TrialSeries& series, const std::vector<Trial>& trials);
 
 /// A robot with one of the error models to compare.
 struct RobotModel {

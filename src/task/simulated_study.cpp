@@ -1,0 +1,218 @@
+#include "posewise/task/simulated_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "../core/statistics.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/random.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "simulation_setting.hpp"
+#include "study_cases.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::SimulationSetting;
+using detail::Subset;
+
+/// World positions of all targets, a row a configuration (m x 3 targets).
+RowMatrixXd target_positions(const Campaign& campaign, const Parameters& parameters,
+                             const RowMatrixXd& configurations) {
+    const Sensor& sensor = *campaign.sensor;
+    const Index targets = sensor.target_count();
+    RowMatrixXd positions(configurations.rows(), 3 * targets);
+    std::vector<Vector3d> on_flange;
+    for (Index j = 0; j < targets; ++j) {
+        on_flange.push_back(sensor.target_position(j, parameters.sensor));
+    }
+    VectorXd q(configurations.cols());
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        q = configurations.row(i).transpose();
+        const Isometry3d flange = world_from_flange(campaign, parameters, q);
+        for (Index j = 0; j < targets; ++j) {
+            positions.row(i).segment<3>(3 * j) =
+                (flange * on_flange[static_cast<std::size_t>(j)]).transpose();
+        }
+    }
+    return positions;
+}
+
+/// Where the drawn robot's targets are when it is sent to configurations.
+RowMatrixXd visited_positions(const Campaign& truth, const DrawnRobot& robot,
+                              const RowMatrixXd& configurations, std::uint64_t seed) {
+    RowMatrixXd visited = configurations;
+    const bool repeats_exactly = truth.joint_repeatability.size() == 0;
+    RandomStream random(seed);
+    for (Index i = 0; i < visited.rows() && !repeats_exactly; ++i) {
+        for (Index j = 0; j < truth.joint_repeatability.size(); ++j) {
+            visited(i, j) += truth.joint_repeatability[j] * random.normal();
+        }
+    }
+    RowMatrixXd positions = target_positions(truth, robot.truth, visited);
+    for (double& coordinate : positions.reshaped()) {
+        coordinate += robot.model_error * random.normal();
+    }
+    return positions;
+}
+
+HeldOut compare_positions(const RowMatrixXd& is, const RowMatrixXd& should_be) {
+    const RowMatrixXd error = is - should_be;
+    const Eigen::Map<const RowMatrixXd> points(error.data(), error.size() / 3, 3);
+    const VectorXd distances = points.rowwise().norm();
+    const auto count = static_cast<double>(distances.size());
+    return {distances.size(), std::sqrt(distances.squaredNorm() / count),
+            quantile(distances, 0.95, detail::QuantileRule::Upper), distances.maxCoeff()};
+}
+
+// ---- One trial ----
+
+std::uint64_t draw_seed(RandomStream& stream) {
+    return static_cast<std::uint64_t>(stream.index(Index{1} << 62));
+}
+
+/// A drawn robot, and where it really is.
+struct Trialled {
+    Campaign truth;  ///< with the model error drawn
+    DrawnRobot robot;
+    RowMatrixXd positions;  ///< of its targets at the test configurations
+};
+
+/// What the calibration expects at the test configurations, m.
+double expected_there(const SimulationSetting& setting, const Estimate& estimate) {
+    const double parameters = setting.H.cwiseProduct(estimate.covariance).sum();
+    const double factor = setting.campaign.spread.is_prior ? 1 : estimate.variance_factor;
+    constexpr double coordinates = 3;
+    return std::sqrt(parameters +
+                     coordinates * factor * estimate.model_error * estimate.model_error);
+}
+
+StudyCase run_case(const SimulationSetting& setting, const SimulatedStudyOptions& options,
+                   const Trialled& trial, const Subset& subset, std::uint64_t seed) {
+    StudyCase result;
+    if (subset.configurations.rows() == 0) return result;
+    const Measurements measured =
+        simulate_measurements(trial.truth, trial.robot.truth, subset.configurations, subset.is_seen,
+                              options.repeats, seed);
+    const auto estimate = detail::calibrate_subset(setting.campaign, measured);
+    if (!estimate) return result;
+    result.held_out = compare_positions(
+        target_positions(setting.campaign, estimate->parameters, setting.test), trial.positions);
+    result.expected = expected_there(setting, *estimate);
+    result.identified = true;
+    return result;
+}
+
+std::vector<double> run_trial(const SimulationSetting& setting,
+                              const SimulatedStudyOptions& options, Index number) {
+    RandomStream stream(options.seed, static_cast<std::uint64_t>(number));
+    Trialled trial{setting.truth, draw_robot(setting.truth, draw_seed(stream)), {}};
+    trial.truth.model_error = trial.robot.model_error;
+    trial.truth.model_error_orientation = trial.robot.model_error_orientation;
+    trial.positions =
+        visited_positions(setting.truth, trial.robot, setting.test, draw_seed(stream));
+    const std::uint64_t noise = draw_seed(stream);
+    const std::uint64_t choices = draw_seed(stream);
+    std::vector<double> values;
+    for (std::size_t k = 0; k < setting.planned.size(); ++k) {
+        const Index count = setting.series.pose_counts[k];
+        // Each count's numbers depend on it and not on which others there are.
+        const std::uint64_t seed = noise + static_cast<std::uint64_t>(count);
+        for (const Subset& subset : setting.planned[k]) {
+            detail::append_case(run_case(setting, options, trial, subset, seed), values);
+        }
+        RandomStream random(choices, static_cast<std::uint64_t>(count));
+        for (Index r = 0; r < options.random_subsets; ++r) {
+            const Subset subset = detail::take(
+                setting.pool, random.subset(setting.pool.configurations.rows(), count));
+            const std::uint64_t own = ~seed + static_cast<std::uint64_t>(r);
+            detail::append_case(run_case(setting, options, trial, subset, own), values);
+        }
+    }
+    return values;
+}
+
+// ---- What comes of the trials ----
+
+/// Half of the 95 % interval of a geometric mean, as part of it; infinity where it is not known.
+double relative_half_width(const Study& study, const StudyRow& row, std::size_t criterion) {
+    constexpr double unknown = std::numeric_limits<double>::infinity();
+    if (!row.random.empty()) {
+        const auto advantage = planned_advantage(study, row, criterion);
+        if (!advantage || row.optimal.size() <= study.criteria.size()) return unknown;
+        return (advantage->upper - advantage->lower) / 2 / advantage->ratio;
+    }
+    std::vector<double> logarithms;
+    for (const StudyCase& found : planned_cases(row, criterion, study.criteria.size())) {
+        if (!found.identified) return unknown;
+        logarithms.push_back(std::log(found.held_out.distance_rms));
+    }
+    if (logarithms.size() < 2) return unknown;
+    const Eigen::Map<const VectorXd> values(logarithms.data(),
+                                            static_cast<Index>(logarithms.size()));
+    const auto count = static_cast<double>(values.size());
+    const double deviation =
+        std::sqrt((values.array() - values.mean()).square().sum() / (count - 1) / count);
+    return std::sinh(detail::student_quantile(0.975, count - 1) * deviation);
+}
+
+bool is_precise(const Study& study, double precision) {
+    for (const StudyRow& row : study.rows) {
+        for (std::size_t c = 0; c < study.criteria.size(); ++c) {
+            if (relative_half_width(study, row, c) > precision) return false;
+        }
+    }
+    return true;
+}
+
+/// Runs trials of each series until there are enough.
+void run_trials(const std::vector<TrialSeries>& series, const SimulatedStudyOptions& options,
+                const RunTrials& run, detail::TrialRuns& runs) {
+    constexpr Index first = 50;
+    const bool is_adaptive = options.precision > 0;
+    std::vector<Index> counts(series.size(),
+                              is_adaptive ? std::min(first, options.trials) : options.trials);
+    runs.run(run, counts);
+    for (bool is_open = is_adaptive; is_open && !options.stop.is_set();) {
+        is_open = false;
+        for (std::size_t s = 0; s < series.size(); ++s) {
+            if (counts[s] == options.trials) continue;
+            const auto trials = runs.list(s, counts[s]);  // a store may have more
+            if (is_precise(study_of_trials(series[s], trials), options.precision)) continue;
+            counts[s] = std::min(options.trials, counts[s] + std::max<Index>(first, counts[s] / 2));
+            is_open = true;
+        }
+        if (is_open) runs.run(run, counts);
+    }
+}
+
+}  // namespace
+
+std::vector<Study> simulate_study(const std::vector<SimulatedCampaign>& campaigns,
+                                  const SimulatedStudyOptions& options) {
+    detail::check_simulation(options);
+    std::vector<SimulationSetting> settings;
+    std::vector<TrialSeries> series;
+    for (const SimulatedCampaign& campaign : campaigns) {
+        settings.push_back(detail::make_setting(campaign, options));
+        series.push_back(settings.back().series);
+    }
+    const auto compute = [&](const TrialId& id) {
+        return run_trial(settings[static_cast<std::size_t>(id.series)], options, id.number);
+    };
+    std::vector<Study> studies;
+    options.crew(compute, [&](const RunTrials& run) {
+        detail::TrialRuns runs(series, options);
+        run_trials(series, options, run, runs);
+        for (std::size_t s = 0; s < series.size(); ++s) {
+            studies.push_back(study_of_trials(series[s], runs.list(s)));
+            studies.back().ending = options.stop.ending_or(Ending::Converged);
+        }
+    });
+    return studies;
+}
+
+}  // namespace posewise
