@@ -6,6 +6,7 @@
 #include "posewise/core/threads.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/io/campaign_file.hpp"
+#include "posewise/io/campaign_variation.hpp"
 #include "posewise/io/correction_file.hpp"
 #include "posewise/io/dh_file.hpp"
 #include "posewise/io/estimate_file.hpp"
