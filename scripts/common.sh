@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 packages=(
   g++ cmake ninja-build ccache python3
   libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libmatio-dev libnlopt-dev
-  libpugixml-dev libboost-math-dev libcli11-dev libgtest-dev gnuplot-nox
+  libpugixml-dev libsqlite3-dev libboost-math-dev libcli11-dev libgtest-dev gnuplot-nox
 )
 
 is_installed() {

@@ -14,6 +14,7 @@
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/io/plan_file.hpp"
 #include "posewise/io/robot_files.hpp"
+#include "posewise/io/trial_store.hpp"
 #include "posewise/io/urdf_file.hpp"
 #include "posewise/io/weights_file.hpp"
 #include "posewise/measurement/exclusion.hpp"
