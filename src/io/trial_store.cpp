@@ -139,6 +139,7 @@ StoreFile::StoreFile(const std::string& path, Access access) : database_(path, a
                              "cannot have a write-ahead log there; must be on a local disk");
     }
     database_.execute("PRAGMA synchronous = NORMAL");
+    database_.execute("PRAGMA wal_autocheckpoint = 10000");  // pages, between waits for the disk
     insertion_.emplace(database_, "INSERT INTO trials VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING");
 }
 
