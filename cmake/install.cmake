@@ -4,6 +4,9 @@ set(package_directory "${CMAKE_INSTALL_LIBDIR}/cmake/posewise")
 
 install(TARGETS posewise EXPORT posewiseTargets)
 install(TARGETS posewise_program)
+if(TARGET posewise_mpi)
+  install(TARGETS posewise_mpi DESTINATION "${CMAKE_INSTALL_LIBEXECDIR}")
+endif()
 install(DIRECTORY include/posewise "${PROJECT_BINARY_DIR}/include/posewise"
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" FILES_MATCHING PATTERN "*.hpp")
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")

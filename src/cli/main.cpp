@@ -9,6 +9,7 @@
 
 #include "../core/text.hpp"
 #include "commands.hpp"
+#include "crew.hpp"
 #include "estimates.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/reproducible.hpp"
@@ -19,6 +20,8 @@
 #endif
 
 namespace {
+
+using posewise::cli::ProgramEnd;
 
 constexpr int input_error = 1;
 constexpr int usage_error = 2;
@@ -41,25 +44,18 @@ designs/json.md explains, and nothing else.
 Exit code: 0 good, 1 unusable input (one line on standard error), 2 wrong usage,
 3 a calibration that must not be used (calibrate), 70 internal error, a bug of posewise.)";
 
-/// A message is one line, whatever it quotes.
-int fail(const std::string& message, int code) {
-    const std::string line = "posewise: " + posewise::detail::escape_controls(message) + '\n';
-    std::fwrite(line.data(), 1, line.size(), stderr);
-    return code;
-}
-
-/// The exit code of good work, if all of its output went out.
-int finish() {
+/// The end of good work, if all of its output went out.
+ProgramEnd finish() {
     if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-        return fail("standard output cannot be written; must be writable", input_error);
+        return {input_error, "standard output cannot be written; must be writable"};
     }
-    return 0;
+    return {};
 }
 
-int fail_usage(const CLI::App& program, const std::string& problem) {
+ProgramEnd fail_usage(const CLI::App& program, const std::string& problem) {
     const auto chosen = program.get_subcommands();
     const std::string command = chosen.empty() ? "" : ' ' + chosen.front()->get_name();
-    return fail(problem + "; see posewise" + command + " --help", usage_error);
+    return {usage_error, problem + "; see posewise" + command + " --help"};
 }
 
 /// What is wrong with the first argument if it should be a command and is none; else empty.
@@ -97,12 +93,7 @@ void add_commands(CLI::App& program, posewise::cli::CommonOptions& common) {
     for (CLI::App* command : program.get_subcommands(nullptr)) add_common_options(*command, common);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-    keep_freed_memory();
-    posewise::fix_cache_sizes();
-    std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is an error like a full disk
+ProgramEnd run(int argc, char** argv) {
     CLI::App program{"Which poses to measure, how many, and what a calibration achieved.",
                      "posewise"};
     posewise::cli::CommonOptions common;
@@ -116,14 +107,23 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return fail_usage(program, error.what());
     } catch (const posewise::InputError& error) {
-        return fail(error.what(), input_error);
+        return {input_error, error.what()};
     } catch (const posewise::cli::NoCalibration& error) {
-        return fail(error.what(), no_calibration);
+        return {no_calibration, error.what()};
     } catch (const std::bad_alloc&) {
-        return fail("out of memory; take fewer candidates (--random, --pool) or --threads 1",
-                    input_error);
+        return {input_error,
+                "out of memory; take fewer candidates (--random, --pool) or --threads 1"};
     } catch (const std::exception& error) {
-        return fail(std::string("internal error: ") + error.what(), internal_error);
+        return {internal_error, std::string("internal error: ") + error.what()};
     }
     return finish();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    keep_freed_memory();
+    posewise::fix_cache_sizes();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is an error like a full disk
+    return posewise::cli::run_in_crew(argc, argv, [&] { return run(argc, argv); });
 }

@@ -19,6 +19,8 @@ void set_thread_count(Index count) {
     omp_set_num_threads(static_cast<int>(count));
 }
 
+Index thread_count() { return omp_get_max_threads(); }
+
 namespace detail {
 namespace {
 

@@ -42,12 +42,15 @@ class Program : public ::testing::Test {
     /// `arguments` as typed in a shell; `before` may set environment variables, `behind` may pipe.
     Outcome run(const std::string& arguments, const std::string& before = "",
                 const std::string& behind = "") const {
+        return run_line(before + " '" + POSEWISE_PROGRAM + "' " + arguments + " 2> .err " + behind +
+                        " > .out");
+    }
+
+    /// A shell's line that writes .out and .err.
+    Outcome run_line(const std::string& line) const {
         const auto out = folder_ / ".out";
         const auto err = folder_ / ".err";
-        const std::string line = "cd '" + folder_.string() + "' && " + before + " '" +
-                                 POSEWISE_PROGRAM + "' " + arguments + " 2> .err " + behind +
-                                 " > .out";
-        const int status = std::system(line.c_str());
+        const int status = std::system(("cd '" + folder_.string() + "' && " + line).c_str());
         Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out),
                         read_text(err)};
         std::filesystem::remove(out);
