@@ -19,14 +19,15 @@
 
 namespace posewise::cli {
 
-void add_campaign_argument(CLI::App& command, InputPaths& paths) {
-    command.add_option("CAMPAIGN", paths.campaign, "Campaign file (YAML): robot, sensor, spread")
+CLI::Option* add_campaign_argument(CLI::App& command, InputPaths& paths) {
+    return command
+        .add_option("CAMPAIGN", paths.campaign, "Campaign file (YAML): robot, sensor, spread")
         ->required()
         ->check(file_name());
 }
 
-void add_measurements_option(CLI::App& command, InputPaths& paths) {
-    command
+CLI::Option* add_measurements_option(CLI::App& command, InputPaths& paths) {
+    return command
         .add_option("-m,--measurements", paths.measurements,
                     "Measured configurations (CSV, or MATLAB .mat)")
         ->required()

@@ -17,8 +17,8 @@ struct InputPaths {
     std::string campaign;
     std::string measurements;
 };
-void add_campaign_argument(CLI::App& command, InputPaths& paths);
-void add_measurements_option(CLI::App& command, InputPaths& paths);
+CLI::Option* add_campaign_argument(CLI::App& command, InputPaths& paths);
+CLI::Option* add_measurements_option(CLI::App& command, InputPaths& paths);
 
 /// Accepts the name of a criterion; anything else is a usage error that lists them.
 CLI::Validator criterion_check();

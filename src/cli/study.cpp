@@ -1,23 +1,30 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
+#include "../core/text.hpp"
 #include "../io/atomic_file.hpp"
 #include "../report/plot.hpp"
 #include "commands.hpp"
 #include "files.hpp"
-#include "measured.hpp"
-#include "posewise/core/units.hpp"
+#include "interrupt.hpp"
 #include "posewise/io/json_reports.hpp"
+#include "posewise/io/trial_store.hpp"
 #include "posewise/report/reports.hpp"
 #include "study_options.hpp"
 #include "study_plot.hpp"
+#include "study_runs.hpp"
 
 namespace posewise::cli {
 namespace {
 
 constexpr const char* study_footer = R"(
-Example:
+Examples:
   posewise study campaign.yaml -m measurements.csv --criteria v,d --random 100 --plot study.svg
+  posewise study campaign.yaml --simulate --poses 8,12,20 --trials 1000 --store results.sqlite
+  posewise study --from results.sqlite
 
 For each pose count: chooses that many of the measured configurations by each criterion and at
 random, calibrates with them from nothing, and judges on configurations held out, the same ones for
@@ -39,61 +46,29 @@ and one that takes the telling configurations is judged on easier ones than othe
   posewise study campaign.yaml -m measurements.csv --models geometric,full
 repeats the study with each of these in the place of the campaign's robot.errors, all else the same:
 the splits, the pose counts and the random subsets. A line for each pose count and model says what
-random and planned subsets leave, planned against random of that model, and of the first one.)";
+random and planned subsets leave, planned against random of that model, and of the first one.
 
-/// The campaign as its file says, or with each of the error models asked for.
-std::vector<io::CampaignFile> read_files(const StudyArguments& arguments) {
-    const std::string& path = arguments.paths.campaign;
-    if (arguments.models.empty()) {
-        io::CampaignFile file = read_with_prior(path, arguments.prior);
-        expect_earlier(file, arguments.earlier);
-        return {file};
-    }
-    std::vector<io::CampaignFile> files = io::read_campaign(path, arguments.models);
-    for (io::CampaignFile& file : files) {
-        io::set_prior(file, arguments.prior.value_or(file.spread.is_prior));
-    }
-    return files;
-}
+--simulate needs no measurements: it draws robots with errors as large as the campaign expects, and a
+model error (as surely as that is known), measures each at the configurations chosen for the nominal
+robot and at random ones that its cell allows, calibrates, and judges how far targets are then from
+where the calibrated model has them, over configurations of the workspace, model error included. The
+columns are the same, one split a robot; --truth draws from another campaign, with errors that the
+fitted model lacks; --vary repeats the study with other values of keys of the campaign, on the same
+robots draw by draw:
+  posewise study campaign.yaml --simulate --vary sensor.sigma_mm=0.01,0.05 --vary robot.errors=geometric,full
 
-std::vector<RobotModel> list_models(const std::vector<io::CampaignFile>& files) {
-    std::vector<RobotModel> models;
-    for (const io::CampaignFile& file : files) {
-        models.push_back({std::string(io::error_model_name(file.error_model)), file});
-    }
-    return models;
-}
+--store keeps each trial as it ends: a study that was stopped, or killed, goes on where it was, and
+--from prints what is in a store at any moment, also while it runs. --shard runs a part, each with a
+store of its own on any machine, --merge puts stores together:
+  posewise study --merge part1.sqlite part2.sqlite --store all.sqlite
+Under mpirun or srun trials are shared out to all processes (designs/cluster). The numbers are the
+same for any threads, processes, shards and order, and however often it was killed.)";
 
-void study(const StudyArguments& arguments, const CommonOptions& common) {
-    const InputPaths& paths = arguments.paths;
-    if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
-    const std::vector<io::CampaignFile> files = read_files(arguments);
-    const io::CampaignFile& file = files.front();
-    check_outputs({&file}, {paths.measurements, arguments.earlier.from},
-                  {arguments.csv, arguments.plot}, common);
-    const auto measurements =
-        read_measured_without(arguments.excluded, paths.measurements, file, arguments.earlier);
-    StudyOptions options = arguments.options;
-    options.seed = arguments.seed.value_or(file.seed);
-    options.criteria = arguments.criteria;
-    if (options.criteria.empty()) options.criteria = {file.criterion};
-    options.least_distance = to_radians(arguments.least_distance_deg);
-
-    ProgressLine line("calibrating", arguments.progress);
-    options.progress = [&](const Progress& progress) { line(progress); };
-    const bool compares = !arguments.models.empty();
-    const std::vector<Study> studies = compute_from(paths.measurements, [&] {
-        return compares ? compare_models(list_models(files), measurements, options)
-                        : std::vector{posewise::study(file, measurements, options)};
-    });
-    for (const Study& study : studies) {
-        if (study.ending != Ending::NotIdentifiable) continue;
-        throw input_error_at({paths.measurements},
-                             (compares ? study.model + ": " : "") + study.undetermined);
-    }
+void print_studies(const std::vector<Study>& studies, const StudyArguments& arguments,
+                   const CommonOptions& common, const std::string& notes) {
+    const bool compares = studies.size() > 1 || !studies.front().model.empty();
     print(common.json ? io::to_json(studies)
-                      : (compares ? format(studies) : format(studies.front())) +
-                            describe_earlier(arguments.earlier) + describe_unused_planning(file));
+                      : (compares ? format(studies) : format(studies.front())) + notes);
     if (!arguments.csv.empty()) {
         detail::write_file(arguments.csv,
                            compares ? study_csv(studies) : study_csv(studies.front()));
@@ -102,15 +77,91 @@ void study(const StudyArguments& arguments, const CommonOptions& common) {
     if (!arguments.plot.empty()) draw_plot(arguments.plot, studies);
 }
 
+/// Studies that one table can show.
+bool belong_together(const Study& a, const Study& b) {
+    const auto counts = [](const Study& study) {
+        std::vector<Index> all;
+        for (const StudyRow& row : study.rows) all.push_back(row.pose_count);
+        return all;
+    };
+    return a.campaign == b.campaign && a.criteria == b.criteria && counts(a) == counts(b) &&
+           a.is_simulated == b.is_simulated && (a.splits > 0) == (b.splits > 0);
+}
+
+/// A table for those studies of a store that belong together each.
+void print_store(const std::string& path, const StudyArguments& arguments,
+                 const CommonOptions& common) {
+    std::vector<std::vector<Study>> groups;
+    for (const Study& study : read_store(path)) {
+        if (study.rows.empty()) continue;
+        const auto group =
+            std::find_if(groups.begin(), groups.end(), [&](const std::vector<Study>& others) {
+                return belong_together(others.front(), study);
+            });
+        (group == groups.end() ? groups.emplace_back() : *group).push_back(study);
+    }
+    if (groups.empty()) throw input_error_at({path}, "holds no pose count that is complete yet");
+    const bool makes_one = common.json || !arguments.csv.empty() || !arguments.plot.empty();
+    if (groups.size() > 1 && makes_one) {
+        throw input_error_at({path}, fmt::format("holds {} studies of which no single table can be "
+                                                 "made; --json, --csv and --plot must be of one",
+                                                 groups.size()));
+    }
+    for (const std::vector<Study>& one : groups) {
+        if (groups.size() > 1) {
+            print((&one == &groups.front() ? "" : "\n") +
+                  detail::escape_controls(one.front().campaign) + '\n');
+        }
+        print_studies(one, arguments, common, "");
+    }
+}
+
+void check_study_usage(const StudyArguments& arguments, bool reads_store) {
+    if (reads_store || !arguments.merged.empty()) return;
+    if (arguments.paths.campaign.empty()) throw CLI::RequiredError("CAMPAIGN");
+    if (arguments.is_simulated == !arguments.paths.measurements.empty()) {
+        throw CLI::ValidationError("study",
+                                   "needs either measured configurations (-m) or --simulate");
+    }
+}
+
+void study(const StudyArguments& arguments, const CommonOptions& common) {
+    const bool reads_store = io::is_trial_store(arguments.earlier.from);
+    check_study_usage(arguments, reads_store);
+    if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
+    if (reads_store) return print_store(arguments.earlier.from, arguments, common);
+    if (!arguments.merged.empty()) {
+        io::merge_trial_stores(arguments.merged, arguments.store);
+        return print_store(arguments.store, arguments, common);
+    }
+    std::optional<InterruptFlag> interrupted(std::in_place);
+    const StopSignal stop{interrupted->get(), deadline_after(arguments.time_limit)};
+    std::string notes;
+    const std::vector<Study> studies = arguments.is_simulated
+                                           ? study_simulated(arguments, common, stop, notes)
+                                           : study_measured(arguments, common, stop, notes);
+    interrupted.reset();
+    if (studies.front().rows.empty()) {
+        throw InputError(stop.is_set() ? "stopped before any pose count was complete; must have "
+                                         "longer"
+                                       : "no pose count is complete; the other shards must run, "
+                                         "then their stores be merged (--merge)");
+    }
+    if (stop.is_set()) std::fputs("posewise: stopped early; what is complete is shown\n", stderr);
+    print_studies(studies, arguments, common, notes);
+}
+
 }  // namespace
 
 void add_study(CLI::App& program, const CommonOptions& common) {
     const auto arguments = std::make_shared<StudyArguments>();
     CLI::App* command =
         program.add_subcommand("study", "Accuracy against number of poses, optimal and random");
-    add_campaign_argument(*command, arguments->paths);
-    add_measurements_option(*command, arguments->paths);
+    add_campaign_argument(*command, arguments->paths)->required(false);
+    add_measurements_option(*command, arguments->paths)->required(false);
     add_study_options(*command, *arguments);
+    add_simulation_options(*command, *arguments);
+    add_store_options(*command, *arguments);
     command->footer(study_footer);
     command->callback([arguments, &common] { study(*arguments, common); });
 }

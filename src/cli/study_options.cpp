@@ -70,9 +70,10 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
         "Criteria to choose by, such as v,d,o1 (default: the campaign's, else v)");
     add_exclude_option(command, arguments.excluded);
     command
-        .add_option("--random", arguments.options.random_subsets, "Random subsets per pose count")
-        ->check(whole_number(0, 1000000))
-        ->capture_default_str();
+        .add_option(
+            "--random", arguments.random_subsets,
+            "Random subsets per pose count (default: 100; with --simulate 1 for each robot)")
+        ->check(whole_number(0, 1000000));
     command
         .add_option(
             "--splits", arguments.options.splits,
@@ -113,6 +114,10 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
         ->capture_default_str();
     command.add_option("--seed", arguments.seed, "Of all random choices (default: the campaign's)")
         ->check(whole_number(0, largest_seed));
+    command
+        .add_option("--time", arguments.time_limit,
+                    "Seconds after which it ends with what is complete (default: none)")
+        ->check(real_number(0, 1e9));
     command.add_option("--csv", arguments.csv, "Write every subset's result to this file")
         ->check(file_name());
     command.add_option("--plot", arguments.plot, "Draw error against pose count: .svg or .png")

@@ -9,7 +9,7 @@
 #include "common.hpp"
 #include "estimates.hpp"
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/task/study.hpp"
+#include "posewise/task/simulated_study.hpp"
 
 namespace posewise::cli {
 
@@ -22,14 +22,31 @@ struct StudyArguments {
     std::vector<Criterion> criteria;
     std::vector<io::ErrorModel> models;
     double least_distance_deg = 0;
+    std::optional<Index> random_subsets;
     std::optional<std::uint64_t> seed;
+    double time_limit = 0;  ///< s; 0: none
     std::string csv;
     std::string plot;
     bool progress = false;
     StudyOptions options;
+
+    bool is_simulated = false;
+    std::string truth;
+    std::vector<std::string> varied;
+    SimulatedStudyOptions simulation;  ///< what is not among `options`
+
+    std::string store;
+    std::vector<std::string> merged;
+    Shard shard;
 };
 
-/// Every option but --measurements.
+/// Every option but --measurements and those of simulated studies.
 void add_study_options(CLI::App& command, StudyArguments& arguments);
+
+/// --simulate and what goes with it.
+void add_simulation_options(CLI::App& command, StudyArguments& arguments);
+
+/// --store, --shard, --merge.
+void add_store_options(CLI::App& command, StudyArguments& arguments);
 
 }  // namespace posewise::cli

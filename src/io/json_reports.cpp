@@ -296,8 +296,10 @@ std::string to_json(const std::vector<Study>& studies) {
     document["ending"] = ending_name(first.ending);
     document["splits"] = first.splits;
     document["judged_on"] = first.test_count;
+    document["simulated"] = first.is_simulated;
     document["models"] = make_list(studies, [&](const Study& study) {
         Json model = {{"name", study.model}, {"rows", Json::array()}};
+        if (study.is_simulated) model["trials"] = study.splits;
         for (std::size_t i = 0; i < study.rows.size(); ++i) {
             model["rows"].push_back(study_row_to_json(study, study.rows[i], first.rows[i]));
         }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "../core/format.hpp"
@@ -23,22 +24,33 @@ std::string quote(const std::string& text) {
 
 std::string csv_line(const StudyRow& row, const StudyCase& study_case, std::string_view chosen_by,
                      std::size_t subset, const std::vector<std::string>& ids) {
-    std::string rms;
-    std::string max;
+    std::string found = ",,,";
     if (study_case.identified && study_case.held_out.point_count > 0) {
-        rms = detail::format_short(mm_per_m * study_case.held_out.distance_rms, 9);
-        max = detail::format_short(mm_per_m * study_case.held_out.distance_max, 9);
+        const HeldOut& held_out = study_case.held_out;
+        found.clear();
+        for (const double metres : {held_out.distance_rms, held_out.distance_max,
+                                    held_out.distance_p95, study_case.expected}) {
+            found += (found.empty() ? "" : ",") + detail::format_short(mm_per_m * metres, 9);
+        }
     }
     std::string poses;
     for (const Index pose : study_case.poses) {
         poses += (poses.empty() ? "" : " ") + ids[static_cast<std::size_t>(pose)];
     }
-    return fmt::format("{},{},{},{},{},{},{}\n", row.pose_count, chosen_by, subset,
-                       study_case.identified ? "yes" : "no", rms, max, quote(poses));
+    return fmt::format("{},{},{},{},{},{}\n", row.pose_count, chosen_by, subset,
+                       study_case.identified ? "yes" : "no", found, quote(poses));
 }
 
 /// On what all were judged.
 std::string describe_judgement(const Study& study) {
+    if (study.is_simulated) {
+        return fmt::format(
+            "\nJudged at {} of the workspace, model error included; {} drawn, the same for planned "
+            "and random.\nPlanned and random: medians; their ratio: the geometric mean over the "
+            "robots.\n",
+            detail::count_of(study.test_count, "configuration"),
+            detail::count_of(study.splits, "robot"));
+    }
     return fmt::format(
         "\nJudged on {} held out, the same ones for all subsets of a split; {}.\nPlanned and "
         "random: medians; their ratio: the geometric mean over the splits.\n",
@@ -94,7 +106,8 @@ std::string csv_lines(const Study& study, const std::string& prefix) {
 }
 
 constexpr const char* csv_header =
-    "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,configurations\n";
+    "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,held_out_p95_mm,"
+    "expected_rms_mm,configurations\n";
 
 }  // namespace
 
@@ -112,7 +125,10 @@ std::string format(const std::vector<Study>& studies) {
     }
     std::string text = format_table(detail::models_table(studies));
     if (!compares_with_random(studies.front())) return text;
-    text += describe_judgement(studies.front());
+    const bool are_alike = std::all_of(studies.begin(), studies.end(), [&](const Study& study) {
+        return study.splits == studies.front().splits;
+    });
+    if (are_alike) text += describe_judgement(studies.front());
     for (const Study& study : studies) text += describe_verdicts(study);
     return text;
 }
@@ -120,9 +136,9 @@ std::string format(const std::vector<Study>& studies) {
 std::string study_csv(const Study& study) { return csv_header + csv_lines(study, ""); }
 
 std::string study_csv(const std::vector<Study>& studies) {
-    std::string text = "model,";
+    std::string text = studies.front().is_simulated ? "variation," : "model,";
     text += csv_header;
-    for (const Study& study : studies) text += csv_lines(study, study.model + ',');
+    for (const Study& study : studies) text += csv_lines(study, quote(study.model) + ',');
     return text;
 }
 

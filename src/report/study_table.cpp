@@ -76,13 +76,14 @@ Table study_table(const Study& study) {
 Table models_table(const std::vector<Study>& studies) {
     const Study& first = studies.front();
     Table table;
-    table.header = {"poses", "model", "random/mm"};
+    table.header = {"poses", first.is_simulated ? "variation" : "model", "random/mm"};
     for (const Criterion criterion : first.criteria) {
         const std::string name(criterion_name(criterion));
         table.header.push_back(name + "/mm");
         if (first.splits == 0) continue;
         table.header.insert(table.header.end(),
-                            {name + "/random", "95 %", name + "/random " + first.model});
+                            {name + "/random", "95 %",
+                             name + "/random " + (first.is_simulated ? "of first" : first.model)});
     }
     table.header.emplace_back("unidentified");
     for (std::size_t i = 0; i < first.rows.size(); ++i) {

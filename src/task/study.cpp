@@ -172,48 +172,16 @@ StudyCase run(const Setting& setting, const MeasuredCase& job, Index pose_count)
     return result;
 }
 
-/// Runs all cases; of a study that is stopped, or of a part of the cases, those rows stay that are
-/// complete. Nothing in a process that does not lead.
-std::optional<Study> run_all(const Setting& setting, const TrialSeries& cases) {
-    const std::vector<MeasuredCase> jobs = detail::list_cases(cases);
-    const auto compute = [&](const TrialId& id) {
-        const MeasuredCase& job = jobs[static_cast<std::size_t>(id.number)];
-        std::vector<double> values;
-        detail::append_case(run(setting, job, cases.pose_counts[job.row]), values);
-        return values;
-    };
-    std::optional<Study> study;
-    setting.options.crew(compute, [&](const RunTrials& run_trials) {
-        const std::vector<TrialSeries> series{cases};
-        detail::TrialRuns runs(series, setting.options);
-        runs.run(run_trials, {static_cast<Index>(jobs.size())});
-        study = study_of_trials(cases, runs.list(0));
-    });
-    return study;
-}
-
-/// What the cases depend on, in words and numbers.
-TrialSeries series_of(const Study& study, const std::vector<Index>& pose_counts,
-                      const Setting& setting) {
+/// Of what the cases depend on beside what their series says.
+std::string checksum_of(const Setting& setting) {
     const StudyOptions& options = setting.options;
-    TrialSeries series;
-    series.campaign = study.campaign;
-    series.variation = study.model;
-    series.seed = options.seed;
-    series.criteria = study.criteria;
-    series.pose_counts = pose_counts;
-    series.random_subsets = options.random_subsets;
-    series.splits = study.splits;
-    series.test_count = study.test_count;
-    series.ids = study.ids;
     detail::Checksum checksum;
     checksum.add(setting.measurements.configurations);
     checksum.add(setting.measurements.observations);
     for (const Split& split : setting.splits) checksum.add(split.blocks.matrix);
     checksum.add(fmt::format("{} {} {} {}", options.holdout, options.least_distance, options.starts,
                              setting.campaign.spread.is_prior));
-    series.checksum = checksum.text();
-    return series;
+    return checksum.text();
 }
 
 /// The least pose count that the defaults begin at; 0 if pose counts are asked for.
@@ -226,8 +194,15 @@ Index largest_least_count(const std::vector<RobotModel>& models, const StudyOpti
     return least;
 }
 
+/// One model's study before any case is run.
+struct Prepared {
+    Setting setting;
+    TrialSeries cases;         ///< none if the model is not identified
+    std::string undetermined;  ///< why it is not
+};
+
 /// With pose counts from `least` if none are asked for.
-Study study_from(Index least, const RobotModel& model, const Measurements& measurements,
+Prepared prepare(Index least, const RobotModel& model, const Measurements& measurements,
                  const StudyOptions& options) {
     const Campaign& campaign = model.campaign;
     const Registration registration = register_base_and_targets(campaign, measurements);
@@ -238,20 +213,24 @@ Study study_from(Index least, const RobotModel& model, const Measurements& measu
     if (split_count > 0 && all < 2) {
         throw InputError("there is 1 configuration, splits need at least 2");
     }
-    std::vector<Split> splits = make_splits(all, split_count, options);
+    Prepared prepared{{campaign, measurements, options, make_splits(all, split_count, options)},
+                      {},
+                      describe_undetermined(campaign, measurements, registration)};
+    std::vector<Split>& splits = prepared.setting.splits;
     const auto counts =
         choose_pose_counts(options.pose_counts, static_cast<Index>(splits.front().pool.size()),
                            least, split_count > 0);
-    Study study;
-    study.campaign = campaign.name;
-    study.model = model.name;
-    study.ids = measurements.ids;
-    study.criteria = options.criteria;
-    study.ending = Ending::NotIdentifiable;
-    study.splits = split_count;
-    study.test_count = static_cast<Index>(splits.front().test.size());
-    study.undetermined = describe_undetermined(campaign, measurements, registration);
-    if (!study.undetermined.empty()) return study;
+    TrialSeries& cases = prepared.cases;
+    cases.campaign = campaign.name;
+    cases.variation = model.name;
+    cases.seed = options.seed;
+    cases.criteria = options.criteria;
+    cases.random_subsets = options.random_subsets;
+    cases.splits = split_count;
+    cases.test_count = static_cast<Index>(splits.front().test.size());
+    cases.ids = measurements.ids;
+    if (!prepared.undetermined.empty()) return prepared;
+    cases.pose_counts = counts;
     check_some_are_left(counts, measurements.configuration_count());
     const Blocks blocks = detail::measured_blocks(campaign, registration.parameters, measurements);
     const RowMatrixXd positions =
@@ -260,13 +239,8 @@ Study study_from(Index least, const RobotModel& model, const Measurements& measu
         split.blocks = take(blocks, split.pool);
         if (options.least_distance != 0) split.positions = positions(split.pool, Eigen::all);
     }
-    const Setting setting{campaign, measurements, options, std::move(splits)};
-    if (auto found = run_all(setting, series_of(study, counts, setting))) {
-        found->ending = options.stop.ending_or(Ending::Converged);
-        return *found;
-    }
-    study.ending = Ending::NotRun;
-    return study;
+    cases.checksum = checksum_of(prepared.setting);
+    return prepared;
 }
 
 /// Of studies that were stopped, those rows stay that are complete in all.
@@ -292,17 +266,34 @@ Study study(const Campaign& campaign, const Measurements& measurements,
 std::vector<Study> compare_models(const std::vector<RobotModel>& models,
                                   const Measurements& measurements, const StudyOptions& options) {
     const Index least = largest_least_count(models, options);
-    const auto count = static_cast<Index>(models.size());
-    std::vector<Study> studies;
-    for (Index before = 0; before < count; ++before) {
-        const RobotModel& model = models[static_cast<std::size_t>(before)];
-        StudyOptions of_model = options;
-        of_model.progress = [&](const Progress& progress) {
-            if (!options.progress) return;
-            options.progress({before * progress.total + progress.done, count * progress.total});
-        };
-        studies.push_back(study_from(least, model, measurements, of_model));
+    std::vector<Prepared> prepared;
+    std::vector<TrialSeries> series;
+    std::vector<std::vector<MeasuredCase>> cases;
+    std::vector<Index> counts;
+    for (const RobotModel& model : models) {
+        prepared.push_back(prepare(least, model, measurements, options));
+        series.push_back(prepared.back().cases);
+        cases.push_back(detail::list_cases(series.back()));
+        counts.push_back(static_cast<Index>(cases.back().size()));
     }
+    const auto compute = [&](const TrialId& id) {
+        const auto s = static_cast<std::size_t>(id.series);
+        const MeasuredCase& one = cases[s][static_cast<std::size_t>(id.number)];
+        std::vector<double> values;
+        detail::append_case(run(prepared[s].setting, one, series[s].pose_counts[one.row]), values);
+        return values;
+    };
+    std::vector<Study> studies;
+    options.crew(compute, [&](const RunTrials& run_trials) {
+        detail::TrialRuns runs(series, options);
+        runs.run(run_trials, counts);
+        for (std::size_t s = 0; s < series.size(); ++s) {
+            Study& study = studies.emplace_back(study_of_trials(series[s], runs.list(s)));
+            study.undetermined = prepared[s].undetermined;
+            study.ending = study.undetermined.empty() ? options.stop.ending_or(Ending::Converged)
+                                                      : Ending::NotIdentifiable;
+        }
+    });
     if (options.stop.is_set()) keep_common_rows(studies);
     return studies;
 }

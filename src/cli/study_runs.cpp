@@ -1,0 +1,156 @@
+#include "study_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "../io/atomic_file.hpp"
+#include "crew.hpp"
+#include "files.hpp"
+#include "measured.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/io/campaign_variation.hpp"
+#include "posewise/io/trial_store.hpp"
+#include "posewise/report/reports.hpp"
+
+namespace posewise::cli {
+namespace {
+
+/// "12.3 trials/s, about 7 s left".
+class RateNote {
+  public:
+    std::string operator()(const Progress& state) const {
+        using Seconds = std::chrono::duration<double>;
+        if (first_ < 0) first_ = state.done - 1;
+        const double elapsed = Seconds(std::chrono::steady_clock::now() - begin_).count();
+        const double rate = static_cast<double>(state.done - first_) / std::max(elapsed, 1e-6);
+        return fmt::format("{:.3g} trials/s, about {:.0f} s left", rate,
+                           static_cast<double>(state.total - state.done) / rate);
+    }
+
+  private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    mutable Index first_ = -1;  ///< done before, and kept in a store
+};
+
+/// The campaign as its file says, or with each of the error models asked for.
+std::vector<io::CampaignFile> read_files(const StudyArguments& arguments) {
+    const std::string& path = arguments.paths.campaign;
+    if (arguments.models.empty()) {
+        io::CampaignFile file = read_with_prior(path, arguments.prior);
+        expect_earlier(file, arguments.earlier);
+        return {file};
+    }
+    std::vector<io::CampaignFile> files = io::read_campaign(path, arguments.models);
+    for (io::CampaignFile& file : files) {
+        io::set_prior(file, arguments.prior.value_or(file.spread.is_prior));
+    }
+    return files;
+}
+
+std::vector<RobotModel> list_models(const std::vector<io::CampaignFile>& files) {
+    std::vector<RobotModel> models;
+    for (const io::CampaignFile& file : files) {
+        models.push_back({std::string(io::error_model_name(file.error_model)), file});
+    }
+    return models;
+}
+
+/// What both kinds of study have in common.
+void complete_options(StudyOptions& options, const StudyArguments& arguments,
+                      const io::CampaignFile& file, const StopSignal& stop) {
+    options.seed = arguments.seed.value_or(file.seed);
+    options.criteria = arguments.criteria;
+    if (options.criteria.empty()) options.criteria = {file.criterion};
+    options.least_distance = to_radians(arguments.least_distance_deg);
+    options.random_subsets = arguments.random_subsets.value_or(options.random_subsets);
+    options.shard = arguments.shard;
+    options.stop = stop;
+    options.crew = trial_crew();
+    if (!arguments.store.empty() && leads_crew()) {
+        options.store = io::open_trial_store(arguments.store);
+    }
+}
+
+/// The campaign as it is, or with each combination of what is varied.
+std::vector<SimulatedCampaign> list_variations(const StudyArguments& arguments,
+                                               const io::CampaignFile& file) {
+    std::optional<Campaign> truth;
+    if (!arguments.truth.empty()) truth = io::read_campaign(arguments.truth);
+    if (arguments.varied.empty()) return {{"", file, truth}};
+    std::vector<io::VariedKey> keys;
+    for (const std::string& text : arguments.varied) {
+        keys.push_back(compute_from("--vary", [&] { return io::parse_varied_key(text); }));
+    }
+    const std::string& path = file.path;
+    std::vector<SimulatedCampaign> campaigns;
+    for (const io::Variation& variation : io::vary_campaign(detail::read_file(path), path, keys)) {
+        // Lines of the text that was varied are not those of the file.
+        io::CampaignFile varied = compute_from("--vary " + variation.name, [&] {
+            return io::parse_campaign(variation.content, path);
+        });
+        io::set_prior(varied, arguments.prior.value_or(varied.spread.is_prior));
+        campaigns.push_back({variation.name, varied, truth});
+    }
+    return campaigns;
+}
+
+}  // namespace
+
+std::vector<Study> study_measured(const StudyArguments& arguments, const CommonOptions& common,
+                                  const StopSignal& stop, std::string& notes) {
+    const InputPaths& paths = arguments.paths;
+    const std::vector<io::CampaignFile> files = read_files(arguments);
+    const io::CampaignFile& file = files.front();
+    check_outputs({&file}, {paths.measurements, arguments.earlier.from},
+                  {arguments.csv, arguments.plot}, common);
+    const auto measurements =
+        read_measured_without(arguments.excluded, paths.measurements, file, arguments.earlier);
+    StudyOptions options = arguments.options;
+    complete_options(options, arguments, file, stop);
+    ProgressLine line("calibrating", arguments.progress);
+    options.progress = [&](const Progress& progress) { line(progress); };
+    notes = describe_earlier(arguments.earlier) + describe_unused_planning(file);
+    const bool compares = !arguments.models.empty();
+    const std::vector<Study> studies = compute_from(paths.measurements, [&] {
+        return compares ? compare_models(list_models(files), measurements, options)
+                        : std::vector{posewise::study(file, measurements, options)};
+    });
+    for (const Study& study : studies) {
+        if (study.ending != Ending::NotIdentifiable) continue;
+        throw input_error_at({paths.measurements},
+                             (compares ? study.model + ": " : "") + study.undetermined);
+    }
+    return studies;
+}
+
+std::vector<Study> study_simulated(const StudyArguments& arguments, const CommonOptions& common,
+                                   const StopSignal& stop, std::string& notes) {
+    io::CampaignFile file = read_with_prior(arguments.paths.campaign, arguments.prior, stop);
+    check_outputs({&file}, {arguments.truth}, {arguments.csv, arguments.plot}, common);
+    SimulatedStudyOptions options = arguments.simulation;
+    static_cast<StudyOptions&>(options).pose_counts = arguments.options.pose_counts;
+    options.starts = arguments.options.starts;
+    complete_options(options, arguments, file, stop);
+    notes = describe_unused_planning(file);
+    ProgressLine line("simulating", arguments.progress);
+    const RateNote note;
+    options.progress = [&](const Progress& progress) { line(progress, note(progress)); };
+    const auto campaigns = list_variations(arguments, file);
+    return compute_from(arguments.paths.campaign,
+                        [&] { return simulate_study(campaigns, options); });
+}
+
+std::vector<Study> read_store(const std::string& path) {
+    const std::vector<TrialSeries> series = io::series_in_store(path);
+    const TrialStore store = io::read_trial_store(path);
+    std::vector<Study> studies;
+    for (const TrialSeries& one : series) {
+        studies.push_back(
+            compute_from(path, [&] { return study_of_trials(one, store.finished(one)); }));
+    }
+    return studies;
+}
+
+}  // namespace posewise::cli
