@@ -20,7 +20,9 @@ StudyCase identified(std::vector<Index> poses, double rms, double max) {
     result.identified = true;
     result.held_out.point_count = 3;
     result.held_out.distance_rms = rms;
+    result.held_out.distance_p95 = max / 2;
     result.held_out.distance_max = max;
+    result.expected = rms / 2;
     return result;
 }
 
@@ -63,13 +65,14 @@ TEST(StudyTable, ShowsADashWhereNothingWasIdentified) {
 
 TEST(StudyCsv, HoldsEveryCase) {
     EXPECT_EQ(study_csv(example_study()),
-              "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,configurations\n"
-              "2,d,0,yes,0.3,0.9,\"a b,c\"\n"
-              "2,random,0,no,,,a d\n"
-              "2,random,1,yes,2,4,\"b,c d\"\n"
-              "2,random,2,yes,2,4,\"b,c d\"\n"
-              "3,d,0,yes,0.2,0.5,\"a b,c d\"\n"
-              "3,random,0,yes,0.4,0.8,\"a b,c d\"\n");
+              "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,held_out_p95_mm,"
+              "expected_rms_mm,configurations\n"
+              "2,d,0,yes,0.3,0.9,0.45,0.15,\"a b,c\"\n"
+              "2,random,0,no,,,,,a d\n"
+              "2,random,1,yes,2,4,2,1,\"b,c d\"\n"
+              "2,random,2,yes,2,4,2,1,\"b,c d\"\n"
+              "3,d,0,yes,0.2,0.5,0.25,0.1,\"a b,c d\"\n"
+              "3,random,0,yes,0.4,0.8,0.4,0.2,\"a b,c d\"\n");
 }
 
 /// Of two models, the second twice as accurate.

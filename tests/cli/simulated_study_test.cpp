@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+namespace posewise {
+namespace {
+
+class SimulatedStudies : public testing::Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        study_ = std::string("study '") + POSEWISE_SOURCE_DIR +
+                 "/designs/fanuc_r2000ic_165f/campaign.yaml' --simulate --poses 8,12 --pool 200 "
+                 "--test-poses 50 --trials ";
+    }
+    std::string study_;
+};
+
+TEST_F(SimulatedStudies, AreTheSameFromStoresAndShards) {
+    const std::string whole = run_well(study_ + "20 --csv whole.csv");
+    EXPECT_NE(whole.find("20 robots drawn, the same for planned and random"), std::string::npos)
+        << whole;
+    EXPECT_EQ(run_well(study_ + "20 --threads 1 --store one.sqlite --csv one.csv"), whole);
+    EXPECT_EQ(text_of("one.csv"), text_of("whole.csv"));
+    for (const std::string shard : {"2", "3", "1"}) {
+        run_well(study_ + "20 --store s" + shard + ".sqlite --shard " + shard + "/3");
+    }
+    EXPECT_EQ(
+        run_well("study --merge s1.sqlite s2.sqlite s3.sqlite --store all.sqlite --csv m.csv"),
+        whole);
+    EXPECT_EQ(text_of("m.csv"), text_of("whole.csv"));
+    EXPECT_EQ(run_well("study --from all.sqlite"), whole);
+    const auto json = nlohmann::json::parse(run_well("study --from all.sqlite --json"));
+    EXPECT_EQ(json["simulated"], true);
+    EXPECT_EQ(json["models"][0]["trials"], 20);
+    EXPECT_FALSE(has_file("all.sqlite-wal"));
+}
+
+TEST_F(SimulatedStudies, GoOnAfterTheyWereKilled) {
+    const std::string whole = run_well(study_ + "400 --csv whole.csv");
+    int killed = 0;
+    for (int i = 0; i < 6; ++i) {
+        const std::string seconds = "0." + std::to_string(3 + i);
+        const testing::Outcome outcome =
+            run_line("timeout -s KILL " + seconds + " '" + POSEWISE_PROGRAM + "' " + study_ +
+                     "400 --threads 1 --store s.sqlite > .out 2> .err");
+        if (outcome.code != 0) ++killed;
+    }
+    EXPECT_GT(killed, 0);
+    EXPECT_EQ(run_well(study_ + "400 --store s.sqlite --csv again.csv"), whole);
+    EXPECT_EQ(text_of("again.csv"), text_of("whole.csv"));
+}
+
+TEST_F(SimulatedStudies, VaryKeysOfTheCampaign) {
+    const std::string text =
+        run_well(study_ + "5 --vary sensor.sigma_mm=0.01,0.2 --vary seed=1 --csv r.csv");
+    EXPECT_NE(text.find("sensor.sigma_mm=0.2 seed=1"), std::string::npos) << text;
+    const std::string csv = text_of("r.csv");
+    EXPECT_EQ(csv.rfind("variation,poses,", 0), 0u) << csv;
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 2 * 2 * 5);
+    expect_input_error(study_ + "5 --vary sensor.sigma=1", "--vary sensor.sigma=1: ");
+    expect_input_error(study_ + "5 --vary sensor.sigma_mm",
+                       "must be like sensor.sigma_mm=0.01,0.05");
+    expect_input_error(study_ + "5 --vary name.first=a", "nothing stands under 'first'");
+}
+
+TEST_F(SimulatedStudies, KeepMeasuredOnesToo) {
+    const std::string campaign =
+        std::string("'") + POSEWISE_SOURCE_DIR + "/designs/fanuc_r2000ic_165f/campaign.yaml' ";
+    run_well("simulate " + campaign + "--poses 14 --out m.csv");
+    const std::string study =
+        "study " + campaign +
+        "-m m.csv --poses 6,9 --random 6 --splits 2 --models stated,geometric ";
+    const std::string whole = run_well(study + "--csv whole.csv");
+    EXPECT_EQ(run_well(study + "--store s.sqlite"), whole);
+    EXPECT_EQ(run_well(study + "--store s.sqlite --csv again.csv"), whole);
+    EXPECT_EQ(text_of("again.csv"), text_of("whole.csv"));
+    EXPECT_NE(run_well("study --from s.sqlite").find("geometric"), std::string::npos);
+}
+
+TEST_F(SimulatedStudies, RefuseWhatIsNoStudy) {
+    const auto usage = [this](const std::string& arguments, const std::string& words) {
+        const testing::Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.code, 2) << arguments;
+        EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+    };
+    const std::string campaign = study_.substr(6, study_.find("' ") - 4);
+    usage("study", "CAMPAIGN");
+    usage("study " + campaign, "either measured configurations (-m) or --simulate");
+    usage("study " + campaign + "--trials 5 -m m.csv", "--simulate");
+    usage(study_ + "5 -m m.csv", "either");
+    usage(study_ + "5 --shard 1/2", "--store");
+    for (const std::string shard : {"3/2", "0/2", "1", "/", "a/b", "1/0"}) {
+        usage(study_ + "5 --store s.sqlite --shard " + shard, "from 1/16 to 16/16");
+    }
+    for (const std::string precision : {"0", "100%", "-1", "%", "x"}) {
+        usage(study_ + "5 --precision " + precision, "must be a part such as 2% or 0.02");
+    }
+    usage(study_ + "0", "--trials");
+    write_text("text.sqlite", "no database");
+    expect_input_error(study_ + "5 --store text.sqlite", "text.sqlite");
+    EXPECT_EQ(text_of("text.sqlite"), "no database");
+    expect_input_error("study --merge none.sqlite --store all.sqlite", "none.sqlite");
+    expect_input_error(study_ + "5 --store none/s.sqlite", "none/s.sqlite");
+    expect_input_error("study " + campaign + " --simulate --poses 300 --pool 200", "200");
+}
+
+}  // namespace
+}  // namespace posewise
