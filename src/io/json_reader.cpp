@@ -81,4 +81,19 @@ std::uint64_t JsonValue::natural_number() const {
     return value_->get<std::uint64_t>();
 }
 
+Criterion read_criterion(const JsonValue& json) {
+    const std::string name = json.text();
+    try {
+        return parse_criterion(name);
+    } catch (const InputError& problem) {
+        throw json.error(problem.what());
+    }
+}
+
+std::vector<std::string> read_texts(const JsonValue& list) {
+    std::vector<std::string> texts;
+    for (const JsonValue& text : list.list()) texts.push_back(text.text());
+    return texts;
+}
+
 }  // namespace posewise::detail

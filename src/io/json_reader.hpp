@@ -7,6 +7,7 @@
 
 #include "json.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/criteria/criterion.hpp"
 
 namespace posewise::detail {
 
@@ -44,5 +45,9 @@ class JsonValue {
     std::string path_;
     std::string place_;
 };
+
+/// A criterion by its name.
+Criterion read_criterion(const JsonValue& json);
+std::vector<std::string> read_texts(const JsonValue& list);
 
 }  // namespace posewise::detail

@@ -73,21 +73,6 @@ void read_candidates(const JsonValue& json, const std::string& path, Plan& plan)
     if (request.repeats > most_repeats) throw json["repeats"].error("must be at most 1e9");
 }
 
-Criterion read_criterion(const JsonValue& json) {
-    const std::string name = json.text();
-    try {
-        return parse_criterion(name);
-    } catch (const InputError& problem) {
-        throw json.error(problem.what());
-    }
-}
-
-std::vector<std::string> read_texts(const JsonValue& list) {
-    std::vector<std::string> texts;
-    for (const JsonValue& text : list.list()) texts.push_back(text.text());
-    return texts;
-}
-
 void read_choice_limits(const JsonValue& problem, const std::string& path, PlanRequest& request) {
     request.sources.test_poses = read_path(problem["test_poses"], path);
     request.sources.groups = read_path(problem["groups"], path);

@@ -34,7 +34,7 @@ StatedSeries read_trial_statement(const std::string& text, const std::string& pa
     series.checksum = statement["checksum"].text();
     series.seed = statement["seed"].natural_number();
     for (const JsonValue& name : statement["criteria"].list()) {
-        series.criteria.push_back(parse_criterion(name.text()));
+        series.criteria.push_back(read_criterion(name));
     }
     for (const JsonValue& count : statement["pose_counts"].list()) {
         series.pose_counts.push_back(count.count(0));
@@ -42,7 +42,7 @@ StatedSeries read_trial_statement(const std::string& text, const std::string& pa
     series.random_subsets = statement["random_subsets"].count(0);
     series.splits = statement["splits"].count(0);
     series.test_count = statement["test_count"].count(0);
-    for (const JsonValue& id : statement["ids"].list()) series.ids.push_back(id.text());
+    series.ids = read_texts(statement["ids"]);
     return {statement["posewise_version"].text(), std::move(series)};
 }
 

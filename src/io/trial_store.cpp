@@ -123,7 +123,8 @@ class StoreFile {
 StoreFile::StoreFile(const std::string& path, Access access) : database_(path, access) {
     if (database_.number("PRAGMA page_count") == 0) {
         // So it is for SQLite, too, if it is shorter than a page; that would be overwritten.
-        if (std::filesystem::file_size(path) > 0) throw database_.no_database();
+        std::error_code error;
+        if (std::filesystem::file_size(path, error) > 0) throw database_.no_database();
         if (access == Access::Read) {
             throw input_error_at({path}, "is empty; must be a store of trials");
         }

@@ -28,7 +28,8 @@ std::vector<TrialSeries> series_in_store(const std::string& path);
 /// one of them than in another.
 void merge_trial_stores(const std::vector<std::string>& from, const std::string& into);
 
-/// Whether there is a file and it is a store of trials, of any format, by its first bytes.
+/// Whether there is a file and it is a store of trials, of any format, by its first bytes. Not for
+/// one that this process has open: closing a file ends all locks that SQLite has on it.
 bool is_trial_store(const std::string& path);
 
 }  // namespace posewise::io
