@@ -63,7 +63,7 @@ void add_simulation_options(CLI::App& command, StudyArguments& arguments) {
         "of the ratio on either side, 2%, for each pose count and criterion"));
     only_simulated(command.add_option("--truth", arguments.truth,
                                       "Campaign file of the robots drawn, with errors that the "
-                                      "fitted model lacks (default: CAMPAIGN)"))
+                                      "fitted model lacks (default: the campaign fitted)"))
         ->check(file_name());
     only_simulated(
         command.add_option("--vary", arguments.varied,
