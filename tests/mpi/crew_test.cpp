@@ -119,6 +119,32 @@ TEST_F(Crew, OfPosewiseSaysAllOnce) {
     expect_failure(run_by_mpi(3, posewise + "study none.yaml -m none.csv"), 1, "none.yaml");
 }
 
+TEST_F(Crew, OfPosewiseFindsTheSameBytes) {
+    const std::string measured = "-m '" POSEWISE_SOURCE_DIR
+                                 "/data/fanuc_r2000ic_165f_simulated/measurements.csv' --random 10";
+    for (const std::string& kind : {std::string("--simulate --trials 20"), measured}) {
+        const std::string study = "study " + fanuc_design + ' ' + kind + " --poses 8,12 --json";
+        const std::string expected = run_well(study);
+        for (const int ranks : {2, 4}) {
+            const Outcome outcome = run_by_mpi(ranks, "'" POSEWISE_PROGRAM "' " + study);
+            EXPECT_EQ(outcome.out, expected) << study << '\n' << outcome.err;
+        }
+    }
+}
+
+TEST_F(Crew, OfPosewiseGoesOnAfterItWasKilled) {
+    const std::string study =
+        "study " + fanuc_design + " --simulate --poses 8,12 --trials 300 --json";
+    const std::string expected = run_well(study);
+    const std::string kept = "'" POSEWISE_PROGRAM "' " + study + " --store kept.sqlite";
+    for (const std::string second : {"1.5", "2", "2.5"})
+        run_by_mpi(3, kept, "--signal=KILL " + second);
+    // The ranks outlive mpirun for a moment, in which the store is theirs.
+    Outcome last;
+    for (int i = 0; i < 10 && last.code != 0; ++i) last = run_by_mpi(2, kept);
+    EXPECT_EQ(last.out, expected) << last.err;
+}
+
 class Launched : public Program {};
 
 TEST_F(Launched, IsRefusedWhereMpiIsMissing) {
