@@ -116,7 +116,12 @@ void print_store(const std::string& path, const StudyArguments& arguments,
     }
 }
 
-void check_study_usage(const StudyArguments& arguments, bool reads_store) {
+void check_study_usage(const CLI::App& command, const StudyArguments& arguments, bool reads_store) {
+    for (const char* option : {"--from", "--exclude", "--splits", "--holdout", "--models"}) {
+        if (!arguments.is_simulated || command.count(option) == 0) continue;
+        throw CLI::ValidationError(option,
+                                   "is of measured configurations; leave it out, or --simulate");
+    }
     if (reads_store || !arguments.merged.empty()) return;
     if (arguments.paths.campaign.empty()) throw CLI::RequiredError("CAMPAIGN");
     if (arguments.is_simulated == !arguments.paths.measurements.empty()) {
@@ -125,9 +130,9 @@ void check_study_usage(const StudyArguments& arguments, bool reads_store) {
     }
 }
 
-void study(const StudyArguments& arguments, const CommonOptions& common) {
+void study(const CLI::App& command, const StudyArguments& arguments, const CommonOptions& common) {
     const bool reads_store = io::is_trial_store(arguments.earlier.from);
-    check_study_usage(arguments, reads_store);
+    check_study_usage(command, arguments, reads_store);
     if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
     if (reads_store) return print_store(arguments.earlier.from, arguments, common);
     if (!arguments.merged.empty()) {
@@ -163,7 +168,7 @@ void add_study(CLI::App& program, const CommonOptions& common) {
     add_simulation_options(*command, *arguments);
     add_store_options(*command, *arguments);
     command->footer(study_footer);
-    command->callback([arguments, &common] { study(*arguments, common); });
+    command->callback([command, arguments, &common] { study(*command, *arguments, common); });
 }
 
 }  // namespace posewise::cli

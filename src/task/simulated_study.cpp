@@ -75,7 +75,7 @@ std::uint64_t draw_seed(RandomStream& stream) {
 }
 
 /// A drawn robot, and where it really is.
-struct Trialled {
+struct TrialRobot {
     Campaign truth;  ///< with the model error drawn
     DrawnRobot robot;
     RowMatrixXd positions;  ///< of its targets at the test configurations
@@ -91,7 +91,7 @@ double expected_there(const SimulationSetting& setting, const Estimate& estimate
 }
 
 StudyCase run_case(const SimulationSetting& setting, const SimulatedStudyOptions& options,
-                   const Trialled& trial, const Subset& subset, std::uint64_t seed) {
+                   const TrialRobot& trial, const Subset& subset, std::uint64_t seed) {
     StudyCase result;
     if (subset.configurations.rows() == 0) return result;
     const Measurements measured =
@@ -109,7 +109,7 @@ StudyCase run_case(const SimulationSetting& setting, const SimulatedStudyOptions
 std::vector<double> run_trial(const SimulationSetting& setting,
                               const SimulatedStudyOptions& options, Index number) {
     RandomStream stream(options.seed, static_cast<std::uint64_t>(number));
-    Trialled trial{setting.truth, draw_robot(setting.truth, draw_seed(stream)), {}};
+    TrialRobot trial{setting.truth, draw_robot(setting.truth, draw_seed(stream)), {}};
     trial.truth.model_error = trial.robot.model_error;
     trial.truth.model_error_orientation = trial.robot.model_error_orientation;
     trial.positions =

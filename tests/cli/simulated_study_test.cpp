@@ -20,13 +20,13 @@ class SimulatedStudies : public testing::Program {
 };
 
 TEST_F(SimulatedStudies, AreTheSameFromStoresAndShards) {
-    const std::string whole = run_well(study_ + "20 --csv whole.csv");
-    EXPECT_NE(whole.find("20 robots drawn, the same for planned and random"), std::string::npos)
+    const std::string whole = run_well(study_ + "12 --csv whole.csv");
+    EXPECT_NE(whole.find("12 robots drawn, the same for planned and random"), std::string::npos)
         << whole;
-    EXPECT_EQ(run_well(study_ + "20 --threads 1 --store one.sqlite --csv one.csv"), whole);
+    EXPECT_EQ(run_well(study_ + "12 --threads 1 --store one.sqlite --csv one.csv"), whole);
     EXPECT_EQ(text_of("one.csv"), text_of("whole.csv"));
     for (const std::string shard : {"2", "3", "1"}) {
-        run_well(study_ + "20 --store s" + shard + ".sqlite --shard " + shard + "/3");
+        run_well(study_ + "12 --store s" + shard + ".sqlite --shard " + shard + "/3");
     }
     EXPECT_EQ(
         run_well("study --merge s1.sqlite s2.sqlite s3.sqlite --store all.sqlite --csv m.csv"),
@@ -35,22 +35,22 @@ TEST_F(SimulatedStudies, AreTheSameFromStoresAndShards) {
     EXPECT_EQ(run_well("study --from all.sqlite"), whole);
     const auto json = nlohmann::json::parse(run_well("study --from all.sqlite --json"));
     EXPECT_EQ(json["simulated"], true);
-    EXPECT_EQ(json["models"][0]["trials"], 20);
+    EXPECT_EQ(json["models"][0]["trials"], 12);
     EXPECT_FALSE(has_file("all.sqlite-wal"));
 }
 
 TEST_F(SimulatedStudies, GoOnAfterTheyWereKilled) {
-    const std::string whole = run_well(study_ + "400 --csv whole.csv");
+    const std::string whole = run_well(study_ + "150 --csv whole.csv");
     int killed = 0;
     for (int i = 0; i < 6; ++i) {
-        const std::string seconds = "0." + std::to_string(3 + i);
+        const std::string seconds = "0." + std::to_string(2 + i);
         const testing::Outcome outcome =
             run_line("timeout -s KILL " + seconds + " '" + POSEWISE_PROGRAM + "' " + study_ +
-                     "400 --threads 1 --store s.sqlite > .out 2> .err");
+                     "150 --threads 1 --store s.sqlite > .out 2> .err");
         if (outcome.code != 0) ++killed;
     }
     EXPECT_GT(killed, 0);
-    EXPECT_EQ(run_well(study_ + "400 --store s.sqlite --csv again.csv"), whole);
+    EXPECT_EQ(run_well(study_ + "150 --store s.sqlite --csv again.csv"), whole);
     EXPECT_EQ(text_of("again.csv"), text_of("whole.csv"));
 }
 
@@ -99,6 +99,8 @@ TEST_F(SimulatedStudies, RefuseWhatIsNoStudy) {
     for (const std::string precision : {"0", "100%", "-1", "%", "x"}) {
         usage(study_ + "5 --precision " + precision, "must be a part such as 2% or 0.02");
     }
+    usage(study_ + "5 --from estimate.json", "--from: is of measured configurations");
+    usage(study_ + "5 --splits 3", "--splits: is of measured configurations");
     usage(study_ + "0", "--trials");
     write_text("text.sqlite", "no database");
     expect_input_error(study_ + "5 --store text.sqlite", "text.sqlite");
