@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "../core/decompositions.hpp"
+#include "../core/parallel.hpp"
 #include "../core/text.hpp"
 #include "../jacobian/pose_information.hpp"
 #include "cell_check.hpp"
@@ -38,6 +39,28 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
     if (!cell.sight && cell.target_boxes.empty() && cell.links.empty()) return space;
     space.margin = [constraints](const VectorXd& q) { return constraints->margin(q); };
     return space;
+}
+
+void Support::add(const DesignSpace& space, const RowMatrixXd& added) {
+    std::vector<RowMatrixXd> roots(static_cast<std::size_t>(added.rows()));
+    for_each_index(added.rows(), [&](Index i) {
+        const auto eigen = eigen_decomposition(space.information(added.row(i).transpose()));
+        const VectorXd& lambda = eigen.eigenvalues();
+        const Index rank = (lambda.array() > 1e-13 * lambda.maxCoeff()).count();
+        roots[static_cast<std::size_t>(i)] = lambda.tail(rank).cwiseSqrt().asDiagonal() *
+                                             eigen.eigenvectors().rightCols(rank).transpose();
+    });
+    for (const RowMatrixXd& root : roots) {
+        blocks.first_row.push_back(blocks.first_row.back() + root.rows());
+    }
+    Index row = blocks.matrix.rows();
+    blocks.matrix.conservativeResize(blocks.first_row.back(), space.parameter_count);
+    for (const RowMatrixXd& root : roots) {
+        blocks.matrix.middleRows(row, root.rows()) = root;
+        row += root.rows();
+    }
+    poses.conservativeResize(poses.rows() + added.rows(), added.cols());
+    poses.bottomRows(added.rows()) = added;
 }
 
 bool is_apart(const RowMatrixXd& poses, const Eigen::RowVectorXd& q, double distance) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "posewise/core/blocks.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/planner/constraints.hpp"
 
@@ -37,6 +38,15 @@ struct DesignSpace {
 /// PoseInformation.
 DesignSpace make_design_space(const Campaign& campaign, const Parameters& parameters,
                               double repeats = 1, const Constraints* constraints = nullptr);
+
+/// Poses of a space met by a search, to choose from.
+struct Support {
+    RowMatrixXd poses;
+    Blocks blocks;  ///< with the information of each pose, and no more rows than that needs
+
+    /// Adds some poses.
+    void add(const DesignSpace& space, const RowMatrixXd& added);
+};
 
 /// Whether q differs from each of the poses by so much in some joint (rad or m).
 bool is_apart(const RowMatrixXd& poses, const Eigen::RowVectorXd& q, double distance);

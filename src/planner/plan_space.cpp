@@ -196,6 +196,35 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
     return results;
 }
 
+/// The best of the starts, crossed with the others: the best choice of the poses that all of them
+/// ended at, refined, as long as that is better; its poses are among them then.
+Refinement cross(const Problem& problem, std::vector<Refinement>& results) {
+    const PlanOptions& options = problem.options;
+    Support met;
+    for (const Refinement& result : results) {
+        if (std::isfinite(result.value)) met.add(problem.space, result.configurations);
+    }
+    Refinement best = best_of(results);
+    while (!options.stop.is_set()) {
+        SelectOptions select = select_options(problem.space, met.poses, options);
+        select.criterion = smooth_relative(options.criterion);
+        select.stop = options.stop;
+        Refinement crossed;
+        try {
+            const Choice choice = determined(select_poses(met.blocks, select));
+            crossed =
+                refine_poses(problem.space, problem.objective, options.held,
+                             met.poses(choice.poses, Eigen::all), rough_refinement(options, 1e-6));
+        } catch (const InputError&) {
+            // Too few of them keep their distance.
+        }
+        if (!(crossed.value > best.value + same * std::abs(best.value))) break;
+        best = std::move(crossed);
+        met.add(problem.space, best.configurations);
+    }
+    return best;
+}
+
 /// The plan with one to three poses redrawn: each the most sensitive of some of the pool that keep
 /// their distance.
 RowMatrixXd kick(const Problem& problem, const RowMatrixXd& plan, const MatrixXd& Z,
@@ -319,7 +348,7 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
         if (!is_cut_short(result.ending, options.stop)) ++planned.starts;
     }
     planned.starts_at_best = count_at_best(results, options.stop);
-    Refinement best = improve_with_kicks(problem, best_of(results));
+    Refinement best = improve_with_kicks(problem, cross(problem, results));
     if (options.progress) {
         const Index parts = start_limit(options) + 1;
         const double bound = planned.pool_choice.bound;

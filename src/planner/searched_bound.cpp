@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "../core/decompositions.hpp"
 #include "../core/nlopt_adapter.hpp"
 #include "../core/parallel.hpp"
 #include "../core/sensitivities.hpp"
@@ -16,24 +15,6 @@ namespace {
 
 constexpr Index search_count = 24;  // followed uphill, of the pool and of the poses met
 constexpr double apart = 0.5;       // rad or m in some joint, at least
-
-/// Poses met, with blocks that tell what the space does.
-struct Support {
-    RowMatrixXd poses;
-    Blocks blocks;
-
-    void add(const DesignSpace& space, const VectorXd& q) {
-        const auto eigen = eigen_decomposition(space.information(q));
-        const VectorXd& lambda = eigen.eigenvalues();
-        const Index rank = (lambda.array() > 1e-13 * lambda.maxCoeff()).count();
-        poses.conservativeResize(poses.rows() + 1, q.size());
-        poses.bottomRows(1) = q.transpose();
-        blocks.first_row.push_back(blocks.first_row.back() + rank);
-        blocks.matrix.conservativeResize(blocks.first_row.back(), lambda.size());
-        blocks.matrix.bottomRows(rank) = lambda.tail(rank).cwiseSqrt().asDiagonal() *
-                                         eigen.eigenvectors().rightCols(rank).transpose();
-    }
-};
 
 /// The most sensitive poses that are apart, after those in `chosen`.
 void choose_starts(const RowMatrixXd& poses, const VectorXd& sensitivity, RowMatrixXd& chosen) {
@@ -104,7 +85,7 @@ double search_bound(const DesignSpace& space, const Objective& objective,
     if (space.margin) iterations = (iterations + 3) / 4;  // ten times as long along constraints
     Support support;
     for (Index i = 0; i < plan.rows() && !stop.is_set(); ++i) {
-        support.add(space, plan.row(i).transpose());
+        support.add(space, plan.row(i));
     }
     for (Index t = 0; t < iterations && !stop.is_set(); ++t) {
         const Certificate relaxed = relax(objective, support.blocks, anywhere).certificate;
@@ -121,7 +102,7 @@ double search_bound(const DesignSpace& space, const Objective& objective,
             largest = std::max(largest, maximum.value);
             const bool is_new = maximum.value > (1 + 1e-6) * inside &&
                                 is_apart(support.poses, maximum.x.transpose(), 1e-4);
-            if (is_new) support.add(space, maximum.x);
+            if (is_new) support.add(space, maximum.x.transpose());
         }
         bound = std::min(bound, value_of_information(objective, held + K * largest, Z.rows()));
         if (largest <= (1 + 1e-4) * inside) break;

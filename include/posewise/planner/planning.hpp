@@ -55,8 +55,9 @@ struct PlannedPoses {
 
 /// K continuous poses in a cell, at nominal parameters: starts from selection on the pool (the
 /// first on all of it, the others on random parts), each refined continuously on one thread; the
-/// best is kicked (one to three poses redrawn from the pool, then all refined again) until kicks
-/// gain nothing, and finished. The result does not depend on the number of threads. Throws
+/// best choice of the poses that all of them ended at is refined, too, as long as that is better;
+/// the best is kicked (one to three poses redrawn from the pool, then all refined again) until
+/// kicks gain nothing, and finished. The result does not depend on the number of threads. Throws
 /// InputError as select_poses(), or if the pool has too few poses.
 PlannedPoses plan_poses(const Campaign& campaign, const Constraints& constraints, const Pool& pool,
                         double repeats, const PlanOptions& options);
