@@ -226,16 +226,23 @@ Index Neighbourhood::best_by_eigenvalues(Index removed, double value, const Occu
     ritz_->ask(value);
     Index best = -1;
     const auto size = static_cast<Index>(shortlist_.members.size());
-    for (Index position = 0; position < size && !stop_.is_set(); ++position) {
-        if (!ritz_->may_exceed(position) || !is_allowed(position, removed, occupancy)) continue;
-        const auto added = candidates_[shortlist_.members[static_cast<std::size_t>(position)]];
-        const MatrixXd M = remaining + added.transpose() * added;
-        if (!ritz_->may_exceed(position, M)) continue;
-        const double exchanged = evaluate(objective_, M);
-        if (!(exchanged > value)) continue;
-        best = position;
-        value = exchanged;
-        ritz_->ask(value);
+    std::vector<Index> batch;
+    for (Index position = 0; position < size && !stop_.is_set();) {
+        batch.clear();
+        for (; position < size && std::ssize(batch) < lane_width; ++position) {
+            if (ritz_->may_exceed(position) && is_allowed(position, removed, occupancy)) {
+                batch.push_back(position);
+            }
+        }
+        for (const Index at : ritz_->exceeding(remaining, batch)) {
+            if (!ritz_->may_exceed(at)) continue;  // what was found before may be better
+            const auto added = candidates_[shortlist_.members[static_cast<std::size_t>(at)]];
+            const double exchanged = evaluate(objective_, remaining + added.transpose() * added);
+            if (!(exchanged > value)) continue;
+            best = at;
+            value = exchanged;
+            ritz_->ask(value);
+        }
     }
     return best;
 }

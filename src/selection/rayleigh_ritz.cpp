@@ -1,6 +1,5 @@
 #include "rayleigh_ritz.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -79,6 +78,49 @@ struct LeastPivots {
             }
         }
         at<V>(result.data() + g, part) = smallest;
+    }
+};
+
+/// The least pivot of M + B^T B - least I of each candidate; not the least, but not positive, where
+/// one before it is not.
+struct ExchangedPivots {
+    const LaneBlocks& blocks;
+    const MatrixXd& M;  // its upper half
+    const Lane& least;
+    std::span<Lane> work;  // room for a triangle
+    Lane& result;
+
+    template <typename V>
+    POSEWISE_INLINE void run_part(Index group, int part) const {
+        V* const m = reinterpret_cast<V*>(work.data());
+        const Index size = blocks.parameters;
+        const V shift = at<V>(&least, part);
+        for (Index i = 0; i < size; ++i) {
+            for (Index j = 0; j <= i; ++j) m[packed(i, j)] = V{} + M(j, i);
+            m[packed(i, i)] -= shift;
+        }
+        constexpr Index parts = lane_width / simd::width<V>;
+        const V* b = &at<V>(blocks.entries.data() + group * blocks.rows * size, part);
+        for (Index r = 0; r < blocks.rows; ++r, b += size * parts) {
+            for (Index i = 0; i < size; ++i) add(b[i * parts], b, parts, i + 1, m + packed(i, 0));
+        }
+        V smallest = m[0];
+        for (Index k = 0; k < size; ++k) {
+            const V pivot = m[packed(k, k)];
+            smallest = pivot < smallest ? pivot : smallest;
+            const V inverse = 1.0 / pivot;
+            for (Index i = k + 1; i < size; ++i) {
+                V* const row = m + packed(i, 0);
+                const V factor = row[k] * inverse;
+                for (Index j = k + 1; j <= i; ++j) row[j] -= factor * m[packed(j, k)];
+            }
+        }
+        at<V>(&result, part) = smallest;
+    }
+
+    template <typename V>
+    POSEWISE_INLINE static void add(V factor, const V* b, Index stride, Index count, V* row) {
+        for (Index j = 0; j < count; ++j) row[j] += factor * b[j * stride];
     }
 };
 
@@ -164,12 +206,27 @@ bool RayleighRitz::may_exceed(Index position) const {
     return !(value_ > 0) || pivots_[at / lane_width].of[at % lane_width] > 0;
 }
 
-bool RayleighRitz::may_exceed(Index position, const MatrixXd& exchanged) const {
-    if (!(value_ > 0)) return true;
-    const auto at = static_cast<std::size_t>(position);
-    MatrixXd shifted = exchanged;
-    shifted.diagonal().array() -= least_[at / lane_width].of[at % lane_width];
-    return Eigen::LLT<Eigen::Ref<MatrixXd>>(shifted).info() == Eigen::Success;
+std::vector<Index> RayleighRitz::exceeding(const MatrixXd& remaining,
+                                           const std::vector<Index>& positions) {
+    if (!(value_ > 0) || positions.empty()) return positions;
+    std::vector<Index> candidates;
+    Index rows = 0;
+    Lane least;
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+        const auto at = static_cast<std::size_t>(positions[k]);
+        candidates.push_back(shortlist_.members[at]);
+        rows = std::max(rows, candidates_[candidates.back()].rows());
+        least.of[k] = least_[at / lane_width].of[at % lane_width];
+    }
+    Lane pivots;
+    work_.resize(static_cast<std::size_t>(packed(remaining.rows(), 0)));
+    run_on_lanes(1, ExchangedPivots{make_lane_blocks(candidates_, candidates, rows), remaining,
+                                    least, work_, pivots});
+    std::vector<Index> result;
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+        if (pivots.of[k] > 0) result.push_back(positions[k]);
+    }
+    return result;
 }
 
 }  // namespace posewise::detail

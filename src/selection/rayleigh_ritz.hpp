@@ -23,8 +23,9 @@ class RayleighRitz {
     /// Whether the member at this position may make the objective larger in the removed
     /// candidate's place.
     bool may_exceed(Index position) const;
-    /// The same, surer, of what M becomes.
-    bool may_exceed(Index position, const MatrixXd& exchanged) const;
+    /// Those of at most eight positions of which that still holds by the pivots of M with the
+    /// exchange; `remaining` is M without the removed candidate.
+    std::vector<Index> exceeding(const MatrixXd& remaining, const std::vector<Index>& positions);
 
   private:
     static constexpr Index vectors = 8;
@@ -48,6 +49,7 @@ class RayleighRitz {
     double value_ = 0;
     std::vector<Lane> least_;   // eigenvalue needed with each member
     std::vector<Lane> pivots_;  // the least of each member's compression less what is needed
+    std::vector<Lane> work_;    // eight triangles
 };
 
 }  // namespace posewise::detail
