@@ -1,8 +1,38 @@
 #include "posewise/core/blocks.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "posewise/core/errors.hpp"
 
 namespace posewise {
+namespace {
+
+constexpr double largest_value = 1e50;  // informations, their products and inverses stay finite
+constexpr double least_of_column = 1 / largest_value;
+
+}  // namespace
+
+void check_values(const RowMatrixXd& matrix) {
+    for (Index row = 0; row < matrix.rows(); ++row) {
+        for (Index column = 0; column < matrix.cols(); ++column) {
+            if (std::abs(matrix(row, column)) <= largest_value) continue;
+            throw InputError(fmt::format(
+                "row {}, column {} of the matrix is {:g}; must be at most {:g} in magnitude, for "
+                "its square is taken",
+                row + 1, column + 1, matrix(row, column), largest_value));
+        }
+    }
+    for (Index column = 0; column < matrix.cols() && matrix.rows() > 0; ++column) {
+        const double largest = matrix.col(column).cwiseAbs().maxCoeff();
+        if (largest == 0 || largest >= least_of_column) continue;
+        throw InputError(
+            fmt::format("column {} of the matrix is at most {:g} in magnitude, whose square is "
+                        "lost; must be 0, or its parameter in a larger unit",
+                        column + 1, largest));
+    }
+}
 
 Blocks make_equal_blocks(const RowMatrixXd& matrix, Index rows_per_block) {
     if (rows_per_block < 1) {
@@ -14,7 +44,7 @@ Blocks make_equal_blocks(const RowMatrixXd& matrix, Index rows_per_block) {
                          " rows, not a multiple of " + std::to_string(rows_per_block) +
                          " rows per block");
     }
-    if (!matrix.allFinite()) throw InputError("matrix has a value that is not a finite number");
+    check_values(matrix);
     Blocks blocks{matrix, {0}};
     for (Index row = rows_per_block; row <= matrix.rows(); row += rows_per_block) {
         blocks.first_row.push_back(row);

@@ -82,9 +82,7 @@ MatrixXd separate(MatrixXd V) {
 
 void validate(const Blocks& candidates, const SelectOptions& options) {
     if (candidates.parameter_count() == 0) throw InputError("candidates have no columns");
-    if (!candidates.matrix.allFinite()) {
-        throw InputError("candidates have a value that is not a finite number");
-    }
+    check_values(candidates.matrix);
     if (!options.column_names.empty() &&
         static_cast<Index>(options.column_names.size()) != candidates.parameter_count()) {
         throw InputError("column names are " + std::to_string(options.column_names.size()) +

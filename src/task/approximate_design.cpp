@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "../criteria/prediction.hpp"
@@ -44,6 +47,12 @@ ApproximateDesign weigh(ChoiceProblem& problem, const ChoiceOptions& options) {
     design.value =
         evaluate(objective, detail::held_information(problem.blocks, stated) +
                                 detail::weighted_information(problem.blocks, relaxation.weights));
+    if (!std::isfinite(design.value)) {
+        throw InputError(fmt::format(
+            "no weights were found that identify all {} parameters; scale columns to about one "
+            "size, add candidates or state a prior",
+            problem.blocks.parameter_count()));
+    }
     design.bound = std::max(relaxation.bound, design.value);
     design.efficiency = detail::efficiency(
         stated.criterion, design.value, design.bound,

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <string>
 
 #include "posewise/core/errors.hpp"
 
@@ -42,6 +44,29 @@ TEST(MakeEqualBlocks, RefusesNumbersThatAreNotFinite) {
         matrix(3, 1) = bad;
         EXPECT_THROW(make_equal_blocks(matrix, 2), InputError);
     }
+}
+
+TEST(MakeEqualBlocks, RefusesNumbersWhoseSquaresOverflowOrVanish) {
+    const auto error_of = [](Index row, Index column, double value) {
+        RowMatrixXd matrix = three_blocks_of_two();
+        if (row < 0) matrix.col(column).setZero();
+        matrix(std::max<Index>(row, 0), column) = value;
+        try {
+            make_equal_blocks(matrix, 2);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(error_of(3, 1, -1e160),
+              "row 4, column 2 of the matrix is -1e+160; must be at most 1e+50 in magnitude, for "
+              "its square is taken");
+    EXPECT_EQ(error_of(3, 1, 1e50), "");
+    EXPECT_EQ(error_of(3, 1, 1e-160), "");  // beside others it is as good as 0
+    EXPECT_EQ(error_of(-1, 0, 1e-160),
+              "column 1 of the matrix is at most 1e-160 in magnitude, whose square is lost; must "
+              "be 0, or its parameter in a larger unit");
+    EXPECT_EQ(error_of(-1, 0, 0), "");
 }
 
 TEST(TakeBlocks, KeepsTheOrderAskedForAndRepeats) {

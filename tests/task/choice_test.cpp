@@ -112,6 +112,24 @@ TEST(RelaxChoice, BoundsEveryChoiceAndKeepsTheRepeatLimit) {
     }
 }
 
+TEST(RelaxChoice, RefusesCandidatesWhoseInformationCannotBeToldApartFromNone) {
+    RowMatrixXd matrix(4, 2);
+    matrix << 1e40, 1, 2e40, 1, 3e40, 2, 1e40, 3;
+    const Blocks candidates = make_equal_blocks(matrix, 1);
+    for (const Criterion criterion : all_criteria) {
+        ChoiceOptions options = choice_of(3);
+        options.criterion = criterion;
+        try {
+            EXPECT_TRUE(std::isfinite(weights_of(candidates, options).value));
+        } catch (const InputError& error) {
+            const std::string words = error.what();
+            EXPECT_NE(words.find("no weights were found that identify all 2 parameters"),
+                      std::string::npos)
+                << words;
+        }
+    }
+}
+
 TEST(RelaxChoice, RefusesWhatWeightsCannotKeep) {
     const Blocks candidates = test::random_blocks(30, 3, 4, 5);
     ChoiceOptions options = choice_of(6);

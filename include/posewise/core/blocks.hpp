@@ -26,8 +26,13 @@ struct Blocks {
     }
 };
 
+/// Throws InputError, with row and column from 1, for a value that is not finite or beyond 1e50,
+/// whose squares would overflow, and for a column of values so small that its squares would vanish,
+/// other than 0.
+void check_values(const RowMatrixXd& matrix);
+
 /// Blocks of equal height from a plain matrix: each `rows_per_block` consecutive rows are one pose.
-/// Throws InputError if the row count is not a multiple or a value is not finite.
+/// Throws InputError if the row count is not a multiple, or as check_values() does.
 Blocks make_equal_blocks(const RowMatrixXd& matrix, Index rows_per_block);
 
 /// The blocks of some poses, in the order asked for; an index may occur more than once.
