@@ -165,12 +165,10 @@ bool is_special(const std::string& path) {
     return fs::exists(status) && !fs::is_regular_file(status);
 }
 
-}  // namespace
-
-void write_files(const std::vector<FileContent>& files) {
+/// All or none of those that can be replaced; adds the others to `special`.
+void replace(const std::vector<FileContent>& files, std::vector<const FileContent*>& special) {
     const SignalDelay delay;
     std::vector<std::unique_ptr<PendingFile>> pending;
-    std::vector<const FileContent*> special;
     for (const FileContent& file : files) {
         if (is_special(file.path)) {
             if (file.check)
@@ -187,6 +185,14 @@ void write_files(const std::vector<FileContent>& files) {
         for (const auto& file : pending) file->take_back();
         throw;
     }
+}
+
+}  // namespace
+
+void write_files(const std::vector<FileContent>& files) {
+    std::vector<const FileContent*> special;
+    replace(files, special);
+    // Here a signal ends the program at once: a pipe may have no reader for ever.
     for (const FileContent* const file : special) {
         const FileDescriptor descriptor(follow_link(file->path), O_WRONLY | O_CLOEXEC);
         if (!descriptor.is_open() || !descriptor.write(file->content)) {

@@ -1,6 +1,7 @@
 #include "../../src/io/atomic_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -175,6 +176,36 @@ TEST(WriteFile, LeavesNoTemporaryFileWhenASignalEndsTheProgram) {
             EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
             EXPECT_EQ(folder.file_count(), 1U);
         }
+    }
+}
+
+TEST(WriteFile, EndsByASignalWhileNobodyReadsThePipe) {
+    const TemporaryFolder folder;
+    const std::string pipe = folder.path("pipe");
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const std::string file = folder.path("a");
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            write_files({{file, "text"}, {pipe, "text"}});
+            ::_exit(0);
+        }
+        while (!std::filesystem::exists(file)) std::this_thread::yield();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        ::kill(child, signal);
+        int status = 0;
+        for (int k = 0; k < 500 && ::waitpid(child, &status, WNOHANG) == 0; ++k) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        const bool has_ended = WIFSIGNALED(status) && WTERMSIG(status) == signal;
+        EXPECT_TRUE(has_ended) << status;
+        if (!has_ended) {
+            ::kill(child, SIGKILL);
+            ::waitpid(child, &status, 0);
+        }
+        EXPECT_EQ(read_file(file), "text");
+        std::filesystem::remove(file);
+        EXPECT_EQ(folder.file_count(), 1U);
     }
 }
 
