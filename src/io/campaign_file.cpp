@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "../core/checksum.hpp"
 #include "../model/complete_model.hpp"
@@ -23,7 +24,8 @@ using detail::YamlValue;
 
 constexpr std::size_t most_bytes = 1 << 20;  // of a file
 
-void read_base(const std::optional<YamlValue>& value, bool is_world, Campaign& campaign) {
+void read_base(const YamlMap& map, bool is_world, Campaign& campaign) {
+    const std::optional<YamlValue> value = map.find("base");
     if (is_world) {
         if (value) {
             throw value->error(
@@ -33,6 +35,11 @@ void read_base(const std::optional<YamlValue>& value, bool is_world, Campaign& c
         campaign.base_is_known.fill(true);
         campaign.has_nominal_base = true;
         return;
+    }
+    if (!value && campaign.sensor->has_contacts()) {
+        throw map.require("sensor").error(
+            "has known_sockets: true, whose places are in the frame of base; base must be stated, "
+            "if only roughly");
     }
     if (!value) return;
     const YamlMap base(*value, {"position_<length>", "rpy_<angle>", "known"});
@@ -62,6 +69,12 @@ void place_within_reach(const std::vector<Index>& reached, Campaign& campaign) {
     }
 }
 
+/// The largest size that errors may be expected to have.
+double largest_error(Quantity quantity) {
+    constexpr double longest = 10;  // m
+    return quantity == Quantity::Angle ? std::numbers::pi : longest;
+}
+
 /// `has_stated_errors`: the campaign has no other error parameters than the file says.
 ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
                             bool has_stated_errors) {
@@ -69,14 +82,15 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
                               "harmonic_<angle>", "tilt_<angle>", "offset_<angle>", "parameters"});
     ParameterSpread spread = campaign.spread;
     const auto read = [&map](std::string_view key, double& size) {
-        if (const auto measure = map.find_measure(key)) size = read_positive(*measure);
+        const auto measure = map.find_measure(key);
+        if (measure) size = read_positive(*measure, false, largest_error(measure->unit->quantity));
     };
     read("length", spread.length);
     read("angle", spread.angle);
     read("gravity", spread.gravity);
     read("harmonic", spread.harmonic);
     read("tilt", spread.tilt);
-    if (const auto measure = map.find_measure("offset")) spread.offset = read_positive(*measure);
+    if (map.find_measure("offset")) read("offset", spread.offset.emplace());
     const auto parameters = map.find("parameters");
     if (!parameters) return spread;
     const std::vector<std::string> names = parameter_names(campaign);
@@ -91,7 +105,8 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
         }
         const auto index = static_cast<std::size_t>(found - names.begin());
         const auto quantity = is_angle[index] ? Quantity::Angle : Quantity::Length;
-        spread.by_name[entry.key] = read_amount(entry.value, quantity, detail::Sign::Positive);
+        spread.by_name[entry.key] =
+            read_amount(entry.value, quantity, detail::Sign::Positive, largest_error(quantity));
     }
     return spread;
 }
@@ -99,7 +114,9 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
 /// "auto" is the default: beside priors it is found from what is measured.
 void read_model_error(const YamlMap& map, std::string_view key, double& error) {
     const auto measure = map.find_measure(key);
-    if (measure && measure->value.text() != "auto") error = read_positive(*measure, true);
+    if (!measure || measure->value.is_text("auto")) return;
+    measure->value.number(", or auto");
+    error = read_positive(*measure, true);
 }
 
 double read_unit(const YamlMap& map, std::string_view key, Quantity quantity) {
@@ -192,7 +209,7 @@ CampaignFile parse(const std::string& content, const std::string& path,
     campaign.sensor = sensor.sensor;
     campaign.nominal.sensor = sensor.unknowns;
     campaign.has_nominal_targets = sensor.has_positions;
-    read_base(map.find("base"), sensor.is_in_base_frame, campaign);
+    read_base(map, sensor.is_in_base_frame, campaign);
     campaign = with_robot(campaign, robot.declared);
     if (!sensor.reached.empty()) place_within_reach(sensor.reached, campaign);
     if (robot.error_model == ErrorModel::Complete) {

@@ -11,14 +11,13 @@ namespace posewise::detail {
 namespace {
 
 constexpr double least_amount = 1e-12;  // m or rad
-constexpr double largest_amount = 1e3;
 
-bool is_plausible_amount(double si) { return si >= least_amount && si <= largest_amount; }
+bool is_plausible_amount(double si, double largest) { return si >= least_amount && si <= largest; }
 
 /// That rule in words and in this unit, "from 1e-09 to 1e+06 mm".
-std::string plausible_amount(const Unit& unit) {
-    return fmt::format("from {:g} to {:g} {}", unit.from_si(least_amount),
-                       unit.from_si(largest_amount), unit.name);
+std::string plausible_amount(const Unit& unit, double largest) {
+    return fmt::format("from {:g} to {:g} {}", unit.from_si(least_amount), unit.from_si(largest),
+                       unit.name);
 }
 
 }  // namespace
@@ -48,20 +47,20 @@ std::vector<bool> read_known(const YamlValue& known, const std::vector<std::stri
     return marks;
 }
 
-double read_positive(const YamlMeasure& measure, bool zero_allowed) {
-    const double value = measure.to_si();
+double read_positive(const YamlMeasure& measure, bool zero_allowed, double largest) {
+    const double value = measure.unit->to_si(measure.value.number());
     const std::string stated = "is " + quote(measure.value.text());
     if (value < 0 || (value == 0 && !zero_allowed)) {
         throw measure.value.error(stated + "; must be " +
                                   (zero_allowed ? "zero or positive" : "positive"));
     }
-    if (value != 0 && !is_plausible_amount(value)) {
-        throw measure.value.error(stated + "; must be " + plausible_amount(*measure.unit));
+    if (value != 0 && !is_plausible_amount(value, largest)) {
+        throw measure.value.error(stated + "; must be " + plausible_amount(*measure.unit, largest));
     }
     return value;
 }
 
-double read_amount(const YamlValue& value, Quantity quantity, Sign sign) {
+double read_amount(const YamlValue& value, Quantity quantity, Sign sign, double largest) {
     const std::string text = value.text();
     const auto blank = std::min(text.find_first_of(" \t"), text.size());
     const ParsedNumber number = parse_number(std::string_view(text).substr(0, blank));
@@ -73,8 +72,8 @@ double read_amount(const YamlValue& value, Quantity quantity, Sign sign) {
                           list_words(unit_names(quantity)));
     }
     const double si = unit->to_si(number.value);
-    if (sign == Sign::Positive && !is_plausible_amount(si)) {
-        throw value.error("is " + quote(text) + "; must be " + plausible_amount(*unit));
+    if (sign == Sign::Positive && !is_plausible_amount(si, largest)) {
+        throw value.error("is " + quote(text) + "; must be " + plausible_amount(*unit, largest));
     }
     if (!is_plausible(si, quantity)) {
         throw value.error("is " + quote(text) + "; must be " + plausible(*unit));

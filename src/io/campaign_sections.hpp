@@ -47,12 +47,17 @@ Isometry3d read_frame(const YamlMap& map);
 /// `true`, `false` or the names of those known, out of `names`: one mark each.
 std::vector<bool> read_known(const YamlValue& known, const std::vector<std::string>& names);
 
-/// A measure that must be positive, or with `zero_allowed` not negative; m or rad.
-double read_positive(const YamlMeasure& measure, bool zero_allowed = false);
+inline constexpr double largest_amount = 1e3;  // m or rad
+
+/// A measure that must be positive, or with `zero_allowed` not negative, and at most so large; m or
+/// rad.
+double read_positive(const YamlMeasure& measure, bool zero_allowed = false,
+                     double largest = largest_amount);
 
 enum class Sign { Positive, Any };
 
-/// A number and its unit in the value itself, `0.5 mrad`; m or rad.
-double read_amount(const YamlValue& value, Quantity quantity, Sign sign);
+/// A number and its unit in the value itself, `0.5 mrad`; m or rad. Positive ones at most so large.
+double read_amount(const YamlValue& value, Quantity quantity, Sign sign,
+                   double largest = largest_amount);
 
 }  // namespace posewise::detail

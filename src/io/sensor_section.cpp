@@ -32,14 +32,15 @@ std::vector<Vector3d> generic_targets(const YamlValue& count) {
     return targets;
 }
 
-/// No two reflectors fit into a millimetre; metres read as millimetres do.
+constexpr double least_apart = 1e-3;  // m: no two reflectors fit into a millimetre
+
+/// Metres read as millimetres do.
 void check_apart(const YamlMeasure& positions, const std::vector<Vector3d>& stated,
                  const std::string& of_what) {
-    constexpr double least = 1e-3;  // m
     for (std::size_t k = 0; k < stated.size(); ++k) {
         for (std::size_t i = 0; i < k; ++i) {
             const double distance = (stated[k] - stated[i]).norm();
-            if (distance >= least) continue;
+            if (distance >= least_apart) continue;
             throw positions.value.error(
                 fmt::format("puts {0}s {1} and {2} at one place, {3:.3g} mm apart; must be places "
                             "of their own{4}",
@@ -195,12 +196,18 @@ Plane read_plane(const YamlValue& value, bool are_known) {
     const auto known = map.find("known");
     const std::vector<bool> is_known =
         known ? read_known(*known, {"normal", "offset"}) : std::vector<bool>(2, are_known);
-    const Plane plane{
-        {xyz[0], xyz[1], xyz[2]}, map.require_measure("offset").to_si(), is_known[0], is_known[1]};
+    const YamlMeasure offset = map.require_measure("offset");
+    const Plane plane{{xyz[0], xyz[1], xyz[2]}, offset.to_si(), is_known[0], is_known[1]};
+    constexpr double farthest = 1e3;  // m
+    if (std::abs(plane.offset) > farthest) {
+        throw offset.value.error(
+            fmt::format("is {}; must be within 1 km of the origin", quote(offset.value.text())));
+    }
     const double length = plane.normal.stableNorm();
     if (!(length > 1e-9 && length < 1e9)) {
         throw normal.error(fmt::format(
-            "is of length {:g}; must point away from the face and be of length 1 or so", length));
+            "is of length {:g}; must point away from the face, its length from 1e-09 to 1e+09",
+            length));
     }
     return plane;
 }
@@ -282,6 +289,29 @@ SocketsSection read_socket_list(const YamlValue& list) {
     return section;
 }
 
+/// What is stated of a socket's place against those before it; `tolerance` (m) of a distance.
+void check_socket_place(const YamlValue& value, const SocketsSection& section, std::size_t k,
+                        double tolerance) {
+    const Socket& socket = section.sockets[k];
+    for (std::size_t i = 0; i < k; ++i) {
+        if (!section.has_position[i] || !section.has_position[k]) continue;
+        const Socket& other = section.sockets[i];
+        const double apart = (socket.position - other.position).norm();
+        if (apart < least_apart) {
+            throw value.error(
+                fmt::format("is at the place of socket {}, {:.3g} mm apart; must be "
+                            "at a place of its own",
+                            quote(other.name), 1e3 * apart));
+        }
+        const bool is_from = socket.from == static_cast<Index>(i);
+        if (!is_from || std::abs(apart - socket.distance) <= tolerance) continue;
+        throw value.error(
+            fmt::format("is stated {:.6g} mm from {}, and by position_mm {:.6g} mm; "
+                        "must agree within {:g} mm",
+                        1e3 * socket.distance, quote(other.name), 1e3 * apart, 1e3 * tolerance));
+    }
+}
+
 SensorSection read_sockets(const YamlValue& value) {
     const YamlMap sensor(value, {"kind", "sigma_<length>", "sockets", "known_sockets", "targets"});
     const YamlValue list = sensor.require("sockets");
@@ -291,6 +321,11 @@ SensorSection read_sockets(const YamlValue& value) {
     const bool has_positions = std::all_of(stated.begin(), stated.end(), [](bool b) { return b; });
     if (are_known && !has_positions) {
         throw sensor.require("known_sockets").error("is true; needs position_mm of every socket");
+    }
+    constexpr double roughly = 0.1;  // m
+    constexpr double exactly = 1e-3;
+    for (std::size_t k = 0; k < section.sockets.size(); ++k) {
+        check_socket_place(list.list()[k], section, k, are_known ? exactly : roughly);
     }
     const YamlValue targets_value = sensor.require("targets");
     TargetsSection targets = read_targets(targets_value);

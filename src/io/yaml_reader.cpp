@@ -106,12 +106,12 @@ FileLocation YamlValue::text_location() const {
     return location;
 }
 
-double YamlValue::number() const {
-    if (!node_.IsScalar()) throw error(describe(node_) + "; must be a number");
+double YamlValue::number(const std::string& or_else) const {
+    if (!node_.IsScalar()) throw error(describe(node_) + "; must be a number" + or_else);
     const ParsedNumber number = parse_number(node_.Scalar());
     if (!number.ok()) {
         throw error(describe(node_) + ", which " + std::string(number.problem) +
-                    "; must be a finite number without unit");
+                    "; must be a finite number without unit" + or_else);
     }
     return number.value;
 }

@@ -29,11 +29,12 @@ class YamlValue {
     InputError error(const std::string& problem) const;
 
     std::string text() const;
+    bool is_text(std::string_view text) const { return node_.IsScalar() && node_.Scalar() == text; }
     /// Where the first character of text() stands (behind the quotation mark if there is one).
     FileLocation text_location() const;
-    double number() const;
-    std::uint64_t natural_number() const;
     /// `or_else`: what else the caller takes, for the message: ", or a list".
+    double number(const std::string& or_else = "") const;
+    std::uint64_t natural_number() const;
     bool boolean(const std::string& or_else = "") const;
     bool is_list() const { return node_.IsSequence(); }
     bool is_map() const { return node_.IsMap(); }

@@ -119,9 +119,29 @@ TEST(ReadSensor, TakesSockets) {
              {"name: right", "name: the right", "must be one word"},
              {", distance_mm: 50", "", "must have both from and distance_mm"},
              {"[[0, 0, 100]]", "[[0, 0, 100], [0, 9, 0]]", "must be one, the ball"},
+             {"from: left, distance_mm: 50", "position_mm: [500, 100, 20.5]",
+              "is at the place of socket 'left', 0.5 mm apart; must be at a place of its own"},
+             {"distance_mm: 50", "distance_mm: 400, position_mm: [400, 100, 20]",
+              "sensor.sockets[2] is stated 400 mm from 'left', and by position_mm 100 mm; must "
+              "agree within 100 mm"},
              {"kind: sockets", "kind: sockets\n  known_sockets: true", "needs position_mm"}}) {
         EXPECT_NE(message(part, by).find(said), std::string::npos) << message(part, by);
     }
+    const auto distance = [](const std::string& mm) {
+        return "distance_mm: " + mm + ", position_mm: [400, 100, 20]";
+    };
+    EXPECT_EQ(message("distance_mm: 50", distance("190")), "no error");  // roughly there
+    const std::string known =
+        replaced(replaced(sockets, "kind: sockets", "kind: sockets\n  known_sockets: true"),
+                 "distance_mm: 50", distance("100.9"));
+    EXPECT_EQ(input_error_of([&] { read(known); }), "no error");
+    EXPECT_NE(input_error_of([&] {
+                  read(replaced(known, "100.9", "102"));
+              }).find("must agree within 1 mm"),
+              std::string::npos);
+    EXPECT_EQ(input_error_of([&] { parse_campaign(without_base + known, "c.yaml"); }),
+              "c.yaml:8:3: sensor has known_sockets: true, whose places are in the frame of base; "
+              "base must be stated, if only roughly");
 }
 
 TEST(ReadSensor, TakesPlanes) {
@@ -159,7 +179,7 @@ TEST(ReadSensor, TellsWhatIsWrongAndWhere) {
     const auto error = [](const std::string& sensor) {
         return input_error_of([&] { read(sensor); });
     };
-    const std::string rule = "; must point away from the face and be of length 1 or so";
+    const std::string rule = "; must point away from the face, its length from 1e-09 to 1e+09";
     expect_messages(
         poses,
         {{"kind: poses", "kind: pose", "9:9: sensor.kind is 'pose'; did you mean 'poses'?"},
@@ -177,6 +197,8 @@ TEST(ReadSensor, TellsWhatIsWrongAndWhere) {
         {{"[0, 0, 2]", "[0, 0, 0]", "11:21: sensor.planes[1].normal is of length 0" + rule},
          {"[0, 0, 2]", "[0, 0, 1e200]",
           "11:21: sensor.planes[1].normal is of length 1e+200" + rule},
+         {"offset_mm: 300", "offset_mm: 1e9",
+          "11:43: sensor.planes[1].offset_mm is '1e9'; must be within 1 km of the origin"},
          {"offset_mm: 300", "offset: 300",
           "11:32: unknown key 'offset' in sensor.planes[1]; did you mean 'offset_mm'?"},
          {"offset_mm: 300", "offset_mm: 300, known: [distance]",
