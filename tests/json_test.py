@@ -207,6 +207,14 @@ def check_plan():
     expect(document["pool"]["feasible"] == number_behind(text, "pool:"), "plan: pool")
     expect(close(document["other_counts"][2]["accuracy"]["total_upper_mm"],
                  number_behind(text.split("planned  ")[1], ".."), 3), "plan: other counts")
+    expect(close(document["drop_outs"][0]["rms_mm"], number_behind(text, "by the parameters is"), 4), "plan: missing")
+    worst = max(document["pose_values"], key=lambda pose: pose["value_mm"])
+    expect(worst["id"] == document["drop_outs"][0]["id"], "plan: pose values")
+    parts = [document["budget"][part] for part in ("parameters_mm", "left_over_mm", "repeatability_mm")]
+    expect(close(math.hypot(*parts), document["accuracy"]["total_rms_mm"], 9), "plan: budget")
+    document, text = both("plan", CELL, "--target-mm", 1.2, "--pool", 400, "--starts", 1)
+    expect(close(document["target"]["error"]["assured_mm"], number_behind(text, "new poses, "), 4), "plan: target")
+    expect(document["target"]["error"]["assured_mm"] <= 1.2, "plan: target is missed")
 
 
 def check_verify():

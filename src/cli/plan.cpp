@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
-#include "../core/format.hpp"
 #include "../core/text.hpp"
 #include "commands.hpp"
 #include "common.hpp"
@@ -16,6 +16,8 @@
 #include "options.hpp"
 #include "plan_inputs.hpp"
 #include "plan_options.hpp"
+#include "plan_progress.hpp"
+#include "plan_target.hpp"
 #include "posewise/io/json_reports.hpp"
 #include "posewise/io/plan_file.hpp"
 #include "posewise/report/reports.hpp"
@@ -26,6 +28,7 @@ namespace {
 constexpr const char* plan_footer = R"(
 Example:
   posewise plan campaign.yaml --poses 24 --out plan.json --csv poses.csv
+  posewise plan campaign.yaml --target-mm 0.2 --assurance 0.95
   posewise plan campaign.yaml --poses 12 --augment measured.csv --criterion d
   posewise plan campaign.yaml --plan plan.json --drop p7,p12 --out repaired.json
   posewise plan campaign.yaml --from estimate.json --only base,targets --poses 5
@@ -42,9 +45,15 @@ joint steps until the ball sits in one: state where ball and sockets are, or use
   searched     no plan at all has a larger value, if the search met the best poses; not a proof
   order        time at the joints' speeds, from the cell's home; a via point where the straight
                way is not free, BLOCKED where none was found
+  missing      RMS without the pose that hurts most, or without as many as --robust-to says
 and tables of the poses, of the accuracy for other numbers of poses, and of how sure each parameter
 will be. The workspace is drawn within the limits and the cell's target boxes, collisions excluded,
 sight not asked for; --workspace or --workspace-box-mm state another.
+
+--target-mm finds the least number of poses whose plan keeps the error below it with the probability
+--assurance, over errors, sizes and model error that nobody knows yet; with --robust-to even if so
+many poses are missing. Where none does, it says what is left at best and why: exit code 1, no plan.
+--minutes takes as many as fit; with --target-mm it says whether both can be kept.
 
 --from plans for the robot as an earlier calibration found it, --as-prior for what that left open;
 the 90 % interval is then as narrow as that knows the model error, and sizes that it learned;
@@ -57,28 +66,8 @@ limit that was not kept went to is said.
 The same seed gives the same plan, on any number of threads, unless time ended it.)";
 
 struct PlanArguments : RequestArguments {
+    TargetArguments target;
     std::string csv;
-};
-
-/// "best 12.3, efficiency 0.95, about 7 s left".
-class ProgressNote {
-  public:
-    std::string operator()(const Progress& state) const {
-        using Seconds = std::chrono::duration<double>;
-        const double elapsed = Seconds(std::chrono::steady_clock::now() - begin_).count();
-        const double left = elapsed * static_cast<double>(state.total - state.done) /
-                            static_cast<double>(state.done);
-        // Unknown while the choice from the whole pool is still being made.
-        const std::string efficiency = state.efficiency > 0
-                                           ? fmt::format(", efficiency {} over the pool",
-                                                         detail::format_fixed(state.efficiency, 3))
-                                           : "";
-        return fmt::format("best {}{}, about {:.0f} s left", detail::format_short(state.value),
-                           efficiency, left);
-    }
-
-  private:
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
 void check_plan_usage(const PlanArguments& arguments) {
@@ -87,22 +76,30 @@ void check_plan_usage(const PlanArguments& arguments) {
     if (!request.dropped.empty()) {
         throw CLI::ValidationError("--drop", "needs the plan to drop from, --plan");
     }
-    if (request.pose_count == 0) throw CLI::RequiredError("--poses");
+    if (request.pose_count == 0 && !arguments.target.is_stated()) {
+        throw CLI::RequiredError("--poses, --target-mm or --minutes");
+    }
 }
 
 std::string default_plan_out(const std::string& campaign) {
     return std::filesystem::path(campaign).stem().string() + ".poses.json";
 }
 
-void print_planning(const Planning& planning, const io::CampaignFile& campaign,
-                    const std::string& out, const CommonOptions& common) {
+/// A plan of stated size is no target's.
+void print_made(const TargetPlanning& made, const io::CampaignFile& campaign,
+                const std::string& out, const CommonOptions& common) {
+    const Planning& planning = *made.planning;
     const Plan& plan = planning.plan;
+    const bool has_target = made.ending != TargetEnding::NotRun;
     const bool is_stopped = plan.is_stopped_early();
-    const auto counts = is_stopped ? std::vector<CountAccuracy>() : predict_other_counts(planning);
+    const auto counts =
+        is_stopped || has_target ? std::vector<CountAccuracy>() : predict_other_counts(planning);
     if (is_stopped) std::fputs("posewise: stopped early; the plan is the best so far\n", stderr);
-    if (common.json) return print(io::to_json(planning, counts, out));
-    print(format_planning(planning));
-    print(is_stopped
+    if (common.json)
+        return print(has_target ? io::to_json(made, out) : io::to_json(planning, counts, out));
+    print((has_target ? format(made) : "") + format_planning(planning) + format_budget(planning));
+    print(has_target ? format_curve(made)
+          : is_stopped
               ? "\nPredicted position error by number of poses: left out, planning was stopped\n"
               : format_other_counts(counts, planning.campaign));
     print(format_deviations(plan));
@@ -110,13 +107,17 @@ void print_planning(const Planning& planning, const io::CampaignFile& campaign,
                       describe_earlier(plan.request), detail::escape_controls(out)));
 }
 
-Planning plan_with_progress(const io::CampaignFile& campaign, PlanningOptions& options,
-                            bool shows_progress) {
-    ProgressLine line("planning", shows_progress);
+TargetPlanning plan_with_progress(const io::CampaignFile& campaign, PlanningOptions& options,
+                                  const PlanArguments& arguments) {
+    ProgressLine line("planning", arguments.progress);
     const ProgressNote note;
     line(Progress{.total = 1}, "choosing from the pool");
     options.progress = [&](const Progress& state) { line(state, note(state)); };
-    return make_plan(campaign, options);
+    options.drop_out_count = std::max<Index>(1, arguments.target.robust_to);
+    if (arguments.target.is_stated()) return plan_for_target(campaign, options, arguments.target);
+    TargetPlanning made;
+    made.planning = make_plan(campaign, options);
+    return made;
 }
 
 void plan(const PlanArguments& arguments, const CommonOptions& common) {
@@ -135,11 +136,11 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     if (!sources.repaired.empty()) options.repaired = io::read_plan(sources.repaired);
     options.stop = stop;
     const auto read = std::chrono::steady_clock::now();
-    const Planning planning = plan_with_progress(campaign, options, arguments.progress);
+    const TargetPlanning made = plan_with_progress(campaign, options, arguments);
     note_overtime(request.time_limit, stop, read, "plan");
-    io::write_plan(out, planning.plan, arguments.csv, planning.campaign);
+    io::write_plan(out, made.planning->plan, arguments.csv, made.planning->campaign);
     interrupted.reset();
-    print_planning(planning, campaign, out, common);
+    print_made(made, campaign, out, common);
 }
 
 // ---- The command line ----
@@ -150,10 +151,11 @@ void add_plan_problem(CLI::App& command, PlanArguments& problem) {
     command.add_option("CAMPAIGN", sources.campaign, "Campaign file (YAML): robot, sensor, cell")
         ->required()
         ->check(file_name());
-    command
-        .add_option("-k,--poses", request.pose_count,
-                    "How many configurations (with --plan: all together; default: as it has)")
-        ->check(whole_number(1, 10000));
+    CLI::Option* const poses =
+        command
+            .add_option("-k,--poses", request.pose_count,
+                        "How many configurations (with --plan: all together; default: as it has)")
+            ->check(whole_number(1, 10000));
     add_criterion_option(
         command, problem,
         "o1, o2, o3, o4, o5, a, d, e, g or v; g and v: worst and mean position error "
@@ -161,8 +163,10 @@ void add_plan_problem(CLI::App& command, PlanArguments& problem) {
     add_focus_option(command, problem);
     command.add_option("--augment", sources.augment, "Poses measured already (CSV or .mat): held")
         ->check(file_name());
-    command.add_option("--plan", sources.repaired, "Plan to repair: its poses are held")
-        ->check(file_name());
+    CLI::Option* const repaired =
+        command.add_option("--plan", sources.repaired, "Plan to repair: its poses are held")
+            ->check(file_name());
+    add_target_options(command, problem.target, {poses, repaired});
     add_ids_option(command, "--drop", request.dropped, "Ids of its poses to replace, by commas");
     add_prior_option(command, problem.prior, "; --poses may then be below what identifies");
     add_earlier_options(command, problem.earlier);

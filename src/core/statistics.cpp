@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cassert>
@@ -30,6 +31,8 @@ double quantile(VectorXd values, double p, QuantileRule rule) {
 double rms_spread(const RowMatrixXd& points) {
     return std::sqrt((points.rowwise() - points.colwise().mean()).rowwise().squaredNorm().mean());
 }
+
+double normal_quantile(double p) { return boost::math::quantile(boost::math::normal(), p); }
 
 double student_quantile(double p, double degrees_of_freedom) {
     return boost::math::quantile(boost::math::students_t(degrees_of_freedom), p);

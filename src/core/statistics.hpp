@@ -19,6 +19,9 @@ double quantile(VectorXd values, double p, QuantileRule rule);
 /// RMS distance of points (n x 3) from their mean.
 double rms_spread(const RowMatrixXd& points);
 
+/// The p-quantile (0 < p < 1) of the standard normal distribution.
+double normal_quantile(double p);
+
 /// The p-quantile (0 < p < 1) of Student's t of so many degrees of freedom (above 0).
 double student_quantile(double p, double degrees_of_freedom);
 

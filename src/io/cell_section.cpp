@@ -217,6 +217,10 @@ void read_motion(const YamlMap& map, const Chain& robot, Cell& cell) {
         cell.speed = read_joint_angles({*speed, find_unit(unit)}, robot);
         if (!(cell.speed.array() > 0).all()) throw speed->error("must be positive for every joint");
     }
+    if (const auto dwell = map.find("dwell_s")) {
+        cell.dwell = dwell->number();
+        if (cell.dwell < 0) throw dwell->error("is " + dwell->text() + "; must not be negative");
+    }
 }
 
 void read_solids(const YamlMap& map, const Chain& robot, Cell& cell) {
@@ -262,7 +266,7 @@ Cell read_cell(const YamlValue& value, const Chain& robot, const Sensor& sensor)
         value, {"margin_<angle>", "slide_margin_<length>", "fixed", "least_joint_distance_<angle>",
                 "target_boxes_<length>", "floor_z_<length>", "keep_out", "links",
                 "safety_distance_<length>", "tracker", "reflectors", "home_<angle>",
-                "speed_deg_per_s", "speed_rad_per_s"});
+                "speed_deg_per_s", "speed_rad_per_s", "dwell_s"});
     Cell cell;
     read_margin(map, robot, cell);
     if (const auto fixed = map.find("fixed")) read_fixed(*fixed, robot, cell);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 
 #include "atomic_file.hpp"
 #include "csv_reader.hpp"
@@ -204,6 +205,57 @@ Json pool_to_json(const Pool& pool) {
             {"rejections", std::move(rejections)}};
 }
 
+Json budget_to_json(const ErrorBudget& budget) {
+    return {{"noise_mm", mm_per_m * budget.noise},
+            {"model_mm", mm_per_m * budget.model},
+            {"prior_mm", mm_per_m * budget.prior},
+            {"parameters_mm", mm_per_m * budget.parameters},
+            {"left_over_mm", mm_per_m * budget.left_over},
+            {"repeatability_mm", mm_per_m * budget.repeatability},
+            {"total_mm", mm_per_m * budget.total}};
+}
+
+/// Poses that are missing: each alone (`is_value`: what that costs), or one after another.
+Json drop_outs_to_json(const Planning& planning, const std::vector<DropOut>& drop_outs,
+                       bool is_value) {
+    Json list = Json::array();
+    for (const DropOut& one : drop_outs) {
+        const double without = is_value ? planning.plan.predicted->rms : 0;
+        list.push_back({{"id", planning.plan.poses[static_cast<std::size_t>(one.pose)].id},
+                        {is_value ? "value_mm" : "rms_mm", mm_per_m * (one.rms - without)}});
+    }
+    return list;
+}
+
+Json range_to_json(const ErrorRange& range) {
+    return {{"expected_mm", mm_per_m * range.expected},
+            {"lower_mm", mm_per_m * range.lower},
+            {"upper_mm", mm_per_m * range.upper},
+            {"assured_mm", mm_per_m * range.assured}};
+}
+
+Json target_to_json(const TargetPlanning& found) {
+    static const std::map<ErrorQuantity, const char*> names{{ErrorQuantity::Rms, "rms"},
+                                                            {ErrorQuantity::Percentile95, "p95"},
+                                                            {ErrorQuantity::Max, "max"}};
+    const TargetOptions& target = found.target;
+    Json json = {{"limit_mm", detail::millimetres(target.limit)},
+                 {"limit_s", target.duration ? Json(*target.duration) : Json(nullptr)},
+                 {"assurance", target.assurance},
+                 {"quantity", names.at(target.quantity)},
+                 {"robust_to", target.robust_to},
+                 {"error", range_to_json(*found.error)},
+                 {"floor", range_to_json(found.floor)},
+                 {"curve", Json::array()}};
+    for (const CountPrediction& one : found.curve) {
+        json["curve"].push_back({{"new_pose_count", one.pose_count},
+                                 {"is_planned", one.is_planned},
+                                 {"error", one.error ? range_to_json(*one.error) : Json(nullptr)},
+                                 {"duration_s", one.duration}});
+    }
+    return json;
+}
+
 Json report_to_json(const Plan& plan, const std::string& path) {
     Json document = plan_to_json(plan, path);
     document["plan_file"] = path;
@@ -212,6 +264,24 @@ Json report_to_json(const Plan& plan, const std::string& path) {
     if (plan.predicted && model_error) {
         document["accuracy"] = accuracy_to_json(*plan.predicted, *model_error);
     }
+    return document;
+}
+
+Json planning_to_json(const Planning& planning, const std::string& path) {
+    Json document = report_to_json(planning.plan, path);
+    document["new_pose_count"] = planning.search.pose_count;
+    document["measured_count"] = planning.measured_count;
+    document["workspace_count"] = planning.workspace_count;
+    document["pool"] = pool_to_json(planning.pool);
+    const Tour& tour = planning.tour;
+    document["tour"] = {{"time_s", tour.time},
+                        {"as_planned_s", tour.planning_order_time},
+                        {"to_the_nearest_s", tour.nearest_neighbour_time},
+                        {"blocked_count", tour.blocked_count}};
+    document["duration_s"] = planning.duration;
+    document["budget"] = budget_to_json(planning.budget);
+    document["pose_values"] = drop_outs_to_json(planning, planning.without_each, true);
+    document["drop_outs"] = drop_outs_to_json(planning, planning.drop_outs, false);
     return document;
 }
 
@@ -235,20 +305,17 @@ std::string to_json(const Plan& plan, const std::string& path) {
 
 std::string to_json(const Planning& planning, const std::vector<CountAccuracy>& counts,
                     const std::string& path) {
-    Json document = report_to_json(planning.plan, path);
-    document["new_pose_count"] = planning.search.pose_count;
-    document["measured_count"] = planning.measured_count;
-    document["workspace_count"] = planning.workspace_count;
-    document["pool"] = pool_to_json(planning.pool);
-    const Tour& tour = planning.tour;
-    document["tour"] = {{"time_s", tour.time},
-                        {"as_planned_s", tour.planning_order_time},
-                        {"to_the_nearest_s", tour.nearest_neighbour_time},
-                        {"blocked_count", tour.blocked_count}};
+    Json document = planning_to_json(planning, path);
     Json& others = document["other_counts"] = Json::array();
     for (const CountAccuracy& count : counts) {
         others.push_back(count_to_json(count, planning.campaign.model_error));
     }
+    return detail::json_text(document);
+}
+
+std::string to_json(const TargetPlanning& found, const std::string& path) {
+    Json document = planning_to_json(found.planning.value(), path);
+    document["target"] = target_to_json(found);
     return detail::json_text(document);
 }
 

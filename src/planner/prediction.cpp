@@ -9,6 +9,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "unknowns.hpp"
 
 namespace posewise {
 
@@ -31,30 +32,48 @@ Blocks make_prediction_blocks(const Campaign& campaign, const Parameters& parame
     return one;
 }
 
-PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_error,
-                             std::uint64_t seed) {
-    constexpr Index draws = 4000;
-    constexpr double coordinates = 3;
-    const auto total = [&](double parameters, double model) {
-        return std::sqrt(parameters * accuracy.rms * accuracy.rms + coordinates * model * model);
+namespace detail {
+
+Unknowns draw_unknowns(Index k, const PredictedAccuracy& accuracy, double model_error) {
+    constexpr double root = 1.2207440846057596;
+    const auto number = static_cast<double>(k);
+    const auto part = [&](double step) {
+        const double x = 0.5 + number * step;
+        return std::clamp(x - std::floor(x), 1e-12, 1 - 1e-12);
     };
-    RandomStream random(seed, 0);
-    VectorXd drawn(draws);
-    for (double& one : drawn) {
-        const double p = std::clamp(random.uniform(), 1e-12, 1 - 1e-12);
-        const double square = detail::chi_squared_quantile(p, accuracy.degrees_of_freedom) /
-                              accuracy.degrees_of_freedom;
-        const double model = detail::power(accuracy.known_within.model_error, random.normal());
-        double growth = 1;
-        if (accuracy.prior_share) {
-            const double sizes = detail::power(accuracy.known_within.error_size, random.normal());
-            growth = detail::power(sizes, *accuracy.prior_share) *
-                     detail::power(model_error > 0 ? model : 1, 1 - *accuracy.prior_share);
-        }
-        one = total(square * growth * growth, model_error * model);
+    const KnownWithin& known = accuracy.known_within;
+    Unknowns drawn;
+    drawn.uniform = part(1 / root);
+    drawn.model = power(known.model_error, normal_quantile(part(1 / (root * root))));
+    const double share = accuracy.prior_share.value_or(0);
+    const double sizes = power(known.error_size, normal_quantile(part(1 / (root * root * root))));
+    drawn.growth = power(sizes, share) * power(model_error > 0 ? drawn.model : 1, 1 - share);
+    return drawn;
+}
+
+}  // namespace detail
+
+VectorXd total_cases(const PredictedAccuracy& accuracy, double model_error, double repeatability) {
+    constexpr Index cases = 4096;
+    constexpr double coordinates = 3;
+    VectorXd totals(cases);
+    for (Index k = 0; k < cases; ++k) {
+        const detail::Unknowns drawn = detail::draw_unknowns(k, accuracy, model_error);
+        const double freedom = accuracy.degrees_of_freedom;
+        const double chi_squared = detail::chi_squared_quantile(drawn.uniform, freedom) / freedom;
+        const double parameters = drawn.growth * accuracy.rms;
+        const double model = drawn.model * model_error;
+        totals[k] = std::sqrt(chi_squared * parameters * parameters + coordinates * model * model +
+                              repeatability * repeatability);
     }
-    return {total(1, model_error), quantile(drawn, 0.05, detail::QuantileRule::Linear),
-            quantile(drawn, 0.95, detail::QuantileRule::Linear)};
+    return totals;
+}
+
+PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_error) {
+    const VectorXd totals = total_cases(accuracy, model_error);
+    return {std::sqrt(accuracy.rms * accuracy.rms + 3 * model_error * model_error),
+            quantile(totals, 0.05, detail::QuantileRule::Linear),
+            quantile(totals, 0.95, detail::QuantileRule::Linear)};
 }
 
 PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,

@@ -13,14 +13,37 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+VectorXd speed_of(const Constraints& constraints) {
+    const VectorXd& speed = constraints.cell().speed;
+    return speed.size() > 0 ? speed : VectorXd::Ones(constraints.robot().joint_count());
+}
+
+/// Home (the first, if it is not empty) and poses.
+std::vector<VectorXd> nodes_of(const Constraints& constraints, const RowMatrixXd& poses) {
+    std::vector<VectorXd> nodes{constraints.cell().home};
+    for (Index i = 0; i < poses.rows(); ++i) nodes.push_back(poses.row(i).transpose());
+    return nodes;
+}
+
+/// Of straight moves between all nodes; 0 from a home that there is not.
+MatrixXd times_between(const VectorXd& speed, const std::vector<VectorXd>& nodes) {
+    const auto count = static_cast<Index>(nodes.size());
+    MatrixXd times = MatrixXd::Zero(count, count);
+    for (Index i = 1; i < count; ++i) {
+        for (Index j = nodes[0].size() != 0 ? 0 : 1; j < i; ++j) {
+            times(i, j) = times(j, i) = move_time(speed, nodes[static_cast<std::size_t>(i)],
+                                                  nodes[static_cast<std::size_t>(j)]);
+        }
+    }
+    return times;
+}
+
 /// Home (node 0, if there is one) and poses with the ways between them.
 class Roadmap {
   public:
     Roadmap(const Constraints& constraints, const RowMatrixXd& poses, const TourOptions& options)
-        : constraints_(constraints), options_(options), speed_(constraints.cell().speed) {
-        if (speed_.size() == 0) speed_ = VectorXd::Ones(constraints.robot().joint_count());
-        nodes_.push_back(constraints.cell().home);
-        for (Index i = 0; i < poses.rows(); ++i) nodes_.push_back(poses.row(i).transpose());
+        : constraints_(constraints), options_(options), speed_(speed_of(constraints)) {
+        nodes_ = nodes_of(constraints, poses);
         for (const VectorXd& node : nodes_) {
             if (node.size() != 0 || &node != &nodes_[0]) {
                 constraints.robot().check_configuration(node);
@@ -29,7 +52,7 @@ class Roadmap {
         if (has_home() && constraints.collision_clearance(nodes_[0]) < 0) {
             throw InputError("cell: home collides with a keep-out or the robot itself");
         }
-        measure_times();
+        straight_times_ = times_between(speed_, nodes_);
         find_free_moves();
     }
 
@@ -77,17 +100,6 @@ class Roadmap {
 
     bool has_home() const { return nodes_[0].size() != 0; }
     const VectorXd& node(Index i) const { return nodes_[static_cast<std::size_t>(i)]; }
-
-    void measure_times() {
-        const auto count = static_cast<Index>(nodes_.size());
-        straight_times_ = MatrixXd::Zero(count, count);
-        for (Index i = 1; i < count; ++i) {
-            for (Index j = has_home() ? 0 : 1; j < i; ++j) {
-                straight_times_(i, j) = move_time(speed_, node(i), node(j));
-                straight_times_(j, i) = straight_times_(i, j);
-            }
-        }
-    }
 
     void find_free_moves() {
         const auto count = static_cast<Index>(nodes_.size());
@@ -171,6 +183,14 @@ bool is_move_free(const Constraints& constraints, const VectorXd& a, const Vecto
         if (share == 1) return true;
         done += std::max(clearance, resolution);
     }
+}
+
+double straight_tour_time(const Constraints& constraints, const RowMatrixXd& poses) {
+    OrderOptions options;
+    options.kicks = 0;
+    return shortest_order(times_between(speed_of(constraints), nodes_of(constraints, poses)),
+                          options)
+        .time;
 }
 
 Tour plan_tour(const Constraints& constraints, const RowMatrixXd& poses,

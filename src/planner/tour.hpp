@@ -15,6 +15,9 @@ double move_time(const VectorXd& speed, const VectorXd& a, const VectorXd& b);
 bool is_move_free(const Constraints& constraints, const VectorXd& a, const VectorXd& b,
                   double resolution = 1e-3);
 
+/// Time of a short tour of straight moves through the poses (K x joints), free or not: an estimate.
+double straight_tour_time(const Constraints& constraints, const RowMatrixXd& poses);
+
 struct TourOptions {
     OrderOptions order;
     /// Random via points tried for a move that is not free.

@@ -9,6 +9,7 @@
 #include "posewise/report/reports.hpp"
 #include "sentences.hpp"
 #include "table.hpp"
+#include "target_report.hpp"
 
 namespace posewise {
 namespace {
@@ -172,16 +173,25 @@ std::string describe_way(const Plan& plan, const PlannedPose& pose) {
     return text;
 }
 
+/// By how much the RMS grows without the pose.
+std::string format_pose_value(const Planning& planning, std::size_t pose) {
+    const double rms = planning.without_each[pose].rms;
+    return std::isfinite(rms) ? detail::format_mm(rms - planning.plan.predicted->rms) : "needed";
+}
+
 /// What each pose shows is a number of a target, or the name of what it touches.
-Table pose_table(const Plan& plan, const std::vector<std::string>& contacts) {
+Table pose_table(const Planning& planning) {
+    const Plan& plan = planning.plan;
+    const std::vector<std::string> contacts = planning.campaign.sensor->contact_names();
     Table table{{"pose"}, {}};
     for (const std::string& text : plan.columns) {
         const Column column(text);
         table.header.push_back(fmt::format("{}/{}", column.name, column.units.reading));
     }
     table.header.insert(table.header.end(),
-                        {contacts.empty() ? "targets seen" : "socket", "way there"});
-    for (const PlannedPose& pose : plan.poses) {
+                        {"value/mm", contacts.empty() ? "targets seen" : "socket", "way there"});
+    for (std::size_t i = 0; i < plan.poses.size(); ++i) {
+        const PlannedPose& pose = plan.poses[i];
         std::vector<std::string> row{pose.id};
         for (Index j = 0; j < pose.configuration.size(); ++j) {
             row.push_back(
@@ -193,7 +203,7 @@ Table pose_table(const Plan& plan, const std::vector<std::string>& contacts) {
                                                      ? std::to_string(target + 1)
                                                      : contacts[static_cast<std::size_t>(target)]);
         }
-        row.insert(row.end(), {seen, describe_way(plan, pose)});
+        row.insert(row.end(), {format_pose_value(planning, i), seen, describe_way(plan, pose)});
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -294,8 +304,8 @@ std::string format_planning(const Planning& planning) {
     text += fmt::format("searched:    {}\nstarts:      {}\norder:       {}\n",
                         describe_searched_bound(plan), describe_starts(plan, "at the best"),
                         describe_order(planning.tour));
-    return text + format_section("Poses, in the order to visit them",
-                                 pose_table(plan, planning.campaign.sensor->contact_names()));
+    text += detail::describe_duration(planning) + detail::describe_drop_outs(planning);
+    return text + format_section("Poses, in the order to visit them", pose_table(planning));
 }
 
 std::string format_other_counts(const std::vector<CountAccuracy>& counts,

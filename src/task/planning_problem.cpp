@@ -166,8 +166,8 @@ void draw_workspace(PlanningProblem& problem, const PlanningOptions& options) {
             : workspace_configurations(problem.campaign, workspace_box(request),
                                        request.workspace_count, request.seed + 1);
     problem.workspace_count = workspace.rows();
-    problem.prediction = make_prediction_blocks(problem.campaign, problem.campaign.nominal,
-                                                workspace, problem.request.workspace_target - 1);
+    problem.errors =
+        make_position_errors(problem.campaign, workspace, problem.request.workspace_target - 1);
 }
 
 RowMatrixXd configurations_of(const std::vector<PlannedPose>& poses, Index joint_count) {

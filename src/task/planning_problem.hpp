@@ -12,11 +12,11 @@ struct PlanningProblem {
     PlanRequest request;  ///< complete
     Campaign campaign;    ///< base and targets registered if only held measurements tell them
     Constraints constraints;
-    Blocks prediction;  ///< target positions over the workspace
+    PositionErrors errors;  ///< of target positions over the workspace
     Index workspace_count = 0;
     Index measured_count = 0;
     std::vector<PlannedPose> kept;  ///< of the plan to repair
-    PlanOptions search;             ///< without test poses, which are `prediction` for G and V
+    PlanOptions search;  ///< without test poses, which are errors.by_parameters for G and V
 };
 
 /// All but pool and workspace; poses of a repaired plan are kept. Throws InputError as make_plan().

@@ -67,7 +67,7 @@ void check_value(const Plan& plan, const PlanningProblem& problem, const Blocks&
     SelectOptions options;
     options.criterion = problem.search.criterion;
     options.pose_count = blocks.count();
-    if (needs_test_poses(options.criterion)) options.test_poses = &problem.prediction;
+    if (needs_test_poses(options.criterion)) options.test_poses = &problem.errors.by_parameters;
     options.nuisance = problem.search.nuisance;
     options.held = problem.search.held.information;
     options.held_pose_count = problem.search.held_pose_count;
@@ -111,7 +111,7 @@ void check_prediction(const Plan& plan, const PlanningProblem& problem, const Bl
                       Findings& findings) {
     const PredictedAccuracy stated = plan.predicted.value_or(PredictedAccuracy{});
     const MatrixXd M = held_information(problem) + information(blocks);
-    const PredictedAccuracy accuracy = predict_accuracy(problem.prediction, M);
+    const PredictedAccuracy accuracy = predict_accuracy(problem.errors.by_parameters, M);
     const auto compare = [&](const char* name, double before, double now) {
         findings.compare(name, mm_per_m * before, mm_per_m * now,
                          detail::is_same_value(Criterion::A, before, now, rounding));

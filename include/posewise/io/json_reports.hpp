@@ -15,6 +15,7 @@
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"
 #include "posewise/task/study.hpp"
+#include "posewise/task/target.hpp"
 #include "posewise/task/verification.hpp"
 
 /// What tasks found, as one JSON document for other programs each: what the program prints with
@@ -40,6 +41,9 @@ std::string to_json(const Plan& plan, const std::string& path);
 /// Likewise, with what became of the planning and the accuracy of other numbers of poses.
 std::string to_json(const Planning& planning, const std::vector<CountAccuracy>& counts,
                     const std::string& path);
+
+/// Likewise of a plan that keeps a target, with what other numbers of poses reach.
+std::string to_json(const TargetPlanning& found, const std::string& path);
 
 std::string to_json(const ApproximateDesign& design);
 

@@ -69,8 +69,9 @@ struct Cell {
     /// What links keep from keep-outs and from each other, m.
     double safety_distance = 0;
     std::optional<Sight> sight;
-    VectorXd home;   ///< where visiting starts, rad or m; empty: anywhere
-    VectorXd speed;  ///< largest speed of each joint, rad/s or m/s; empty: 1
+    VectorXd home;     ///< where visiting starts, rad or m; empty: anywhere
+    VectorXd speed;    ///< largest speed of each joint, rad/s or m/s; empty: 1
+    double dwell = 0;  ///< that the robot stands still for each sample, s
 };
 
 }  // namespace posewise

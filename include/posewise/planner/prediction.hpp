@@ -31,11 +31,16 @@ struct PredictedTotal {
     double upper = 0;  ///< error and, with a prior, the size of all errors, log-normal (see below)
 };
 
-/// Of 4000 draws from stream (seed, 0). Model error and sizes are drawn as PredictedAccuracy says
-/// they are known; the parameters' errors grow with the sizes as PredictedAccuracy::prior_share
-/// says: by the model error, too, which is taken for most of the noise.
-PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_error,
-                             std::uint64_t seed = 1);
+/// Of 4096 cases that fill what is not known evenly. Model error and sizes are drawn as
+/// PredictedAccuracy says they are known; the parameters' errors grow with the sizes as
+/// PredictedAccuracy::prior_share says: by the model error, too, which is taken for most of the
+/// noise.
+PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_error);
+
+/// The RMS, by cases, of which predict_total() gives the interval; `repeatability` (m, RMS of a
+/// position) is added to each.
+VectorXd total_cases(const PredictedAccuracy& accuracy, double model_error,
+                     double repeatability = 0);
 
 /// Derivative of target positions at workspace configurations by the scaled parameters, in m:
 /// blocks of 3 rows a target. As test poses they make V the inverse of the predicted mean square

@@ -9,6 +9,7 @@
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"
 #include "posewise/task/study.hpp"
+#include "posewise/task/target.hpp"
 #include "posewise/task/verification.hpp"
 
 /// What tasks found, as text: all that the program prints of it.
@@ -60,6 +61,16 @@ std::string format(const ApproximateDesign& design, int digits = 8);
 
 /// What was planned, how good it is, and the poses in visiting order.
 std::string format_planning(const Planning& planning);
+
+/// What the expected position error consists of.
+std::string format_budget(const Planning& planning);
+
+/// How a target was reached, a line or two.
+std::string format(const TargetPlanning& found);
+/// What each number of poses is expected to reach, and how long it takes.
+std::string format_curve(const TargetPlanning& found);
+/// Why a target was not reached and what would help, as one sentence; empty if it was.
+std::string describe_shortfall(const TargetPlanning& found);
 
 /// Predicted accuracy for other numbers of poses.
 std::string format_other_counts(const std::vector<CountAccuracy>& counts, const Campaign& campaign);

@@ -2,6 +2,7 @@
 
 #include "posewise/core/progress.hpp"
 #include "posewise/measurement/measurements.hpp"
+#include "posewise/planner/assurance.hpp"
 #include "posewise/planner/planning.hpp"
 #include "posewise/task/plan.hpp"
 
@@ -16,8 +17,9 @@ struct PlanningOptions : PlanRequest {
     }
     std::optional<Measurements> held;  ///< measured already: their information counts
     std::optional<Plan> repaired;      ///< its poses are kept, but for those dropped
-    RowMatrixXd workspace;  ///< configurations where accuracy matters; empty: drawn in the cell
-    StopSignal stop{};      ///< ends the search with the best so far
+    RowMatrixXd workspace;     ///< configurations where accuracy matters; empty: drawn in the cell
+    Index drop_out_count = 1;  ///< poses that may be missing, see Planning::drop_outs
+    StopSignal stop{};         ///< ends the search with the best so far
     ProgressCallback progress{};
 };
 
@@ -29,8 +31,14 @@ struct Planning {
     Index measured_count = 0;   ///< poses measured already
     Index workspace_count = 0;  ///< configurations the prediction is over
     Campaign campaign;          ///< base and targets registered if only held poses tell them
-    Blocks prediction;          ///< target positions over the workspace
+    PositionErrors errors;      ///< of target positions over the workspace
     PlanOptions search;         ///< criterion, new poses, nuisance and what was held
+    MatrixXd information;       ///< of all poses and what is held (scaled parameters)
+    ErrorBudget budget;
+    std::vector<DropOut> without_each;  ///< each pose of the plan missing, in its order
+    std::vector<DropOut>
+        drop_outs;        ///< poses of the plan that hurt most, missing one after another
+    double duration = 0;  ///< s: all moves, and the cell's dwell for each sample
 };
 
 /// Proposes configurations to measure in the campaign's cell: draws a pool, chooses from it,

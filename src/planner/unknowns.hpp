@@ -1,0 +1,18 @@
+#pragma once
+
+#include "posewise/planner/prediction.hpp"
+
+namespace posewise::detail {
+
+/// One case of what is not known before measuring.
+struct Unknowns {
+    double uniform = 0.5;  ///< between 0 and 1: of the parameters' errors
+    double model = 1;      ///< the model error is so many times the expected one
+    double growth = 1;     ///< and the parameters' errors so many times those predicted
+};
+
+/// Case k of a sequence that fills the space of all cases evenly (additive recurrence by the powers
+/// of the root of x^4 = x + 1), so that few make a sure quantile.
+Unknowns draw_unknowns(Index k, const PredictedAccuracy& accuracy, double model_error);
+
+}  // namespace posewise::detail

@@ -1,0 +1,206 @@
+#include "target_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "../core/format.hpp"
+#include "../core/text.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/report/reports.hpp"
+#include "table.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::format_mm;
+using detail::format_short;
+using detail::Table;
+
+constexpr double seconds_per_minute = 60;
+
+std::string minutes(double seconds) {
+    return detail::format_fixed(seconds / seconds_per_minute, 1);
+}
+
+const char* name_of(ErrorQuantity quantity) {
+    if (quantity == ErrorQuantity::Rms) return "RMS";
+    return quantity == ErrorQuantity::Max ? "maximum" : "95 % of positions";
+}
+
+std::string percent(double part) { return format_short(100 * part) + " %"; }
+
+/// "0.2 mm RMS with 95 %".
+std::string describe_limit(const TargetOptions& target) {
+    std::string text = fmt::format("{} mm {} with {}", format_short(mm_per_m * *target.limit),
+                                   name_of(target.quantity), percent(target.assurance));
+    if (target.robust_to > 0) {
+        text += fmt::format(", the worst {} missing", detail::count_of(target.robust_to, "pose"));
+    }
+    return text;
+}
+
+/// The plan of one pose less, or without a limit one more, that does not do.
+const CountPrediction* next_count(const TargetPlanning& found) {
+    const Index count = found.planning->search.pose_count + (found.target.limit ? -1 : 1);
+    for (const CountPrediction& one : found.curve) {
+        if (one.is_planned && one.pose_count == count) return &one;
+    }
+    return nullptr;
+}
+
+Table curve_table(const TargetPlanning& found) {
+    Table table{{"new poses", "how", "expected/mm", "5..95 %/mm",
+                 fmt::format("{} below/mm", percent(found.target.assurance)), "minutes"},
+                {}};
+    for (const CountPrediction& one : found.curve) {
+        table.rows.push_back(
+            {std::to_string(one.pose_count), one.is_planned ? "planned" : "chosen from the pool"});
+        if (one.error) {
+            table.rows.back().insert(table.rows.back().end(), {format_mm(one.error->expected),
+                                                               format_mm(one.error->lower) + ".." +
+                                                                   format_mm(one.error->upper),
+                                                               format_mm(one.error->assured)});
+        } else {
+            table.rows.back().insert(table.rows.back().end(), {"-", "-", "-"});
+        }
+        table.rows.back().push_back(one.duration > 0 ? minutes(one.duration) : "-");
+    }
+    return table;
+}
+
+/// What would lower the floor.
+std::string describe_remedy(const TargetPlanning& found) {
+    const bool is_model = found.left_over >= found.repeatability;
+    std::string text =
+        fmt::format("the largest part is {} mm by {}; ",
+                    format_mm(is_model ? found.left_over : found.repeatability),
+                    is_model ? "the model error"
+                             : "the repeatability of the joints, which no calibration mends");
+    if (!is_model) return text + "halving it needs a robot that returns twice as well";
+    text += found.has_error_terms
+                ? "halving it needs half the model error (model_error_mm)"
+                : "halving it needs a model that has more of the robot's errors (errors: full)";
+    if (found.floor_of_known_model_error < found.floor.assured) {
+        text += fmt::format(
+            "; were it known, as a first calibration tells (--from), the floor "
+            "would be {} mm",
+            format_mm(found.floor_of_known_model_error));
+    }
+    return text;
+}
+
+std::string describe_best(const TargetPlanning& found, double longest) {
+    const CountPrediction* best = nullptr;
+    for (const CountPrediction& one : found.curve) {
+        if (one.error && one.duration <= longest) best = &one;
+    }
+    if (best == nullptr) return "none are expected to do";
+    return fmt::format("{} reach {} mm", detail::count_of(best->pose_count, "new pose"),
+                       format_mm(best->error->assured));
+}
+
+}  // namespace
+
+namespace detail {
+
+std::string describe_duration(const Planning& planning) {
+    if (planning.campaign.cell.dwell == 0) return "";
+    return fmt::format("time:        {} min with {} s for each sample\n",
+                       minutes(planning.duration), format_short(planning.campaign.cell.dwell));
+}
+
+std::string describe_drop_outs(const Planning& planning) {
+    std::string without;
+    std::string left;
+    for (const DropOut& one : planning.drop_outs) {
+        const std::string& id = planning.plan.poses[static_cast<std::size_t>(one.pose)].id;
+        without += (without.empty() ? "" : ", ") + escape_controls(id);
+        if (std::isinf(one.rms)) {
+            return fmt::format("missing:     without {} not all parameters are identified\n",
+                               without);
+        }
+        left += (left.empty() ? "" : ", ") + format_mm(one.rms);
+    }
+    if (left.empty()) return "";
+    return fmt::format(
+        "missing:     without {} the RMS by the parameters is {} instead of {} mm{}\n", without,
+        left, format_mm(planning.plan.predicted->rms),
+        planning.drop_outs.size() > 1 ? ", each with those before it" : "");
+}
+
+}  // namespace detail
+
+std::string format_budget(const Planning& planning) {
+    const ErrorBudget& budget = planning.budget;
+    Table table{{"part", "RMS/mm", "of the square"}, {}};
+    const auto add = [&](const std::string& name, double rms) {
+        const double square = budget.total > 0 ? rms * rms / (budget.total * budget.total) : 0;
+        table.rows.push_back({name, format_mm(rms), detail::format_fixed(100 * square, 1) + " %"});
+    };
+    add("parameters, by noise of measuring", budget.noise);
+    add("parameters, by the model error", budget.model);
+    add("parameters, left of their prior", budget.prior);
+    add("left over: the model error itself", budget.left_over);
+    add("repeatability of one visit", budget.repeatability);
+    add("all", budget.total);
+    return detail::format_section("What the position error is expected to consist of", table);
+}
+
+std::string format(const TargetPlanning& found) {
+    std::string text;
+    const Planning& planning = *found.planning;
+    const CountPrediction* const next = next_count(found);
+    const std::string count = detail::count_of(planning.search.pose_count, "new pose");
+    if (found.target.limit) {
+        text += fmt::format("target:      {}: {}, {} mm", describe_limit(found.target), count,
+                            format_mm(found.error->assured));
+        if (next != nullptr) {
+            text += fmt::format(" ({}: {} mm)", next->pose_count,
+                                next->error ? format_mm(next->error->assured) : "-");
+        }
+        text += fmt::format("; floor {} mm\n", format_mm(found.floor.assured));
+    }
+    if (found.target.duration) {
+        text += fmt::format("time:        {} of {} min for {}", minutes(planning.duration),
+                            format_short(*found.target.duration / seconds_per_minute), count);
+        if (!found.target.limit && next != nullptr) {
+            text += fmt::format(" ({}: {})", next->pose_count, minutes(next->duration));
+        }
+        text += found.target.limit ? ": both are kept\n" : "\n";
+    }
+    return text;
+}
+
+std::string format_curve(const TargetPlanning& found) {
+    return detail::format_section(
+        fmt::format("Position error ({}) by number of poses, model error and "
+                    "repeatability included",
+                    name_of(found.target.quantity)),
+        curve_table(found));
+}
+
+std::string describe_shortfall(const TargetPlanning& found) {
+    const TargetOptions& target = found.target;
+    const std::string floor =
+        fmt::format("floor {} mm ({})", format_mm(found.floor.assured), percent(target.assurance));
+    switch (found.ending) {
+        case TargetEnding::BelowFloor:
+            return fmt::format("{}: unattainable: {}; {}", describe_limit(target), floor,
+                               describe_remedy(found));
+        case TargetEnding::TooManyPoses:
+            return fmt::format(
+                "{}: not reached: {}; {}; more may be stated (--poses-at-most, --pool)",
+                describe_limit(target),
+                describe_best(found, std::numeric_limits<double>::infinity()), floor);
+        case TargetEnding::TooLong:
+            return fmt::format("{}: not reached in {} min, in which {}; {}", describe_limit(target),
+                               format_short(*target.duration / seconds_per_minute),
+                               describe_best(found, *target.duration), floor);
+        default:
+            return "";
+    }
+}
+
+}  // namespace posewise

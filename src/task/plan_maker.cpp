@@ -1,0 +1,199 @@
+#include "plan_maker.hpp"
+
+#include <cmath>
+#include <set>
+
+#include "../planner/plan_space.hpp"
+#include "../planner/tour.hpp"
+#include "inputs.hpp"
+#include "pool_choices.hpp"
+#include "posewise/jacobian/identification.hpp"
+
+namespace posewise::detail {
+namespace {
+
+/// p1, p2, ... but for those that poses kept or dropped have.
+class NewIds {
+  public:
+    explicit NewIds(const PlanningProblem& problem)
+        : taken_(problem.request.dropped.begin(), problem.request.dropped.end()) {
+        for (const PlannedPose& pose : problem.kept) taken_.insert(pose.id);
+    }
+    std::string next() {
+        std::string id;
+        do id = 'p' + std::to_string(++last_);
+        while (taken_.count(id) > 0);
+        return id;
+    }
+
+  private:
+    std::set<std::string> taken_;
+    int last_ = 0;
+};
+
+/// The poses kept, then the new ones.
+RowMatrixXd all_poses(const PlanningProblem& problem, const RowMatrixXd& planned) {
+    const auto kept = static_cast<Index>(problem.kept.size());
+    RowMatrixXd poses(kept + planned.rows(), planned.cols());
+    poses.topRows(kept) = detail::configurations_of(problem.kept, planned.cols());
+    poses.bottomRows(planned.rows()) = planned;
+    return poses;
+}
+
+/// All poses in the order of the tour; new ones are named in it.
+std::vector<PlannedPose> arrange(const PlanningProblem& problem, const RowMatrixXd& poses,
+                                 const Tour& tour) {
+    NewIds ids(problem);
+    std::vector<PlannedPose> arranged;
+    const auto kept = static_cast<Index>(problem.kept.size());
+    for (const Visit& visit : tour.visits) {
+        PlannedPose pose;
+        if (visit.pose < kept) {
+            pose = problem.kept[static_cast<std::size_t>(visit.pose)];
+        } else {
+            pose.id = ids.next();
+            pose.configuration = poses.row(visit.pose).transpose();
+            pose.targets = targets_seen(problem.constraints.seen(pose.configuration));
+        }
+        pose.via = visit.via;
+        pose.is_blocked = visit.is_blocked;
+        arranged.push_back(std::move(pose));
+    }
+    return arranged;
+}
+
+Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, const Pool& pool,
+                 const Tour& tour) {
+    const Campaign& campaign = problem.campaign;
+    Plan plan;
+    plan.campaign = campaign.name;
+    plan.columns = configuration_columns(campaign);
+    plan.poses = arrange(problem, all_poses(problem, planned.configurations), tour);
+    plan.request = problem.request;
+    plan.request.pose_count = static_cast<Index>(plan.poses.size());
+    plan.value = planned.value;
+    plan.kind = CandidateKind::Pool;
+    plan.candidate_count = pool.configurations.rows();
+    plan.choice_value = planned.pool_choice.value;
+    plan.bound = planned.pool_choice.bound;
+    plan.efficiency = planned.pool_choice.efficiency;
+    plan.searched_bound = planned.searched_bound;
+    plan.searched_efficiency = planned.efficiency;
+    plan.request.starts = planned.starts;
+    plan.starts_at_best = planned.starts_at_best;
+    plan.predicted = predict_accuracy(problem.errors.by_parameters, planned.information, campaign);
+    if (needs_test_poses(plan.request.criterion)) {
+        const auto positions = static_cast<double>(problem.errors.by_parameters[0].rows()) / 3;
+        plan.value_rms = 1 / std::sqrt(plan.value * positions);
+    }
+    plan.standard_deviations = detail::standard_deviations(campaign, planned.information);
+    plan.visiting_time = tour.time;
+    plan.assumptions = assumptions_of(campaign);
+    return plan;
+}
+
+/// The information of poses where the squares of model error and of other noise are so many times
+/// as large.
+MatrixXd information_with(const PlanningProblem& problem, const std::vector<PlannedPose>& poses,
+                          double model_square, double noise_square) {
+    PlanningProblem noisy{problem.request, problem.campaign, problem.constraints, {}, 0, 0, {}, {}};
+    noisy.campaign.model_error *= std::sqrt(model_square);
+    noisy.campaign.model_error_orientation *= std::sqrt(model_square);
+    noisy.campaign.joint_repeatability *= std::sqrt(noise_square);
+    noisy.request.repeats /= noise_square;
+    return information(blocks_of(noisy, poses));
+}
+
+ErrorBudget budget_of(const PlanningProblem& problem, const std::vector<PlannedPose>& poses,
+                      const MatrixXd& M) {
+    constexpr double step = 1e-3;
+    const MatrixXd by_model = (information_with(problem, poses, 1 - step, 1) -
+                               information_with(problem, poses, 1 + step, 1)) /
+                              (2 * step);
+    const MatrixXd by_noise = (information_with(problem, poses, 1, 1 - step) -
+                               information_with(problem, poses, 1, 1 + step)) /
+                              (2 * step);
+    return make_budget(problem.errors, problem.campaign, M, by_model, by_noise);
+}
+
+}  // namespace
+
+PlanMaker::PlanMaker(PlanningProblem problem, const PlanningOptions& options)
+    : problem_(std::move(problem)), options_(options) {
+    const Index asked_for = problem_.request.pool_count;
+    pool_ =
+        make_pool(problem_.constraints, asked_for, options.seed, options.stop.with_half_the_time());
+    is_pool_complete_ = pool_.candidate_count >= asked_for;
+    problem_.request.pool_count = pool_.candidate_count;
+    check_memory(problem_.campaign, pool_.configurations.rows(), "--pool");
+    plan_tour(problem_.constraints, pool_.configurations.topRows(1));  // throws early if home
+    draw_workspace(problem_, options);
+}
+
+PlannedPoses PlanMaker::search(const PlanOptions& search, Index pool_part) const {
+    check_pool_size(pool_, search.pose_count);
+    const Campaign& campaign = problem_.campaign;
+    const DesignSpace space = make_design_space(campaign, campaign.nominal,
+                                                problem_.request.repeats, &problem_.constraints);
+    const RowMatrixXd candidates = pool_.configurations.topRows(pool_part);
+    return plan_poses(
+        space, candidates,
+        make_blocks(campaign, campaign.nominal, candidates,
+                    times_seen(pool_.is_seen.topRows(pool_part), problem_.request.repeats)),
+        search);
+}
+
+Planning PlanMaker::make(Index pose_count) const {
+    PlanOptions search = problem_.search;
+    search.pose_count = pose_count;
+    search.progress = options_.progress;
+    return make(std::move(search), pool_.configurations.rows());
+}
+
+Planning PlanMaker::make_quickly(Index pose_count) const {
+    PlanOptions search = problem_.search;
+    search.pose_count = pose_count;
+    search.starts = 1;
+    search.bound_iterations = 0;
+    return make(std::move(search),
+                std::min(pool_.configurations.rows(), std::max(quick_pool_part, 2 * pose_count)));
+}
+
+Planning PlanMaker::make(PlanOptions search, Index pool_part) const {
+    if (needs_test_poses(search.criterion)) search.test_poses = &problem_.errors.by_parameters;
+    search.stop = options_.stop;
+    const PlannedPoses planned = this->search(search, pool_part);
+    TourOptions tour_options;
+    tour_options.order.seed = options_.seed;
+    Tour tour =
+        plan_tour(problem_.constraints, all_poses(problem_, planned.configurations), tour_options);
+    Plan plan = make_result(problem_, planned, pool_, tour);
+    plan.ending = Ending::Converged;
+    if (planned.is_interrupted || !is_pool_complete_) {
+        plan.ending = options_.stop.is_interrupted() ? Ending::Interrupted : Ending::TimeLimit;
+    }
+    const Blocks& prediction = problem_.errors.by_parameters;
+    const Blocks blocks = blocks_of(problem_, plan.poses);
+    MatrixXd left = planned.information;
+    search.progress = {};
+    search.test_poses = nullptr;
+    const double samples = plan.request.repeats * static_cast<double>(plan.poses.size());
+    Planning planning{std::move(plan),
+                      pool_,
+                      std::move(tour),
+                      problem_.measured_count,
+                      problem_.workspace_count,
+                      problem_.campaign,
+                      problem_.errors,
+                      std::move(search),
+                      planned.information,
+                      {},
+                      drop_each(prediction, blocks, planned.information),
+                      drop_worst(prediction, blocks, options_.drop_out_count, left),
+                      problem_.campaign.cell.dwell * samples};
+    planning.budget = budget_of(problem_, planning.plan.poses, planning.information);
+    planning.duration += planning.tour.time;
+    return planning;
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,41 @@
+#include "pool_choices.hpp"
+
+#include <algorithm>
+
+#include "posewise/jacobian/identification.hpp"
+
+namespace posewise::detail {
+
+PoolChoices::PoolChoices(const Campaign& campaign, const Pool& pool, double repeats,
+                         const PlanOptions& search, const Blocks& prediction) {
+    const Index part = std::min(pool.configurations.rows(), quick_pool_part);
+    blocks_ = make_blocks(campaign, campaign.nominal, pool.configurations.topRows(part),
+                          times_seen(pool.is_seen.topRows(part), repeats));
+    select_.criterion = search.criterion;
+    if (select_.criterion == Criterion::G) select_.criterion = Criterion::V;  // much quicker
+    if (select_.criterion == Criterion::V) select_.test_poses = &prediction;
+    select_.nuisance = search.nuisance;
+    select_.held = search.held.information;
+    select_.held_pose_count = search.held_pose_count;
+    select_.starts = 4;  // one alone may be far off where poses hardly suffice
+    select_.proof = 0;
+    select_.gap = 1e-2;
+    select_.seed = search.seed;
+}
+
+std::optional<std::vector<Index>> PoolChoices::choose(Index pose_count) const {
+    if (pose_count > blocks_.count()) return std::nullopt;
+    SelectOptions select = select_;
+    select.pose_count = pose_count;
+    const Choice choice = select_poses(blocks_, select);
+    if (choice.ending == Ending::NotIdentifiable) return std::nullopt;
+    return choice.poses;
+}
+
+MatrixXd PoolChoices::information(const std::vector<Index>& chosen) const {
+    MatrixXd M = posewise::information(blocks_, chosen);
+    if (select_.held.size() > 0) M += select_.held;
+    return M;
+}
+
+}  // namespace posewise::detail

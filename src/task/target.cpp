@@ -1,0 +1,282 @@
+#include "posewise/task/target.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "../planner/tour.hpp"
+#include "plan_maker.hpp"
+#include "pool_choices.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::PlanMaker;
+using detail::PlanningProblem;
+using detail::PoolChoices;
+
+void check_target(const TargetOptions& target, const PlanningOptions& options) {
+    const auto is_positive = [](double value) { return std::isfinite(value) && value > 0; };
+    if (!target.limit && !target.duration) {
+        throw InputError("neither a limit of the error nor a duration is stated");
+    }
+    if (target.limit && !is_positive(*target.limit)) {
+        throw InputError(
+            fmt::format("the limit of the error is {:g} m, must be positive", *target.limit));
+    }
+    if (target.duration && !is_positive(*target.duration)) {
+        throw InputError(fmt::format("the duration is {:g} s, must be positive", *target.duration));
+    }
+    if (!(target.assurance > 0 && target.assurance < 1)) {
+        throw InputError(
+            fmt::format("assurance is {:g}, must be above 0 and below 1", target.assurance));
+    }
+    if (target.most_poses < 1 || target.robust_to < 0) {
+        throw InputError("the number of poses must be positive, that of drop-outs not negative");
+    }
+    if (options.repaired) {
+        throw InputError("a plan to repair has a number of poses; state that, or no such plan");
+    }
+}
+
+/// The least count from `least` to `most` that `is_enough`, above which all are, too; most + 1 if
+/// none is. It is looked for from `guess` on by steps that double, then bisected.
+template <class IsEnough>
+Index least_count(Index guess, Index least, Index most, IsEnough&& is_enough) {
+    Index missing = least - 1;  // not enough, or below what there is
+    Index enough = most + 1;
+    Index next = std::clamp(guess, least, most);
+    bool has_crossed = false;
+    bool went_up = false;
+    for (Index step = 1; enough - missing > 1; step *= 2) {
+        const bool is_now_enough = is_enough(next);
+        (is_now_enough ? enough : missing) = next;
+        if (step > 1 && went_up == is_now_enough) has_crossed = true;
+        went_up = !is_now_enough;
+        next = is_now_enough ? enough - step : missing + step;
+        if (has_crossed || next <= missing || next >= enough) next = (missing + enough) / 2;
+    }
+    return enough;
+}
+
+/// Counts poses by what they reach.
+class Search {
+  public:
+    Search(const PlanMaker& maker, const PlanningOptions& options, TargetPlanning& result,
+           Index least)
+        : maker_(maker),
+          problem_(maker.problem()),
+          options_(options),
+          result_(result),
+          target_(result.target),
+          least_(least),
+          choices_(problem_.campaign, maker.pool(), problem_.request.repeats, problem_.search,
+                   problem_.errors.by_parameters),
+          most_(std::min(target_.most_poses, maker.pool().configurations.rows())) {}
+
+    void run() {
+        if (least_ > most_) {
+            result_.ending = TargetEnding::TooManyPoses;
+            return;
+        }
+        const Index by_choices = std::min(count_by_choices(), most_);
+        const Index by_quick_plans = least_count(by_choices, least_, most_, [&](Index count) {
+            check_stop();
+            return has_crossed(maker_.make_quickly(count));
+        });
+        settle(by_quick_plans);
+        look_around();
+        fill_curve();
+    }
+
+  private:
+    bool has_limit() const { return target_.limit.has_value(); }
+
+    void check_stop() const { options_.stop.check("a plan that keeps the target"); }
+
+    /// Nothing: drop-outs leave parameters unidentified.
+    std::optional<ErrorRange> judge(MatrixXd M, const Blocks& poses) const {
+        if (target_.robust_to > 0) {
+            const auto dropped =
+                drop_worst(problem_.errors.by_parameters, poses, target_.robust_to, M);
+            if (std::isinf(dropped.back().rms)) return std::nullopt;
+        }
+        return predict_range(problem_.errors, problem_.campaign, M, target_.quantity,
+                             target_.assurance, options_.seed);
+    }
+
+    std::optional<ErrorRange> judge(const Planning& planning) const {
+        return judge(planning.information, detail::blocks_of(problem_, planning.plan.poses));
+    }
+
+    /// Whether there are enough poses for the limit; or, without one, too many for the duration.
+    bool has_crossed(const std::optional<ErrorRange>& error, double duration) const {
+        if (has_limit()) return error && error->assured <= *target_.limit;
+        return duration > *target_.duration;
+    }
+    bool has_crossed(const Planning& planning) const {
+        return has_crossed(has_limit() ? judge(planning) : std::nullopt, planning.duration);
+    }
+
+    const CountPrediction& choose(Index count) {
+        const auto [found, is_new] = chosen_.try_emplace(count);
+        CountPrediction& prediction = found->second;
+        if (!is_new) return prediction;
+        check_stop();
+        prediction.pose_count = count;
+        const auto chosen = choices_.choose(count);
+        if (!chosen) return prediction;
+        prediction.error = judge(choices_.information(*chosen), choices_.blocks(*chosen));
+        const double samples = problem_.request.repeats * static_cast<double>(count);
+        prediction.duration =
+            detail::straight_tour_time(problem_.constraints,
+                                       maker_.pool().configurations(*chosen, Eigen::all)) +
+            problem_.campaign.cell.dwell * samples;
+        return prediction;
+    }
+
+    Index count_by_choices() {
+        const Index most = std::min(most_, choices_.candidate_count());
+        return least_count(least_, least_, most, [&](Index count) {
+            const CountPrediction& prediction = choose(count);
+            return has_crossed(prediction.error, prediction.duration);
+        });
+    }
+
+    void plan(Index count) {
+        result_.planning = maker_.make(count);
+        result_.error = judge(*result_.planning);
+        planned_[count] = {count, true, result_.error, result_.planning->duration};
+    }
+
+    /// Full plans on both sides of where it is crossed; the one that keeps what was asked for
+    /// stays.
+    void settle(Index count) {
+        count = std::clamp(has_limit() ? count : count - 1, least_, most_);
+        plan(count);
+        const bool is_first_crossed = has_crossed(result_.error, result_.planning->duration);
+        const Index step = is_first_crossed ? -1 : 1;
+        bool is_crossed = is_first_crossed;
+        for (count += step; count >= least_ && count <= most_ && !options_.stop.is_set();
+             count += step) {
+            const auto [error, planning] = std::pair(result_.error, result_.planning);
+            plan(count);
+            is_crossed = has_crossed(result_.error, result_.planning->duration);
+            if (is_crossed == is_first_crossed) continue;
+            if (is_crossed != has_limit()) {
+                is_crossed = is_first_crossed;
+                result_.error = error;
+                result_.planning = planning;
+            }
+            break;
+        }
+        conclude(is_crossed);
+    }
+
+    void conclude(bool is_crossed) {
+        if (!has_limit() && is_crossed) {
+            throw InputError(fmt::format(
+                "{:g} min are too short: {}, the least number of poses, take {:.2g} min",
+                *target_.duration / 60, least_, result_.planning->duration / 60));
+        }
+        result_.ending = TargetEnding::Reached;
+        if (has_limit() && !is_crossed) {
+            check_stop();
+            result_.ending = TargetEnding::TooManyPoses;
+        }
+        if (has_limit() && is_crossed && target_.duration &&
+            result_.planning->duration > *target_.duration) {
+            result_.ending = TargetEnding::TooLong;
+            const Index most = std::min(most_, choices_.candidate_count());
+            least_count(least_, least_, most,
+                        [&](Index count) { return choose(count).duration > *target_.duration; });
+        }
+        if (result_.ending == TargetEnding::Reached) return;
+        result_.planning.reset();
+        result_.error.reset();
+    }
+
+    /// What half, twice and four times as many poses would do.
+    void look_around() {
+        if (!result_.planning || options_.stop.is_set()) return;
+        const Index count = result_.planning->search.pose_count;
+        const Index most = std::min(most_, choices_.candidate_count());
+        for (const Index other : {count / 2, 2 * count, 4 * count}) {
+            if (other >= least_ && other <= most) choose(other);
+        }
+    }
+
+    /// Poses that reach little more than fewer: as good as those and any others.
+    void fill_curve() {
+        std::optional<ErrorRange> best;
+        for (auto& [count, prediction] : chosen_) {
+            if (best && !(prediction.error && prediction.error->assured < best->assured)) {
+                prediction.error = best;
+            }
+            best = prediction.error;
+            result_.curve.push_back(prediction);
+        }
+        for (const auto& [count, prediction] : planned_) result_.curve.push_back(prediction);
+        std::stable_sort(result_.curve.begin(), result_.curve.end(),
+                         [](const auto& a, const auto& b) { return a.pose_count < b.pose_count; });
+    }
+
+    const PlanMaker& maker_;
+    const PlanningProblem& problem_;
+    const PlanningOptions& options_;
+    TargetPlanning& result_;
+    const TargetOptions& target_;
+    Index least_;
+    PoolChoices choices_;
+    Index most_;
+    std::map<Index, CountPrediction> chosen_;
+    std::map<Index, CountPrediction> planned_;
+};
+
+void find_floor(const PlanningProblem& problem, const PlanningOptions& options,
+                TargetPlanning& result) {
+    const TargetOptions& target = result.target;
+    const auto floor_of = [&](const Campaign& campaign) {
+        return predict_range(problem.errors, campaign, {}, target.quantity, target.assurance,
+                             options.seed);
+    };
+    result.floor = floor_of(problem.campaign);
+    Campaign known = problem.campaign;
+    known.known_within.model_error = 1;
+    result.floor_of_known_model_error = floor_of(known).assured;
+    const ErrorBudget budget = make_budget(problem.errors, problem.campaign, {}, {}, {});
+    result.left_over = budget.left_over;
+    result.repeatability = budget.repeatability;
+    const Chain& robot = problem.campaign.robot;
+    for (Index k = 0; k < robot.parameter_count(); ++k) {
+        result.has_error_terms = result.has_error_terms || robot.parameter_term(k) != nullptr;
+    }
+}
+
+}  // namespace
+
+TargetPlanning plan_for_target(const Campaign& campaign, const PlanningOptions& given,
+                               const TargetOptions& target) {
+    check_target(target, given);
+    PlanningOptions options = given;
+    options.drop_out_count = std::max<Index>(1, target.robust_to);
+    PlanningProblem problem = detail::state_planning(campaign, options);
+    const Index least = std::max<Index>(
+        1, least_calibration_count(problem.campaign, options.stop) - problem.measured_count);
+    const PlanMaker maker(std::move(problem), options);
+    TargetPlanning result;
+    result.target = target;
+    find_floor(maker.problem(), options, result);
+    if (target.limit && result.floor.assured > *target.limit) {
+        result.ending = TargetEnding::BelowFloor;
+        return result;
+    }
+    Search(maker, options, result, least + target.robust_to).run();
+    return result;
+}
+
+}  // namespace posewise

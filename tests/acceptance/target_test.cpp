@@ -1,0 +1,212 @@
+// How many poses a target needs, on the designs that are shipped.
+#include "posewise/task/target.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../../src/core/elementary.hpp"
+#include "../../src/core/statistics.hpp"
+#include "../../src/model/sampling.hpp"
+#include "../../src/task/inputs.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/random.hpp"
+#include "posewise/io/campaign_file.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/task/verification.hpp"
+
+namespace posewise {
+namespace {
+
+io::CampaignFile design(const std::string& name) {
+    return io::read_campaign(std::string(POSEWISE_SOURCE_DIR) + "/designs/" + name);
+}
+
+/// The RMS of robots drawn one by one from the linear model: each parameter a normal number, sizes
+/// and model error log-normal.
+VectorXd draw_rms(const PositionErrors& errors, const Campaign& campaign, const MatrixXd& M) {
+    const PredictedAccuracy accuracy = predict_accuracy(errors.by_parameters, M, campaign);
+    const MatrixXd spread = M.llt().matrixL().solve(errors.by_parameters.matrix.transpose());
+    const MatrixXd square =
+        3 * spread * spread.transpose() / static_cast<double>(errors.by_parameters.matrix.rows());
+    const VectorXd squares = Eigen::SelfAdjointEigenSolver<MatrixXd>(square).eigenvalues();
+    const double share = accuracy.prior_share.value_or(0);
+    VectorXd drawn(60000);
+    RandomStream random(11);
+    for (double& rms : drawn) {
+        double sum = 0;
+        for (const double one : squares) {
+            const double z = random.normal();
+            sum += one * z * z;
+        }
+        const double model = std::pow(campaign.known_within.model_error, random.normal());
+        const double size = std::pow(campaign.known_within.error_size, random.normal());
+        const double growth = std::pow(size, share) * std::pow(model, 1 - share);
+        const double left = model * campaign.model_error;
+        rms = std::sqrt(growth * growth * sum + 3 * left * left);
+    }
+    return drawn;
+}
+
+TEST(PredictRange, AgreesWithRobotsDrawnOneByOne) {
+    for (const char* const name :
+         {"fanuc_r2000ic_165f/campaign.yaml", "abb_irb120/planning.yaml", "ur10/campaign.yaml"}) {
+        const Campaign campaign = design(name);
+        const auto configurations = [&](Index count, std::uint64_t seed) {
+            return detail::random_configurations(campaign.robot, count, seed);
+        };
+        const PositionErrors errors = make_position_errors(campaign, configurations(100, 2));
+        MatrixXd M = prior_information(campaign);
+        M += information(make_blocks(campaign, campaign.nominal, configurations(15, 1)));
+        const VectorXd drawn = draw_rms(errors, campaign, M);
+        for (const double assurance : {0.5, 0.95, 0.99}) {
+            const double direct = detail::quantile(drawn, assurance, detail::QuantileRule::Linear);
+            const ErrorRange range =
+                predict_range(errors, campaign, M, ErrorQuantity::Rms, assurance);
+            EXPECT_NEAR(range.assured, direct, 0.05 * direct) << name << ' ' << assurance;
+        }
+    }
+}
+
+class Target : public ::testing::Test {
+  protected:
+    Target() {
+        options_.pool_count = 400;
+        options_.workspace_count = 40;
+        options_.starts = 1;
+        target_.limit = 1e-3;
+    }
+    TargetPlanning find() const { return plan_for_target(campaign_, options_, target_); }
+    Index count() const { return find().planning.value().search.pose_count; }
+
+    Campaign campaign_ = design("fanuc_r2000ic_165f/campaign.yaml");
+    PlanningOptions options_;
+    TargetOptions target_;
+};
+
+TEST_F(Target, IsKeptByThePlanAndNotByOneOfAPoseLess) {
+    const TargetPlanning found = find();
+    ASSERT_EQ(found.ending, TargetEnding::Reached);
+    const Planning& planning = *found.planning;
+    EXPECT_LE(found.error->assured, 1e-3);
+    EXPECT_TRUE(verify(planning.plan, campaign_, options_).is_right());
+    const auto reach = [&](Index count) {
+        options_.pose_count = count;
+        const Planning plan = make_plan(campaign_, options_);
+        return predict_range(plan.errors, campaign_, plan.information, ErrorQuantity::Rms, 0.95)
+            .assured;
+    };
+    EXPECT_EQ(reach(planning.search.pose_count), found.error->assured);
+    EXPECT_GT(reach(planning.search.pose_count - 1), 1e-3);
+    // The curve falls, and takes longer.
+    double before = std::numeric_limits<double>::infinity();
+    for (const CountPrediction& one : found.curve) {
+        if (one.is_planned || !one.error) continue;
+        EXPECT_LE(one.error->assured, before);
+        EXPECT_GT(one.error->assured, found.floor.assured);
+        before = one.error->assured;
+    }
+    EXPECT_GT(found.curve.size(), 4u);
+    EXPECT_GT(found.curve.back().duration, planning.duration);
+}
+
+TEST_F(Target, NeedsMorePosesTheSurerAndTheTighterItIs) {
+    const Index at_95 = count();
+    target_.assurance = 0.5;
+    const Index at_50 = count();
+    target_.assurance = 0.99;
+    target_.limit = 2e-3;
+    const Index loose_at_99 = count();
+    target_.assurance = 0.95;
+    const Index loose_at_95 = count();
+    EXPECT_LT(at_50, at_95);
+    EXPECT_LT(loose_at_95, at_95);
+    EXPECT_LT(loose_at_95, loose_at_99);
+}
+
+TEST_F(Target, OfTheLargestErrorOrWithPosesMissingNeedsMore) {
+    const Index rms = count();
+    target_.robust_to = 1;
+    const TargetPlanning robust = find();
+    EXPECT_GT(robust.planning->search.pose_count, rms);
+    EXPECT_LE(robust.error->assured, 1e-3);
+    target_.robust_to = 0;
+    target_.quantity = ErrorQuantity::Percentile95;
+    target_.limit = 1.6e-3;
+    const Index percentile = count();
+    target_.quantity = ErrorQuantity::Max;
+    EXPECT_EQ(find().ending, TargetEnding::BelowFloor);
+    target_.limit = 2.6e-3;
+    EXPECT_EQ(find().ending, TargetEnding::Reached);
+    EXPECT_GT(percentile, rms);
+}
+
+TEST_F(Target, BelowTheFloorIsNotReachedByAnyNumber) {
+    target_.limit = 0.5e-3;
+    const TargetPlanning below = find();
+    EXPECT_EQ(below.ending, TargetEnding::BelowFloor);
+    EXPECT_FALSE(below.planning.has_value());
+    // Of a model error of 0.1 mm a coordinate, known within a factor of 2.5.
+    EXPECT_NEAR(below.floor.assured, std::sqrt(3.0) * 1e-4 * std::pow(2.5, 1.645), 2e-6);
+    EXPECT_NEAR(below.floor_of_known_model_error, std::sqrt(3.0) * 1e-4, 1e-9);
+    target_.limit = 0.79e-3;
+    target_.most_poses = 12;
+    const TargetPlanning few = find();
+    EXPECT_EQ(few.ending, TargetEnding::TooManyPoses);
+    EXPECT_FALSE(few.planning.has_value());
+    ASSERT_FALSE(few.curve.empty());
+    EXPECT_GT(few.curve.back().error->assured, 0.79e-3);
+}
+
+TEST_F(Target, AsManyPosesAsFitInTheTime) {
+    campaign_.cell.dwell = 2;
+    options_.repeats = 3;
+    target_ = {};
+    target_.duration = 120;
+    const TargetPlanning found = find();
+    const Planning& planning = found.planning.value();
+    const auto poses = static_cast<double>(planning.plan.poses.size());
+    EXPECT_NEAR(planning.duration, planning.tour.time + 6 * poses, 1e-9);
+    EXPECT_LE(planning.duration, 120);
+    options_.pose_count = planning.search.pose_count + 1;
+    EXPECT_GT(make_plan(campaign_, options_).duration, 120);
+    // Beside a limit.
+    target_.limit = 1e-3;
+    EXPECT_EQ(find().ending, TargetEnding::Reached);
+    target_.limit = 0.8e-3;
+    const TargetPlanning long_one = find();
+    EXPECT_EQ(long_one.ending, TargetEnding::TooLong);
+    EXPECT_FALSE(long_one.planning.has_value());
+}
+
+TEST_F(Target, RefusesWhatNoNumberOfPosesCanMeet) {
+    const auto refuses = [&](auto&& change, const std::string& words) {
+        TargetOptions changed = target_;
+        change(changed);
+        try {
+            plan_for_target(campaign_, options_, changed);
+            ADD_FAILURE() << words;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+        }
+    };
+    for (const double limit : {0.0, -1e-3, std::nan(""), double(INFINITY)}) {
+        refuses([&](TargetOptions& target) { target.limit = limit; }, "must be positive");
+        refuses([&](TargetOptions& target) { target.duration = limit; }, "must be positive");
+    }
+    for (const double assurance : {0.0, 1.0, std::nan("")}) {
+        refuses([&](TargetOptions& target) { target.assurance = assurance; }, "assurance");
+    }
+    refuses([](TargetOptions& target) { target.limit.reset(); }, "neither");
+    refuses([](TargetOptions& target) { target.robust_to = -1; }, "not negative");
+    refuses(
+        [](TargetOptions& target) {
+            target.limit.reset();
+            target.duration = 0.5;
+        },
+        "too short");
+}
+
+}  // namespace
+}  // namespace posewise

@@ -1,0 +1,75 @@
+#include "program.hpp"
+
+/// `plan` that is asked for an accuracy or a duration in place of a number of poses.
+namespace posewise::testing {
+namespace {
+
+const std::string quick = " --pool 500 --starts 1 --workspace-poses 50 -o p.json ";
+
+class PlanTarget : public Program {
+  protected:
+    std::string plan(const std::string& arguments) const {
+        return "plan " + fanuc_design + quick + arguments;
+    }
+    void expect_usage_error(const std::string& arguments, const std::string& words) const {
+        const Outcome outcome = run(plan(arguments));
+        EXPECT_EQ(outcome.code, 2) << arguments;
+        EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+        EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1) << outcome.err;
+    }
+};
+
+TEST_F(PlanTarget, SaysHowManyPosesAndWhatTheErrorConsistsOf) {
+    const std::string text = run_well(plan("--target-mm 1 --robust-to 1"));
+    for (const char* const words :
+         {"target:      1 mm RMS with 95 %, the worst 1 pose missing: ", "new poses",
+          "; floor 0.78", "missing:     without p", "parameters, by the model error",
+          "Position error (RMS) by number of poses", "95 % below/mm", "minutes"}) {
+        EXPECT_NE(text.find(words), std::string::npos) << words << '\n' << text;
+    }
+    run_well("verify p.json");
+    const std::string timed = run_well(plan("--minutes 1"));
+    EXPECT_EQ(timed.rfind("time:        ", 0), 0u) << timed;
+}
+
+TEST_F(PlanTarget, SaysWhatIsLeftAtBestAndWhatWouldLowerIt) {
+    expect_input_error(plan("--target-mm 0.3"),
+                       "--target-mm: 0.3 mm RMS with 95 %: unattainable: floor 0.78");
+    expect_input_error(plan("--target-mm 0.3"),
+                       "the largest part is 0.1732 mm by the model error; halving it needs");
+    expect_input_error(plan("--target-mm 0.79 --poses-at-most 9"),
+                       "not reached: 9 new poses reach");
+    expect_input_error(plan("--target-mm 0.82 --minutes 0.3"), "not reached in 0.3 min, in which");
+    expect_input_error(plan("--minutes 0.01"), "are too short");
+}
+
+TEST_F(PlanTarget, RefusesWhatCannotBeMeant) {
+    for (const char* const limit : {"0", "-1", "nan", "x", "''"}) {
+        expect_usage_error("--target-mm " + std::string(limit), "--target-mm");
+        expect_usage_error("--minutes " + std::string(limit), "--minutes");
+    }
+    for (const char* const assurance : {"0", "1", "95", "nan"}) {
+        expect_usage_error("--target-mm 1 --assurance " + std::string(assurance), "--assurance");
+    }
+    expect_usage_error("--target-mm 1 --quantity mean", "--quantity");
+    expect_usage_error("--target-mm 1 -k 12", "excludes");
+    expect_usage_error("--minutes 1 -k 12", "excludes");
+    expect_usage_error("--target-mm 1 --plan p.json", "excludes");
+    expect_usage_error("--minutes 1 --assurance 0.9", "--target-mm");
+    expect_usage_error("-k 12 --quantity max", "--target-mm");
+    expect_usage_error("-k 12 --robust-to -1", "--robust-to");
+    expect_usage_error("", "--poses, --target-mm or --minutes");
+}
+
+TEST_F(PlanTarget, DwellIsTimeAtEachPose) {
+    const std::string campaign =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    write_text("c.yaml", campaign + "cell: {dwell_s: 4}\n");
+    const std::string text = run_well("plan c.yaml -k 8 --repeats 2" + quick);
+    EXPECT_NE(text.find("min with 4 s for each sample"), std::string::npos) << text;
+    write_text("c.yaml", campaign + "cell: {dwell_s: -4}\n");
+    expect_input_error("plan c.yaml -k 8" + quick, "dwell_s is -4; must not be negative");
+}
+
+}  // namespace
+}  // namespace posewise::testing
