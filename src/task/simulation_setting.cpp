@@ -190,7 +190,7 @@ SimulationSetting make_setting(const SimulatedCampaign& given,
         std::vector<Subset>& planned = setting.planned.emplace_back();
         for (std::size_t c = 0; c < options.criteria.size(); ++c) {
             planned.push_back(
-                plan_subset(setting, options, blocks, problem.prediction, turning, c, count));
+                plan_subset(setting, options, blocks, problem.errors.by_parameters, turning, c, count));
         }
     }
     return setting;
