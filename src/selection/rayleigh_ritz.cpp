@@ -87,13 +87,14 @@ struct ExchangedPivots {
     const LaneBlocks& blocks;
     const MatrixXd& M;  // its upper half
     const Lane& least;
-    std::span<Lane> work;  // room for a triangle
+    std::span<Lane> work;  // room for a triangle and a column
     Lane& result;
 
     template <typename V>
     POSEWISE_INLINE void run_part(Index group, int part) const {
         V* const m = reinterpret_cast<V*>(work.data());
         const Index size = blocks.parameters;
+        V* const column = m + packed(size, 0);
         const V shift = at<V>(&least, part);
         for (Index i = 0; i < size; ++i) {
             for (Index j = 0; j <= i; ++j) m[packed(i, j)] = V{} + M(j, i);
@@ -111,8 +112,9 @@ struct ExchangedPivots {
             const V inverse = 1.0 / pivot;
             for (Index i = k + 1; i < size; ++i) {
                 V* const row = m + packed(i, 0);
+                column[i] = row[k];
                 const V factor = row[k] * inverse;
-                for (Index j = k + 1; j <= i; ++j) row[j] -= factor * m[packed(j, k)];
+                for (Index j = k + 1; j <= i; ++j) row[j] -= factor * column[j];
             }
         }
         at<V>(&result, part) = smallest;
@@ -219,7 +221,7 @@ std::vector<Index> RayleighRitz::exceeding(const MatrixXd& remaining,
         least.of[k] = least_[at / lane_width].of[at % lane_width];
     }
     Lane pivots;
-    work_.resize(static_cast<std::size_t>(packed(remaining.rows(), 0)));
+    work_.resize(static_cast<std::size_t>(packed(remaining.rows() + 1, 0)));
     run_on_lanes(1, ExchangedPivots{make_lane_blocks(candidates_, candidates, rows), remaining,
                                     least, work_, pivots});
     std::vector<Index> result;
