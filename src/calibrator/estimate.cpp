@@ -7,6 +7,11 @@
 
 namespace posewise {
 
+ResidualVariance Estimate::variance_of(bool is_angle) const {
+    if (!variance_by_kind.empty()) return variance_by_kind[is_angle ? 1 : 0];
+    return {variance_factor, static_cast<double>(degrees_of_freedom)};
+}
+
 VectorXd standard_deviations(const Estimate& estimate) {
     return estimate.covariance.diagonal().cwiseSqrt();
 }

@@ -33,7 +33,7 @@ std::vector<PointError> point_errors(const Campaign& campaign, const Estimate& e
     const Index count = is_angle ? width - begin : sensor.lengths_per_target();
     const double model = is_angle ? estimate.model_error_orientation : estimate.model_error;
     // Without priors the noise is that stated times the variance factor, as in the covariance.
-    const double factor = campaign.spread.is_prior ? 1 : estimate.variance_factor;
+    const double factor = campaign.spread.is_prior ? 1 : estimate.variance_of(is_angle).factor;
     const MatrixXd left_over = factor * model * model * MatrixXd::Identity(count, count);
     FlangeMotion motion;
     RowMatrixXd J(sensor.row_count(), parameter_count(campaign));
@@ -98,8 +98,13 @@ Campaign with_model_error(const Campaign& campaign, const Estimate& estimate) {
 ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
                              const Measurements& measured) {
     // Angles count only where no length is measured, as in distances.
-    return average(point_errors(campaign, estimate, measured.configurations, times_seen(measured),
-                                !campaign.sensor->has_lengths()));
+    return expected_error(campaign, estimate, measured, !campaign.sensor->has_lengths());
+}
+
+ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
+                             const Measurements& measured, bool is_angle) {
+    return average(
+        point_errors(campaign, estimate, measured.configurations, times_seen(measured), is_angle));
 }
 
 std::vector<ErrorPrediction> predict_errors(const Campaign& campaign, const Estimate& estimate,
@@ -109,12 +114,12 @@ std::vector<ErrorPrediction> predict_errors(const Campaign& campaign, const Esti
         campaign.robot.check_configuration(configurations.row(i).transpose());
     }
     const RowMatrixXd once = RowMatrixXd::Ones(configurations.rows(), sensor.target_count());
-    const double freedom =
-        campaign.spread.is_prior ? 0 : static_cast<double>(estimate.degrees_of_freedom);
     std::vector<ErrorPrediction> predictions;
     for (const bool is_angle : {false, true}) {
         if (!(is_angle ? sensor.has_angles() : sensor.has_lengths())) continue;
         const auto points = point_errors(campaign, estimate, configurations, once, is_angle);
+        const double freedom =
+            campaign.spread.is_prior ? 0 : estimate.variance_of(is_angle).degrees_of_freedom;
         ErrorPrediction& prediction = predictions.emplace_back();
         prediction.is_angle = is_angle;
         prediction.overall = summarise(points, freedom);

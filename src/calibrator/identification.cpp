@@ -147,7 +147,7 @@ Estimate identify(const Campaign& campaign, const Measurements& measurements,
             system = search(problem, options, estimate);
         }
     }
-    finish(problem, triangularise(system), estimate);
+    finish(problem, system, estimate);
     return estimate;
 }
 

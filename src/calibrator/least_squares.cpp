@@ -14,6 +14,7 @@
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "robust.hpp"
+#include "variances.hpp"
 
 namespace posewise::detail {
 
@@ -316,7 +317,9 @@ Estimate begin_estimate(const IdentificationProblem& problem, const Parameters& 
     return estimate;
 }
 
-void finish(const IdentificationProblem& problem, const Triangle& at_estimate, Estimate& estimate) {
+void finish(const IdentificationProblem& problem, const LinearisedSystem& system,
+            Estimate& estimate) {
+    const Triangle at_estimate = triangularise(system);
     const MatrixXd& R = at_estimate.R;
     estimate.degrees_of_freedom = problem.equation_count() - R.cols();
     const bool is_robust = problem.loss.kind != LossKind::Squares;
@@ -328,10 +331,8 @@ void finish(const IdentificationProblem& problem, const Triangle& at_estimate, E
     if (is_robust) {
         estimate.covariance = robust_covariance(problem, estimate.parameters, R);
     } else {
-        // A prior states the noise, too: residuals that are larger or smaller do not change it.
-        const double factor = problem.prior_count() > 0 ? 1 : estimate.variance_factor;
         const MatrixXd root = invert_triangle(R);
-        estimate.covariance = factor * root * root.transpose();
+        estimate.covariance = find_variances(problem, system, root, estimate);
     }
     problem.units.unscale(estimate.covariance);
     estimate.names = parameter_names(problem.campaign);

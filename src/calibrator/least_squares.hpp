@@ -121,8 +121,9 @@ std::string describe_undetermined(const IdentificationProblem& problem,
 /// An estimate at `start` that has not run, or that says why it cannot.
 Estimate begin_estimate(const IdentificationProblem& problem, const Parameters& start);
 
-/// Fills covariance, variance factor and metrics of an estimate from its parameters, `at_estimate`
-/// its triangle there.
-void finish(const IdentificationProblem& problem, const Triangle& at_estimate, Estimate& estimate);
+/// Fills covariance, variance factors and metrics of an estimate from its parameters, where the
+/// system is `system`.
+void finish(const IdentificationProblem& problem, const LinearisedSystem& system,
+            Estimate& estimate);
 
 }  // namespace posewise::detail

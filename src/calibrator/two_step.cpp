@@ -84,7 +84,7 @@ Estimate identify_two_step(const Campaign& campaign, const Measurements& measure
             break;
         }
     }
-    finish(problem, triangularise(linearise(problem, estimate.parameters)), estimate);
+    finish(problem, linearise(problem, estimate.parameters), estimate);
     return estimate;
 }
 

@@ -97,7 +97,8 @@ void add_earlier_options(CLI::App& command, EarlierArguments& arguments) {
     command
         .add_option("--only", arguments.only,
                     "With --from: identify only base, targets, robot or errors of it, by commas; "
-                    "the others are known to be as it found them")
+                    "the others are as it found them. What is expected of poses counts them as "
+                    "exact; calibrate prints deviations with their uncertainty and without")
         ->delimiter(',')
         ->needs(from);
 }

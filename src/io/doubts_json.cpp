@@ -1,5 +1,8 @@
 #include "doubts_json.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "posewise/core/units.hpp"
 
 namespace posewise::detail {
@@ -76,6 +79,16 @@ Json model_errors_to_json(const std::vector<ModelErrorDoubt>& errors) {
     return json;
 }
 
+Json residuals_to_json(const std::vector<ResidualDoubt>& residuals) {
+    Json json = Json::array();
+    for (const ResidualDoubt& doubt : residuals) {
+        json.push_back(
+            {{"ratio", doubt.ratio},
+             {"fitting_model_error" + error_suffix(doubt.is_angle), mm_per_m * doubt.fitting}});
+    }
+    return json;
+}
+
 }  // namespace
 
 Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
@@ -98,6 +111,9 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
     if (!doubts.model_errors.empty()) {
         json["model_errors"] = model_errors_to_json(doubts.model_errors);
     }
+    if (const auto& scatter = doubts.scatter) {
+        json["scatter"] = {{"ratio", scatter->ratio}, {"sample", scatter->sample}};
+    }
     if (doubts.lacks_length) json["lacks_length"] = true;
     if (const auto& distance = doubts.distance) {
         json["distance"] = {{"socket", distance->socket},
@@ -111,7 +127,13 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
                                   {"learned" + unit, mm_per_m * size->held.size},
                                   {"fitting" + unit, mm_per_m * size->fitting}};
     }
-    if (doubts.residual_ratio) json["residual_ratio"] = *doubts.residual_ratio;
+    if (!doubts.residuals.empty()) {
+        const auto farthest = std::ranges::max(
+            doubts.residuals, {},
+            [](const ResidualDoubt& doubt) { return std::abs(std::log(doubt.ratio)); });
+        json["residual_ratio"] = farthest.ratio;
+        json["residuals"] = residuals_to_json(doubts.residuals);
+    }
     if (doubts.small_residuals) json["small_residuals"] = *doubts.small_residuals;
     if (doubts.missing_errors) json["missing_errors"] = *doubts.missing_errors;
     for (const Index joint : doubts.negative_compliances) {

@@ -239,6 +239,10 @@ Json made_from_to_json(const Provenance& made_from) {
     return json;
 }
 
+Json variance_to_json(const ResidualVariance& variance) {
+    return {{"factor", variance.factor}, {"degrees_of_freedom", variance.degrees_of_freedom}};
+}
+
 Json estimate_to_json(const Calibration& calibration, const Provenance& made_from) {
     const Campaign& campaign = calibration.campaign;
     const Estimate& estimate = calibration.estimate;
@@ -256,6 +260,10 @@ Json estimate_to_json(const Calibration& calibration, const Provenance& made_fro
     document["iterations"] = estimate.iterations;
     document["degrees_of_freedom"] = estimate.degrees_of_freedom;
     document["variance_factor"] = estimate.variance_factor;
+    if (!estimate.variance_by_kind.empty()) {
+        document["variance_by_kind"] = {{"lengths", variance_to_json(estimate.variance_of(false))},
+                                        {"angles", variance_to_json(estimate.variance_of(true))}};
+    }
     document["model_error_m"] = estimate.model_error;
     document["model_error_rad"] = estimate.model_error_orientation;
     document["model_error_within"] = estimate.model_error_within;

@@ -213,6 +213,18 @@ double read_model_error_within(const JsonValue& root) {
     throw within.error(fmt::format("is {:g}; must be from 1 to {:g}", factor, model_error_factor));
 }
 
+/// Only where lengths and angles are measured; files written before have none.
+std::vector<ResidualVariance> read_variance_by_kind(const JsonValue& root) {
+    std::vector<ResidualVariance> variances;
+    if (!root.has("variance_by_kind")) return variances;
+    for (const char* kind : {"lengths", "angles"}) {
+        const JsonValue variance = root["variance_by_kind"][kind];
+        variances.push_back(
+            {read_size(variance["factor"]), read_size(variance["degrees_of_freedom"])});
+    }
+    return variances;
+}
+
 Estimate read_estimate_of(const JsonValue& root, const Campaign& campaign, bool has_same_targets) {
     if (has_same_targets) check_readings(root["readings"], *campaign.sensor);
     detail::check_is_of_robot(root["chain"], campaign.robot);
@@ -224,6 +236,7 @@ Estimate read_estimate_of(const JsonValue& root, const Campaign& campaign, bool 
     estimate.iterations = root["iterations"].count(0);
     estimate.degrees_of_freedom = root["degrees_of_freedom"].count(0);
     estimate.variance_factor = read_size(root["variance_factor"]);
+    estimate.variance_by_kind = read_variance_by_kind(root);
     estimate.model_error = read_size(root["model_error_m"]);
     estimate.model_error_orientation = read_size(root["model_error_rad"]);
     estimate.model_error_within = read_model_error_within(root);

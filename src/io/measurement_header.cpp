@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "text.hpp"
 #include "units.hpp"
@@ -20,6 +21,7 @@ class HeaderReader {
           wanted_(wanted_columns(campaign)),
           has_orientation_(campaign.sensor->has_orientation()),
           has_contact_(campaign.sensor->has_contacts()),
+          target_count_(campaign.sensor->target_count()),
           examples_{"config"} {
         if (!is_optional(Role::Sample)) examples_.emplace_back("sample");
         for (const WantedColumn& column : wanted_) {
@@ -60,7 +62,25 @@ class HeaderReader {
         std::vector<std::string> known = examples_;
         if (is_optional(Role::Sample)) known.emplace_back("sample");
         if (!has_contact_) known.emplace_back(visible_targets);
-        return error(field, "is unknown; " + suggest(csv_.fields()[field], known));
+        return error(
+            field, "is unknown" + count_known(field) + "; " + suggest(csv_.fields()[field], known));
+    }
+
+    /// ", the campaign states 1 target" for p2_x_mm, ", its robot has 6 joints" for q7_deg: files
+    /// of another campaign.
+    std::string count_known(std::size_t field) const {
+        const std::string_view name = csv_.fields()[field];
+        if (name.size() < 2 || (name[0] != 'p' && name[0] != 'q')) return "";
+        Index number = 0;
+        const auto [end, problem] =
+            std::from_chars(name.data() + 1, name.data() + name.size(), number);
+        const bool is_target = name[0] == 'p';
+        const Index count = is_target ? target_count_ : std::ssize(joints_);
+        if (problem != std::errc() || end == name.data() + name.size() || *end != '_' ||
+            number <= count)
+            return "";
+        return is_target ? ", the campaign states " + count_of(count, "target")
+                         : ", the campaign's robot has " + count_of(count, "joint");
     }
 
     Column read_column(std::size_t field) const {
@@ -166,6 +186,7 @@ class HeaderReader {
     std::vector<WantedColumn> wanted_;
     bool has_orientation_;
     bool has_contact_;
+    Index target_count_;
     std::vector<std::string> examples_;
 };
 

@@ -56,7 +56,7 @@ class RowReader {
 
     void add_to(detail::SampleCollector& samples) {
         check_width();
-        sample_.clear();
+        row_.name.clear();
         for (std::size_t field = 0; field < columns_.size(); ++field) read_field(field);
         if (content_ == Content::JointsAndObservations && contacts_.empty()) read_targets();
         check_new_sample();
@@ -87,7 +87,7 @@ class RowReader {
                 row_.id = text;
                 return;
             case Role::Sample:
-                sample_ = text;
+                row_.name = text;
                 return;
             case Role::VisibleTargets:
                 // What was planned; what was measured tells by itself what was seen.
@@ -240,10 +240,10 @@ class RowReader {
 
     /// The same sample of the same configuration twice is a file joined with itself.
     void check_new_sample() {
-        if (sample_.empty() || seen_.insert(row_.id + '\n' + sample_).second) return;
+        if (row_.name.empty() || seen_.insert(row_.id + '\n' + row_.name).second) return;
         throw input_error_at(csv_.locate(0),
                              fmt::format("sample {} of configuration {} occurs twice; keep one",
-                                         detail::quote(sample_), detail::quote(row_.id)));
+                                         detail::quote(row_.name), detail::quote(row_.id)));
     }
 
     const detail::CsvReader& csv_;
@@ -256,7 +256,6 @@ class RowReader {
     bool is_each_row_one_;                         ///< a configuration by itself
     std::vector<std::size_t> orientation_fields_;  ///< if it is not a rotation vector
     std::unordered_set<std::string> seen_;
-    std::string sample_;
     detail::Sample row_;
 };
 

@@ -37,6 +37,7 @@ void SampleCollector::add(const Sample& sample, const LocateJoint& locate, bool 
         configurations_[static_cast<std::size_t>(i)].tail(torques) += sample.joints.tail(torques);
     }
     configuration_.push_back(i);
+    names_.push_back(sample.name);
     observations_.insert(observations_.end(), sample.observation.begin(), sample.observation.end());
     is_seen_.push_back(sample.is_seen);
 }
@@ -130,12 +131,17 @@ Measurements SampleCollector::finish(const std::string& path, bool may_repeat) c
     const Eigen::Map<const RowMatrixXd> observations(observations_.data(), samples, width);
     measurements.observations.resize(samples, width);
     measurements.is_seen.resize(samples, is_seen_.front().size());
+    const bool has_names = std::ranges::none_of(names_, &std::string::empty);
+    if (has_names) measurements.sample_names.resize(names_.size());
     std::vector<Index> next = first;
     for (Index sample = 0; sample < samples; ++sample) {
         const Index i = configuration_[static_cast<std::size_t>(sample)];
         const Index row = next[static_cast<std::size_t>(i)]++;
         measurements.observations.row(row) = observations.row(sample);
         measurements.is_seen.row(row) = is_seen_[static_cast<std::size_t>(sample)];
+        if (!has_names) continue;
+        measurements.sample_names[static_cast<std::size_t>(row)] =
+            names_[static_cast<std::size_t>(sample)];
     }
     return measurements;
 }

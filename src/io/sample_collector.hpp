@@ -14,6 +14,7 @@ namespace posewise::detail {
 /// One sample, as a row of a file has it.
 struct Sample {
     std::string id;        ///< of the configuration
+    std::string name;      ///< of the sample; empty where the file has none
     VectorXd joints;       ///< the configuration: rad or m, then measured torques
     VectorXd observation;  ///< m; without what was observed if only configurations are read
     SeenTargets is_seen;   ///< at least one of them
@@ -53,6 +54,7 @@ class SampleCollector {
     std::vector<SeenTargets> first_seen_;     // of each configuration
     std::vector<FileLocation> first_places_;  // of each configuration
     std::vector<Index> configuration_;        // of each sample
+    std::vector<std::string> names_;          // of each sample
     std::vector<double> observations_;        // of all samples, one after another
     std::vector<SeenTargets> is_seen_;        // of each sample
 };

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <unordered_map>
 
@@ -36,14 +35,15 @@ class Exclusion {
                 "and the number of a sample like {}:2",
                 detail::quote(name), measurements_.ids.front()));
         }
-        const Index number = parse_number(name.substr(colon + 1));
-        if (number < 1 || number > measurements_.sample_count(*i)) {
-            throw InputError(fmt::format(
-                "excluded sample {} is not among the measured ones; configuration {} has {}",
-                detail::quote(name), detail::quote(name.substr(0, colon)),
-                detail::count_of(measurements_.sample_count(*i), "sample")));
+        for (Index k = first_sample(*i); k < first_sample(*i + 1); ++k) {
+            if (measurements_.sample_name(*i, k) == name) return drop(name, k, 1);
         }
-        drop(name, first_sample(*i) + number - 1, 1);
+        throw InputError(fmt::format(
+            "excluded sample {} is not among the measured ones; configuration {} has {}, {} to {}",
+            detail::quote(name), detail::quote(name.substr(0, colon)),
+            detail::count_of(measurements_.sample_count(*i), "sample"),
+            measurements_.sample_name(*i, first_sample(*i)),
+            measurements_.sample_name(*i, first_sample(*i + 1) - 1)));
     }
 
     Measurements rest() const {
@@ -64,6 +64,10 @@ class Exclusion {
         rest.configurations = measurements_.configurations(configurations, Eigen::all);
         rest.observations = measurements_.observations(samples, Eigen::all);
         rest.is_seen = measurements_.is_seen(samples, Eigen::all);
+        if (measurements_.sample_names.empty()) return rest;
+        for (const Index k : samples) {
+            rest.sample_names.push_back(measurements_.sample_names[static_cast<std::size_t>(k)]);
+        }
         return rest;
     }
 
@@ -76,13 +80,6 @@ class Exclusion {
 
     Index first_sample(Index configuration) const {
         return measurements_.first_sample[static_cast<std::size_t>(configuration)];
-    }
-
-    /// 0 for what is no number.
-    static Index parse_number(const std::string& text) {
-        Index number = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-        return error == std::errc() && end == text.data() + text.size() ? number : 0;
     }
 
     void drop(const std::string& name, Index first, Index count) {

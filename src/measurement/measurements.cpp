@@ -70,6 +70,13 @@ Measurements mean_measurements(const Sensor& sensor, const Measurements& measure
     return means;
 }
 
+std::string Measurements::sample_name(Index configuration, Index sample) const {
+    const auto i = static_cast<std::size_t>(configuration);
+    return ids[i] + ':' +
+           (sample_names.empty() ? std::to_string(sample - first_sample[i] + 1)
+                                 : sample_names[static_cast<std::size_t>(sample)]);
+}
+
 Measurements take(const Measurements& measurements, const std::vector<Index>& configurations) {
     Measurements taken;
     taken.configurations.resize(static_cast<Index>(configurations.size()),
@@ -89,6 +96,9 @@ Measurements take(const Measurements& measurements, const std::vector<Index>& co
             measurements.observations.middleRows(first, count);
         taken.is_seen.middleRows(taken.first_sample[k], count) =
             measurements.is_seen.middleRows(first, count);
+        if (measurements.sample_names.empty()) continue;
+        const auto begin = measurements.sample_names.begin() + first;
+        taken.sample_names.insert(taken.sample_names.end(), begin, begin + count);
     }
     return taken;
 }

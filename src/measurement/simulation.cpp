@@ -154,6 +154,11 @@ Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
             campaign.sensor->has_contacts()
                 ? "to simulate, the campaign must state where the ball and all sockets are "
                   "(position_mm of 'sensor.targets' and of each of 'sensor.sockets')"
+            : campaign.has_nominal_base
+                ? "to simulate, the campaign must state where the targets are, too (keys "
+                  "'sensor.targets.position_mm' or 'sensor.tool')"
+            : campaign.has_nominal_targets
+                ? "to simulate, the campaign must state where the base is, too (key 'base')"
                 : "to simulate, the campaign must state where base and targets are (keys 'base' "
                   "and 'sensor.targets.position_mm' or 'sensor.tool')");
     }

@@ -52,20 +52,33 @@ std::string describe_measured(const Calibration& calibration) {
     return text;
 }
 
+/// That it was of use to look for it: there are errors of the robot to identify.
 bool is_model_error_found(const Calibration& calibration) {
-    return calibration.campaign.spread.is_prior && calibration.method != CalibrationMethod::TwoStep;
+    const auto names = calibration.campaign.robot.parameter_names();
+    const bool has_any = std::ranges::any_of(names, [&](const std::string& name) {
+        return std::ranges::find(calibration.held, name) == calibration.held.end();
+    });
+    return has_any && calibration.campaign.spread.is_prior &&
+           calibration.method != CalibrationMethod::TwoStep;
 }
 
-/// The model error (mm) with which residuals would be as stated.
-double fitting_model_error(const Calibration& calibration) {
-    const ExpectedError& expected = calibration.expected;
-    const double factor = calibration.estimate.variance_factor;
-    // Without priors the expected errors are scaled by the factor already.
-    const bool is_scaled = !calibration.campaign.spread.is_prior;
-    const double noise = expected.noise * expected.noise / (is_scaled ? factor : 1);
-    const double model = expected.model * expected.model / (is_scaled ? factor : 1);
-    const auto coordinates = static_cast<double>(calibration.campaign.sensor->lengths_per_target());
-    return mm_per_m * std::sqrt(std::max(0.0, factor * (model + noise) - noise) / coordinates);
+std::string describe_model_error(const Calibration& calibration) {
+    const char* what = calibration.estimate.degrees_of_freedom > 0
+                           ? "model error found: "
+                           : "model error assumed, nothing is left to find it from: ";
+    if (!is_model_error_found(calibration)) {
+        if (calibration.held.empty()) return "";
+        what = "model error of the earlier estimate: ";
+    }
+    return what + detail::describe_model_error(calibration.campaign) + '\n';
+}
+
+/// ": 1.02 in mm, 4.3 in mrad" where both are measured.
+std::string describe_variance_by_kind(const Estimate& estimate) {
+    if (estimate.variance_by_kind.empty()) return "";
+    return fmt::format(": {} in mm, {} in mrad",
+                       detail::format_short(estimate.variance_of(false).factor, 4),
+                       detail::format_short(estimate.variance_of(true).factor, 4));
 }
 
 std::string describe_ending(const Calibration& calibration) {
@@ -73,45 +86,114 @@ std::string describe_ending(const Calibration& calibration) {
     std::string text = fmt::format("{}: {} after {} iterations", method_name(calibration.method),
                                    ending_name(estimate.ending), estimate.iterations);
     if (estimate.ending != Ending::Converged) text += "; this is not the optimum";
-    text += '\n';
-    if (is_model_error_found(calibration)) {
-        const bool has_any = estimate.degrees_of_freedom > 0;
-        text += (has_any ? "model error found: "
-                         : "model error assumed, nothing is left to find it from: ") +
-                detail::describe_model_error(calibration.campaign) + '\n';
-    }
-    return text + fmt::format(
-                      "variance factor {} with {} degrees of freedom (1: noise and model error "
-                      "stated right)\n",
-                      detail::format_short(estimate.variance_factor, 4),
-                      estimate.degrees_of_freedom);
+    return text + '\n' + describe_model_error(calibration) +
+           fmt::format("variance factor {} with {} degrees of freedom{} ({})\n",
+                       detail::format_short(estimate.variance_factor, 4),
+                       estimate.degrees_of_freedom, describe_variance_by_kind(estimate),
+                       is_model_error_found(calibration)
+                           ? "the model error is found from these residuals: 1 says little"
+                           : "1: noise and model error stated right");
 }
 
-/// What to do if the residuals are not as large as stated.
-std::string judge_residuals(const Calibration& calibration) {
-    const auto& ratio = calibration.doubts.residual_ratio;
-    if (!ratio) return "";
+/// What to do if residuals of a kind are not as large as stated.
+std::string judge_residuals(const Calibration& calibration, const ResidualDoubt& doubt) {
+    const bool has_kinds = !calibration.estimate.variance_by_kind.empty();
     const std::string text =
-        fmt::format("the residuals are {} times what sigma and model error say: ",
-                    detail::format_short(*ratio, 2));
-    if (*ratio < 1) return text + "a smaller model_error_mm or sigma would do\n";
-    const std::string larger =
-        calibration.campaign.sensor->has_lengths()
-            ? fmt::format("state a larger model_error_mm ({} would fit)",
-                          detail::format_short(fitting_model_error(calibration), 2))
-            : "state a larger model_error_orientation_mrad";
-    return text + larger +
-           (calibration.estimate.loss.kind == LossKind::Squares
-                ? ", add error terms (errors: full) or look for outliers with --loss\n"
-                : " or add error terms (errors: full)\n");
+        fmt::format("the residuals{} are {} times what sigma and model error say: ",
+                    !has_kinds       ? ""
+                    : doubt.is_angle ? " in mrad"
+                                     : " in mm",
+                    detail::format_short(doubt.ratio, 2));
+    const bool is_earlier = !calibration.held.empty();
+    if (doubt.ratio < 1 && is_model_error_found(calibration)) {
+        return text + "what is expected is rather too large\n";
+    }
+    const bool is_robust = calibration.estimate.loss.kind != LossKind::Squares;
+    if (is_earlier && doubt.ratio < 1) return text + "less than the earlier estimate left over\n";
+    if (is_earlier) {
+        return text + "the robot may not be as the earlier estimate has it" +
+               (is_robust ? "\n" : ", or look for outliers with --loss\n");
+    }
+    const std::string key = fmt::format(
+        "{}{}", doubt.is_angle ? "model_error_orientation_mrad" : "model_error_mm",
+        doubt.fitting > 0
+            ? fmt::format(" ({} would fit)", detail::format_short(mm_per_m * doubt.fitting, 2))
+            : "");
+    if (doubt.ratio < 1) return text + "a smaller " + key + " or sigma would do\n";
+    const std::string terms =
+        fmt::format("add error terms ({})", detail::richer_errors(calibration.campaign.robot));
+    return text + "state a larger " + key +
+           (is_robust ? " or " + terms + '\n'
+                      : ", " + terms + " or look for outliers with --loss\n");
+}
+
+std::string judge_residuals(const Calibration& calibration) {
+    std::string text;
+    for (const ResidualDoubt& doubt : calibration.doubts.residuals) {
+        text += judge_residuals(calibration, doubt);
+    }
+    return text;
 }
 
 std::string describe_missing_errors(const Calibration& calibration) {
     if (!calibration.doubts.missing_errors) return "";
     return fmt::format(
         "about {:.0f} % of the squares left over follow the joints' positions: joints bend or have "
-        "periodic errors that this model leaves out (errors: full has them)\n",
-        100 * *calibration.doubts.missing_errors);
+        "periodic errors that this model leaves out (add {})\n",
+        100 * *calibration.doubts.missing_errors,
+        detail::richer_errors(calibration.campaign.robot));
+}
+
+/// "40 of 247 leave the joint ranges measured (q2, q3): what is expected there is extrapolated".
+std::string describe(const std::optional<BeyondMeasured>& beyond, const char* what) {
+    if (!beyond) return "";
+    return fmt::format(
+        "{} of {} {} leave the range measured of {}: what is expected there is extrapolated and "
+        "often too small\n",
+        beyond->count, detail::count_of(beyond->of, "pose"), what, fmt::join(beyond->joints, ", "));
+}
+
+/// Whether what was found on the validation is what was expected there, by chance: of so many
+/// numbers, and of the model error, which is known within a factor.
+std::string judge_validation(const Calibration& calibration) {
+    if (!calibration.validation || !calibration.expected_validation) return "";
+    constexpr double deviations = 2;
+    constexpr double tolerated = 1.25;
+    const Metrics& found = *calibration.validation;
+    const Estimate& estimate = calibration.estimate;
+    const double ratio = found.rms() / calibration.expected_validation->total();
+    const double numbers =
+        static_cast<double>(found.point_count * std::max<Index>(1, found.coordinate_count));
+    const double freedom = std::max<double>(1, static_cast<double>(estimate.degrees_of_freedom));
+    const double within = calibration.campaign.spread.is_prior
+                              ? std::log(estimate.model_error_within)
+                              : std::sqrt(0.5 / freedom);
+    const double chance =
+        std::max(tolerated, std::exp(deviations * std::hypot(within, std::sqrt(0.5 / numbers))));
+    const std::string times = detail::format_short(ratio, 3);
+    if (!(ratio <= chance)) {
+        return fmt::format(
+            "the validation is off by {} times what is expected, beyond chance (up to {}): {}\n",
+            times, detail::format_short(chance, 3),
+            calibration.validation_beyond
+                ? "calibrate with poses like those, too"
+                : "the robot has changed, or its errors there are unlike those calibrated with");
+    }
+    return fmt::format("the validation is off by {} times what is expected, {}\n", times,
+                       ratio * chance >= 1 ? "within chance: the calibration holds there"
+                                           : "less than chance would have it: it holds there");
+}
+
+/// Base and targets that the validation was judged with.
+std::string format_refitted(const Calibration& calibration) {
+    if (!calibration.refitted) return "";
+    const Campaign& campaign = calibration.campaign;
+    detail::Table values = detail::value_table(campaign, *calibration.refitted);
+    const auto begin = values.rows.begin() + base_parameter_count(campaign);
+    values.rows.erase(begin, begin + campaign.robot.parameter_count());
+    return format_section(
+        fmt::format("Refitted to the validation (base, {})", campaign.sensor->words().unknowns),
+        values);
 }
 
 std::string describe_noise_floor(const Calibration& calibration) {
@@ -144,6 +226,8 @@ std::string describe_expected(const Calibration& calibration) {
     if (calibration.expected_validation) {
         text += describe(*calibration.expected_validation, "at the validation", is_angle) + '\n';
     }
+    text += judge_validation(calibration) +
+            describe(calibration.validation_beyond, "of the validation");
     for (const ErrorPrediction& prediction : calibration.predicted) {
         const auto where =
             fmt::format("at the {} to predict",
@@ -151,7 +235,7 @@ std::string describe_expected(const Calibration& calibration) {
         text += describe(prediction.overall, where, prediction.is_angle) + ", 95 % are below " +
                 detail::format_error(prediction.overall.percentile95, prediction.is_angle) + '\n';
     }
-    return text;
+    return text + describe(calibration.predicted_beyond, "to predict");
 }
 
 std::string format_accuracy(const Calibration& calibration) {
@@ -225,6 +309,7 @@ std::string format_values(const Calibration& calibration, bool has_all) {
     const std::string unknowns = campaign.sensor->words().unknowns;
     detail::Table values = detail::parameter_table(campaign, calibration.estimate);
     const Index count = campaign.robot.parameter_count();
+    detail::add_sigmas_beside_held(calibration, values);
     if (!calibration.held.empty() && !has_all) {
         std::erase_if(values.rows, [&](const std::vector<std::string>& row) {
             return std::ranges::find(calibration.held, row.front()) != calibration.held.end();
@@ -272,7 +357,8 @@ std::string format(const Calibration& calibration, bool has_all_parameters) {
     return models + describe_starts(calibration) + describe_measured(calibration) +
            describe_ending(calibration) + judge_residuals(calibration) +
            describe_missing_errors(calibration) + format_accuracy(calibration) +
-           format_outliers(calibration) + format_parameters(calibration, has_all_parameters);
+           format_outliers(calibration) + format_refitted(calibration) +
+           format_parameters(calibration, has_all_parameters);
 }
 
 std::string format(const ModelSelection& selection) {

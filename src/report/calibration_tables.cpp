@@ -98,6 +98,16 @@ Table parameter_table(const Campaign& campaign, const Estimate& estimate) {
     return table;
 }
 
+void add_sigmas_beside_held(const Calibration& calibration, Table& parameters) {
+    const auto& sigmas = calibration.sigmas_beside_held;
+    if (sigmas.empty()) return;
+    parameters.header.emplace_back("were those held exact");
+    for (std::vector<std::string>& row : parameters.rows) {
+        const auto found = sigmas.find(row.front());
+        row.push_back(found == sigmas.end() ? "-" : format_fixed(mm_per_m * found->second, 4));
+    }
+}
+
 Table compliance_table(const Campaign& campaign, const Estimate& estimate) {
     const VectorXd deviations = standard_deviations(estimate);
     const Index robot_begin = base_parameter_count(campaign);

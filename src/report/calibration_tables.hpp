@@ -19,6 +19,10 @@ Table value_table(const Campaign& campaign, const Parameters& parameters);
 /// The same of an estimate, with standard deviations.
 Table parameter_table(const Campaign& campaign, const Estimate& estimate);
 
+/// Beside the standard deviations those without the uncertainty of what is held, as `plan --only`
+/// counts; "-" for what is held. Nothing where nothing is.
+void add_sigmas_beside_held(const Calibration& calibration, Table& parameters);
+
 /// The compliance of each joint that has one, in urad/(N m) (um/N), with its standard deviation and
 /// the largest torque, at which the parameter is what gives way. No rows if there is none.
 Table compliance_table(const Campaign& campaign, const Estimate& estimate);

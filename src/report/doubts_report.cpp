@@ -81,16 +81,17 @@ std::string describe_sizes(const Campaign& campaign, const std::vector<SizeDoubt
                        list_size_keys(campaign, sizes));
 }
 
-std::string describe_model_errors(const std::vector<ModelErrorDoubt>& errors) {
+std::string describe_model_errors(const Chain& robot, const std::vector<ModelErrorDoubt>& errors) {
     std::string words;
     for (const ModelErrorDoubt& error : errors) {
         words += fmt::format("{}{}, {} times what is expected", words.empty() ? "" : " and ",
                              detail::format_error(error.value, error.is_angle),
                              detail::format_short(error.times, 3));
     }
-    return "the model error found is " + words +
-           ": error terms are missing (errors: full has most), the nominal robot is another, or "
-           "points are grossly wrong (try --loss cauchy)";
+    return fmt::format(
+        "the model error found is {}: error terms are missing (add {}), the nominal robot is "
+        "another, or points are grossly wrong (try --loss cauchy)",
+        words, detail::richer_errors(robot));
 }
 
 /// "base 200 mm and targets 3 mm from where EARLIER: OPTION base,targets identifies them anew".
@@ -104,6 +105,13 @@ std::string describe_moved(const Moved& moved, const char* earlier, const char* 
     return fmt::format("{} from where {}: {} {} identifies {} anew", distances, earlier, option,
                        fmt::join(moved.parts, ","),
                        moved.parts.front() == "base" && moved.parts.size() == 1 ? "it" : "them");
+}
+
+std::string describe_scatter(const ScatterDoubt& scatter) {
+    return fmt::format(
+        "repeated samples scatter {} times as much as sigma says, {} most: is it grossly wrong "
+        "(--exclude {}, --loss cauchy), or sigma stated too small?",
+        detail::format_short(scatter.ratio, 2), detail::quote(scatter.sample), scatter.sample);
 }
 
 std::string describe_distance(const DistanceDoubt& distance) {
@@ -157,8 +165,9 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
         sentences.push_back(describe_sizes(calibration.campaign, doubts.sizes));
     }
     if (!doubts.model_errors.empty() && !has_moved) {
-        sentences.push_back(describe_model_errors(doubts.model_errors));
+        sentences.push_back(describe_model_errors(calibration.campaign.robot, doubts.model_errors));
     }
+    if (doubts.scatter) sentences.push_back(at + describe_scatter(*doubts.scatter));
     if (doubts.lacks_length) sentences.push_back(no_length);
     if (doubts.distance) sentences.push_back(at + describe_distance(*doubts.distance));
     if (doubts.small_residuals) {

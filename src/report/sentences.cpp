@@ -67,7 +67,7 @@ std::string describe_scaling(const Campaign& campaign, double repeats) {
     if (!campaign.spread.by_name.empty()) text += ", others by name in the campaign file";
     text += '\n';
     if (campaign.prior) return text + "prior: that of an earlier estimate\n";
-    if (campaign.spread.is_prior) text += "prior: the scale, as standard deviation\n";
+    if (prior_count(campaign) > 0) text += "prior: the scale, as standard deviation\n";
     return text;
 }
 
@@ -78,6 +78,18 @@ std::string describe_looseness(double efficiency, Index starts_at_best, Index st
     return fmt::format(
         "the bound is loose at so few poses: {} of {} independent starts ended at this value",
         starts_at_best, starts);
+}
+
+std::string richer_errors(const Chain& robot) {
+    bool bends = false;
+    bool has_harmonics = false;
+    for (Index k = 0; k < robot.parameter_count(); ++k) {
+        const ErrorTerm* const term = robot.parameter_term(k);
+        if (term == nullptr) continue;
+        has_harmonics = has_harmonics || term->kind == TermKind::Harmonic;
+        bends = bends || term->kind == TermKind::Torque || term->kind == TermKind::Gravity;
+    }
+    return bends && has_harmonics ? "axis_tilt or more harmonics" : "errors: full";
 }
 
 std::string format_error(double value, bool is_angle) {

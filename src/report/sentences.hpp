@@ -16,6 +16,9 @@ std::string describe_scaling(const Campaign& campaign, double repeats);
 /// Says, where little is proven about a choice, what tells more; empty where it is nearly optimal.
 std::string describe_looseness(double efficiency, Index starts_at_best, Index starts);
 
+/// What to add to the campaign where error terms are missing: "errors: full" unless it has them.
+std::string richer_errors(const Chain& robot);
+
 /// "1 mm", "-0.5 mrad": a small error with its unit.
 std::string format_error(double value, bool is_angle);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "../core/progress_counter.hpp"
@@ -176,6 +177,14 @@ void compare_models(Work& work, const Parameters& registered, Calibration& resul
     if (!work.options.stop.is_set()) result.selection = std::move(selection);
 }
 
+std::map<std::string, double> sigmas_by_name(const Estimate& estimate) {
+    const VectorXd sigmas = standard_deviations(estimate);
+    std::map<std::string, double> by_name;
+    Index k = 0;
+    for (const std::string& name : estimate.names) by_name[name] = sigmas[k++];
+    return by_name;
+}
+
 /// All that `used` alone tell.
 void calibrate_with(Work& work, Calibration& result) {
     Registration registration = register_base_and_targets(work.campaign, work.used);
@@ -211,6 +220,7 @@ void calibrate_with(Work& work, Calibration& result) {
                                 result.estimate.parameters, work.stopped(work.options.joint));
     }
     if (const auto& earlier = work.options.earlier) {
+        if (!result.held.empty()) result.sigmas_beside_held = sigmas_by_name(result.estimate);
         result.estimate = detail::complete(work.whole, earlier->estimate, work.known, work.campaign,
                                            work.used, result.estimate);
         result.campaign = with_model_error(work.whole, result.estimate);
@@ -247,6 +257,8 @@ Estimate refit(const Work& work, const Calibration& result, const Campaign& camp
     VectorXd& robot = before.parameters.robot;
     robot = errors_under_loads(result.campaign.robot, robot, campaign.robot);
     Estimate found = find_refit(work, campaign, before, *work.options.validation, refitted);
+    found.variance_factor = before.variance_factor;  // what is expected there is not learned there
+    found.variance_by_kind = before.variance_by_kind;
     if (found.undetermined.empty()) return found;
     throw InputError(
         fmt::format("{} cannot be refitted: {}", fmt::join(refitted, " and "), found.undetermined));
@@ -321,8 +333,13 @@ void validate(const Work& work, Calibration& result) {
     if (options.validation_campaign != nullptr) {
         campaign = with_model_error(*options.validation_campaign, estimate);
     }
-    if (!options.refitted.empty()) estimate = refit(work, result, campaign);
+    if (!options.refitted.empty()) {
+        estimate = refit(work, result, campaign);
+        result.refitted = estimate.parameters;
+    }
     result.validation = judge(campaign, estimate.parameters, *options.validation);
+    result.validation_beyond = find_beyond_measured(campaign, work.used.configurations,
+                                                    options.validation->configurations);
     // What else was identified there the estimate's covariance does not tell.
     if (options.validation_campaign != nullptr) return;
     result.expected_validation = expected_error(campaign, estimate, *options.validation);
@@ -332,25 +349,6 @@ void validate(const Work& work, Calibration& result) {
 }
 
 }  // namespace
-
-std::string_view method_name(CalibrationMethod method) {
-    switch (method) {
-        case CalibrationMethod::Joint:
-            return "lm";
-        case CalibrationMethod::TwoStep:
-            return "two-step";
-        case CalibrationMethod::Global:
-            return "global";
-    }
-    return "";
-}
-
-Index default_folds(Index configuration_count) {
-    constexpr Index leave_one_out_limit = 100;
-    constexpr Index folds = 10;
-    if (configuration_count < 2) return 0;
-    return configuration_count <= leave_one_out_limit ? configuration_count : folds;
-}
 
 Calibration calibrate(const Campaign& campaign, const Measurements& measurements,
                       const CalibrationOptions& options) {
@@ -393,6 +391,8 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
     }
     if (options.predicted.rows() > 0) {
         result.predicted = predict_errors(result.campaign, result.estimate, options.predicted);
+        result.predicted_beyond =
+            find_beyond_measured(campaign, used.configurations, options.predicted);
     }
     return result;
 }

@@ -99,20 +99,51 @@ std::string describe(const Plane& plane) {
         detail::format_mm(plane.offset, 1));
 }
 
-std::optional<double> find_residual_ratio(const Estimate& estimate) {
+std::optional<double> clear_ratio(const ResidualVariance& variance, LossKind loss) {
     constexpr double tolerated = 1.2;  // intervals of 95 % would hold 90 %
     constexpr double chance = 1e-3;    // of a doubt without a reason, on either side
     // Degrees of freedom for which the median tells as much as the mean square [Rousseeuw & Croux
     // 1993].
-    const double efficiency = estimate.loss.kind == LossKind::Squares ? 1 : 0.37;
-    if (estimate.degrees_of_freedom <= 0) return std::nullopt;
-    const double freedom = efficiency * static_cast<double>(estimate.degrees_of_freedom);
-    const double squares = freedom * estimate.variance_factor;
-    const double ratio = std::sqrt(estimate.variance_factor);
+    const double efficiency = loss == LossKind::Squares ? 1 : 0.37;
+    if (variance.degrees_of_freedom <= 0) return std::nullopt;
+    const double freedom = efficiency * variance.degrees_of_freedom;
+    const double squares = freedom * variance.factor;
+    const double ratio = std::sqrt(variance.factor);
     const bool is_chance = squares >= detail::chi_squared_quantile(chance, freedom) &&
                            squares <= detail::chi_squared_quantile(1 - chance, freedom);
     if (is_chance || (ratio <= tolerated && ratio >= 1 / tolerated)) return std::nullopt;
     return ratio;
+}
+
+/// The model error with which residuals of a kind would be as stated.
+double fitting_model_error(const Campaign& found, const Measurements& measured,
+                           const Estimate& estimate, bool is_angle) {
+    const double factor = estimate.variance_of(is_angle).factor;
+    if (!(factor > 0)) return 0;
+    const ExpectedError expected = expected_error(found, estimate, measured, is_angle);
+    // Without priors the expected errors are scaled by the factor already.
+    const double scaled = found.spread.is_prior ? 1 : factor;
+    const double noise = expected.noise * expected.noise / scaled;
+    const double model = expected.model * expected.model / scaled;
+    const Index lengths = found.sensor->lengths_per_target();
+    const Index count = is_angle ? found.sensor->rows_per_target() - lengths : lengths;
+    return std::sqrt(std::max(0.0, factor * (model + noise) - noise) / static_cast<double>(count));
+}
+
+std::vector<ResidualDoubt> find_residual_doubts(const Campaign& campaign,
+                                                const Measurements& measured,
+                                                const Estimate& estimate) {
+    const Campaign found = with_model_error(campaign, estimate);
+    std::vector<ResidualDoubt> doubts;
+    for (const bool is_angle : {false, true}) {
+        const Sensor& sensor = *campaign.sensor;
+        if (!(is_angle ? sensor.has_angles() : sensor.has_lengths())) continue;
+        if (const auto ratio = clear_ratio(estimate.variance_of(is_angle), estimate.loss.kind)) {
+            doubts.push_back(
+                {*ratio, is_angle, fitting_model_error(found, measured, estimate, is_angle)});
+        }
+    }
+    return doubts;
 }
 
 std::optional<double> find_small_residuals(const Campaign& campaign, const Estimate& estimate) {
@@ -313,9 +344,10 @@ void add_doubts(const Campaign& campaign, const Measurements& measured, const Es
                 Doubts& doubts) {
     doubts.sizes = find_size_doubts(campaign, estimate);
     doubts.model_errors = find_model_error_doubts(campaign, estimate);
-    doubts.residual_ratio = find_residual_ratio(estimate);
+    doubts.residuals = find_residual_doubts(campaign, measured, estimate);
     doubts.small_residuals = find_small_residuals(campaign, estimate);
     doubts.missing_errors = find_missing_errors(campaign, measured, estimate);
+    doubts.scatter = find_scatter_doubt(campaign, measured, estimate.parameters);
     doubts.lacks_length = lacks_length(campaign);
     doubts.distance = find_distance_doubt(campaign, measured, estimate);
     doubts.negative_compliances = find_negative_compliances(campaign, estimate);

@@ -149,7 +149,10 @@ Parameters complete(const KnownParameters& known, const Parameters& values,
                     const Parameters& found) {
     Parameters whole = found;  // its base is as it was where that is known
     whole.robot = values.robot;
-    whole.robot(numbers_of(known.robot, false)) = found.robot;
+    const std::vector<Index> unknown = numbers_of(known.robot, false);
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+        whole.robot[unknown[k]] = found.robot[static_cast<Index>(k)];
+    }
     if (known.targets) whole.sensor = values.sensor;
     return whole;
 }

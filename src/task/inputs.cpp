@@ -104,8 +104,10 @@ void check_enough_poses(const Campaign& campaign, Index count, Index measured,
     throw InputError(
         campaign.spread.is_prior
             ? fmt::format("--poses is {}, must be at least {}: fewer are not enough to register "
-                          "base and {}, which have no prior",
-                          count, least, campaign.sensor->words().place)
+                          "{}{}, which {} no prior",
+                          count, least, base_parameter_count(campaign) > 0 ? "base and " : "",
+                          campaign.sensor->words().place,
+                          base_parameter_count(campaign) > 0 ? "have" : "has")
             : fmt::format("--poses is {}, must be at least {}: fewer do not identify {} "
                           "parameters; or let --prior tell the rest",
                           count, least, parameter_count(campaign)));

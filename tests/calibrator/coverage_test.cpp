@@ -8,11 +8,12 @@
 #include <string>
 
 #include "../../src/model/complete_model.hpp"
+#include "posewise/jacobian/identifiability.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "support/sensors.hpp"
 
-/// Intervals of 95 % beside priors hold 95 %: of robots drawn from the population that the priors
-/// are of, whatever model error is stated.
+/// Intervals of 95 % hold 95 %: beside priors of robots drawn from the population that they are of,
+/// whatever model error is stated, and without.
 
 namespace posewise {
 namespace {
@@ -81,6 +82,23 @@ Campaign stating(Campaign campaign, double part_of_model_error) {
     return campaign;
 }
 
+/// Poses of an irreducible model without priors.
+Campaign free_poses() {
+    Campaign campaign = full_poses();
+    const Campaign bare = with_robot(campaign, without_parameters(campaign.robot));
+    campaign = with_robot(bare, irreducible_model(bare));
+    campaign.spread = {};  // no prior
+    return campaign;
+}
+
+/// As long as one variance is taken for lengths and angles, it is 2.5 times that of lengths and 0.6
+/// times that of angles.
+CoverageCase half_of_angles() {
+    CoverageCase of{free_poses(), free_poses(), 40};
+    of.stated.model_error_orientation /= 2;
+    return of;
+}
+
 struct Named {
     const char* name;
     CoverageCase of;
@@ -100,6 +118,7 @@ std::vector<Named> cases() {
             {"mm and mrad", {poses, poses, 16}},
             {"mm and mrad, half", {poses, stating(poses, 0.5), 16}},
             {"mm and mrad, twice", {poses, stating(poses, 2), 16}},
+            {"no prior, mrad at half", half_of_angles()},
             {"gravity by weights", {with_weights(), right}},
             {"gravity by weights, 24 poses", {with_weights(), right, 24}}};
 }

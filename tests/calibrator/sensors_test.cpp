@@ -102,6 +102,44 @@ TEST(PlaneSensor, TellsMoreWhereMoreIsKnownOfItsPlanes) {
     EXPECT_LT(with_some.at("plane1.offset"), 0.9 * with_all.at("plane1.offset"));
 }
 
+/// Stated at half, at a tenth: the other kind's variance stays 1, and what is expected at new poses
+/// is what is found there.
+TEST(PoseSensor, HasAVarianceOfLengthsAndOneOfAngles) {
+    Campaign truth = exact_campaign("pose of an unknown tool");
+    truth.model_error = 2e-4;
+    truth.model_error_orientation = 3e-4;
+    const Simulation simulated = simulate(truth, {.pose_count = 300});
+    const Parameters start = register_base_and_targets(truth, simulated.measurements).parameters;
+    const auto judge = [&](double lengths, double angles) {
+        Campaign stated = truth;
+        stated.model_error *= lengths;
+        stated.model_error_orientation *= angles;
+        const Estimate estimate = identify(stated, simulated.measurements, start);
+        ASSERT_EQ(estimate.variance_by_kind.size(), 2U);
+        for (const bool is_angle : {false, true}) {
+            const double stated_at = is_angle ? angles : lengths;
+            const double factor = estimate.variance_of(is_angle).factor;
+            if (stated_at == 1) {
+                EXPECT_NEAR(factor, 1, 0.1);
+            } else {
+                EXPECT_GT(factor, 2);
+            }
+        }
+        EXPECT_NEAR(estimate.variance_of(false).degrees_of_freedom +
+                        estimate.variance_of(true).degrees_of_freedom,
+                    static_cast<double>(estimate.degrees_of_freedom), 1e-6);
+        const auto fresh = simulate_measurements(
+            truth, simulated.truth, detail::random_configurations(truth.robot, 300, 9), 1, 77);
+        const Metrics found = make_metrics(residuals(stated, estimate.parameters, fresh), 3);
+        EXPECT_NEAR(expected_error(stated, estimate, fresh).total() / found.distance_rms, 1, 0.07);
+        EXPECT_NEAR(expected_error(stated, estimate, fresh, true).total() / found.orientation_rms,
+                    1, 0.07);
+    };
+    judge(1, 0.5);
+    judge(1, 0.1);
+    judge(0.3, 1);
+}
+
 TEST(PoseSensor, IdentifiesFourARevoluteJointAndSix) {
     for (const auto& [name, declared] : campaigns_of_every_sensor(fanuc())) {
         if (name != "pose of an unknown tool") continue;

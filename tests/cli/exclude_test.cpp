@@ -66,15 +66,37 @@ TEST_F(Exclude, LeavesOutConfigurationsAndSamples) {
     run_well("study c.yaml -m bad.csv --exclude 4 --splits 0 -k 20 --random 2");
 }
 
+/// By the number in the file's column, which begins at 0 in what `simulate` writes.
+TEST_F(Exclude, NamesASampleAsTheFileDoes) {
+    measure(points);
+    const auto spoil = [&](const std::string& sample) {
+        rewrite("bad.csv", [&](std::vector<std::string>& cells, Index) {
+            if (cells[0] == "4" && cells[1] == sample) cells.back() = "900";
+            return true;
+        });
+        return number_behind(
+            run_well("calibrate c.yaml -m bad.csv --folds 0 --exclude 4:" + sample), "distance RMS",
+            1);
+    };
+    for (const std::string sample : {"0", "1", "2"}) EXPECT_LT(spoil(sample), 0.5) << sample;
+    rewrite("unnumbered.csv", [&](std::vector<std::string>& cells, Index) {
+        cells.erase(cells.begin() + 1);
+        return true;
+    });
+    run_well("calibrate c.yaml -m unnumbered.csv --folds 0 --exclude 4:3");
+    expect_input_error("calibrate c.yaml -m unnumbered.csv --folds 0 --exclude 4:0",
+                       "configuration '4' has 3 samples, 4:1 to 4:3");
+}
+
 TEST_F(Exclude, IsOfWhatIsThere) {
     measure(points);
     const std::string calibrate = "calibrate c.yaml -m s.csv --exclude ";
     expect_input_error(calibrate + "99",
                        "s.csv: excluded configuration '99' is not among the measured ones; must be "
                        "an id, or one and the number of a sample like ");
-    expect_input_error(calibrate + "4:4",
-                       "s.csv: excluded sample '4:4' is not among the measured "
-                       "ones; configuration '4' has 3 samples");
+    expect_input_error(calibrate + "4:3",
+                       "s.csv: excluded sample '4:3' is not among the measured "
+                       "ones; configuration '4' has 3 samples, 4:0 to 4:2");
     expect_input_error(calibrate + "4:x", "'4:x' is not among the measured ones");
     expect_input_error(calibrate + "4:2,4", "'4' is excluded twice; keep one");
     std::string all = "0";

@@ -265,6 +265,7 @@ TEST_F(EstimateFile, HoldsTheWholeCovarianceAndHowTheIdentificationEnded) {
     expected.iterations = 7;
     expected.degrees_of_freedom = 42;
     expected.variance_factor = 1.25;
+    expected.variance_by_kind = {{0.9, 20.5}, {1.7, 21.5}};
     expected.model_error = 2e-4;
     expected.model_error_within = 1.5;
     expected.ending = Ending::IterationLimit;
@@ -278,6 +279,8 @@ TEST_F(EstimateFile, HoldsTheWholeCovarianceAndHowTheIdentificationEnded) {
     EXPECT_EQ(estimate.iterations, 7);
     EXPECT_EQ(estimate.degrees_of_freedom, 42);
     EXPECT_EQ(estimate.variance_factor, 1.25);
+    EXPECT_EQ(estimate.variance_of(true).factor, 1.7);
+    EXPECT_EQ(estimate.variance_of(false).degrees_of_freedom, 20.5);
     EXPECT_EQ(estimate.model_error, 2e-4);
     EXPECT_EQ(estimate.model_error_within, 1.5);
     EXPECT_EQ(estimate.ending, Ending::IterationLimit);

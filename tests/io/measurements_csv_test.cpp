@@ -204,7 +204,12 @@ TEST(BadMeasurementsCsv, Headers) {
          "1:70: missing column p2_z_mm; the header must have "
          "config,sample,q1_rad,q2_rad,lift_mm,p1_x_mm,p1_y_mm,p1_z_mm,p2_x_mm,p2_y_mm,p2_z_mm"},
         {"config,", "", "1:70: missing column config;[...]"},
-        {"q2_rad", "q4_rad", "1:22: column 'q4_rad' is unknown; did you mean 'q1_rad'?"},
+        {"q2_rad", "q4_rad",
+         "1:22: column 'q4_rad' is unknown, the campaign's robot has 3 joints; did you mean "
+         "'q1_rad'?"},
+        {"p2_x_mm", "p3_x_mm",
+         "1:57: column 'p3_x_mm' is unknown, the campaign states 2 targets; did you mean "
+         "'p1_x_mm'?"},
         {"q2_rad", "q1_deg", "1:22: column 'q1_deg' occurs twice; keep one"},
         {"q2_rad", "q2", "1:22: column 'q2' has no unit; must be like q2_rad"},
         {"p2_x_m", "p2_x", "1:57: column 'p2_x' has no unit; must be like p2_x_mm"},

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "posewise/measurement/simulation.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "posewise/report/reports.hpp"
 #include "support/campaigns.hpp"
 
@@ -73,6 +76,52 @@ TEST(FormatCalibration, SaysWhatToExpectAtPosesToPredict) {
                                                    "), 95 % are below 0.9 " + unit + "\n"))
             << format(calibration);
     }
+}
+
+TEST(FormatCalibration, NamesTheModelErrorThatDoesNotFitAndTheOneThatWould) {
+    Campaign truth = testing::tracked_campaign(testing::fanuc());
+    truth.sensor = std::make_shared<PoseSensor>(std::nullopt, IsotropicNoise{5e-5}, 5e-5);
+    truth.nominal.sensor = VectorXd::Zero(6);
+    truth = with_robot(truth, irreducible_model(with_robot(truth, testing::fanuc())));
+    truth.model_error = truth.model_error_orientation = 4e-4;
+    const Measurements measured = simulate(truth, {.pose_count = 200}).measurements;
+    Campaign stated = truth;
+    stated.model_error_orientation = 2e-4;
+    Calibration calibration = calibrate(stated, measured, {.folds = 0});
+    ASSERT_EQ(calibration.doubts.residuals.size(), 1U);
+    EXPECT_NEAR(calibration.doubts.residuals[0].fitting, 4e-4, 4e-5);
+    const std::string text = format(calibration);
+    EXPECT_TRUE(holds(text,
+                      "the residuals in mrad are 1.8 times what sigma and model error say: "
+                      "state a larger model_error_orientation_mrad (0."))
+        << text;
+    EXPECT_TRUE(holds(text, "add error terms (errors: full)")) << text;
+    EXPECT_FALSE(holds(text, "model_error_mm")) << text;
+    calibration.doubts.missing_errors = 0.2;
+    calibration.campaign.robot =
+        with_torque_shapes(with_harmonics(without_parameters(calibration.campaign.robot), {1, 2}));
+    EXPECT_FALSE(holds(format(calibration), "errors: full"));
+}
+
+TEST(FormatCalibration, SaysWhetherTheValidationIsAsExpected) {
+    const Example example(40);
+    Measurements others = simulate(example.campaign, {.pose_count = 30, .seed = 9}).measurements;
+    CalibrationOptions options;
+    options.folds = 0;
+    options.validation = &others;
+    options.refitted = {"base"};
+    const auto report = [&] {
+        return format(calibrate(example.campaign, example.measurements, options));
+    };
+    EXPECT_TRUE(holds(report(), "within chance: the calibration holds there\n")) << report();
+    EXPECT_TRUE(holds(report(), "\nRefitted to the validation (base, targets")) << report();
+    EXPECT_FALSE(holds(report(), "extrapolated")) << report();
+    others.configurations.col(2).array() += 0.002;  // another zero since
+    EXPECT_TRUE(holds(report(), "times what is expected, beyond chance")) << report();
+    EXPECT_TRUE(holds(report(), "the robot has changed")) << report();
+    others.configurations(4, 1) += 3;
+    EXPECT_TRUE(holds(report(), "\n1 of 30 poses of the validation leave the range measured of "))
+        << report();
 }
 
 TEST(FormatCalibration, OfOneThatIsNotIdentifiedSaysWhy) {

@@ -100,8 +100,12 @@ inline void judge_poses(const CoverageCase& of, const Parameters& truth, const E
                                                        VectorXd::Ones(sensor.target_count()));
         for (Index row = 0; row < sensor.rows_per_target(); ++row) {
             auto& shares = sensor.is_angle(row) ? coverage.orientations : coverage.positions;
+            // Without priors the noise is that stated times the variance factor.
+            const double factor =
+                found.spread.is_prior ? 1 : estimate.variance_of(sensor.is_angle(row)).factor;
             shares[0].add(error[row], std::sqrt(variances[row]));
-            shares[1].add(measured_error[row], std::sqrt(variances[row] + noise(row, row)));
+            shares[1].add(measured_error[row],
+                          std::sqrt(variances[row] + factor * noise(row, row)));
         }
     }
     for (Share& share : coverage.positions) share.end_campaign();

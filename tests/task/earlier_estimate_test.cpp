@@ -51,6 +51,15 @@ TEST(EarlierEstimate, HoldsTheRobotWhileBaseAndTargetsAreFound) {
                   .norm(),
               1e-3);
     EXPECT_LT(again.estimate.fit.distance_rms, 4e-4);
+    EXPECT_TRUE(first.sigmas_beside_held.empty());
+    const VectorXd sigmas = standard_deviations(again.estimate);
+    ASSERT_EQ(std::ssize(again.sigmas_beside_held), sigmas.size() - count);
+    for (Index k = 0; k < sigmas.size(); ++k) {
+        const auto beside =
+            again.sigmas_beside_held.find(again.estimate.names[static_cast<std::size_t>(k)]);
+        if (beside == again.sigmas_beside_held.end()) continue;
+        EXPECT_LT(beside->second, sigmas[k]);
+    }
     // Base and targets found with the robot follow what is wrong with it: together they are as sure
     // as the poses measured are.
     EXPECT_LT(again.expected.total(), 2 * first.expected.total());

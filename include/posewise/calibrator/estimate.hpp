@@ -62,6 +62,12 @@ struct Outlier {
     double weight = 0;      ///< with which it counts, 0 to 1
 };
 
+/// Of whitened residuals: chi^2 per degree of freedom.
+struct ResidualVariance {
+    double factor = 1;
+    double degrees_of_freedom = 0;
+};
+
 /// Identified parameters and how sure they are.
 struct Estimate {
     Ending ending = Ending::NotRun;
@@ -79,6 +85,12 @@ struct Estimate {
     /// LevenbergMarquardtOptions.
     double variance_factor = 0;
     Index degrees_of_freedom = 0;
+    /// Of lengths, then of angles, where both are measured and losses are squares; else empty: the
+    /// one above is of all. Without priors by restricted maximum likelihood [Patterson & Thompson
+    /// 1971], and the covariance is what noise with these two variances makes of the parameters;
+    /// else each kind's chi^2 by the observations that the parameters leave over.
+    std::vector<ResidualVariance> variance_by_kind;
+    ResidualVariance variance_of(bool is_angle) const;
     /// What the model cannot express, of a length (m) and an angle (rad): as the campaign states
     /// it; where expected sizes are priors, what was found about that.
     double model_error = 0;
@@ -106,9 +118,11 @@ struct ExpectedError {
     double total() const;
 };
 /// Of means measured at these configurations, of the targets seen: the mean over them of
-/// trace(J C J^T), model error and noise, of lengths if there are some.
+/// trace(J C J^T), model error and noise, of lengths if there are some; or as `is_angle` says.
 ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
                              const Measurements& measured);
+ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
+                             const Measurements& measured, bool is_angle);
 
 /// The same, and what 95 % of the points are off by less than.
 struct PredictedError : ExpectedError {
@@ -123,7 +137,7 @@ struct ErrorPrediction {
 /// Of configurations (m x joints, and measured torques), as one reading of all targets there would
 /// find it: of distances, then of angles, as far as the sensor measures them. A point's squared
 /// error is taken as scaled chi squared of the same mean and variance [Satterthwaite 1946]; without
-/// priors as F, since the estimate's degrees of freedom are all that its variance factor rests on.
+/// priors as F, since the degrees of freedom of its kind are all that the variance factor rests on.
 /// Throws InputError for configurations that are not the robot's.
 std::vector<ErrorPrediction> predict_errors(const Campaign& campaign, const Estimate& estimate,
                                             const RowMatrixXd& configurations);

@@ -19,12 +19,16 @@ struct Measurements {
     /// others is never looked at.
     Seen is_seen;
     std::vector<Index> first_sample{0};  ///< m + 1; samples of configuration i start at [i]
+    /// Of each sample, as in the file's column `sample`; empty: numbers from 1 on.
+    std::vector<std::string> sample_names = {};
 
     Index configuration_count() const { return static_cast<Index>(ids.size()); }
     Index sample_count(Index configuration) const {
         const auto i = static_cast<std::size_t>(configuration);
         return first_sample[i + 1] - first_sample[i];
     }
+    /// "7:2", as leave_out() takes it.
+    std::string sample_name(Index configuration, Index sample) const;
     /// What a sample observed of a target it shows, as a view.
     auto observation(Index sample, Index target) const {
         const Index width = observations.cols() / is_seen.cols();

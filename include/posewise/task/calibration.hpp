@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -96,6 +97,8 @@ struct Calibration {
     MeasuredCount measured;             ///< that was calibrated with
     std::vector<std::string> excluded;  ///< CalibrationOptions::excluded
     std::vector<std::string> held;      ///< parameters that are as the earlier estimate has them
+    /// Where some are held: standard deviations of the others (m, rad), were those held exact.
+    std::map<std::string, double> sigmas_beside_held;
     /// Its ending says whether there is a calibration: where it is NotIdentifiable, nothing below
     /// but `selection` is filled in, and `undetermined` says why.
     Estimate estimate;
@@ -112,6 +115,11 @@ struct Calibration {
     std::vector<ErrorPrediction> predicted;
     std::optional<Metrics> left_out;    ///< on the configurations not used
     std::optional<Metrics> validation;  ///< on CalibrationOptions::validation
+    /// Where poses of the validation, or those to predict, are unlike those calibrated with.
+    std::optional<BeyondMeasured> validation_beyond;
+    std::optional<BeyondMeasured> predicted_beyond;
+    /// With CalibrationOptions::refitted: the parameters that the validation was judged with.
+    std::optional<Parameters> refitted;
     /// By how much base and targets have moved up to the validation, where that is plain.
     std::optional<Moved> moved;
     /// The same since the earlier estimate, if that tells of both.

@@ -25,6 +25,18 @@ std::optional<BeyondLimits> find_beyond_limits(const Campaign& campaign,
 /// Joints that have the same value in all of several configurations.
 std::vector<Index> find_still_joints(const Campaign& campaign, const RowMatrixXd& configurations);
 
+/// Configurations in which joints leave the range of those measured, by over a tenth of it: what is
+/// expected there is an extrapolation.
+struct BeyondMeasured {
+    Index count = 0;                  ///< of configurations
+    Index of = 0;                     ///< so many
+    std::vector<std::string> joints;  ///< that leave it in some of them
+};
+/// Nothing where none does.
+std::optional<BeyondMeasured> find_beyond_measured(const Campaign& campaign,
+                                                   const RowMatrixXd& measured,
+                                                   const RowMatrixXd& configurations);
+
 /// A plane whose normal is measured reversed or, where planes are known, whose offset is measured
 /// with the other sign: of planes fitted to base and robot as stated.
 struct PlaneDoubt {
@@ -116,6 +128,24 @@ struct ModelErrorDoubt {
     bool is_angle = false;
 };
 
+/// Residuals that are clearly not as stated: of all, or of lengths and angles apart.
+struct ResidualDoubt {
+    double ratio = 1;  ///< in units of those stated
+    bool is_angle = false;
+    /// The model error (m or rad) that they would fit; 0 where none is that small.
+    double fitting = 0;
+};
+
+/// Repeated samples that differ by far more than the instrument's noise as stated.
+struct ScatterDoubt {
+    double ratio = 1;    ///< standard deviation about the means, in units of that stated
+    std::string sample;  ///< the farthest, as leave_out() takes it: "7:2"
+};
+/// Nothing where no configuration was repeated, or they scatter by less than three times.
+std::optional<ScatterDoubt> find_scatter_doubt(const Campaign& campaign,
+                                               const Measurements& measurements,
+                                               const Parameters& parameters);
+
 /// A distance of two sockets that the measurements contradict.
 struct DistanceDoubt {
     std::string socket;
@@ -146,14 +176,15 @@ struct Doubts {
     /// About how much of the squares left over follows bending and periodic errors of joints that
     /// the model has not, 0 to 1; if that is clear, and more than a twentieth.
     std::optional<double> missing_errors;
+    std::optional<ScatterDoubt> scatter;
     bool lacks_length = false;  ///< see lacks_length()
     std::optional<DistanceDoubt> distance;
     std::optional<HeldBackSize> held_back;  ///< where sizes were learned
-    /// Residuals in units of those stated, if clearly not as stated: more than 1.2 times larger or
-    /// smaller, and beyond what chi squared of the degrees of freedom is once in a thousand times.
-    std::optional<double> residual_ratio;
-    /// The same where it is below a fiftieth: sigma or model error is stated in another unit. A
-    /// model error that was found counts as it was stated, where that is above 5 mm.
+    /// Those that are more than 1.2 times larger or smaller than stated, and beyond what chi
+    /// squared of the degrees of freedom is once in a thousand times.
+    std::vector<ResidualDoubt> residuals;
+    /// Of all residuals where they are below a fiftieth: sigma or model error is stated in another
+    /// unit. A model error that was found counts as it was stated, where that is above 5 mm.
     std::optional<double> small_residuals;
     /// Joints whose compliance is clearly negative: by three standard deviations.
     std::vector<Index> negative_compliances;
