@@ -113,7 +113,7 @@ MatrixXd find_variances(const IdentificationProblem& problem, const LinearisedSy
     if (rows[0].empty() || rows[1].empty() || estimate.degrees_of_freedom <= 0) return covariance;
     const Part lengths = take_part(system, rows[0], root);
     const Part angles = take_part(system, rows[1], root);
-    if (has_prior) {
+    if (has_prior || root.cols() == 0) {
         estimate.variance_by_kind = quotients(lengths, angles);
         return covariance;
     }

@@ -207,8 +207,8 @@ TEST(BadMeasurementsCsv, Headers) {
         {"q2_rad", "q4_rad",
          "1:22: column 'q4_rad' is unknown, the campaign's robot has 3 joints; did you mean "
          "'q1_rad'?"},
-        {"p2_x_mm", "p3_x_mm",
-         "1:57: column 'p3_x_mm' is unknown, the campaign states 2 targets; did you mean "
+        {"p2_x_m", "p3_x_m",
+         "1:57: column 'p3_x_m' is unknown, the campaign states 2 targets; did you mean "
          "'p1_x_mm'?"},
         {"q2_rad", "q1_deg", "1:22: column 'q1_deg' occurs twice; keep one"},
         {"q2_rad", "q2", "1:22: column 'q2' has no unit; must be like q2_rad"},
