@@ -79,10 +79,14 @@ TEST_F(Exclude, NamesASampleAsTheFileDoes) {
             1);
     };
     for (const std::string sample : {"0", "1", "2"}) EXPECT_LT(spoil(sample), 0.5) << sample;
-    rewrite("unnumbered.csv", [&](std::vector<std::string>& cells, Index) {
-        cells.erase(cells.begin() + 1);
-        return true;
-    });
+    std::istringstream lines(text_of("s.csv"));
+    std::string unnumbered;
+    for (std::string line; std::getline(lines, line);) {
+        if (line[0] == '#') continue;
+        const std::size_t sample = line.find(',');
+        unnumbered += line.substr(0, sample) + line.substr(line.find(',', sample + 1)) + '\n';
+    }
+    write_text("unnumbered.csv", unnumbered);
     run_well("calibrate c.yaml -m unnumbered.csv --folds 0 --exclude 4:3");
     expect_input_error("calibrate c.yaml -m unnumbered.csv --folds 0 --exclude 4:0",
                        "configuration '4' has 3 samples, 4:1 to 4:3");
