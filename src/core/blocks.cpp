@@ -18,10 +18,10 @@ void check_values(const RowMatrixXd& matrix) {
     for (Index row = 0; row < matrix.rows(); ++row) {
         for (Index column = 0; column < matrix.cols(); ++column) {
             if (std::abs(matrix(row, column)) <= largest_value) continue;
-            throw InputError(fmt::format(
-                "row {}, column {} of the matrix is {:g}; must be at most {:g} in magnitude, for "
-                "its square is taken",
-                row + 1, column + 1, matrix(row, column), largest_value));
+            throw InputError(
+                fmt::format("row {}, column {} of the matrix is {:g}; must be finite, at most {:g} "
+                            "in magnitude, for its square is taken",
+                            row + 1, column + 1, matrix(row, column), largest_value));
         }
     }
     for (Index column = 0; column < matrix.cols() && matrix.rows() > 0; ++column) {

@@ -58,9 +58,10 @@ TEST(MakeEqualBlocks, RefusesNumbersWhoseSquaresOverflowOrVanish) {
         }
         return std::string();
     };
-    EXPECT_EQ(error_of(3, 1, -1e160),
-              "row 4, column 2 of the matrix is -1e+160; must be at most 1e+50 in magnitude, for "
-              "its square is taken");
+    EXPECT_EQ(
+        error_of(3, 1, -1e160),
+        "row 4, column 2 of the matrix is -1e+160; must be finite, at most 1e+50 in magnitude, for "
+        "its square is taken");
     EXPECT_EQ(error_of(3, 1, 1e50), "");
     EXPECT_EQ(error_of(3, 1, 1e-160), "");  // beside others it is as good as 0
     EXPECT_EQ(error_of(-1, 0, 1e-160),
