@@ -113,7 +113,10 @@ Earlier read_usable_earlier(const std::string& path, const Campaign& campaign,
     if (!use.only.empty()) compute_from("--only", [&] { with_earlier(campaign, earlier); });
     Campaign judged = campaign;
     if (earlier.spread) judged.spread = *earlier.spread;
-    const std::vector<std::string> faults = find_faults(judged, earlier.estimate);
+    std::vector<std::string> faults = find_faults(judged, earlier.estimate);
+    for (const std::string& stated : earlier.faults) {
+        if (!contains(faults, stated.c_str())) faults.push_back(stated);
+    }
     if (faults.empty()) return earlier;
     const std::string words = "is no calibration to use: " + join_some(faults);
     if (!is_forced) throw input_error_at({path}, words + "; --force takes it all the same");

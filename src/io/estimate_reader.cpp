@@ -305,6 +305,7 @@ EarlierFile read_earlier(const std::string& path, const Campaign& campaign, cons
     EarlierFile earlier;
     earlier.estimate = read_estimate_of(root, campaign, !use.has_new_targets);
     earlier.use = use;
+    if (root.has("faults")) earlier.faults = root["faults"].texts();
     const bool has_learned = root.has("learned_sizes");
     if (has_learned) earlier.spread = read_learned_sizes(root["learned_sizes"], campaign);
     if (root.has("assumes")) earlier.changes = find_changes(root["assumes"], campaign, has_learned);
@@ -328,9 +329,7 @@ bool is_made_from(const std::string& estimate_path, const Measurements& measurem
     constexpr const char* key = "measurements_checksum";
     if (!root.has("made_from") || !root["made_from"].has(key)) return false;
     std::vector<std::string> excluded;
-    if (root.has("excluded")) {
-        for (const JsonValue& id : root["excluded"].list()) excluded.push_back(id.text());
-    }
+    if (root.has("excluded")) excluded = root["excluded"].texts();
     return are_of_checksum(root["made_from"][key].text(), measurements, excluded);
 }
 

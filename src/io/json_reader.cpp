@@ -36,6 +36,12 @@ std::vector<JsonValue> JsonValue::list() const {
     return items;
 }
 
+std::vector<std::string> JsonValue::texts() const {
+    std::vector<std::string> texts;
+    for (const JsonValue& item : list()) texts.push_back(item.text());
+    return texts;
+}
+
 std::vector<JsonValue> JsonValue::values() const {
     if (!value_->is_object()) throw wrong_type("an object");
     std::vector<JsonValue> items;

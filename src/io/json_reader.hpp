@@ -24,6 +24,8 @@ class JsonValue {
     /// The value of a key, which must be there.
     JsonValue operator[](const std::string& key) const;
     std::vector<JsonValue> list() const;
+    /// Items of a list of texts.
+    std::vector<std::string> texts() const;
     /// Values of an object in the order of the file.
     std::vector<JsonValue> values() const;
 

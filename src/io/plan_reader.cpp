@@ -77,14 +77,14 @@ void read_choice_limits(const JsonValue& problem, const std::string& path, PlanR
     request.sources.test_poses = read_path(problem["test_poses"], path);
     request.sources.groups = read_path(problem["groups"], path);
     request.group_limit = problem["group_limit"].count(0, most_poses);
-    request.excluded = read_texts(problem["excluded"]);
+    request.excluded = problem["excluded"].texts();
     request.repeat_limit = problem["repeat_limit"].count(1, most_poses);
     request.least_distance = read_not_negative(problem["least_distance_rad"]);
 }
 
 void read_workspace(const JsonValue& problem, const std::string& path, PlanRequest& request) {
     request.sources.repaired = read_path(problem["repaired_plan"], path);
-    request.dropped = read_texts(problem["dropped"]);
+    request.dropped = problem["dropped"].texts();
     request.sources.workspace = read_path(problem["workspace"], path);
     request.workspace_count = problem["workspace_poses"].count(1, most_workspace_poses);
     for (const JsonValue& number : problem["workspace_box_mm"].list()) {
@@ -107,7 +107,7 @@ void read_earlier(const JsonValue& json, const std::string& path, PlanRequest& r
     request.sources.estimate = read_path(json["file"], path);
     EarlierUse& use = request.earlier;
     use.is_prior = json["as_prior"].boolean();
-    use.only = read_texts(json["only"]);
+    use.only = json["only"].texts();
     for (const JsonValue& part : json["moved"].list()) {
         const std::string name = part.text();
         if (name != "base" && name != "targets") throw part.error("must be base or targets");

@@ -50,6 +50,29 @@ TEST_F(Faults, ThatAreForcedAreMarkedAndRefusedWithoutForce) {
     EXPECT_TRUE(has_file("d.yaml") && has_file("c.csv"));
 }
 
+TEST_F(Faults, ThatTheFileStatesCount) {
+    run_well(calibrate_ + "-o e.json");
+    nlohmann::ordered_json document = nlohmann::ordered_json::parse(text_of("e.json"));
+    document["faults"] = {"a cable was loose"};
+    write_text("bad.json", document.dump());
+    write_text("p.csv", "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n1,0,0,0,0,30,0\n");
+    const std::string do_export = "export " + fanuc_design + " bad.json --dh d.yaml";
+    const std::string words = "bad.json: is no calibration to use: a cable was loose";
+    expect_input_error(do_export, words + "; --force takes it all the same");
+    expect_input_error("correct " + fanuc_design + " bad.json --poses p.csv -o c.csv", words);
+    expect_input_error("plan " + fanuc_design + " --from bad.json -k 12", words);
+    const Outcome forced = run(do_export + " --force");
+    EXPECT_EQ(forced.code, 0);
+    EXPECT_EQ(forced.err, "posewise: warning: " + words + '\n');
+    document["faults"] = "a cable was loose";
+    write_text("bad.json", document.dump());
+    expect_input_error("correct " + fanuc_design + " bad.json --poses p.csv -o c.csv",
+                       "bad.json: faults: is of type string; must be a list");
+    document["faults"] = nlohmann::ordered_json::array();
+    write_text("good.json", document.dump());
+    run_well("correct " + fanuc_design + " good.json --poses p.csv -o c.csv");
+}
+
 TEST_F(Faults, AreValuesThatNoRobotHas) {
     run_well(calibrate_ + "-o e.json");
     nlohmann::ordered_json document = nlohmann::ordered_json::parse(text_of("e.json"));

@@ -36,7 +36,7 @@ void write_predictions_csv(const std::string& path, const std::vector<std::strin
 /// What such a file holds, exactly as it was: parameters, names, covariance, ending, variance
 /// factor, degrees of freedom, model errors. Throws InputError with the place if it is none, if it
 /// is of another robot than the campaign's (see designs/README.md) or of another kind of sensor.
-/// Whether it can be used is for find_faults() to say.
+/// Whether it can be used is for find_faults() to say, and for EarlierFile::faults.
 Estimate read_estimate(const std::string& path, const Campaign& campaign);
 
 /// The same as an earlier estimate, with the sizes of errors that were learned along. Targets (the
@@ -45,6 +45,8 @@ Estimate read_estimate(const std::string& path, const Campaign& campaign);
 struct EarlierFile : Earlier {
     /// Where the campaign's noise or expected sizes are others now: "sigma_m was 1e-05, is 2e-05".
     std::vector<std::string> changes;
+    /// Calibration::faults, where it was written all the same: it must not be used.
+    std::vector<std::string> faults;
 };
 EarlierFile read_earlier(const std::string& path, const Campaign& campaign, const EarlierUse& use);
 
