@@ -7,9 +7,11 @@
 #include "estimate_format.hpp"
 #include "json.hpp"
 #include "json_reader.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/io/estimate_file.hpp"
 #include "posewise/measurement/exclusion.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "posewise/model/transforms.hpp"
 #include "robot_statement.hpp"
 #include "units.hpp"
 
@@ -55,6 +57,15 @@ Isometry3d read_base(const JsonValue& base) {
         throw quaternion.error(fmt::format("has length {:g}; must be 1", q.norm()));
     }
     Isometry3d world_from_base(q.normalized());
+    const JsonValue rpy = base["rpy_deg"];
+    Vector3d angles;
+    for (Index k = 0; k < 3; ++k) {
+        angles[k] = to_radians(read_numbers(rpy, 3)[static_cast<std::size_t>(k)]);
+    }
+    const Matrix3d stated = rotation_from_rpy(angles);
+    if ((stated - world_from_base.linear()).cwiseAbs().maxCoeff() > 1e-6) {
+        throw rpy.error("is not the rotation of quaternion_wxyz; must agree with it");
+    }
     world_from_base.translation() = read_position(base["position_m"]);
     return world_from_base;
 }
@@ -184,6 +195,30 @@ double read_size(const JsonValue& value) {
     return number;
 }
 
+double read_model_error(const JsonValue& value, Quantity quantity) {
+    return check_size(read_size(value), quantity, value);
+}
+
+/// Standard deviations are stated beside the covariance.
+void check_sigmas(const JsonValue& root, const Campaign& campaign,
+                  const std::vector<std::string>& names, const MatrixXd& covariance) {
+    constexpr double rounding = 1e-9;
+    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const Index robot_begin = base_parameter_count(campaign);
+    const Index robot_end = robot_begin + campaign.robot.parameter_count();
+    for (Index k = 0; k < std::ssize(names); ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        const std::string unit = detail::si_suffix(is_angle[i]);
+        const JsonValue sigma = k >= robot_begin && k < robot_end
+                                    ? root["robot"][names[i]]["sigma" + unit]
+                                    : root["sigma"][names[i] + unit];
+        const double expected = std::sqrt(covariance(k, k));
+        if (std::abs(sigma.number() - expected) <= rounding * expected) continue;
+        throw sigma.error(fmt::format("is {:g}, the covariance says {:g}; must agree with it",
+                                      sigma.number(), expected));
+    }
+}
+
 /// Of base and robot alone where the targets are others.
 MatrixXd read_covariance_of(const JsonValue& root, const Campaign& campaign,
                             bool has_same_targets) {
@@ -194,6 +229,7 @@ MatrixXd read_covariance_of(const JsonValue& root, const Campaign& campaign,
     const Index told = std::ssize(names);
     covariance.topLeftCorner(told, told) =
         read_covariance(root["covariance"], names, has_same_targets);
+    check_sigmas(root, campaign, names, covariance);
     return covariance;
 }
 
@@ -237,8 +273,8 @@ Estimate read_estimate_of(const JsonValue& root, const Campaign& campaign, bool 
     estimate.degrees_of_freedom = root["degrees_of_freedom"].count(0);
     estimate.variance_factor = read_size(root["variance_factor"]);
     estimate.variance_by_kind = read_variance_by_kind(root);
-    estimate.model_error = read_size(root["model_error_m"]);
-    estimate.model_error_orientation = read_size(root["model_error_rad"]);
+    estimate.model_error = read_model_error(root["model_error_m"], Quantity::Length);
+    estimate.model_error_orientation = read_model_error(root["model_error_rad"], Quantity::Angle);
     estimate.model_error_within = read_model_error_within(root);
     return estimate;
 }

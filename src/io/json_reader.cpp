@@ -96,10 +96,4 @@ Criterion read_criterion(const JsonValue& json) {
     }
 }
 
-std::vector<std::string> read_texts(const JsonValue& list) {
-    std::vector<std::string> texts;
-    for (const JsonValue& text : list.list()) texts.push_back(text.text());
-    return texts;
-}
-
 }  // namespace posewise::detail

@@ -50,6 +50,5 @@ class JsonValue {
 
 /// A criterion by its name.
 Criterion read_criterion(const JsonValue& json);
-std::vector<std::string> read_texts(const JsonValue& list);
 
 }  // namespace posewise::detail

@@ -42,7 +42,7 @@ StatedSeries read_trial_statement(const std::string& text, const std::string& pa
     series.random_subsets = statement["random_subsets"].count(0);
     series.splits = statement["splits"].count(0);
     series.test_count = statement["test_count"].count(0);
-    series.ids = read_texts(statement["ids"]);
+    series.ids = statement["ids"].texts();
     return {statement["posewise_version"].text(), std::move(series)};
 }
 

@@ -10,6 +10,7 @@
 #include "../core/format.hpp"
 #include "../core/statistics.hpp"
 #include "../model/joint_limits.hpp"
+#include "absurd_values.hpp"
 #include "other_senses.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
@@ -321,6 +322,7 @@ std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& e
         add(k, estimate.parameters.robot[k], "");
         add(k, sigmas[robot_begin + k], "the standard deviation of ");
     }
+    detail::add_absurd_values(campaign, estimate, faults);
     return faults;
 }
 

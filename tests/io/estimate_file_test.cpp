@@ -306,6 +306,12 @@ TEST_F(EstimateFile, HoldsTheWholeCovarianceAndHowTheIdentificationEnded) {
               "estimate.json: model_error_within: is 0.5; must be from 1 to 2.5");
     EXPECT_EQ(error_with("/variance_factor", -1),
               "estimate.json: variance_factor: is -1; must be at least 0");
+    EXPECT_EQ(error_with("/model_error_m", 1e308),
+              "estimate.json: model_error_m: is 1e+308; must be at most 1e+06 m in magnitude");
+    const std::string said = " is 0.001, the covariance says 0.0001; must agree with it";
+    EXPECT_EQ(error_with("/robot/Tx1/sigma_m", 1e-3), "estimate.json: robot.Tx1.sigma_m:" + said);
+    EXPECT_EQ(error_with("/sigma/base.x_m", 1e-3), "estimate.json: sigma.base.x_m:" + said);
+    EXPECT_EQ(error_with("/faults", 3), "no error");  // what it is for is not asked here
 }
 
 TEST_F(EstimateFile, DoesNotDependOnJointLimits) {
@@ -321,6 +327,12 @@ TEST_F(EstimateFile, WithAQuaternionThatIsNoRotationIsRefused) {
     folder_.write("estimate.json", document.dump());
     EXPECT_EQ(testing::input_error_of([&] { read_estimate(path_, campaign_); }),
               "estimate.json: base.quaternion_wxyz: has length 2; must be 1");
+    document = written();
+    document["base"]["rpy_deg"][2] = document["base"]["rpy_deg"][2].get<double>() + 1e-3;
+    folder_.write("estimate.json", document.dump());
+    EXPECT_EQ(testing::input_error_of([&] { read_estimate(path_, campaign_); }),
+              "estimate.json: base.rpy_deg: is not the rotation of quaternion_wxyz; must agree "
+              "with it");
 }
 
 TEST_F(EstimateFile, OfASizeThatDoesNotOccurIsRefused) {

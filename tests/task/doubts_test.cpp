@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 
 #include "../../src/model/complete_model.hpp"
@@ -186,6 +187,101 @@ TEST(AddDoubts, JudgesResidualsByTheirDegreesOfFreedom) {
     EXPECT_FALSE(is_said(0.5, 20));
     EXPECT_FALSE(is_said(1.3, 10000));  // beyond chance, and of no consequence
     EXPECT_FALSE(is_said(9, 0));
+}
+
+class FindFaults : public ::testing::Test {
+  protected:
+    FindFaults()
+        : campaign_(tracked_fanuc()),
+          measured_(measure(campaign_)),
+          estimate_(identify(campaign_, measured_,
+                             register_base_and_targets(campaign_, measured_).parameters)) {}
+
+    /// The one fault after a change.
+    std::string fault_after(const std::function<void(Estimate&)>& change) const {
+        Estimate changed = estimate_;
+        change(changed);
+        const std::vector<std::string> faults = find_faults(campaign_, changed);
+        EXPECT_LE(faults.size(), 1U) << faults.front();
+        return faults.empty() ? "" : faults.front();
+    }
+
+    const Campaign campaign_;
+    const Measurements measured_;
+    const Estimate estimate_;
+};
+
+TEST_F(FindFaults, NamesWhatNoCellHas) {
+    EXPECT_EQ(fault_after([](Estimate&) {}), "");
+    EXPECT_EQ(fault_after([](Estimate& e) { e.model_error = 0.5; }),
+              "its model error is 500 mm, above the 100 mm of any robot");
+    EXPECT_EQ(fault_after([](Estimate& e) { e.model_error_orientation = 0.2; }),
+              "its model error is 200 mrad, above the 100 mrad of any robot");
+    const std::string far =
+        fault_after([](Estimate& e) { e.parameters.world_from_base.translation().x() += 1e4; });
+    EXPECT_EQ(far.find("the base is 1"), 0U) << far;
+    Campaign stated = campaign_;
+    stated.nominal.world_from_base.translation().x() += 1e4;  // in mm, read as m
+    EXPECT_TRUE(find_faults(stated, estimate_).empty());
+    Estimate there = estimate_;
+    there.parameters.world_from_base.translation().x() += 1e4;
+    EXPECT_TRUE(find_faults(stated, there).empty());
+    EXPECT_EQ(fault_after([](Estimate& e) { e.parameters.sensor.head<3>() << 0, 0, 50; }),
+              "target 1 is 50 m from the flange, above 10 m");
+    EXPECT_EQ(fault_after([](Estimate& e) {
+                  e.parameters.sensor.segment<3>(3) = e.parameters.sensor.head<3>();
+              }),
+              "targets 1 and 2 are at one place, 0 mm apart");
+    EXPECT_EQ(fault_after([](Estimate& e) { e.variance_factor = 1e-300; }),
+              "its variance factor is 1e-300, which no measurement gives");
+    EXPECT_EQ(fault_after([](Estimate& e) {
+                  e.variance_factor = 0.9;
+                  e.degrees_of_freedom = 0;
+              }),
+              "its variance factor is 0.9, of no degrees of freedom");
+    EXPECT_EQ(fault_after([](Estimate& e) { e.covariance(7, 7) = 1e-306; }),
+              "the standard deviation of " + parameter_names(campaign_)[7] +
+                  " is 1e-150 mm, which no measurement gives");
+    // Of targets that were moved nothing is known.
+    EXPECT_EQ(fault_after([&](Estimate& e) { e.covariance.bottomRightCorner<9, 9>().setZero(); }),
+              "");
+}
+
+TEST_F(FindFaults, AreNoneWithoutAnyNoise) {
+    Parameters truth = draw_truth(campaign_, 1);
+    Measurements exact = measured_;
+    for (Index i = 0; i < exact.configuration_count(); ++i) {
+        const VectorXd q = exact.configurations.row(i).transpose();
+        const VectorXd seen =
+            campaign_.sensor->predict(world_from_flange(campaign_, truth, q), truth.sensor);
+        for (Index k = exact.first_sample[static_cast<std::size_t>(i)];
+             k < exact.first_sample[static_cast<std::size_t>(i) + 1]; ++k) {
+            exact.observations.row(k) = seen.transpose();
+        }
+    }
+    const Estimate estimate =
+        identify(campaign_, exact, register_base_and_targets(campaign_, exact).parameters);
+    EXPECT_LT(estimate.variance_factor, 1e-15);
+    const std::vector<std::string> faults = find_faults(campaign_, estimate);
+    EXPECT_TRUE(faults.empty()) << faults.front();
+}
+
+TEST(FindPlaceDoubts, NameABaseThatIsStatedTurned) {
+    Campaign campaign = tracked_fanuc();
+    const Parameters registered = register_base_and_targets(campaign, measure(campaign)).parameters;
+    campaign.has_nominal_targets = false;
+    const auto turned_by = [&](double angle) {
+        Campaign turned = campaign;
+        turned.nominal.world_from_base.rotate(Eigen::AngleAxisd(angle, Vector3d::UnitX()));
+        return find_place_doubts(turned, registered);
+    };
+    EXPECT_TRUE(turned_by(0).empty());
+    EXPECT_TRUE(turned_by(0.2).empty());
+    const auto doubts = turned_by(3.1415926535);
+    ASSERT_EQ(doubts.size(), 1U);
+    EXPECT_NEAR(doubts[0].turn, 3.1415926535, 0.01);
+    EXPECT_EQ(describe_places(doubts).find("base is measured turned by 1"), 0U)
+        << describe_places(doubts);
 }
 
 }  // namespace
