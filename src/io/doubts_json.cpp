@@ -56,6 +56,7 @@ Json places_to_json(const std::vector<PlaceDoubt>& places) {
                         {"measured_mm", vector_to_json(mm_per_m * place.found)},
                         {"unit", unit_name(place.unit)}});
         if (!place.exchanged_with.empty()) json.back()["exchanged_with"] = place.exchanged_with;
+        if (place.turn > 0) json.back()["turned_deg"] = to_degrees(place.turn);
     }
     return json;
 }

@@ -100,6 +100,13 @@ std::string describe(const Plane& plane) {
         detail::format_mm(plane.offset, 1));
 }
 
+/// "reversed", but where the normal points neither there nor where it is stated.
+std::string describe_turn(const Vector3d& stated, const Vector3d& measured) {
+    if (!detail::is_turned(stated, measured)) return "reversed";
+    return fmt::format("turned by {} deg",
+                       detail::format_short(to_degrees(std::acos(stated.dot(measured))), 2));
+}
+
 std::optional<double> clear_ratio(const ResidualVariance& variance, LossKind loss) {
     constexpr double tolerated = 1.2;  // intervals of 95 % would hold 90 %
     constexpr double chance = 1e-3;    // of a doubt without a reason, on either side
@@ -273,9 +280,10 @@ void check_is_of_robot(const Campaign& campaign, const Measurements& measured,
 std::string describe_planes(const std::vector<PlaneDoubt>& planes) {
     std::string text;
     for (const PlaneDoubt& doubt : planes) {
-        text += fmt::format("{}plane {} looks reversed: stated with {}, measured at about {}",
-                            text.empty() ? "" : "; ", doubt.plane + 1, describe(doubt.stated),
-                            describe(doubt.measured));
+        text += fmt::format("{}plane {} looks {}: stated with {}, measured at about {}",
+                            text.empty() ? "" : "; ", doubt.plane + 1,
+                            describe_turn(doubt.stated.normal, doubt.measured.normal),
+                            describe(doubt.stated), describe(doubt.measured));
     }
     return text;
 }

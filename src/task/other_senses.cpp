@@ -64,24 +64,30 @@ std::vector<PlaneDoubt> find_plane_doubts(const Campaign& campaign, const Measur
         const bool is_opposite =
             stated.offset_is_known &&
             std::abs(fitted.offset + stated.offset) < 0.1 * std::abs(fitted.offset - stated.offset);
-        if (!is_reversed && !is_opposite) continue;
-        const Vector3d normal = is_reversed ? Vector3d(-stated.normal) : stated.normal;
+        const bool is_turned = detail::is_turned(stated.normal, fitted.normal);
+        if (!is_reversed && !is_opposite && !is_turned) continue;
+        const Vector3d normal = is_turned     ? fitted.normal
+                                : is_reversed ? Vector3d(-stated.normal)
+                                              : stated.normal;
         doubts.push_back({k, stated, {normal, fitted.offset}});
     }
     return doubts;
 }
 
+bool detail::is_turned(const Vector3d& normal, const Vector3d& other) {
+    constexpr double least_cosine = 0.7;  // 45 deg
+    return std::abs(normal.dot(other)) < least_cosine;
+}
+
 std::vector<detail::TurnedPlane> detail::find_turned_planes(const Campaign& campaign,
                                                             const VectorXd& unknowns) {
-    constexpr double least_cosine = 0.7;  // 45 deg, from the normal or what is opposite to it
     const auto* const sensor = dynamic_cast<const PlaneSensor*>(campaign.sensor.get());
     if (sensor == nullptr) return {};
     std::vector<TurnedPlane> turned;
     for (Index k = 0; k < std::ssize(sensor->planes()); ++k) {
         const Vector3d& stated = sensor->planes()[static_cast<std::size_t>(k)].normal;
-        const double cosine = sensor->plane(k, unknowns).normal.dot(stated);
-        if (std::abs(cosine) >= least_cosine) continue;
-        turned.push_back({k, std::acos(cosine)});
+        const Vector3d found = sensor->plane(k, unknowns).normal;
+        if (is_turned(stated, found)) turned.push_back({k, std::acos(stated.dot(found))});
     }
     return turned;
 }

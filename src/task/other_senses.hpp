@@ -9,6 +9,9 @@ namespace posewise::detail {
 void find_other_sense(const Campaign& campaign, const Measurements& measurements, double tolerance,
                       OrientationDoubt& doubt);
 
+/// Whether two normals are 45 deg and more apart, and as far from opposite.
+bool is_turned(const Vector3d& normal, const Vector3d& other);
+
 /// A plane that was found far from where it was stated: it is another face, or the poses do not
 /// tell it.
 struct TurnedPlane {

@@ -24,9 +24,18 @@ PlaceDoubt::Unit find_unit(double stated, double found) {
     return PlaceDoubt::Unit::AsRead;
 }
 
+/// Whether it is elsewhere, whatever its unit.
+bool is_away(const PlaceDoubt& place) { return (place.found - place.stated).norm() > elsewhere; }
+
 bool is_doubtful(const PlaceDoubt& place) {
-    return place.unit != PlaceDoubt::Unit::AsRead ||
-           (place.found - place.stated).norm() > elsewhere;
+    return place.unit != PlaceDoubt::Unit::AsRead || place.turn > 0 || is_away(place);
+}
+
+/// 0 where it is as stated, by and large.
+double find_turn(const Isometry3d& stated, const Isometry3d& found) {
+    constexpr double turned = 0.35;  // rad, 20 deg
+    const double turn = Eigen::AngleAxisd(found.linear() * stated.linear().transpose()).angle();
+    return turn > turned ? turn : 0;
 }
 
 /// Of each target the one that is stated nearest to where it was found.
@@ -74,6 +83,10 @@ std::string describe(const PlaceDoubt& place) {
     if (!place.exchanged_with.empty()) {
         return fmt::format("{} is measured where {} is stated", place.name, place.exchanged_with);
     }
+    if (place.turn > 0 && place.unit == PlaceDoubt::Unit::AsRead && !is_away(place)) {
+        return fmt::format("{} is measured turned by {} deg from how it is stated", place.name,
+                           detail::format_short(to_degrees(place.turn), 3));
+    }
     const std::string text = fmt::format("{} is stated at {}, measured at {}", place.name,
                                          describe_place(place.stated), describe_place(place.found));
     switch (place.unit) {
@@ -84,8 +97,13 @@ std::string describe(const PlaceDoubt& place) {
         case PlaceDoubt::Unit::AsRead:
             break;
     }
-    return fmt::format("{}, {} mm away", text,
-                       detail::format_short(mm_per_m * (place.found - place.stated).norm(), 3));
+    const std::string turn =
+        place.turn > 0
+            ? fmt::format(" and turned by {} deg", detail::format_short(to_degrees(place.turn), 3))
+            : "";
+    return fmt::format("{}, {} mm away{}", text,
+                       detail::format_short(mm_per_m * (place.found - place.stated).norm(), 3),
+                       turn);
 }
 
 }  // namespace
@@ -96,9 +114,15 @@ std::vector<PlaceDoubt> find_place_doubts(const Campaign& campaign, const Parame
         if (!place.exchanged_with.empty() || is_doubtful(place)) doubts.push_back(place);
     };
     if (campaign.has_nominal_base && base_parameter_count(campaign) == 6) {
-        const Vector3d stated = campaign.nominal.world_from_base.translation();
+        const Isometry3d& base = campaign.nominal.world_from_base;
+        const Vector3d stated = base.translation();
         const Vector3d found = registered.world_from_base.translation();
-        add({"base", stated, found, find_unit(stated.norm(), found.norm()), {}});
+        add({"base",
+             stated,
+             found,
+             find_unit(stated.norm(), found.norm()),
+             {},
+             find_turn(base, registered.world_from_base)});
     }
     const Targets& targets = campaign.sensor->targets();
     if (!campaign.has_nominal_targets || targets.unknown_count() < 3 * targets.count())

@@ -80,6 +80,15 @@ TEST_F(Suspicions, AReversedPlaneIsNamed) {
     EXPECT_EQ(warnings.find("plane 1"), std::string::npos) << warnings;
 }
 
+TEST_F(Suspicions, ATurnedPlaneIsNotCalledReversed) {
+    write_text("c.yaml", planes);
+    run_well("simulate c.yaml --poses 40 -o s.csv");
+    write_with("t.yaml", planes, "[1, 0, 0]", "[0, 0, 1]");
+    const std::string said = run("calibrate t.yaml -m s.csv --folds 0").err;
+    EXPECT_NE(said.find("plane 2 looks turned by "), std::string::npos) << said;
+    EXPECT_EQ(said.find("reversed"), std::string::npos) << said;
+}
+
 TEST_F(Suspicions, APlaneThatRunsAwayIsNoCalibration) {
     write_text("c.yaml", planes);
     run_well("simulate c.yaml --poses 40 -o s.csv");

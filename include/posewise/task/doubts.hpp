@@ -37,8 +37,9 @@ std::optional<BeyondMeasured> find_beyond_measured(const Campaign& campaign,
                                                    const RowMatrixXd& measured,
                                                    const RowMatrixXd& configurations);
 
-/// A plane whose normal is measured reversed or, where planes are known, whose offset is measured
-/// with the other sign: of planes fitted to base and robot as stated.
+/// A plane whose normal is measured reversed or turned by 45 deg and more or, where planes are
+/// known, whose offset is measured with the other sign: of planes fitted to base and robot as
+/// stated.
 struct PlaneDoubt {
     Index plane = 0;
     Plane stated;
@@ -65,9 +66,12 @@ struct PlaceDoubt {
     enum class Unit { AsRead, Metres, Millimetres } unit = Unit::AsRead;
     /// The target that is stated where this one was found, if they look exchanged; else empty.
     std::string exchanged_with = {};
+    /// By how much the base is turned from how it is stated, rad, if by more than 20 deg; else 0.
+    double turn = 0;
 };
-/// Those off by a factor of about 1000, by more than 100 mm, or exchanged. `registered` as for
-/// find_misfit(); what is known, or was not stated, is not looked at.
+/// Those off by a factor of about 1000, by more than 100 mm, or exchanged, and a base turned by
+/// more than 20 deg. `registered` as for find_misfit(); what is known, or was not stated, is not
+/// looked at.
 std::vector<PlaceDoubt> find_place_doubts(const Campaign& campaign, const Parameters& registered);
 
 /// The nominal robot explains its own measurements to about the error expected of it, another
