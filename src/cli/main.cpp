@@ -41,7 +41,7 @@ Start with:
 
 posewise COMMAND --help explains each with an example. With --json each prints one JSON document, which
 designs/json.md explains, and nothing else.
-Exit code: 0 good, 1 unusable input (one line on standard error), 2 wrong usage,
+Exit code: 0 good, 1 unusable input (the last line on standard error), 2 wrong usage,
 3 a calibration that must not be used (calibrate), 70 internal error, a bug of posewise.)";
 
 /// The end of good work, if all of its output went out.
@@ -50,6 +50,14 @@ ProgramEnd finish() {
         return {input_error, "standard output cannot be written; must be writable"};
     }
     return {};
+}
+
+/// What is wrong, where an option is given again in words of ours.
+std::string describe(const CLI::ParseError& error) {
+    const std::string problem = error.what();
+    const std::size_t end = problem.find(": At Most 1 required but received");
+    return end == std::string::npos ? problem
+                                    : problem.substr(0, end) + ": is given twice; keep one";
 }
 
 ProgramEnd fail_usage(const CLI::App& program, const std::string& problem) {
@@ -105,7 +113,7 @@ ProgramEnd run(int argc, char** argv) {
     } catch (const CLI::Success& request) {  // --help or --version
         program.exit(request);
     } catch (const CLI::ParseError& error) {
-        return fail_usage(program, error.what());
+        return fail_usage(program, describe(error));
     } catch (const posewise::InputError& error) {
         return {input_error, error.what()};
     } catch (const posewise::cli::NoCalibration& error) {

@@ -78,7 +78,7 @@ void check_verify_usage(const VerifyArguments& arguments, CandidateKind kind, bo
 
 /// Throws InputError, naming what is wrong, if anything is.
 void conclude(const std::string& path, const Verification& verification) {
-    if (!verification.obstacle.empty()) throw InputError(verification.obstacle);
+    if (!verification.obstacle.empty()) throw input_error_at({path}, verification.obstacle);
     if (verification.is_right()) return;
     throw InputError(
         fmt::format("{}: not as stated: {}", path, fmt::join(verification.wrong(), ", ")));

@@ -158,9 +158,12 @@ void state_limits(ChoiceProblem& problem, const std::vector<Index>& groups) {
         options.groups.resize(problem.ids.size());  // of those there was time for
     }
     const CandidateIndex index(problem.ids, request.excluded);
-    for (const std::string& id : request.excluded) {
-        options.excluded.push_back(index.find(id, "excluded candidate"));
-    }
+    const PlanSources& sources = request.sources;
+    compute_from(sources.candidates.empty() ? sources.campaign : sources.candidates, [&] {
+        for (const std::string& id : request.excluded) {
+            options.excluded.push_back(index.find(id, "excluded candidate"));
+        }
+    });
 }
 
 void check_test_poses(const ChoiceOptions& options) {
@@ -192,7 +195,7 @@ CandidateIndex::CandidateIndex(const std::vector<std::string>& ids,
 Index CandidateIndex::find(const std::string& id, const std::string& what) const {
     const auto found = index_.find(id);
     if (found == index_.end()) {
-        throw InputError(what + " '" + id + "' is not among the candidates");
+        throw InputError(what + " '" + id + "' is not among the candidates; must be the id of one");
     }
     return found->second;
 }

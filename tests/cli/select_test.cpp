@@ -293,6 +293,19 @@ TEST_F(Select, StopsDrawingWhenTimeIsUp) {
 
 TEST_F(Select, RefusesUnusableBlocks) {
     write_blocks("odd.csv", 5, "1,2,3\n");
+    for (const std::string relax : {"", " --relax"}) {
+        write_text("huge.csv", "1e160\n2\n3\n");
+        expect_input_error(
+            "select --blocks huge.csv --rows 1 -k 2" + relax,
+            "huge.csv: row 1, column 1 of the matrix is 1e+160; must be finite, at most "
+            "1e+50 in magnitude");
+        write_text("tiny.csv", "1,1e-160\n2,2e-160\n3,-3e-160\n");
+        expect_input_error("select --blocks tiny.csv --rows 1 -k 2" + relax,
+                           "tiny.csv: column 2 of the matrix is at most 3e-160 in magnitude");
+    }
+    expect_input_error("select " + input_ + "-k 8 --exclude 99",
+                       "s.csv: excluded candidate '99' is not among the candidates; must be the "
+                       "id of one");
     expect_input_error("select --blocks odd.csv --rows 2 -k 3",
                        "odd.csv: matrix has 11 rows, not a multiple of 2");
     write_blocks("nan.csv", 5, "1,nan,3\n1,2,3\n");

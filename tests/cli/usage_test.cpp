@@ -40,6 +40,7 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
     {"select a.yaml -m b.csv -k -1", "--poses: is '-1'; must be a whole number from 1 to 1000000"},
     {"select a.yaml -m b.csv -k six",
      "--poses: is 'six'; must be a whole number from 1 to 1000000"},
+    {"select a.yaml -m b.csv -k 6 -o p -o q", "posewise: --out: is given twice; keep one; see"},
     {"select a.yaml -k 6", "[-m,--measurements,--candidates,--random,--blocks] is required"},
     {"select -m b.csv -k 6", "CAMPAIGN: is required (but for --blocks)"},
     {"select a.yaml -m b.csv --random 9 -k 6", "is required and 2 were given"},

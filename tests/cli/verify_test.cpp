@@ -109,7 +109,7 @@ TEST_F(Verify, NoticesEditedPoses) {
     plan = Json::parse(text_of("p.json"));
     plan["poses"][2]["id"] = "ghost";
     write_text("e.json", plan.dump());
-    expect_input_error("verify e.json", "poses[2].id: 'ghost' is not among the candidates");
+    expect_input_error("verify e.json", "e.json: poses[2].id: 'ghost' is not among the candidates");
     plan["poses"][2] = plan["poses"][1];
     write_text("e.json", plan.dump());
     expect_input_error("verify e.json", "occurs before in poses[1]");
