@@ -60,9 +60,8 @@ class RobotDraws {
     }
 
     VectorXd draw(ErrorQuantity quantity) const {
-        constexpr Index blocks = 32;
-        VectorXd drawn(blocks * robots_a_block);
-        detail::for_each_index(blocks, [&](Index b) {
+        VectorXd drawn(block_count * robots_a_block);
+        detail::for_each_index(block_count, [&](Index b) {
             RandomStream stream(seed_, static_cast<std::uint64_t>(b));
             const MatrixXd off = draw_block(b, stream);
             for (Index k = 0; k < robots_a_block; ++k) {
@@ -77,6 +76,7 @@ class RobotDraws {
     }
 
   private:
+    static constexpr Index block_count = 32;
     static constexpr Index robots_a_block = 64;
 
     /// Errors of all positions (3 rows each) of the robots of block b, a column each.
@@ -88,8 +88,8 @@ class RobotDraws {
             off = spread_.transpose() * z;
         }
         for (Index k = 0; k < robots_a_block; ++k) {
-            const auto drawn =
-                detail::draw_unknowns(b * robots_a_block + k, accuracy_, model_error_);
+            const auto drawn = detail::draw_unknowns(
+                b * robots_a_block + k, block_count * robots_a_block, accuracy_, model_error_);
             off.col(k) *= drawn.growth;
             off.col(k) += model_error_ * drawn.model * draw_normal(stream, off.rows());
             add_visits(off.col(k), stream);

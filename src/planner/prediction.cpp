@@ -34,19 +34,17 @@ Blocks make_prediction_blocks(const Campaign& campaign, const Parameters& parame
 
 namespace detail {
 
-Unknowns draw_unknowns(Index k, const PredictedAccuracy& accuracy, double model_error) {
-    constexpr double root = 1.2207440846057596;
-    const auto number = static_cast<double>(k);
-    const auto part = [&](double step) {
-        const double x = 0.5 + number * step;
-        return std::clamp(x - std::floor(x), 1e-12, 1 - 1e-12);
-    };
+Unknowns draw_unknowns(Index k, Index count, const PredictedAccuracy& accuracy,
+                       double model_error) {
+    constexpr double root = 1.3247179572447460;
+    const auto part = [&](double x) { return std::clamp(x - std::floor(x), 1e-12, 1 - 1e-12); };
+    const double number = static_cast<double>(k) + 0.5;
     const KnownWithin& known = accuracy.known_within;
     Unknowns drawn;
-    drawn.uniform = part(1 / root);
-    drawn.model = power(known.model_error, normal_quantile(part(1 / (root * root))));
+    drawn.uniform = part(number / root);
+    drawn.model = power(known.model_error, normal_quantile(number / static_cast<double>(count)));
     const double share = accuracy.prior_share.value_or(0);
-    const double sizes = power(known.error_size, normal_quantile(part(1 / (root * root * root))));
+    const double sizes = power(known.error_size, normal_quantile(part(number / (root * root))));
     drawn.growth = power(sizes, share) * power(model_error > 0 ? drawn.model : 1, 1 - share);
     return drawn;
 }
@@ -58,7 +56,7 @@ VectorXd total_cases(const PredictedAccuracy& accuracy, double model_error, doub
     constexpr double coordinates = 3;
     VectorXd totals(cases);
     for (Index k = 0; k < cases; ++k) {
-        const detail::Unknowns drawn = detail::draw_unknowns(k, accuracy, model_error);
+        const detail::Unknowns drawn = detail::draw_unknowns(k, cases, accuracy, model_error);
         const double freedom = accuracy.degrees_of_freedom;
         const double chi_squared = detail::chi_squared_quantile(drawn.uniform, freedom) / freedom;
         const double parameters = drawn.growth * accuracy.rms;

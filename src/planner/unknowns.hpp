@@ -11,8 +11,9 @@ struct Unknowns {
     double growth = 1;     ///< and the parameters' errors so many times those predicted
 };
 
-/// Case k of a sequence that fills the space of all cases evenly (additive recurrence by the powers
-/// of the root of x^4 = x + 1), so that few make a sure quantile.
-Unknowns draw_unknowns(Index k, const PredictedAccuracy& accuracy, double model_error);
+/// Case k of `count` that fill the space of all cases evenly, so that few make a sure quantile: the
+/// model error in steps of equal probability, the others by an additive recurrence with the powers
+/// of the root of x^3 = x + 1.
+Unknowns draw_unknowns(Index k, Index count, const PredictedAccuracy& accuracy, double model_error);
 
 }  // namespace posewise::detail

@@ -79,15 +79,22 @@ class Search {
           most_(std::min(target_.most_poses, maker.pool().configurations.rows())) {}
 
     void run() {
-        if (least_ > most_) {
-            result_.ending = TargetEnding::TooManyPoses;
-            return;
+        if (least_ > most_chosen()) {
+            throw InputError(fmt::format(
+                "{} new poses are needed at least; the pool or the most that are allowed are {}",
+                least_, most_chosen()));
         }
-        const Index by_choices = std::min(count_by_choices(), most_);
-        const Index by_quick_plans = least_count(by_choices, least_, most_, [&](Index count) {
-            check_stop();
-            return has_crossed(maker_.make_quickly(count));
-        });
+        constexpr Index many = 200;  // plans of more take long, and tell hardly more than choices
+        const Index by_choices = count_by_choices();
+        if (has_limit() && by_choices > most_chosen() && most_chosen() > many) {
+            result_.ending = TargetEnding::TooManyPoses;
+            return fill_curve();
+        }
+        const Index by_quick_plans =
+            least_count(std::min(by_choices, most_), least_, most_, [&](Index count) {
+                check_stop();
+                return has_crossed(maker_.make_quickly(count));
+            });
         settle(by_quick_plans);
         look_around();
         fill_curve();
@@ -139,12 +146,14 @@ class Search {
         return prediction;
     }
 
+    bool is_crossed_by_choice(Index count) {
+        const CountPrediction& prediction = choose(count);
+        return has_crossed(prediction.error, prediction.duration);
+    }
+    Index most_chosen() const { return std::min(most_, choices_.candidate_count()); }
     Index count_by_choices() {
-        const Index most = std::min(most_, choices_.candidate_count());
-        return least_count(least_, least_, most, [&](Index count) {
-            const CountPrediction& prediction = choose(count);
-            return has_crossed(prediction.error, prediction.duration);
-        });
+        return least_count(least_, least_, most_chosen(),
+                           [&](Index count) { return is_crossed_by_choice(count); });
     }
 
     void plan(Index count) {
@@ -204,9 +213,8 @@ class Search {
     void look_around() {
         if (!result_.planning || options_.stop.is_set()) return;
         const Index count = result_.planning->search.pose_count;
-        const Index most = std::min(most_, choices_.candidate_count());
         for (const Index other : {count / 2, 2 * count, 4 * count}) {
-            if (other >= least_ && other <= most) choose(other);
+            if (other >= least_ && other <= most_chosen()) choose(other);
         }
     }
 

@@ -113,8 +113,8 @@ TEST(DropEach, IsThePredictionWithoutThePose) {
         const double expected = predict_accuracy(reach.errors.by_parameters, left).rms;
         EXPECT_NEAR(one.rms, expected, 1e-6 * expected);
     }
-    // 33 parameters by five poses of nine rows: none can be missing, after four fewer.
-    const Reach least(4);
+    // 33 parameters take five poses: none of these can be missing.
+    const Reach least(5);
     MatrixXd M = least.M;
     EXPECT_TRUE(std::isinf(drop_each(least.errors.by_parameters, least.poses, M).front().rms));
     EXPECT_EQ(drop_worst(least.errors.by_parameters, least.poses, 3, M).size(), 1u);
