@@ -212,7 +212,7 @@ def check_plan():
     expect(worst["id"] == document["drop_outs"][0]["id"], "plan: pose values")
     parts = [document["budget"][part] for part in ("parameters_mm", "left_over_mm", "repeatability_mm")]
     expect(close(math.hypot(*parts), document["accuracy"]["total_rms_mm"], 9), "plan: budget")
-    document, text = both("plan", CELL, "--target-mm", 1.2, "--pool", 400, "--starts", 1)
+    document, text = both("plan", FANUC, "--target-mm", 1.5, "--pool", 200, "--workspace-poses", 20, "--starts", 1)
     expect(close(document["target"]["error"]["assured_mm"], number_behind(text, "new poses, "), 4), "plan: target")
     expect(document["target"]["error"]["assured_mm"] <= 1.2, "plan: target is missed")
 
