@@ -32,4 +32,5 @@
 #include "posewise/task/simulated_study.hpp"
 #include "posewise/task/study.hpp"
 #include "posewise/task/trials.hpp"
+#include "posewise/task/target.hpp"
 #include "posewise/task/verification.hpp"
