@@ -31,6 +31,6 @@
 #include "posewise/task/planning.hpp"
 #include "posewise/task/simulated_study.hpp"
 #include "posewise/task/study.hpp"
-#include "posewise/task/trials.hpp"
 #include "posewise/task/target.hpp"
+#include "posewise/task/trials.hpp"
 #include "posewise/task/verification.hpp"
