@@ -21,7 +21,7 @@ namespace posewise::cli {
 namespace {
 
 constexpr const char* study_footer = R"(
-Examples:
+Example:
   posewise study campaign.yaml -m measurements.csv --criteria v,d --random 100 --plot study.svg
   posewise study campaign.yaml --simulate --poses 8,12,20 --trials 1000 --store results.sqlite
   posewise study --from results.sqlite

@@ -34,6 +34,7 @@ struct StudyArguments {
     std::string truth;
     std::vector<std::string> varied;
     SimulatedStudyOptions simulation;  ///< what is not among `options`
+    std::optional<Index> trials;
 
     std::string store;
     std::vector<std::string> merged;

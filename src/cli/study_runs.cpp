@@ -132,6 +132,9 @@ std::vector<Study> study_simulated(const StudyArguments& arguments, const Common
     SimulatedStudyOptions options = arguments.simulation;
     static_cast<StudyOptions&>(options).pose_counts = arguments.options.pose_counts;
     options.starts = arguments.options.starts;
+    constexpr Index most_trials = 100000;  // where a precision says when it ends
+    options.trials =
+        arguments.trials.value_or(options.precision > 0 ? most_trials : options.trials);
     complete_options(options, arguments, file, stop);
     notes = describe_unused_planning(file);
     ProgressLine line("simulating", arguments.progress);

@@ -52,7 +52,7 @@ void add_simulation_options(CLI::App& command, StudyArguments& arguments) {
         return option->needs(simulate)->group("Simulation");
     };
     simulate->group("Simulation");
-    only_simulated(command.add_option("--trials", simulation.trials,
+    only_simulated(command.add_option("--trials", arguments.trials,
                                       "Robots drawn; with --precision at most (default: 100, with "
                                       "--precision 100000)"))
         ->check(whole_number(1, 1000000000));

@@ -131,11 +131,11 @@ TEST(FormatStudy, CallsWithinChanceWhatMayBeChanceInEitherDirection) {
 TEST(ModelsCsv, BeginsWithTheModel) {
     EXPECT_EQ(study_csv(two_models()),
               "model,poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,"
-              "configurations\n"
-              "geometric,2,d,0,yes,0.3,0.9,\"a b,c\"\n"
-              "geometric,2,random,0,yes,1,2,\"b,c d\"\n"
-              "full,2,d,0,yes,0.15,0.45,\"a b,c\"\n"
-              "full,2,random,0,yes,0.5,1,\"b,c d\"\n");
+              "held_out_p95_mm,expected_rms_mm,configurations\n"
+              "geometric,2,d,0,yes,0.3,0.9,0.45,0.15,\"a b,c\"\n"
+              "geometric,2,random,0,yes,1,2,1,0.5,\"b,c d\"\n"
+              "full,2,d,0,yes,0.15,0.45,0.225,0.075,\"a b,c\"\n"
+              "full,2,random,0,yes,0.5,1,0.5,0.25,\"b,c d\"\n");
 }
 
 TEST(StudyPlotScript, DrawsTheLinesOfEachModel) {
