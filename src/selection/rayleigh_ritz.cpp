@@ -103,7 +103,7 @@ struct ExchangedPivots {
         constexpr Index parts = lane_width / simd::width<V>;
         const V* b = &at<V>(blocks.entries.data() + group * blocks.rows * size, part);
         for (Index r = 0; r < blocks.rows; ++r, b += size * parts) {
-            for (Index i = 0; i < size; ++i) add(b[i * parts], b, parts, i + 1, m + packed(i, 0));
+            for (Index i = 0; i < size; ++i) add(b, parts, i, m + packed(i, 0));
         }
         V smallest = m[0];
         for (Index k = 0; k < size; ++k) {
@@ -120,9 +120,11 @@ struct ExchangedPivots {
         at<V>(&result, part) = smallest;
     }
 
+    /// Row i of the lower triangle of b b^T.
     template <typename V>
-    POSEWISE_INLINE static void add(V factor, const V* b, Index stride, Index count, V* row) {
-        for (Index j = 0; j < count; ++j) row[j] += factor * b[j * stride];
+    POSEWISE_INLINE static void add(const V* b, Index stride, Index i, V* row) {
+        const V factor = b[i * stride];
+        for (Index j = 0; j <= i; ++j) row[j] += factor * b[j * stride];
     }
 };
 
