@@ -75,7 +75,7 @@ class Target : public ::testing::Test {
         options_.pool_count = 200;
         options_.workspace_count = 20;
         options_.starts = 1;
-        target_.limit = 1e-3;
+        target_.limit = 1.5e-3;
     }
     TargetPlanning find() const { return plan_for_target(campaign_, options_, target_); }
     Index count() const { return find().planning.value().search.pose_count; }
@@ -89,7 +89,7 @@ TEST_F(Target, IsKeptByThePlanAndNotByOneOfAPoseLess) {
     const TargetPlanning found = find();
     ASSERT_EQ(found.ending, TargetEnding::Reached);
     const Planning& planning = *found.planning;
-    EXPECT_LE(found.error->assured, 1e-3);
+    EXPECT_LE(found.error->assured, 1.5e-3);
     EXPECT_TRUE(verify(planning.plan, campaign_, options_).is_right());
     const auto reach = [&](Index count) {
         options_.pose_count = count;
@@ -98,7 +98,7 @@ TEST_F(Target, IsKeptByThePlanAndNotByOneOfAPoseLess) {
             .assured;
     };
     EXPECT_EQ(reach(planning.search.pose_count), found.error->assured);
-    EXPECT_GT(reach(planning.search.pose_count - 1), 1e-3);
+    EXPECT_GT(reach(planning.search.pose_count - 1), 1.5e-3);
     // The curve falls, and takes longer.
     double before = std::numeric_limits<double>::infinity();
     for (const CountPrediction& one : found.curve) {
@@ -116,7 +116,7 @@ TEST_F(Target, NeedsMorePosesTheSurerAndTheTighterItIs) {
     target_.assurance = 0.5;
     const Index at_50 = count();
     target_.assurance = 0.99;
-    target_.limit = 2e-3;
+    target_.limit = 3e-3;
     const Index loose_at_99 = count();
     target_.assurance = 0.95;
     const Index loose_at_95 = count();
@@ -130,9 +130,9 @@ TEST_F(Target, OfTheLargestErrorOrWithPosesMissingNeedsMore) {
     target_.robust_to = 1;
     const TargetPlanning robust = find();
     EXPECT_GT(robust.planning->search.pose_count, rms);
-    EXPECT_LE(robust.error->assured, 1e-3);
+    EXPECT_LE(robust.error->assured, 1.5e-3);
     target_.robust_to = 0;
-    target_.limit = 2e-3;
+    target_.limit = 3e-3;
     const Index loose = count();
     target_.quantity = ErrorQuantity::Max;
     EXPECT_GT(count(), loose);
@@ -156,21 +156,21 @@ TEST_F(Target, BelowTheFloorIsNotReachedByAnyNumber) {
 }
 
 TEST_F(Target, AsManyPosesAsFitInTheTime) {
-    campaign_.cell.dwell = 2;
+    campaign_.cell.dwell = 4;
     options_.repeats = 3;
     target_ = {};
     target_.duration = 120;
     const TargetPlanning found = find();
     const Planning& planning = found.planning.value();
     const auto poses = static_cast<double>(planning.plan.poses.size());
-    EXPECT_NEAR(planning.duration, planning.tour.time + 6 * poses, 1e-9);
+    EXPECT_NEAR(planning.duration, planning.tour.time + 12 * poses, 1e-9);
     EXPECT_LE(planning.duration, 120);
     options_.pose_count = planning.search.pose_count + 1;
     EXPECT_GT(make_plan(campaign_, options_).duration, 120);
     // Beside a limit.
-    target_.limit = 1e-3;
+    target_.limit = 1.5e-3;
     EXPECT_EQ(find().ending, TargetEnding::Reached);
-    target_.limit = 0.8e-3;
+    target_.limit = 0.9e-3;
     const TargetPlanning long_one = find();
     EXPECT_EQ(long_one.ending, TargetEnding::TooLong);
     EXPECT_FALSE(long_one.planning.has_value());
