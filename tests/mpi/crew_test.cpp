@@ -108,11 +108,6 @@ TEST_F(Crew, StopsWithWhatIsFinished) {
     EXPECT_LT(number_behind(late.out, "", 2), 100) << late.out;
 }
 
-TEST_F(Crew, StopsWithWhatIsFinishedWhenMpirunIsAskedTo) {
-    const Outcome outcome = run_toy(3, "100000 sleep 20", "--signal=INT 4");
-    EXPECT_EQ(count_of(" by 3\n", outcome.out), 1) << outcome.out << outcome.err;
-}
-
 TEST_F(Crew, OfPosewiseSaysAllOnce) {
     const std::string posewise = "'" POSEWISE_PROGRAM "' ";
     EXPECT_EQ(count_of("Usage: ", run_by_mpi(3, posewise + "study --help").out), 1);
