@@ -28,17 +28,15 @@ struct StudyArguments {
     std::string csv;
     std::string plot;
     bool progress = false;
-    StudyOptions options;
+    SimulatedStudyOptions options;  ///< but for what stands here by itself
 
     bool is_simulated = false;
     std::string truth;
     std::vector<std::string> varied;
-    SimulatedStudyOptions simulation;  ///< what is not among `options`
     std::optional<Index> trials;
 
     std::string store;
     std::vector<std::string> merged;
-    Shard shard;
 };
 
 /// Every option but --measurements and those of simulated studies.

@@ -64,8 +64,6 @@ void complete_options(StudyOptions& options, const StudyArguments& arguments,
     options.criteria = arguments.criteria;
     if (options.criteria.empty()) options.criteria = {file.criterion};
     options.least_distance = to_radians(arguments.least_distance_deg);
-    options.random_subsets = arguments.random_subsets.value_or(options.random_subsets);
-    options.shard = arguments.shard;
     options.stop = stop;
     options.crew = trial_crew();
     if (!arguments.store.empty() && leads_crew()) {
@@ -108,6 +106,7 @@ std::vector<Study> study_measured(const StudyArguments& arguments, const CommonO
     const auto measurements =
         read_measured_without(arguments.excluded, paths.measurements, file, arguments.earlier);
     StudyOptions options = arguments.options;
+    options.random_subsets = arguments.random_subsets.value_or(StudyOptions().random_subsets);
     complete_options(options, arguments, file, stop);
     ProgressLine line("calibrating", arguments.progress);
     options.progress = [&](const Progress& progress) { line(progress); };
@@ -129,9 +128,8 @@ std::vector<Study> study_simulated(const StudyArguments& arguments, const Common
                                    const StopSignal& stop, std::string& notes) {
     io::CampaignFile file = read_with_prior(arguments.paths.campaign, arguments.prior, stop);
     check_outputs({&file}, {arguments.truth}, {arguments.csv, arguments.plot}, common);
-    SimulatedStudyOptions options = arguments.simulation;
-    static_cast<StudyOptions&>(options).pose_counts = arguments.options.pose_counts;
-    options.starts = arguments.options.starts;
+    SimulatedStudyOptions options = arguments.options;
+    options.random_subsets = arguments.random_subsets.value_or(options.random_subsets);
     constexpr Index most_trials = 100000;  // where a precision says when it ends
     options.trials =
         arguments.trials.value_or(options.precision > 0 ? most_trials : options.trials);

@@ -44,7 +44,7 @@ Shard parse_shard(const std::string& text) {
 }  // namespace
 
 void add_simulation_options(CLI::App& command, StudyArguments& arguments) {
-    SimulatedStudyOptions& simulation = arguments.simulation;
+    SimulatedStudyOptions& options = arguments.options;
     CLI::Option* const simulate =
         command.add_flag("--simulate", arguments.is_simulated,
                          "Of robots that are drawn, not of measured configurations");
@@ -58,7 +58,7 @@ void add_simulation_options(CLI::App& command, StudyArguments& arguments) {
         ->check(whole_number(1, 1000000000));
     only_simulated(command.add_option_function<std::string>(
         "--precision",
-        [&simulation](const std::string& text) { simulation.precision = parse_part(text); },
+        [&options](const std::string& text) { options.precision = parse_part(text); },
         "Draw robots until the 95 % interval of planned against random is as narrow as this part "
         "of the ratio on either side, 2%, for each pose count and criterion"));
     only_simulated(command.add_option("--truth", arguments.truth,
@@ -72,18 +72,18 @@ void add_simulation_options(CLI::App& command, StudyArguments& arguments) {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     only_simulated(
-        command.add_option("--pool", simulation.pool_count, "Configurations drawn to choose from"))
+        command.add_option("--pool", options.pool_count, "Configurations drawn to choose from"))
         ->check(whole_number(1, 1000000))
         ->capture_default_str();
-    only_simulated(command.add_option("--test-poses", simulation.test_count,
+    only_simulated(command.add_option("--test-poses", options.test_count,
                                       "Configurations of the workspace that robots are judged at"))
         ->check(whole_number(1, 100000))
         ->capture_default_str();
     only_simulated(
-        command.add_option("--repeats", simulation.repeats, "Samples of each configuration"))
+        command.add_option("--repeats", options.repeats, "Samples of each configuration"))
         ->check(whole_number(1, 100000))
         ->capture_default_str();
-    only_simulated(command.add_flag("--refine", simulation.is_refined,
+    only_simulated(command.add_flag("--refine", options.is_refined,
                                     "Plan as plan does, not only choose from the pool"));
 }
 
@@ -97,7 +97,7 @@ void add_store_options(CLI::App& command, StudyArguments& arguments) {
     command
         .add_option_function<std::string>(
             "--shard",
-            [&arguments](const std::string& text) { arguments.shard = parse_shard(text); },
+            [&arguments](const std::string& text) { arguments.options.shard = parse_shard(text); },
             "Run one part of the trials only, 3/16: each part with a store of its own, on any "
             "machine; then --merge")
         ->needs(store)

@@ -36,6 +36,12 @@ double RandomStream::normal() {
            detail::sine_and_cosine(2.0 * std::numbers::pi * v).cosine;
 }
 
+VectorXd RandomStream::normals(Index count) {
+    VectorXd z(count);
+    for (double& one : z) one = normal();
+    return z;
+}
+
 Index RandomStream::index(Index count) {
     assert(count > 0);
     // Rejection keeps every index equally likely.

@@ -13,12 +13,6 @@
 namespace posewise {
 namespace {
 
-VectorXd draw_normal(RandomStream& stream, Index count) {
-    VectorXd z(count);
-    for (Index k = 0; k < count; ++k) z[k] = stream.normal();
-    return z;
-}
-
 /// Joints as they are where the robot touches what it shows, give or take the noise: q was about
 /// there.
 VectorXd touching_joints(const Campaign& campaign, const Parameters& truth, const VectorXd& q,
@@ -57,7 +51,7 @@ void check_contacts(const Campaign& campaign, const Seen& is_seen, Index repeats
 Parameters draw_truth(const Campaign& campaign, std::uint64_t seed) {
     RandomStream stream(seed);
     VectorXd errors =
-        parameter_scale(campaign).cwiseProduct(draw_normal(stream, parameter_count(campaign)));
+        parameter_scale(campaign).cwiseProduct(stream.normals(parameter_count(campaign)));
     for (const Compliance& compliance : compliances(campaign.robot)) {
         double& error = errors[base_parameter_count(campaign) + compliance.parameter];
         error = std::abs(error);
@@ -104,18 +98,17 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
         if (campaign.joint_repeatability.size() > 0) {
             const Index joints = campaign.robot.joint_count();
             joint_errors.head(joints) =
-                campaign.joint_repeatability.cwiseProduct(draw_normal(stream, joints));
+                campaign.joint_repeatability.cwiseProduct(stream.normals(joints));
         }
         q += joint_errors;
         const Isometry3d flange = world_from_flange(campaign, truth, q);
-        const VectorXd expected =
-            sensor.deviate(sensor.predict(flange, truth.sensor),
-                           model_error.cwiseProduct(draw_normal(stream, rows)));
+        const VectorXd expected = sensor.deviate(sensor.predict(flange, truth.sensor),
+                                                 model_error.cwiseProduct(stream.normals(rows)));
         const MatrixXd noise_factor =
             detail::cholesky_factor(sensor.covariance(flange, truth.sensor));
         measurements.is_seen.middleRows(i * repeats, repeats).rowwise() = is_seen.row(i);
         for (Index k = 0; k < repeats; ++k) {
-            const VectorXd noise = noise_factor * draw_normal(stream, rows);
+            const VectorXd noise = noise_factor * stream.normals(rows);
             measurements.observations.row(i * repeats + k) =
                 sensor.deviate(expected, noise).transpose();
         }

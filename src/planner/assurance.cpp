@@ -38,12 +38,6 @@ PredictedAccuracy accuracy_of(const PositionErrors& errors, const Campaign& camp
     return exact;
 }
 
-VectorXd draw_normal(RandomStream& stream, Index count) {
-    VectorXd z(count);
-    for (double& one : z) one = stream.normal();
-    return z;
-}
-
 /// Draws robots: how far each position is off, and what of that counts.
 class RobotDraws {
   public:
@@ -91,7 +85,7 @@ class RobotDraws {
             const auto drawn = detail::draw_unknowns(
                 b * robots_a_block + k, block_count * robots_a_block, accuracy_, model_error_);
             off.col(k) *= drawn.growth;
-            off.col(k) += model_error_ * drawn.model * draw_normal(stream, off.rows());
+            off.col(k) += model_error_ * drawn.model * stream.normals(off.rows());
             add_visits(off.col(k), stream);
         }
         return off;
@@ -102,7 +96,7 @@ class RobotDraws {
         for (Index i = 0; i < joints.count(); ++i) {
             const auto first = joints.first_row[static_cast<std::size_t>(i)];
             off.segment(first, joints[i].rows()) +=
-                joints[i] * draw_normal(stream, joints.parameter_count());
+                joints[i] * stream.normals(joints.parameter_count());
         }
     }
 

@@ -45,12 +45,11 @@ RowMatrixXd target_positions(const Campaign& campaign, const Parameters& paramet
 RowMatrixXd visited_positions(const Campaign& truth, const DrawnRobot& robot,
                               const RowMatrixXd& configurations, std::uint64_t seed) {
     RowMatrixXd visited = configurations;
-    const bool repeats_exactly = truth.joint_repeatability.size() == 0;
     RandomStream random(seed);
-    for (Index i = 0; i < visited.rows() && !repeats_exactly; ++i) {
-        for (Index j = 0; j < truth.joint_repeatability.size(); ++j) {
-            visited(i, j) += truth.joint_repeatability[j] * random.normal();
-        }
+    const Index joints = truth.joint_repeatability.size();  // 0: it repeats exactly
+    for (Index i = 0; i < visited.rows() && joints > 0; ++i) {
+        visited.row(i).head(joints) +=
+            truth.joint_repeatability.cwiseProduct(random.normals(joints)).transpose();
     }
     RowMatrixXd positions = target_positions(truth, robot.truth, visited);
     for (double& coordinate : positions.reshaped()) {
@@ -137,13 +136,18 @@ std::vector<double> run_trial(const SimulationSetting& setting,
 
 // ---- What comes of the trials ----
 
+/// As part of the ratio.
+double half_width(const Advantage& advantage) {
+    return (advantage.upper - advantage.lower) / 2 / advantage.ratio;
+}
+
 /// Half of the 95 % interval of a geometric mean, as part of it; infinity where it is not known.
 double relative_half_width(const Study& study, const StudyRow& row, std::size_t criterion) {
     constexpr double unknown = std::numeric_limits<double>::infinity();
     if (!row.random.empty()) {
         const auto advantage = planned_advantage(study, row, criterion);
         if (!advantage || row.optimal.size() <= study.criteria.size()) return unknown;
-        return (advantage->upper - advantage->lower) / 2 / advantage->ratio;
+        return half_width(*advantage);
     }
     std::vector<double> logarithms;
     for (const StudyCase& found : planned_cases(row, criterion, study.criteria.size())) {
@@ -151,12 +155,7 @@ double relative_half_width(const Study& study, const StudyRow& row, std::size_t 
         logarithms.push_back(std::log(found.held_out.distance_rms));
     }
     if (logarithms.size() < 2) return unknown;
-    const Eigen::Map<const VectorXd> values(logarithms.data(),
-                                            static_cast<Index>(logarithms.size()));
-    const auto count = static_cast<double>(values.size());
-    const double deviation =
-        std::sqrt((values.array() - values.mean()).square().sum() / (count - 1) / count);
-    return std::sinh(detail::student_quantile(0.975, count - 1) * deviation);
+    return half_width(detail::geometric_mean(logarithms));
 }
 
 bool is_precise(const Study& study, double precision) {

@@ -9,7 +9,6 @@
 #include "planning_problem.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/planner/prediction.hpp"
 #include "posewise/task/planning.hpp"
@@ -40,20 +39,15 @@ Campaign true_campaign(const SimulatedCampaign& given, const Campaign& campaign)
     return truth;
 }
 
-std::vector<Index> usual_counts(const Campaign& campaign, Index pool) {
-    const Index least = least_calibration_count(campaign);
-    std::vector<Index> counts;
-    for (const Index count : {8, 12, 16, 20, 30, 50}) {
-        if (count >= least && count <= pool) counts.push_back(count);
-    }
-    if (counts.empty()) counts.push_back(std::min(least, pool));
-    return counts;
-}
-
 std::vector<Index> pose_counts(const SimulatedStudyOptions& options, const Campaign& campaign,
                                const Pool& pool) {
     std::vector<Index> counts = options.pose_counts;
-    if (counts.empty()) counts = usual_counts(campaign, pool.configurations.rows());
+    if (counts.empty()) {
+        const Index least = least_calibration_count(campaign);
+        const Index most = pool.configurations.rows();
+        counts = usual_counts(least, most);
+        if (counts.empty()) counts.push_back(std::min(least, most));
+    }
     std::sort(counts.begin(), counts.end());
     counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
     if (counts.front() < 1) {
@@ -189,8 +183,8 @@ SimulationSetting make_setting(const SimulatedCampaign& given,
     for (const Index count : series.pose_counts) {
         std::vector<Subset>& planned = setting.planned.emplace_back();
         for (std::size_t c = 0; c < options.criteria.size(); ++c) {
-            planned.push_back(
-                plan_subset(setting, options, blocks, problem.errors.by_parameters, turning, c, count));
+            planned.push_back(plan_subset(setting, options, blocks, problem.errors.by_parameters,
+                                          turning, c, count));
         }
     }
     return setting;

@@ -65,13 +65,9 @@ Index test_count(Index all, double holdout) {
     return std::clamp<Index>(std::lround(holdout * static_cast<double>(all)), 1, all - 1);
 }
 
-/// Of a study with splits, up to a third of the pool: beyond it all subsets are much the same.
-std::vector<Index> usual_counts(Index pool, Index least) {
-    std::vector<Index> counts;
-    for (const Index count : {8, 12, 16, 20, 30, 50}) {
-        if (count >= least && 3 * count <= pool) counts.push_back(count);
-    }
-    return counts;
+/// Of a study with splits; beyond a third of the pool all subsets are much the same.
+std::vector<Index> split_counts(Index pool, Index least) {
+    return detail::usual_counts(least, pool / 3);
 }
 
 /// `least`: that identify the model, looked at where none are asked for.
@@ -85,7 +81,7 @@ std::vector<Index> choose_pose_counts(const std::vector<Index>& asked, Index all
         }
     }
     if (!asked.empty()) return asked;
-    std::vector<Index> counts = is_split ? usual_counts(all, least) : std::vector<Index>{};
+    std::vector<Index> counts = is_split ? split_counts(all, least) : std::vector<Index>{};
     if (!counts.empty()) return counts;
     for (Index count = least; count < all; ++count) counts.push_back(count);
     if (counts.empty()) {
@@ -109,7 +105,7 @@ Index usual_splits(Index all, Index least, const StudyOptions& options) {
     if (all < 2) return 0;
     const Index pool = all - test_count(all, options.holdout);
     if (options.pose_counts.empty()) {
-        return usual_counts(pool, least).empty() ? 0 : splits;
+        return split_counts(pool, least).empty() ? 0 : splits;
     }
     const auto& counts = options.pose_counts;
     return 3 * *std::max_element(counts.begin(), counts.end()) <= pool ? splits : 0;

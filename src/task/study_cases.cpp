@@ -19,6 +19,14 @@ Index kick_count(Index candidates) {
 
 }  // namespace
 
+std::vector<Index> usual_counts(Index least, Index most) {
+    std::vector<Index> counts;
+    for (const Index count : {8, 12, 16, 20, 30, 50}) {
+        if (count >= least && count <= most) counts.push_back(count);
+    }
+    return counts;
+}
+
 SelectOptions study_selection(const StudyOptions& options, const Campaign& campaign,
                               std::size_t criterion, Index pose_count, Index candidate_count) {
     SelectOptions selection;

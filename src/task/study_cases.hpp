@@ -11,12 +11,18 @@
 /// What studies of measured and of simulated configurations share.
 namespace posewise::detail {
 
+/// The pose counts that studies look at, those from `least` to `most`.
+std::vector<Index> usual_counts(Index least, Index most);
+
 /// How a study chooses from so many candidates: quickly, for one case of many.
 SelectOptions study_selection(const StudyOptions& options, const Campaign& campaign,
                               std::size_t criterion, Index pose_count, Index candidate_count);
 
 /// Calibrated from registration on; nothing if the measurements do not identify the model.
 std::optional<Estimate> calibrate_subset(const Campaign& campaign, const Measurements& chosen);
+
+/// Of at least one ratio, whose logarithms are given.
+Advantage geometric_mean(const std::vector<double>& logarithms);
 
 /// A case as numbers to keep: case_width of them and its poses.
 inline constexpr std::size_t case_width = 6;

@@ -4,8 +4,21 @@
 
 #include "../core/statistics.hpp"
 #include "posewise/task/study.hpp"
+#include "study_cases.hpp"
 
 namespace posewise {
+
+Advantage detail::geometric_mean(const std::vector<double>& logarithms) {
+    const Eigen::Map<const VectorXd> values(logarithms.data(),
+                                            static_cast<Index>(logarithms.size()));
+    const double mean = values.mean();
+    const double freedom = static_cast<double>(values.size()) - 1;
+    if (freedom < 1) return Advantage{std::exp(mean), std::exp(mean), std::exp(mean)};
+    const double deviation = std::sqrt((values.array() - mean).square().sum() / freedom /
+                                       static_cast<double>(values.size()));
+    const double width = student_quantile(0.975, freedom) * deviation;
+    return Advantage{std::exp(mean), std::exp(mean - width), std::exp(mean + width)};
+}
 
 std::vector<StudyCase> planned_cases(const StudyRow& row, std::size_t criterion,
                                      std::size_t criterion_count) {
@@ -33,15 +46,7 @@ std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& r
         if (!median || !found) return std::nullopt;
         logarithms.push_back(std::log(*found / *median));
     }
-    const Eigen::Map<const VectorXd> values(logarithms.data(),
-                                            static_cast<Index>(logarithms.size()));
-    const double mean = values.mean();
-    const double freedom = static_cast<double>(values.size()) - 1;
-    if (freedom < 1) return Advantage{std::exp(mean), std::exp(mean), std::exp(mean)};
-    const double deviation = std::sqrt((values.array() - mean).square().sum() / freedom /
-                                       static_cast<double>(values.size()));
-    const double width = detail::student_quantile(0.975, freedom) * deviation;
-    return Advantage{std::exp(mean), std::exp(mean - width), std::exp(mean + width)};
+    return detail::geometric_mean(logarithms);
 }
 
 Verdict verdict_of(const Advantage& advantage) {

@@ -20,6 +20,8 @@ class RandomStream {
 
     /// Standard normal (Box-Muller).
     double normal();
+    /// So many of them, in order.
+    VectorXd normals(Index count);
 
     /// Uniform in {0, ..., count - 1}; count must be positive.
     Index index(Index count);

@@ -70,7 +70,8 @@ using RunTrials =
 
 /// Who runs the trials of a study. It calls `lead` in the process that leads, with a function to
 /// run trials by; other processes compute what the leader hands them until it returns. All
-/// processes must come here with the same `compute`.
+/// processes must come here with the same `compute`, and once only: those that do not lead may end
+/// here.
 using TrialCrew = std::function<void(const ComputeTrial& compute,
                                      const std::function<void(const RunTrials&)>& lead)>;
 
