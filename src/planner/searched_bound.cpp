@@ -15,6 +15,7 @@ namespace {
 
 constexpr Index search_count = 24;  // followed uphill, of the pool and of the poses met
 constexpr double apart = 0.5;       // rad or m in some joint, at least
+constexpr double least_gap = 1e-5;  // of the relaxations over the poses met, when it ends
 
 /// The most sensitive poses that are apart, after those in `chosen`.
 void choose_starts(const RowMatrixXd& poses, const VectorXd& sensitivity, RowMatrixXd& chosen) {
@@ -79,16 +80,21 @@ double search_bound(const DesignSpace& space, const Objective& objective,
     anywhere.excluded.clear();
     anywhere.positions.resize(0, 0);
     anywhere.least_distance = 0;
-    anywhere.gap = 1e-5;
+    anywhere.gap = 1e-3;  // at first
     anywhere.stop = stop;
     const auto K = static_cast<double>(options.pose_count);
     if (space.margin) iterations = (iterations + 3) / 4;  // ten times as long along constraints
+    VectorXd weights;
     Support support;
     for (Index i = 0; i < plan.rows() && !stop.is_set(); ++i) {
         support.add(space, plan.row(i));
     }
     for (Index t = 0; t < iterations && !stop.is_set(); ++t) {
-        const Certificate relaxed = relax(objective, support.blocks, anywhere).certificate;
+        if (weights.size() > 0)
+            weights.conservativeResizeLike(VectorXd::Zero(support.blocks.count()));
+        const Relaxation relaxation = relax(objective, support.blocks, anywhere, weights);
+        const Certificate& relaxed = relaxation.certificate;
+        weights = relaxation.weights;
         Objective softened = objective;
         softened.sharpness = relaxed.sharpness;
         if (!std::isfinite(evaluate(softened, relaxed.M))) break;
@@ -105,7 +111,9 @@ double search_bound(const DesignSpace& space, const Objective& objective,
             if (is_new) support.add(space, maximum.x.transpose());
         }
         bound = std::min(bound, value_of_information(objective, held + K * largest, Z.rows()));
-        if (largest <= (1 + 1e-4) * inside) break;
+        const double excess = largest / inside - 1;
+        if (excess <= 1e-4 && anywhere.gap <= least_gap) break;
+        anywhere.gap = std::clamp(0.1 * excess, least_gap, anywhere.gap);
     }
     return bound;
 }

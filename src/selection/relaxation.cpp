@@ -38,7 +38,8 @@ std::vector<Index> best_outside(const VectorXd& values, const std::vector<char>&
 /// Working set, weights and the best certificate so far of one relaxation.
 class Relaxer {
   public:
-    Relaxer(const Objective& objective, const Blocks& candidates, const SelectOptions& options)
+    Relaxer(const Objective& objective, const Blocks& candidates, const SelectOptions& options,
+            const VectorXd& start)
         : candidates_(candidates),
           options_(options),
           objective_(objective),
@@ -51,7 +52,8 @@ class Relaxer {
             if (capacity[static_cast<std::size_t>(i)] == 0)
                 is_inside_[static_cast<std::size_t>(i)] = 1;
         }
-        start_set();
+        if (start.size() > 0) start_from(start);
+        if (set_.size() == 0) start_set();
     }
 
     Relaxation run() {
@@ -82,6 +84,15 @@ class Relaxer {
         weights_.conservativeResize(set_.size());
         weights_.tail(static_cast<Index>(candidates.size())).setZero();
         upper_ = VectorXd::Constant(set_.size(), static_cast<double>(options_.repeat_limit));
+    }
+
+    void start_from(const VectorXd& start) {
+        std::vector<Index> members;
+        for (Index i = 0; i < start.size(); ++i) {
+            if (start[i] > 0 && is_inside_[static_cast<std::size_t>(i)] == 0) members.push_back(i);
+        }
+        join(members);
+        weights_ = start(members);
     }
 
     /// Candidates spread evenly over the list, as many as it takes to identify the parameters, all
@@ -164,9 +175,9 @@ class Relaxer {
 
 }  // namespace
 
-Relaxation relax(const Objective& objective, const Blocks& candidates,
-                 const SelectOptions& options) {
-    return Relaxer(objective, candidates, options).run();
+Relaxation relax(const Objective& objective, const Blocks& candidates, const SelectOptions& options,
+                 const VectorXd& start) {
+    return Relaxer(objective, candidates, options, start).run();
 }
 
 }  // namespace posewise::detail

@@ -17,7 +17,8 @@ struct Relaxation {
 /// Martinez, Raydan 2000] on a working set of candidates; all candidates are priced between rounds
 /// and the most sensitive join the set, until the bound is within options.gap of the value.
 /// Criteria that are not smooth are sharpened step by step. options.stop is asked between steps.
-Relaxation relax(const Objective& objective, const Blocks& candidates,
-                 const SelectOptions& options);
+/// `start`: weights of all candidates to begin with, which sum to K; empty: all the same.
+Relaxation relax(const Objective& objective, const Blocks& candidates, const SelectOptions& options,
+                 const VectorXd& start = {});
 
 }  // namespace posewise::detail

@@ -207,7 +207,7 @@ std::vector<Study> simulate_study(const std::vector<SimulatedCampaign>& campaign
         detail::TrialRuns runs(series, options);
         run_trials(series, options, run, runs);
         for (std::size_t s = 0; s < series.size(); ++s) {
-            studies.push_back(study_of_trials(series[s], runs.list(s)));
+            studies.push_back(study_of_trials(series[s], runs.release(s)));
             studies.back().ending = options.stop.ending_or(Ending::Converged);
         }
     });

@@ -134,4 +134,15 @@ std::vector<Trial> TrialRuns::list(std::size_t series, Index count) const {
     return trials;
 }
 
+std::vector<Trial> TrialRuns::release(std::size_t series) {
+    auto& finished = finished_[series];
+    std::vector<Trial> trials;
+    trials.reserve(finished.size());
+    while (!finished.empty()) {
+        auto first = finished.extract(finished.begin());
+        trials.push_back({first.key(), std::move(first.mapped())});
+    }
+    return trials;
+}
+
 }  // namespace posewise::detail

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -50,9 +49,10 @@ class TrialRuns {
     /// shard.
     void run(const RunTrials& run_trials, const std::vector<Index>& counts);
 
-    /// The finished trials of a series, by number: all, or the first of `count`.
-    std::vector<Trial> list(std::size_t series,
-                            Index count = std::numeric_limits<Index>::max()) const;
+    /// The finished ones of the first `count` trials of a series, by number.
+    std::vector<Trial> list(std::size_t series, Index count) const;
+    /// All that are finished; they are here no more: there may be millions.
+    std::vector<Trial> release(std::size_t series);
 
   private:
     const std::vector<TrialSeries>& series_;
