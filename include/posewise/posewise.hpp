@@ -29,6 +29,7 @@
 #include "posewise/task/geometry.hpp"
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"
+#include "posewise/task/simulated_plan.hpp"
 #include "posewise/task/simulated_study.hpp"
 #include "posewise/task/study.hpp"
 #include "posewise/task/target.hpp"

@@ -18,6 +18,14 @@ constexpr std::chrono::milliseconds echo{500};
 std::atomic<std::chrono::steady_clock::rep> first_at{0};
 static_assert(decltype(first_at)::is_always_lock_free, "set in a signal handler");
 
+/// Set while no signal is caught.
+std::string_view words;
+
+void say(std::string_view text) {
+    // Nobody is there to tell of a failure.
+    [[maybe_unused]] const auto said = ::write(STDERR_FILENO, text.data(), text.size());
+}
+
 void note_interrupt(int /*signal*/) {
     using std::chrono::steady_clock;
     const steady_clock::rep now = steady_clock::now().time_since_epoch().count();
@@ -25,11 +33,9 @@ void note_interrupt(int /*signal*/) {
     if (first_at.compare_exchange_strong(first, now)) {
         is_interrupted = true;
     } else if (steady_clock::duration(now - first) > echo) {
-        constexpr std::string_view last_words =
-            "posewise: interrupted twice; nothing was written\n";
-        // Nobody is there to tell of a failure.
-        [[maybe_unused]] const auto said =
-            ::write(STDERR_FILENO, last_words.data(), last_words.size());
+        say("posewise: ");
+        say(words);
+        say("\n");
         std::signal(SIGINT, SIG_DFL);
         std::raise(SIGINT);
     }
@@ -37,7 +43,8 @@ void note_interrupt(int /*signal*/) {
 
 }  // namespace
 
-InterruptFlag::InterruptFlag() {
+InterruptFlag::InterruptFlag(std::string_view last_words) {
+    words = last_words;
     is_interrupted = false;
     first_at = 0;
     std::signal(SIGINT, note_interrupt);

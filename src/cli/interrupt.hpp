@@ -1,14 +1,17 @@
 #pragma once
 
 #include <atomic>
+#include <string_view>
 
 namespace posewise::cli {
 
 /// While it lives, the first Ctrl-C (SIGINT) only sets the flag; another, half a second later or
-/// more, ends the program, and says that nothing was written: it must not outlive that.
+/// more, ends the program with the last words: by default that nothing was written, and then it
+/// must not outlive that.
 class InterruptFlag {
   public:
-    InterruptFlag();
+    /// The words must live for ever.
+    explicit InterruptFlag(std::string_view last_words = "interrupted twice; nothing was written");
     ~InterruptFlag();
     InterruptFlag(const InterruptFlag&) = delete;
     InterruptFlag& operator=(const InterruptFlag&) = delete;

@@ -18,6 +18,7 @@
 #include "plan_options.hpp"
 #include "plan_progress.hpp"
 #include "plan_target.hpp"
+#include "plan_verification.hpp"
 #include "posewise/io/json_reports.hpp"
 #include "posewise/io/plan_file.hpp"
 #include "posewise/report/reports.hpp"
@@ -28,7 +29,7 @@ namespace {
 constexpr const char* plan_footer = R"(
 Example:
   posewise plan campaign.yaml --poses 24 --out plan.json --csv poses.csv
-  posewise plan campaign.yaml --target-mm 0.2 --assurance 0.95
+  posewise plan campaign.yaml --target-mm 0.2 --assurance 0.95 --verify
   posewise plan campaign.yaml --poses 12 --augment measured.csv --criterion d
   posewise plan campaign.yaml --plan plan.json --drop p7,p12 --out repaired.json
   posewise plan campaign.yaml --from estimate.json --only base,targets --poses 5
@@ -55,6 +56,9 @@ sight not asked for; --workspace or --workspace-box-mm state another.
 many poses are missing. Where none does, it says what is left at best and why: exit code 1, no plan.
 --minutes takes as many as fit; with --target-mm it says whether both can be kept.
 
+--verify checks what is predicted: robots are drawn, measured at the poses, calibrated and judged at
+other places, block by block, until what it finds is sure; a limit that is not kept then is said.
+
 --from plans for the robot as an earlier calibration found it, --as-prior for what that left open;
 the 90 % interval is then as narrow as that knows the model error, and sizes that it learned;
 --only base,targets for finding them again after the instrument or the tool was moved.
@@ -67,6 +71,7 @@ The same seed gives the same plan, on any number of threads, unless time ended i
 
 struct PlanArguments : RequestArguments {
     TargetArguments target;
+    VerificationArguments verification;
     std::string csv;
 };
 
@@ -86,8 +91,9 @@ std::string default_plan_out(const std::string& campaign) {
 }
 
 /// A plan of stated size is no target's.
-void print_made(const TargetPlanning& made, const io::CampaignFile& campaign,
-                const std::string& out, const CommonOptions& common) {
+void print_made(const TargetPlanning& made, const std::optional<SimulatedPlan>& simulated,
+                const io::CampaignFile& campaign, const std::string& out,
+                const CommonOptions& common) {
     const Planning& planning = *made.planning;
     const Plan& plan = planning.plan;
     const bool has_target = made.ending != TargetEnding::NotRun;
@@ -96,13 +102,15 @@ void print_made(const TargetPlanning& made, const io::CampaignFile& campaign,
         is_stopped || has_target ? std::vector<CountAccuracy>() : predict_other_counts(planning);
     if (is_stopped) std::fputs("posewise: stopped early; the plan is the best so far\n", stderr);
     if (common.json)
-        return print(has_target ? io::to_json(made, out) : io::to_json(planning, counts, out));
-    print((has_target ? format(made) : "") + format_planning(planning) + format_budget(planning));
+        return print(has_target ? io::to_json(made, out, simulated)
+                                : io::to_json(planning, counts, out, simulated));
+    print((has_target ? format(made) : "") + describe_verified(made.target, simulated) +
+          format_planning(planning) + format_budget(planning));
     print(has_target ? format_curve(made)
           : is_stopped
               ? "\nPredicted position error by number of poses: left out, planning was stopped\n"
               : format_other_counts(counts, planning.campaign));
-    print(format_deviations(plan));
+    print((simulated ? format(*simulated) : "") + format_deviations(plan));
     print(fmt::format("\n{}{}plan:        {}\n", describe_planned(campaign, plan.request.repeats),
                       describe_earlier(plan.request), detail::escape_controls(out)));
 }
@@ -133,14 +141,17 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
                   {out, arguments.csv}, common);
     const PlanRequest request = make_request(arguments, &campaign, Criterion::V);
     PlanningOptions options = read_planning_inputs(request, campaign);
+    check_verification(arguments.verification, campaign, options);
     if (!sources.repaired.empty()) options.repaired = io::read_plan(sources.repaired);
     options.stop = stop;
     const auto read = std::chrono::steady_clock::now();
     const TargetPlanning made = plan_with_progress(campaign, options, arguments);
-    note_overtime(request.time_limit, stop, read, "plan");
+    if (!arguments.verification.is_wanted) note_overtime(request.time_limit, stop, read, "plan");
     io::write_plan(out, made.planning->plan, arguments.csv, made.planning->campaign);
+    const auto simulated = verify_made(arguments.verification, made, options, arguments.progress);
+    if (simulated) note_overtime(request.time_limit, stop, read, "plan and verify");
     interrupted.reset();
-    print_made(made, campaign, out, common);
+    print_made(made, simulated, campaign, out, common);
 }
 
 // ---- The command line ----
@@ -186,6 +197,7 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
         ->check(whole_number(1, 100000));
     add_search_options(command, arguments, "Of all draws (default: the campaign's)",
                        "<campaign>.poses.json");
+    add_verification_options(command, arguments.verification);
     command.add_option("--csv", arguments.csv, "Write the configurations as CSV, too")
         ->check(file_name());
     add_progress_flag(command, arguments);

@@ -234,15 +234,45 @@ Json range_to_json(const ErrorRange& range) {
             {"assured_mm", mm_per_m * range.assured}};
 }
 
+const char* quantity_name(ErrorQuantity quantity) {
+    if (quantity == ErrorQuantity::Rms) return "rms";
+    return quantity == ErrorQuantity::Max ? "max" : "p95";
+}
+
+Json simulated_to_json(const SimulatedPlan& simulated, const std::optional<double>& limit) {
+    static const std::map<LimitVerdict, const char*> verdicts{{LimitVerdict::Kept, "kept"},
+                                                              {LimitVerdict::NotKept, "not kept"},
+                                                              {LimitVerdict::Open, "open"}};
+    const auto number = [&](const SimulatedNumber& one) -> Json {
+        const bool is_found = simulated.robot_count > 0;
+        return {{"predicted_mm", mm_per_m * one.predicted},
+                {"found_mm", is_found ? Json(mm_per_m * one.found) : Json(nullptr)},
+                {"uncertainty_mm", mm_per_m * one.uncertainty}};
+    };
+    return {{"quantity", quantity_name(simulated.quantity)},
+            {"assurance", simulated.assurance},
+            {"ending", ending_name(simulated.ending)},
+            {"is_sure", simulated.is_sure()},
+            {"digits", simulated.digits},
+            {"tolerance_mm", mm_per_m * simulated.tolerance},
+            {"deviation_mm", mm_per_m * simulated.deviation},
+            {"robot_count", simulated.robot_count},
+            {"expected_robot_count", simulated.expected_count},
+            {"block_count", simulated.block_count},
+            {"uncalibrated_count", simulated.uncalibrated_count},
+            {"expected", number(simulated.expected)},
+            {"lower", number(simulated.lower)},
+            {"upper", number(simulated.upper)},
+            {"assured", number(simulated.assured)},
+            {"limit", limit ? Json(verdicts.at(judge_limit(simulated, *limit))) : Json(nullptr)}};
+}
+
 Json target_to_json(const TargetPlanning& found) {
-    static const std::map<ErrorQuantity, const char*> names{{ErrorQuantity::Rms, "rms"},
-                                                            {ErrorQuantity::Percentile95, "p95"},
-                                                            {ErrorQuantity::Max, "max"}};
     const TargetOptions& target = found.target;
     Json json = {{"limit_mm", detail::millimetres(target.limit)},
                  {"limit_s", target.duration ? Json(*target.duration) : Json(nullptr)},
                  {"assurance", target.assurance},
-                 {"quantity", names.at(target.quantity)},
+                 {"quantity", quantity_name(target.quantity)},
                  {"robust_to", target.robust_to},
                  {"error", range_to_json(*found.error)},
                  {"floor", range_to_json(found.floor)},
@@ -304,18 +334,21 @@ std::string to_json(const Plan& plan, const std::string& path) {
 }
 
 std::string to_json(const Planning& planning, const std::vector<CountAccuracy>& counts,
-                    const std::string& path) {
+                    const std::string& path, const std::optional<SimulatedPlan>& simulated) {
     Json document = planning_to_json(planning, path);
     Json& others = document["other_counts"] = Json::array();
     for (const CountAccuracy& count : counts) {
         others.push_back(count_to_json(count, planning.campaign.model_error));
     }
+    if (simulated) document["monte_carlo"] = simulated_to_json(*simulated, std::nullopt);
     return detail::json_text(document);
 }
 
-std::string to_json(const TargetPlanning& found, const std::string& path) {
+std::string to_json(const TargetPlanning& found, const std::string& path,
+                    const std::optional<SimulatedPlan>& simulated) {
     Json document = planning_to_json(found.planning.value(), path);
     document["target"] = target_to_json(found);
+    if (simulated) document["monte_carlo"] = simulated_to_json(*simulated, found.target.limit);
     return detail::json_text(document);
 }
 

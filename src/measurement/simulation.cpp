@@ -46,6 +46,20 @@ void check_contacts(const Campaign& campaign, const Seen& is_seen, Index repeats
     throw InputError("each configuration must show one contact and no other");
 }
 
+/// Parameters as an earlier calibration tells, give or take so many times its covariance's
+/// deviations; what it tells nothing of about nominal.
+Parameters draw_from_prior(const Campaign& campaign, double times, std::uint64_t seed) {
+    RandomStream stream(seed);
+    const VectorXd z = stream.normals(parameter_count(campaign));
+    const Index begin = prior_begin(campaign);
+    const Index count = prior_count(campaign);
+    const MatrixXd root = detail::cholesky_factor(campaign.prior->covariance);
+    if (root.rows() != count) throw InputError("the prior is of other parameters");
+    VectorXd errors = parameter_scale(campaign).cwiseProduct(z);
+    errors.segment(begin, count) = times * (root * z.segment(begin, count));
+    return advance(campaign, campaign.prior->mean, errors);
+}
+
 }  // namespace
 
 Parameters draw_truth(const Campaign& campaign, std::uint64_t seed) {
@@ -63,10 +77,19 @@ DrawnRobot draw_robot(const Campaign& campaign, std::uint64_t seed) {
     RandomStream stream(seed, 1);  // draw_truth() draws from stream (seed, 0)
     const double errors = detail::power(campaign.known_within.error_size, stream.normal());
     const double model = detail::power(campaign.known_within.model_error, stream.normal());
-    DrawnRobot robot{draw_truth(campaign, seed), model * campaign.model_error,
-                     model * campaign.model_error_orientation};
+    return draw_robot(campaign, errors, model, seed);
+}
+
+DrawnRobot draw_robot(const Campaign& campaign, double errors, double model, std::uint64_t seed) {
+    DrawnRobot robot{{}, model * campaign.model_error, model * campaign.model_error_orientation};
+    if (campaign.prior) {
+        robot.truth = draw_from_prior(campaign, errors, seed);
+        return robot;
+    }
+    robot.truth = draw_truth(campaign, seed);
     const VectorXd& nominal = campaign.nominal.robot;
-    robot.truth.robot = nominal + errors * (robot.truth.robot - nominal);
+    const VectorXd drawn = errors * (robot.truth.robot - nominal);
+    robot.truth.robot = campaign.spread.is_prior ? drawn : nominal + drawn;
     return robot;
 }
 

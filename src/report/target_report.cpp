@@ -16,17 +16,13 @@ namespace {
 
 using detail::format_mm;
 using detail::format_short;
+using detail::name_of;
 using detail::Table;
 
 constexpr double seconds_per_minute = 60;
 
 std::string minutes(double seconds) {
     return detail::format_fixed(seconds / seconds_per_minute, 1);
-}
-
-const char* name_of(ErrorQuantity quantity) {
-    if (quantity == ErrorQuantity::Rms) return "RMS";
-    return quantity == ErrorQuantity::Max ? "maximum" : "95 % of positions";
 }
 
 std::string percent(double part) { return format_short(100 * part) + " %"; }
@@ -104,6 +100,11 @@ std::string describe_best(const TargetPlanning& found, double longest) {
 }  // namespace
 
 namespace detail {
+
+const char* name_of(ErrorQuantity quantity) {
+    if (quantity == ErrorQuantity::Rms) return "RMS";
+    return quantity == ErrorQuantity::Max ? "maximum" : "95 % of positions";
+}
 
 std::string describe_duration(const Planning& planning) {
     if (planning.campaign.cell.dwell == 0) return "";

@@ -7,6 +7,9 @@
 /// Lines of a plan's report, empty where there is nothing to say.
 namespace posewise::detail {
 
+/// "RMS"
+const char* name_of(ErrorQuantity quantity);
+
 /// How long measuring takes, if the robot stands still for its samples.
 std::string describe_duration(const Planning& planning);
 

@@ -106,15 +106,6 @@ void hold_kept(PlanningProblem& problem, const Plan& repaired) {
     problem.search.held_pose_count += static_cast<Index>(problem.kept.size());
 }
 
-// ---- Where it matters ----
-
-std::optional<Box> workspace_box(const PlanRequest& request) {
-    const auto& box = request.workspace_box_mm;
-    if (box.empty()) return std::nullopt;
-    return Box{Vector3d(box[0], box[1], box[2]) / mm_per_m,
-               Vector3d(box[3], box[4], box[5]) / mm_per_m};
-}
-
 }  // namespace
 
 PlanningProblem state_planning(const Campaign& given, const PlanningOptions& options) {
@@ -156,6 +147,13 @@ void count_new_poses(PlanningProblem& problem, const StopSignal& stop) {
     compute_from(problem.request.sources.campaign, [&] {
         check_enough_poses(problem.campaign, count, problem.measured_count, stop);
     });
+}
+
+std::optional<Box> workspace_box(const PlanRequest& request) {
+    const auto& box = request.workspace_box_mm;
+    if (box.empty()) return std::nullopt;
+    return Box{Vector3d(box[0], box[1], box[2]) / mm_per_m,
+               Vector3d(box[3], box[4], box[5]) / mm_per_m};
 }
 
 void draw_workspace(PlanningProblem& problem, const PlanningOptions& options) {

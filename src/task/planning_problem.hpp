@@ -26,6 +26,9 @@ PlanningProblem state_planning(const Campaign& campaign, const PlanningOptions& 
 /// and where it is stopped.
 void count_new_poses(PlanningProblem& problem, const StopSignal& stop);
 
+/// The box that targets are in where the workspace is drawn, if one was stated.
+std::optional<Box> workspace_box(const PlanRequest& request);
+
 /// Draws the workspace, unless `options` state it.
 void draw_workspace(PlanningProblem& problem, const PlanningOptions& options);
 

@@ -12,73 +12,17 @@
 #include "posewise/measurement/simulation.hpp"
 #include "simulation_setting.hpp"
 #include "study_cases.hpp"
+#include "trial_robot.hpp"
 
 namespace posewise {
 namespace {
 
+using detail::draw_seed;
 using detail::SimulationSetting;
 using detail::Subset;
-
-/// World positions of all targets, a row a configuration (m x 3 targets).
-RowMatrixXd target_positions(const Campaign& campaign, const Parameters& parameters,
-                             const RowMatrixXd& configurations) {
-    const Sensor& sensor = *campaign.sensor;
-    const Index targets = sensor.target_count();
-    RowMatrixXd positions(configurations.rows(), 3 * targets);
-    std::vector<Vector3d> on_flange;
-    for (Index j = 0; j < targets; ++j) {
-        on_flange.push_back(sensor.target_position(j, parameters.sensor));
-    }
-    VectorXd q(configurations.cols());
-    for (Index i = 0; i < configurations.rows(); ++i) {
-        q = configurations.row(i).transpose();
-        const Isometry3d flange = world_from_flange(campaign, parameters, q);
-        for (Index j = 0; j < targets; ++j) {
-            positions.row(i).segment<3>(3 * j) =
-                (flange * on_flange[static_cast<std::size_t>(j)]).transpose();
-        }
-    }
-    return positions;
-}
-
-/// Where the drawn robot's targets are when it is sent to configurations.
-RowMatrixXd visited_positions(const Campaign& truth, const DrawnRobot& robot,
-                              const RowMatrixXd& configurations, std::uint64_t seed) {
-    RowMatrixXd visited = configurations;
-    RandomStream random(seed);
-    const Index joints = truth.joint_repeatability.size();  // 0: it repeats exactly
-    for (Index i = 0; i < visited.rows() && joints > 0; ++i) {
-        visited.row(i).head(joints) +=
-            truth.joint_repeatability.cwiseProduct(random.normals(joints)).transpose();
-    }
-    RowMatrixXd positions = target_positions(truth, robot.truth, visited);
-    for (double& coordinate : positions.reshaped()) {
-        coordinate += robot.model_error * random.normal();
-    }
-    return positions;
-}
-
-HeldOut compare_positions(const RowMatrixXd& is, const RowMatrixXd& should_be) {
-    const RowMatrixXd error = is - should_be;
-    const Eigen::Map<const RowMatrixXd> points(error.data(), error.size() / 3, 3);
-    const VectorXd distances = points.rowwise().norm();
-    const auto count = static_cast<double>(distances.size());
-    return {distances.size(), std::sqrt(distances.squaredNorm() / count),
-            quantile(distances, 0.95, detail::QuantileRule::Upper), distances.maxCoeff()};
-}
+using detail::TrialRobot;
 
 // ---- One trial ----
-
-std::uint64_t draw_seed(RandomStream& stream) {
-    return static_cast<std::uint64_t>(stream.index(Index{1} << 62));
-}
-
-/// A drawn robot, and where it really is.
-struct TrialRobot {
-    Campaign truth;  ///< with the model error drawn
-    DrawnRobot robot;
-    RowMatrixXd positions;  ///< of its targets at the test configurations
-};
 
 /// What the calibration expects at the test configurations, m.
 double expected_there(const SimulationSetting& setting, const Estimate& estimate) {
@@ -93,13 +37,12 @@ StudyCase run_case(const SimulationSetting& setting, const SimulatedStudyOptions
                    const TrialRobot& trial, const Subset& subset, std::uint64_t seed) {
     StudyCase result;
     if (subset.configurations.rows() == 0) return result;
-    const Measurements measured =
-        simulate_measurements(trial.truth, trial.robot.truth, subset.configurations, subset.is_seen,
-                              options.repeats, seed);
-    const auto estimate = detail::calibrate_subset(setting.campaign, measured);
+    const auto estimate =
+        detail::calibrate_robot(setting.campaign, trial, subset, options.repeats, seed);
     if (!estimate) return result;
-    result.held_out = compare_positions(
-        target_positions(setting.campaign, estimate->parameters, setting.test), trial.positions);
+    result.held_out = detail::compare_positions(
+        detail::target_positions(setting.campaign, estimate->parameters, setting.test),
+        trial.positions);
     result.expected = expected_there(setting, *estimate);
     result.identified = true;
     return result;
@@ -108,11 +51,9 @@ StudyCase run_case(const SimulationSetting& setting, const SimulatedStudyOptions
 std::vector<double> run_trial(const SimulationSetting& setting,
                               const SimulatedStudyOptions& options, Index number) {
     RandomStream stream(options.seed, static_cast<std::uint64_t>(number));
-    TrialRobot trial{setting.truth, draw_robot(setting.truth, draw_seed(stream)), {}};
-    trial.truth.model_error = trial.robot.model_error;
-    trial.truth.model_error_orientation = trial.robot.model_error_orientation;
-    trial.positions =
-        visited_positions(setting.truth, trial.robot, setting.test, draw_seed(stream));
+    DrawnRobot robot = draw_robot(setting.truth, draw_seed(stream));
+    const TrialRobot trial =
+        detail::visit(setting.truth, std::move(robot), setting.test, draw_seed(stream));
     const std::uint64_t noise = draw_seed(stream);
     const std::uint64_t choices = draw_seed(stream);
     std::vector<double> values;

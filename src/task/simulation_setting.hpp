@@ -4,15 +4,10 @@
 
 #include "posewise/planner/pool.hpp"
 #include "posewise/task/simulated_study.hpp"
+#include "trial_robot.hpp"
 
 /// What all trials of a simulated study share.
 namespace posewise::detail {
-
-/// Configurations to measure, and the targets that each shows.
-struct Subset {
-    RowMatrixXd configurations;
-    Seen is_seen;
-};
 
 Subset take(const Pool& pool, const std::vector<Index>& chosen);
 

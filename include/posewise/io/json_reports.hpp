@@ -14,6 +14,7 @@
 #include "posewise/task/geometry.hpp"
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"
+#include "posewise/task/simulated_plan.hpp"
 #include "posewise/task/study.hpp"
 #include "posewise/task/target.hpp"
 #include "posewise/task/verification.hpp"
@@ -38,12 +39,15 @@ std::string to_json(const Rating& rating, const Campaign& campaign);
 
 /// The plan as its file `path` has it, that file, and what is predicted.
 std::string to_json(const Plan& plan, const std::string& path);
-/// Likewise, with what became of the planning and the accuracy of other numbers of poses.
+/// Likewise, with what became of the planning, the accuracy of other numbers of poses, and how it
+/// was verified, if it was.
 std::string to_json(const Planning& planning, const std::vector<CountAccuracy>& counts,
-                    const std::string& path);
+                    const std::string& path,
+                    const std::optional<SimulatedPlan>& simulated = std::nullopt);
 
 /// Likewise of a plan that keeps a target, with what other numbers of poses reach.
-std::string to_json(const TargetPlanning& found, const std::string& path);
+std::string to_json(const TargetPlanning& found, const std::string& path,
+                    const std::optional<SimulatedPlan>& simulated = std::nullopt);
 
 std::string to_json(const ApproximateDesign& design);
 

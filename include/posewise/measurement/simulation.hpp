@@ -32,8 +32,14 @@ struct DrawnRobot {
 };
 
 /// draw_truth() with all of the robot's errors larger or smaller by one factor, and another factor
-/// of the model errors, each as surely as the campaign's KnownWithin says.
+/// of the model errors, each as surely as the campaign's KnownWithin says. Where the spread is the
+/// prior its errors are about zero, as that says, and where an earlier estimate is the prior all
+/// that it tells of is drawn from that.
 DrawnRobot draw_robot(const Campaign& campaign, std::uint64_t seed);
+
+/// The same with these factors of the robot's errors (of all that an earlier estimate tells of) and
+/// of the model errors.
+DrawnRobot draw_robot(const Campaign& campaign, double errors, double model, std::uint64_t seed);
 
 /// Observations of given configurations (m x joints) by a robot with the true parameters: sensor
 /// noise on every sample; model error and joint errors on every configuration (the same for all its

@@ -8,6 +8,7 @@
 #include "posewise/task/correction.hpp"
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"
+#include "posewise/task/simulated_plan.hpp"
 #include "posewise/task/study.hpp"
 #include "posewise/task/target.hpp"
 #include "posewise/task/verification.hpp"
@@ -71,6 +72,12 @@ std::string format(const TargetPlanning& found);
 std::string format_curve(const TargetPlanning& found);
 /// Why a target was not reached and what would help, as one sentence; empty if it was.
 std::string describe_shortfall(const TargetPlanning& found);
+
+/// What was predicted beside what was found on robots that were drawn, and how sure that is.
+std::string format(const SimulatedPlan& simulated);
+/// Whether the target's limit is kept by that, in one line; empty without them.
+std::string describe_verified(const TargetOptions& target,
+                              const std::optional<SimulatedPlan>& simulated);
 
 /// Predicted accuracy for other numbers of poses.
 std::string format_other_counts(const std::vector<CountAccuracy>& counts, const Campaign& campaign);
