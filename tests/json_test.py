@@ -212,9 +212,14 @@ def check_plan():
     expect(worst["id"] == document["drop_outs"][0]["id"], "plan: pose values")
     parts = [document["budget"][part] for part in ("parameters_mm", "left_over_mm", "repeatability_mm")]
     expect(close(math.hypot(*parts), document["accuracy"]["total_rms_mm"], 9), "plan: budget")
-    document, text = both("plan", FANUC, "--target-mm", 1.5, "--pool", 200, "--workspace-poses", 20, "--starts", 1)
+    document, text = both("plan", FANUC, "--target-mm", 1.5, "--pool", 200, "--workspace-poses", 20, "--starts", 1,
+                          "--verify", "--verify-robots", 100)
     expect(close(document["target"]["error"]["assured_mm"], number_behind(text, "new poses, "), 4), "plan: target")
     expect(document["target"]["error"]["assured_mm"] <= 1.2, "plan: target is missed")
+    found = document["monte_carlo"]
+    expect(close(found["expected"]["predicted_mm"], number_behind(text, "\nexpected "), 4), "plan: closed form")
+    expect(found["assured"]["predicted_mm"] == document["target"]["error"]["assured_mm"], "plan: assured")
+    expect(found["limit"] == "kept" and "verified:    the limit is kept" in text, "plan: verified")
 
 
 def check_verify():

@@ -51,7 +51,7 @@ std::optional<SimulatedPlan> verify_made(const VerificationArguments& arguments,
     }
     ProgressLine line("verifying", shows_progress);
     simulated.progress = [&](const Progress& state) {
-        line(state, fmt::format("{} of about {} robots", state.done, state.total - 1));
+        line(state, fmt::format("{} of about {} robots", state.done, state.total));
     };
     return simulate_plan(*made.planning, simulated);
 }

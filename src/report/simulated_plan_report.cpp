@@ -19,11 +19,10 @@ std::string format_doubt(const SimulatedNumber& number) {
     return format_short(mm_per_m * 2 * number.uncertainty, 2);
 }
 
-/// To the last digit that is sure, or nearly so.
-std::string format_found(const SimulatedPlan& simulated, const SimulatedNumber& number) {
+/// To the first digit that is not sure.
+std::string format_found(const SimulatedNumber& number) {
     if (std::isinf(number.found)) return "no limit";
-    const double unit = simulated.is_sure() ? 2 * simulated.tolerance : 2 * number.uncertainty;
-    const double decimals = -std::floor(std::log10(mm_per_m * unit) + 1e-9);
+    const double decimals = -std::floor(std::log10(mm_per_m * 2 * number.uncertainty));
     return detail::format_mm(number.found, static_cast<int>(std::clamp(decimals, 0.0, 6.0)));
 }
 
@@ -58,8 +57,8 @@ std::string format(const SimulatedPlan& simulated) {
     }
     detail::Table table{{"quantity", "closed form/mm", "Monte Carlo/mm", "sure to/mm"}, {}};
     const auto add = [&](const std::string& name, const SimulatedNumber& number) {
-        table.rows.push_back({name, detail::format_mm(number.predicted),
-                              format_found(simulated, number), format_doubt(number)});
+        table.rows.push_back({name, detail::format_mm(number.predicted), format_found(number),
+                              format_doubt(number)});
     };
     add(simulated.quantity == ErrorQuantity::Rms ? "expected" : "median", simulated.expected);
     add("5 % below", simulated.lower);
@@ -86,8 +85,8 @@ std::string describe_verified(const TargetOptions& target,
     const SimulatedNumber& assured = simulated->assured;
     const double limit = mm_per_m * *target.limit;
     const std::string found = fmt::format(
-        "{} mm (sure to {}) with {} %, of {}", format_found(*simulated, assured),
-        format_doubt(assured), format_short(100 * target.assurance), describe_robots(*simulated));
+        "{} mm (sure to {}) with {} %, of {}", format_found(assured), format_doubt(assured),
+        format_short(100 * target.assurance), describe_robots(*simulated));
     switch (judge_limit(*simulated, *target.limit)) {
         case LimitVerdict::Kept:
             return fmt::format("verified:    the limit is kept: {}\n", found);

@@ -24,7 +24,7 @@ double numerical_tolerance(double number, Index digits);
 /// asked for, some of expected size.
 class RobotBlocks {
   public:
-    static constexpr Index least = 5;  ///< before they tell how sure their average is
+    static constexpr Index least = 10;  ///< before they tell how sure their average is
 
     RobotBlocks(const KnownWithin& known, const SimulatedPlanOptions& options);
 

@@ -229,7 +229,7 @@ SimulatedPlan simulate_plan(const Planning& planning, const SimulatedPlanOptions
         guessed = blocks.needed(result.tolerance);
     }
     const Index all = blocks.count() * blocks.robots_a_block();
-    if (options.progress) options.progress(Progress{.done = all + 1, .total = all + 1});
+    if (options.progress && all > 0) options.progress(Progress{.done = all, .total = all});
     result.block_count = blocks.count();
     result.robot_count = blocks.any_count();
     result.expected_count = blocks.expected_count();

@@ -76,6 +76,8 @@ TEST_F(Sockets, ArePlannedFor) {
     const std::string text = run_well(
         "plan c.yaml -k 16 --pool 300 --workspace-poses 40 --starts 1 -o p.json --csv p.csv");
     EXPECT_NE(text.find("socket"), std::string::npos) << text;
+    expect_input_error("plan c.yaml -k 16 --verify",
+                       "robots that touch sockets cannot be simulated");
     EXPECT_EQ(run("verify p.json").code, 0);
     run_well("simulate c.yaml --configurations p.csv -o m.csv");
     run_well("calibrate c.yaml -m m.csv -o e.json");
