@@ -16,12 +16,13 @@ namespace {
 using detail::format_short;
 
 std::string format_doubt(const SimulatedNumber& number) {
+    if (std::isinf(number.uncertainty)) return "-";
     return format_short(mm_per_m * 2 * number.uncertainty, 2);
 }
 
 /// To the first digit that is not sure.
 std::string format_found(const SimulatedNumber& number) {
-    if (std::isinf(number.found)) return "no limit";
+    if (std::isinf(number.found)) return "-";
     const double decimals = -std::floor(std::log10(mm_per_m * 2 * number.uncertainty));
     return detail::format_mm(number.found, static_cast<int>(std::clamp(decimals, 0.0, 6.0)));
 }
@@ -84,9 +85,14 @@ std::string describe_verified(const TargetOptions& target,
     if (!simulated || !target.limit || simulated->robot_count == 0) return "";
     const SimulatedNumber& assured = simulated->assured;
     const double limit = mm_per_m * *target.limit;
-    const std::string found = fmt::format(
-        "{} mm (sure to {}) with {} %, of {}", format_found(assured), format_doubt(assured),
-        format_short(100 * target.assurance), describe_robots(*simulated));
+    const std::string robots = fmt::format("with {} %, of {}", format_short(100 * target.assurance),
+                                           describe_robots(*simulated));
+    const std::string found =
+        std::isinf(assured.found)
+            ? fmt::format("{} of {} could not be calibrated", simulated->uncalibrated_count,
+                          describe_robots(*simulated))
+            : fmt::format("{} mm (sure to {}) {}", format_found(assured), format_doubt(assured),
+                          robots);
     switch (judge_limit(*simulated, *target.limit)) {
         case LimitVerdict::Kept:
             return fmt::format("verified:    the limit is kept: {}\n", found);

@@ -62,14 +62,15 @@ TEST_F(PlanTarget, RefusesWhatCannotBeMeant) {
 }
 
 TEST_F(PlanTarget, IsVerifiedOnRobotsThatAreDrawn) {
-    const std::string text = run_well(plan("-k 12 --verify --verify-robots 100"));
+    const std::string text = run_well(
+        "plan " + fanuc_design +
+        " -k 12 --pool 60 --starts 1 --workspace-poses 20 -o p.json --verify --verify-robots 100");
     for (const char* const words :
          {"closed form/mm  Monte Carlo/mm  sure to/mm", "\nexpected ", "\n95 % below ",
           "100 robots and 20 of expected sizes; not as sure as asked, 2 digits of 0.",
           "that was the most robots allowed (--verify-robots)"}) {
         EXPECT_NE(text.find(words), std::string::npos) << words << '\n' << text;
     }
-    run_well("verify p.json");
     expect_usage_error("-k 12 --verify-robots 100", "--verify");
     expect_usage_error("-k 12 --verify --verify-digits 0", "--verify-digits");
     expect_input_error(plan("-k 12 --verify --repeats 1.5"), "repeats are 1.5; must be a whole");
