@@ -17,11 +17,11 @@ struct VerificationArguments {
 
 void add_verification_options(CLI::App& command, VerificationArguments& arguments);
 
-/// Nothing: it is not wanted. Throws InputError if this cannot be verified.
+/// Throws InputError if it is wanted of what cannot be verified.
 void check_verification(const VerificationArguments& arguments, const Campaign& campaign,
                         const PlanningOptions& options);
-/// Of a plan that `options` made and that is written already; with the progress line if it is asked
-/// for. The stop signal is that of `options`, but for a new Ctrl-C.
+/// Of a plan that `options` made and that is written already; nothing if it is not wanted. Stopped
+/// as `options` say, or by another Ctrl-C.
 std::optional<SimulatedPlan> verify_made(const VerificationArguments& arguments,
                                          const TargetPlanning& made, const PlanningOptions& options,
                                          bool shows_progress);
