@@ -364,12 +364,22 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     planned.configurations = best.configurations;
     planned.information = information_of(problem, best.configurations);
     check_all_is_seen(space, planned.information);
-    planned.searched_bound = search_bound(space, problem.objective, select, best.configurations,
-                                          pool, blocks, options.bound_iterations, options.stop);
-    planned.efficiency = efficiency(options.criterion, planned.value, planned.searched_bound,
-                                    interesting_count(problem));
+    add_searched_bound(space, pool, blocks, options, planned);
     planned.is_interrupted = problem.options.stop.is_set();
     return planned;
+}
+
+void add_searched_bound(const DesignSpace& space, const RowMatrixXd& pool, const Blocks& blocks,
+                        const PlanOptions& options, PlannedPoses& planned) {
+    if (space.is_pool_only || options.bound_iterations == 0) return;
+    const SelectOptions select = select_options(space, pool, options);
+    const Objective objective = make_objective(blocks, select);
+    planned.searched_bound = search_bound(space, objective, select, planned.configurations, pool,
+                                          blocks, options.bound_iterations, options.stop);
+    planned.efficiency =
+        efficiency(options.criterion, planned.value, planned.searched_bound,
+                   space.parameter_count - static_cast<Index>(options.nuisance.size()));
+    planned.is_interrupted = planned.is_interrupted || options.stop.is_set();
 }
 
 }  // namespace posewise::detail

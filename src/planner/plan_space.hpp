@@ -13,4 +13,9 @@ namespace posewise::detail {
 PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const Blocks& blocks,
                         const PlanOptions& options);
 
+/// Its searched bound and the efficiency by that, for a plan that was made of all the same but
+/// without them (options.bound_iterations 0).
+void add_searched_bound(const DesignSpace& space, const RowMatrixXd& pool, const Blocks& blocks,
+                        const PlanOptions& options, PlannedPoses& planned);
+
 }  // namespace posewise::detail

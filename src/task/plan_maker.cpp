@@ -130,53 +130,68 @@ PlanMaker::PlanMaker(PlanningProblem problem, const PlanningOptions& options)
     draw_workspace(problem_, options);
 }
 
-PlannedPoses PlanMaker::search(const PlanOptions& search, Index pool_part) const {
-    check_pool_size(pool_, search.pose_count);
+PlanMaker::Candidates PlanMaker::candidates(Index pool_part) const {
     const Campaign& campaign = problem_.campaign;
-    const DesignSpace space = make_design_space(campaign, campaign.nominal,
-                                                problem_.request.repeats, &problem_.constraints);
-    const RowMatrixXd candidates = pool_.configurations.topRows(pool_part);
-    return plan_poses(
-        space, candidates,
-        make_blocks(campaign, campaign.nominal, candidates,
-                    times_seen(pool_.is_seen.topRows(pool_part), problem_.request.repeats)),
-        search);
+    const double repeats = problem_.request.repeats;
+    const RowMatrixXd configurations = pool_.configurations.topRows(pool_part);
+    return {make_design_space(campaign, campaign.nominal, repeats, &problem_.constraints),
+            configurations,
+            make_blocks(campaign, campaign.nominal, configurations,
+                        times_seen(pool_.is_seen.topRows(pool_part), repeats))};
 }
 
-Planning PlanMaker::make(Index pose_count) const {
+PlanOptions PlanMaker::search_for(Index pose_count) const {
+    check_pool_size(pool_, pose_count);
     PlanOptions search = problem_.search;
     search.pose_count = pose_count;
+    search.bound_iterations = 0;
+    if (needs_test_poses(search.criterion)) search.test_poses = &problem_.errors.by_parameters;
+    search.stop = options_.stop;
+    return search;
+}
+
+Planning PlanMaker::make(Index pose_count,
+                         const std::function<bool(const Planning&)>& needs_bound) const {
+    PlanOptions search = search_for(pose_count);
     search.progress = options_.progress;
-    return make(std::move(search), pool_.configurations.rows());
+    const Candidates from = candidates(pool_.configurations.rows());
+    PlannedPoses planned = plan_poses(from.space, from.configurations, from.blocks, search);
+    Planning planning = finish(search, planned);
+    if (!needs_bound(planning)) return planning;
+    search.bound_iterations = problem_.search.bound_iterations;
+    add_searched_bound(from.space, from.configurations, from.blocks, search, planned);
+    planning.plan.searched_bound = planned.searched_bound;
+    planning.plan.searched_efficiency = planned.efficiency;
+    planning.plan.ending = ending_of(planned);
+    return planning;
 }
 
 Planning PlanMaker::make_quickly(Index pose_count) const {
-    PlanOptions search = problem_.search;
-    search.pose_count = pose_count;
+    PlanOptions search = search_for(pose_count);
     search.starts = 1;
-    search.bound_iterations = 0;
-    return make(std::move(search),
-                std::min(pool_.configurations.rows(), std::max(quick_pool_part, 2 * pose_count)));
+    const Candidates from = candidates(
+        std::min(pool_.configurations.rows(), std::max(quick_pool_part, 2 * pose_count)));
+    return finish(search, plan_poses(from.space, from.configurations, from.blocks, search));
 }
 
-Planning PlanMaker::make(PlanOptions search, Index pool_part) const {
-    if (needs_test_poses(search.criterion)) search.test_poses = &problem_.errors.by_parameters;
-    search.stop = options_.stop;
-    const PlannedPoses planned = this->search(search, pool_part);
+Ending PlanMaker::ending_of(const PlannedPoses& planned) const {
+    if (!planned.is_interrupted && is_pool_complete_) return Ending::Converged;
+    return options_.stop.is_interrupted() ? Ending::Interrupted : Ending::TimeLimit;
+}
+
+Planning PlanMaker::finish(PlanOptions search, const PlannedPoses& planned) const {
     TourOptions tour_options;
     tour_options.order.seed = options_.seed;
     Tour tour =
         plan_tour(problem_.constraints, all_poses(problem_, planned.configurations), tour_options);
     Plan plan = make_result(problem_, planned, pool_, tour);
-    plan.ending = Ending::Converged;
-    if (planned.is_interrupted || !is_pool_complete_) {
-        plan.ending = options_.stop.is_interrupted() ? Ending::Interrupted : Ending::TimeLimit;
-    }
+    plan.ending = ending_of(planned);
     const Blocks& prediction = problem_.errors.by_parameters;
     const Blocks blocks = blocks_of(problem_, plan.poses);
     MatrixXd left = planned.information;
     search.progress = {};
     search.test_poses = nullptr;
+    search.bound_iterations = problem_.search.bound_iterations;
     const double samples = plan.request.repeats * static_cast<double>(plan.poses.size());
     Planning planning{std::move(plan),
                       pool_,

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+
+#include "../planner/design_space.hpp"
 #include "planning_problem.hpp"
 
 namespace posewise::detail {
@@ -14,15 +17,25 @@ class PlanMaker {
     const PlanningProblem& problem() const { return problem_; }
     const Pool& pool() const { return pool_; }
 
-    /// So many new poses.
-    Planning make(Index pose_count) const;
+    /// So many new poses, with a searched bound if `needs_bound` says so: it takes longer than the
+    /// rest.
+    Planning make(Index pose_count, const std::function<bool(const Planning&)>& needs_bound) const;
     /// The same, but one start from a part of the pool, and no bounds: nearly as good in a tenth of
     /// the time.
     Planning make_quickly(Index pose_count) const;
 
   private:
-    Planning make(PlanOptions search, Index pool_part) const;
-    PlannedPoses search(const PlanOptions& search, Index pool_part) const;
+    /// Candidates of a search.
+    struct Candidates {
+        DesignSpace space;
+        RowMatrixXd configurations;
+        Blocks blocks;
+    };
+    Candidates candidates(Index pool_part) const;
+    /// Without a bound.
+    PlanOptions search_for(Index pose_count) const;
+    Ending ending_of(const PlannedPoses& planned) const;
+    Planning finish(PlanOptions search, const PlannedPoses& planned) const;
 
     PlanningProblem problem_;
     const PlanningOptions& options_;

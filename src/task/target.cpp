@@ -157,7 +157,9 @@ class Search {
     }
 
     void plan(Index count) {
-        result_.planning = maker_.make(count);
+        // What is not kept needs no bound.
+        result_.planning = maker_.make(
+            count, [&](const Planning& planning) { return has_crossed(planning) == has_limit(); });
         result_.error = judge(*result_.planning);
         planned_[count] = {count, true, result_.error, result_.planning->duration};
     }
