@@ -4,7 +4,7 @@
 namespace posewise::testing {
 namespace {
 
-const std::string quick = " --pool 500 --starts 1 --workspace-poses 50 -o p.json ";
+const std::string quick = " --pool 150 --starts 1 --workspace-poses 20 -o p.json ";
 
 class PlanTarget : public Program {
   protected:
@@ -20,15 +20,15 @@ class PlanTarget : public Program {
 };
 
 TEST_F(PlanTarget, SaysHowManyPosesAndWhatTheErrorConsistsOf) {
-    const std::string text = run_well(plan("--target-mm 1 --robust-to 1"));
+    const std::string text = run_well(plan("--target-mm 1.2 --robust-to 1"));
     for (const char* const words :
-         {"target:      1 mm RMS with 95 %, the worst 1 pose missing: ", "new poses",
+         {"target:      1.2 mm RMS with 95 %, the worst 1 pose missing: ", "new poses",
           "; floor 0.78", "missing:     without p", "parameters, by the model error",
           "Position error (RMS) by number of poses", "95 % below/mm", "minutes"}) {
         EXPECT_NE(text.find(words), std::string::npos) << words << '\n' << text;
     }
     run_well("verify p.json");
-    const std::string timed = run_well(plan("--minutes 1"));
+    const std::string timed = run_well(plan("--minutes 0.5"));
     EXPECT_EQ(timed.rfind("time:        ", 0), 0u) << timed;
 }
 
@@ -39,7 +39,7 @@ TEST_F(PlanTarget, SaysWhatIsLeftAtBestAndWhatWouldLowerIt) {
                        "the largest part is 0.1732 mm by the model error; halving it needs");
     expect_input_error(plan("--target-mm 0.79 --poses-at-most 9"),
                        "not reached: 9 new poses reach");
-    expect_input_error(plan("--target-mm 0.82 --minutes 0.3"), "not reached in 0.3 min, in which");
+    expect_input_error(plan("--target-mm 0.9 --minutes 0.4"), "not reached in 0.4 min, in which");
     expect_input_error(plan("--minutes 0.01"), "are too short");
 }
 
