@@ -158,9 +158,10 @@ class Search {
 
     void plan(Index count) {
         // What is not kept needs no bound.
-        result_.planning = maker_.make(
-            count, [&](const Planning& planning) { return has_crossed(planning) == has_limit(); });
-        result_.error = judge(*result_.planning);
+        result_.planning = maker_.make(count, [&](const Planning& planning) {
+            result_.error = judge(planning);
+            return has_crossed(result_.error, planning.duration) == has_limit();
+        });
         planned_[count] = {count, true, result_.error, result_.planning->duration};
     }
 
