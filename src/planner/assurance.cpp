@@ -31,8 +31,8 @@ double repeatability_square(const PositionErrors& errors) {
 }
 
 PredictedAccuracy accuracy_of(const PositionErrors& errors, const Campaign& campaign,
-                              const MatrixXd& M) {
-    if (M.size() > 0) return predict_accuracy(errors.by_parameters, M, campaign);
+                              const MatrixXd& M, const InformationByNoise& by_noise) {
+    if (M.size() > 0) return predict_accuracy(errors.by_parameters, M, campaign, by_noise);
     PredictedAccuracy exact;
     exact.known_within = campaign.known_within;
     return exact;
@@ -42,9 +42,9 @@ PredictedAccuracy accuracy_of(const PositionErrors& errors, const Campaign& camp
 class RobotDraws {
   public:
     RobotDraws(const PositionErrors& errors, const Campaign& campaign, const MatrixXd& M,
-               std::uint64_t seed)
+               const InformationByNoise& by_noise, std::uint64_t seed)
         : errors_(errors),
-          accuracy_(accuracy_of(errors, campaign, M)),
+          accuracy_(accuracy_of(errors, campaign, M, by_noise)),
           model_error_(campaign.model_error),
           seed_(seed) {
         if (M.size() == 0) return;
@@ -84,7 +84,7 @@ class RobotDraws {
         for (Index k = 0; k < robots_a_block; ++k) {
             const auto drawn = detail::draw_unknowns(
                 b * robots_a_block + k, block_count * robots_a_block, accuracy_, model_error_);
-            off.col(k) *= drawn.growth;
+            off.col(k) *= std::sqrt(drawn.growth);
             off.col(k) += model_error_ * drawn.model * stream.normals(off.rows());
             add_visits(off.col(k), stream);
         }
@@ -171,7 +171,8 @@ PositionErrors make_position_errors(const Campaign& campaign, const RowMatrixXd&
 }
 
 ErrorRange predict_range(const PositionErrors& errors, const Campaign& campaign, const MatrixXd& M,
-                         ErrorQuantity quantity, double assurance, std::uint64_t seed) {
+                         const InformationByNoise& by_noise, ErrorQuantity quantity,
+                         double assurance, std::uint64_t seed) {
     if (!(assurance > 0 && assurance < 1)) {
         throw InputError("assurance is " + std::to_string(assurance) +
                          ", must be above 0 and below 1");
@@ -183,9 +184,9 @@ ErrorRange predict_range(const PositionErrors& errors, const Campaign& campaign,
         return ErrorRange{at(0.5), at(0.05), at(0.95), at(assurance)};
     };
     if (quantity != ErrorQuantity::Rms) {
-        return range_of(RobotDraws(errors, campaign, M, seed).draw(quantity));
+        return range_of(RobotDraws(errors, campaign, M, by_noise, seed).draw(quantity));
     }
-    const PredictedAccuracy accuracy = accuracy_of(errors, campaign, M);
+    const PredictedAccuracy accuracy = accuracy_of(errors, campaign, M, by_noise);
     const double repeatability = repeatability_square(errors);
     const double model = campaign.model_error;
     ErrorRange range = range_of(total_cases(accuracy, model, std::sqrt(repeatability)));
@@ -194,36 +195,17 @@ ErrorRange predict_range(const PositionErrors& errors, const Campaign& campaign,
     return range;
 }
 
-namespace {
-
-/// What the error by the parameters consists of.
-void divide_parameters(const PositionErrors& errors, const Campaign& campaign, const MatrixXd& M,
-                       const MatrixXd& model_information, const MatrixXd& noise_information,
-                       ErrorBudget& budget) {
-    const PredictedAccuracy accuracy = accuracy_of(errors, campaign, M);
-    const MatrixXd by_parameter = M.llt().solve(errors.by_parameters.matrix.transpose());
-    const auto square_by = [&](const MatrixXd& information) {
-        return by_parameter.cwiseProduct(information * by_parameter).sum();
-    };
+ErrorBudget make_budget(const PositionErrors& errors, const Campaign& campaign, const MatrixXd& M,
+                        const InformationByNoise& by_noise) {
+    const PredictedAccuracy accuracy = accuracy_of(errors, campaign, M, by_noise);
     const double square = accuracy.rms * accuracy.rms;
-    const double prior = accuracy.prior_share.value_or(0) * square;
+    const double prior = accuracy.prior_share() * square;
     const double by_poses = std::max(0.0, square - prior);
-    const double model = square_by(model_information);
-    const double noise = square_by(noise_information);
-    const double of_model = model + noise > 0 ? model / (model + noise) : 0;
+    ErrorBudget budget;
     budget.parameters = accuracy.rms;
     budget.prior = std::sqrt(prior);
-    budget.model = std::sqrt(of_model * by_poses);
-    budget.noise = std::sqrt((1 - of_model) * by_poses);
-}
-
-}  // namespace
-
-ErrorBudget make_budget(const PositionErrors& errors, const Campaign& campaign, const MatrixXd& M,
-                        const MatrixXd& model_information, const MatrixXd& noise_information) {
-    ErrorBudget budget;
-    if (M.size() > 0)
-        divide_parameters(errors, campaign, M, model_information, noise_information, budget);
+    budget.model = std::sqrt(accuracy.model_share * by_poses);
+    budget.noise = std::sqrt((1 - accuracy.model_share) * by_poses);
     budget.left_over = std::sqrt(coordinates) * campaign.model_error;
     budget.repeatability = std::sqrt(repeatability_square(errors));
     budget.total = std::hypot(budget.parameters, budget.left_over, budget.repeatability);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/decompositions.hpp"
 #include "../core/elementary.hpp"
 #include "../core/statistics.hpp"
 #include "posewise/core/errors.hpp"
@@ -32,6 +33,15 @@ Blocks make_prediction_blocks(const Campaign& campaign, const Parameters& parame
     return one;
 }
 
+double PredictedAccuracy::growth(double model_square, double size_square) const {
+    const double noise = 1 + model_share * (model_square - 1);
+    if (by_direction.size() == 0) return noise;
+    // Known by (1 - p) / noise of poses and p of the prior: C (M + size P) C in each direction.
+    const auto poses = (1 - prior_part.array()) / noise;
+    const auto prior = prior_part.array();
+    return (by_direction.array() * (poses + size_square * prior) / (poses + prior).square()).sum();
+}
+
 namespace detail {
 
 Unknowns draw_unknowns(Index k, Index count, const PredictedAccuracy& accuracy,
@@ -43,9 +53,9 @@ Unknowns draw_unknowns(Index k, Index count, const PredictedAccuracy& accuracy,
     Unknowns drawn;
     drawn.uniform = part(number / root);
     drawn.model = power(known.model_error, normal_quantile(number / static_cast<double>(count)));
-    const double share = accuracy.prior_share.value_or(0);
     const double sizes = power(known.error_size, normal_quantile(part(number / (root * root))));
-    drawn.growth = power(sizes, share) * power(model_error > 0 ? drawn.model : 1, 1 - share);
+    const double model = model_error > 0 ? drawn.model : 1;
+    drawn.growth = accuracy.growth(model * model, sizes * sizes);
     return drawn;
 }
 
@@ -59,9 +69,9 @@ VectorXd total_cases(const PredictedAccuracy& accuracy, double model_error, doub
         const detail::Unknowns drawn = detail::draw_unknowns(k, cases, accuracy, model_error);
         const double freedom = accuracy.degrees_of_freedom;
         const double chi_squared = detail::chi_squared_quantile(drawn.uniform, freedom) / freedom;
-        const double parameters = drawn.growth * accuracy.rms;
+        const double parameters = drawn.growth * accuracy.rms * accuracy.rms;
         const double model = drawn.model * model_error;
-        totals[k] = std::sqrt(chi_squared * parameters * parameters + coordinates * model * model +
+        totals[k] = std::sqrt(chi_squared * parameters + coordinates * model * model +
                               repeatability * repeatability);
     }
     return totals;
@@ -109,18 +119,43 @@ PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
     const double trace = square.trace();
     if (trace > 0) accuracy.degrees_of_freedom = trace * trace / square.squaredNorm();
     if (prior.size() > 0 && !prior.isZero(0) && sum > 0) {
-        // d trace(B M^-1 B^T) for M = J^T J + prior / f, by log f: trace(B M^-1 prior M^-1 B^T).
-        const MatrixXd by_parameter = cholesky.matrixU().solve(spread);
-        accuracy.prior_share = by_parameter.cwiseProduct(prior * by_parameter).sum() / sum;
+        // Poses and prior are both diagonal in the basis in which the prior is, M being 1.
+        const MatrixXd half = cholesky.matrixL().solve(prior);
+        const auto known = detail::eigen_decomposition(cholesky.matrixL().solve(half.transpose()));
+        const MatrixXd by_direction = known.eigenvectors().transpose() * spread;
+        accuracy.by_direction = by_direction.rowwise().squaredNorm() / sum;
+        accuracy.prior_part = known.eigenvalues().cwiseMax(0).cwiseMin(1);
     }
     accuracy.percentile95 = quantile(std::move(errors), 0.95, detail::QuantileRule::Upper);
     return accuracy;
 }
 
+InformationByNoise information_by_noise(const Campaign& campaign, const Parameters& parameters,
+                                        const RowMatrixXd& configurations,
+                                        const RowMatrixXd& repeats) {
+    constexpr double step = 1e-3;
+    const auto with = [&](double model_square, double noise_square) {
+        Campaign noisy = campaign;
+        noisy.model_error *= std::sqrt(model_square);
+        noisy.model_error_orientation *= std::sqrt(model_square);
+        noisy.joint_repeatability *= std::sqrt(noise_square);
+        return information(make_blocks(noisy, parameters, configurations, repeats / noise_square));
+    };
+    return {(with(1 - step, 1) - with(1 + step, 1)) / (2 * step),
+            (with(1, 1 - step) - with(1, 1 + step)) / (2 * step)};
+}
+
 PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
-                                   const Campaign& campaign) {
+                                   const Campaign& campaign, const InformationByNoise& by_noise) {
     PredictedAccuracy accuracy = predict_accuracy(prediction, M, prior_information(campaign));
     accuracy.known_within = campaign.known_within;
+    const MatrixXd by_parameter = M.llt().solve(prediction.matrix.transpose());
+    const auto square_by = [&](const MatrixXd& information) {
+        return by_parameter.cwiseProduct(information * by_parameter).sum();
+    };
+    const double model = square_by(by_noise.model);
+    const double noise = square_by(by_noise.noise);
+    accuracy.model_share = model + noise > 0 ? model / (model + noise) : 0;
     return accuracy;
 }
 

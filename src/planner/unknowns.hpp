@@ -8,7 +8,7 @@ namespace posewise::detail {
 struct Unknowns {
     double uniform = 0.5;  ///< between 0 and 1: of the parameters' errors
     double model = 1;      ///< the model error is so many times the expected one
-    double growth = 1;     ///< and the parameters' errors so many times those predicted
+    double growth = 1;     ///< and the squares of the parameters' errors of those predicted
 };
 
 /// Case k of `count` that fill the space of all cases evenly, so that few make a sure quantile: the

@@ -74,10 +74,14 @@ std::optional<PredictedAccuracy> predict(const Campaign& campaign, const ChoiceP
     if (problem.options.held.size() > 0) M += problem.options.held;
     if (Eigen::LLT<MatrixXd>(M).info() != Eigen::Success) return std::nullopt;
     const auto workspace = evenly_spaced(problem.configurations.rows(), most_configurations);
+    const auto at = [&](const std::vector<Index>& candidates) {
+        return RowMatrixXd(problem.configurations(candidates, Eigen::all));
+    };
+    const RowMatrixXd repeats =
+        problem.request.repeats * RowMatrixXd(problem.share(chosen, Eigen::all));
     return predict_accuracy(
-        make_prediction_blocks(campaign, problem.parameters,
-                               RowMatrixXd(problem.configurations(workspace, Eigen::all))),
-        M, campaign);
+        make_prediction_blocks(campaign, problem.parameters, at(workspace)), M, campaign,
+        information_by_noise(campaign, problem.parameters, at(chosen), repeats));
 }
 
 /// Plan::value_rms. Where whitening divided every coordinate of every target at every test pose by

@@ -19,8 +19,8 @@ std::vector<CountAccuracy> predict_other_counts(const Planning& planning) {
         rows.push_back({k, false, std::nullopt});
         const auto chosen = k >= least ? choices.choose(k) : std::nullopt;
         if (chosen) {
-            rows.back().accuracy =
-                predict_accuracy(prediction, choices.information(*chosen), planning.campaign);
+            rows.back().accuracy = predict_accuracy(prediction, choices.information(*chosen),
+                                                    planning.campaign, choices.by_noise(*chosen));
         }
         if (k == count) rows.push_back({k, true, planning.plan.predicted});
     }

@@ -81,7 +81,6 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.searched_efficiency = planned.efficiency;
     plan.request.starts = planned.starts;
     plan.starts_at_best = planned.starts_at_best;
-    plan.predicted = predict_accuracy(problem.errors.by_parameters, planned.information, campaign);
     if (needs_test_poses(plan.request.criterion)) {
         const auto positions = static_cast<double>(problem.errors.by_parameters[0].rows()) / 3;
         plan.value_rms = 1 / std::sqrt(plan.value * positions);
@@ -90,30 +89,6 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.visiting_time = tour.time;
     plan.assumptions = assumptions_of(campaign);
     return plan;
-}
-
-/// The information of poses where the squares of model error and of other noise are so many times
-/// as large.
-MatrixXd information_with(const PlanningProblem& problem, const std::vector<PlannedPose>& poses,
-                          double model_square, double noise_square) {
-    PlanningProblem noisy{problem.request, problem.campaign, problem.constraints, {}, 0, 0, {}, {}};
-    noisy.campaign.model_error *= std::sqrt(model_square);
-    noisy.campaign.model_error_orientation *= std::sqrt(model_square);
-    noisy.campaign.joint_repeatability *= std::sqrt(noise_square);
-    noisy.request.repeats /= noise_square;
-    return information(blocks_of(noisy, poses));
-}
-
-ErrorBudget budget_of(const PlanningProblem& problem, const std::vector<PlannedPose>& poses,
-                      const MatrixXd& M) {
-    constexpr double step = 1e-3;
-    const MatrixXd by_model = (information_with(problem, poses, 1 - step, 1) -
-                               information_with(problem, poses, 1 + step, 1)) /
-                              (2 * step);
-    const MatrixXd by_noise = (information_with(problem, poses, 1, 1 - step) -
-                               information_with(problem, poses, 1, 1 + step)) /
-                              (2 * step);
-    return make_budget(problem.errors, problem.campaign, M, by_model, by_noise);
 }
 
 }  // namespace
@@ -188,6 +163,13 @@ Planning PlanMaker::finish(PlanOptions search, const PlannedPoses& planned) cons
     plan.ending = ending_of(planned);
     const Blocks& prediction = problem_.errors.by_parameters;
     const Blocks blocks = blocks_of(problem_, plan.poses);
+    const Campaign& campaign = problem_.campaign;
+    InformationByNoise by_noise = information_by_noise(
+        campaign, campaign.nominal, configurations_of(plan.poses, campaign.robot.joint_count()),
+        times_seen(seen_at(plan.poses, campaign.sensor->target_count()), plan.request.repeats));
+    plan.predicted = predict_accuracy(prediction, planned.information, campaign, by_noise);
+    const ErrorBudget budget =
+        make_budget(problem_.errors, campaign, planned.information, by_noise);
     MatrixXd left = planned.information;
     search.progress = {};
     search.test_poses = nullptr;
@@ -198,15 +180,15 @@ Planning PlanMaker::finish(PlanOptions search, const PlannedPoses& planned) cons
                       std::move(tour),
                       problem_.measured_count,
                       problem_.workspace_count,
-                      problem_.campaign,
+                      campaign,
                       problem_.errors,
                       std::move(search),
                       planned.information,
-                      {},
+                      std::move(by_noise),
+                      budget,
                       drop_each(prediction, blocks, planned.information),
                       drop_worst(prediction, blocks, options_.drop_out_count, left),
-                      problem_.campaign.cell.dwell * samples};
-    planning.budget = budget_of(problem_, planning.plan.poses, planning.information);
+                      campaign.cell.dwell * samples};
     planning.duration += planning.tour.time;
     return planning;
 }

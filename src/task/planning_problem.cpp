@@ -176,15 +176,19 @@ RowMatrixXd configurations_of(const std::vector<PlannedPose>& poses, Index joint
     return configurations;
 }
 
-Blocks blocks_of(const PlanningProblem& problem, const std::vector<PlannedPose>& poses) {
-    const Campaign& campaign = problem.campaign;
-    Seen is_seen(static_cast<Index>(poses.size()), campaign.sensor->target_count());
+Seen seen_at(const std::vector<PlannedPose>& poses, Index target_count) {
+    Seen is_seen(static_cast<Index>(poses.size()), target_count);
     for (std::size_t i = 0; i < poses.size(); ++i) {
         is_seen.row(static_cast<Index>(i)) = seen_targets(poses[i].targets, is_seen.cols());
     }
-    return make_blocks(campaign, campaign.nominal,
-                       configurations_of(poses, campaign.robot.joint_count()),
-                       times_seen(is_seen, problem.request.repeats));
+    return is_seen;
+}
+
+Blocks blocks_of(const PlanningProblem& problem, const std::vector<PlannedPose>& poses) {
+    const Campaign& campaign = problem.campaign;
+    return make_blocks(
+        campaign, campaign.nominal, configurations_of(poses, campaign.robot.joint_count()),
+        times_seen(seen_at(poses, campaign.sensor->target_count()), problem.request.repeats));
 }
 
 MatrixXd held_information(const PlanningProblem& problem) {

@@ -32,6 +32,9 @@ std::optional<Box> workspace_box(const PlanRequest& request);
 /// Draws the workspace, unless `options` state it.
 void draw_workspace(PlanningProblem& problem, const PlanningOptions& options);
 
+/// poses x targets.
+Seen seen_at(const std::vector<PlannedPose>& poses, Index target_count);
+
 /// Blocks of the targets that these poses show.
 Blocks blocks_of(const PlanningProblem& problem, const std::vector<PlannedPose>& poses);
 

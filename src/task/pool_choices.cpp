@@ -7,10 +7,12 @@
 namespace posewise::detail {
 
 PoolChoices::PoolChoices(const Campaign& campaign, const Pool& pool, double repeats,
-                         const PlanOptions& search, const Blocks& prediction) {
+                         const PlanOptions& search, const Blocks& prediction)
+    : campaign_(campaign) {
     const Index part = std::min(pool.configurations.rows(), quick_pool_part);
-    blocks_ = make_blocks(campaign, campaign.nominal, pool.configurations.topRows(part),
-                          times_seen(pool.is_seen.topRows(part), repeats));
+    configurations_ = pool.configurations.topRows(part);
+    repeats_ = times_seen(pool.is_seen.topRows(part), repeats);
+    blocks_ = make_blocks(campaign, campaign.nominal, configurations_, repeats_);
     select_.criterion = search.criterion;
     if (select_.criterion == Criterion::G) select_.criterion = Criterion::V;  // much quicker
     if (select_.criterion == Criterion::V) select_.test_poses = &prediction;
@@ -36,6 +38,12 @@ MatrixXd PoolChoices::information(const std::vector<Index>& chosen) const {
     MatrixXd M = posewise::information(blocks_, chosen);
     if (select_.held.size() > 0) M += select_.held;
     return M;
+}
+
+InformationByNoise PoolChoices::by_noise(const std::vector<Index>& chosen) const {
+    return information_by_noise(campaign_, campaign_.nominal,
+                                RowMatrixXd(configurations_(chosen, Eigen::all)),
+                                RowMatrixXd(repeats_(chosen, Eigen::all)));
 }
 
 }  // namespace posewise::detail

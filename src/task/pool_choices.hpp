@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "posewise/planner/planning.hpp"
+#include "posewise/planner/prediction.hpp"
 
 namespace posewise::detail {
 
@@ -13,8 +14,8 @@ inline constexpr Index quick_pool_part = 1500;
 /// Quick choices of any number of poses from a part of a pool: estimates of what a plan reaches.
 class PoolChoices {
   public:
-    /// `search` says the criterion, what is held and the seed; `prediction`, which must outlive it,
-    /// where positions matter.
+    /// `search` says the criterion, what is held and the seed; `prediction` where positions matter.
+    /// That and the campaign must outlive it.
     PoolChoices(const Campaign& campaign, const Pool& pool, double repeats,
                 const PlanOptions& search, const Blocks& prediction);
 
@@ -24,8 +25,12 @@ class PoolChoices {
     /// The blocks of chosen poses, and the information with what is held.
     Blocks blocks(const std::vector<Index>& chosen) const { return take(blocks_, chosen); }
     MatrixXd information(const std::vector<Index>& chosen) const;
+    InformationByNoise by_noise(const std::vector<Index>& chosen) const;
 
   private:
+    const Campaign& campaign_;
+    RowMatrixXd configurations_;
+    RowMatrixXd repeats_;
     Blocks blocks_;
     SelectOptions select_;
 };

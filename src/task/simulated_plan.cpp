@@ -75,13 +75,8 @@ std::vector<PlannedPose> measured_poses(const Planning& planning, Index missing)
 }
 
 detail::Subset subset_of(const std::vector<PlannedPose>& poses, const Campaign& campaign) {
-    detail::Subset subset{detail::configurations_of(poses, campaign.robot.joint_count()),
-                          Seen(static_cast<Index>(poses.size()), campaign.sensor->target_count())};
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-        subset.is_seen.row(static_cast<Index>(i)) =
-            seen_targets(poses[i].targets, subset.is_seen.cols());
-    }
-    return subset;
+    return {detail::configurations_of(poses, campaign.robot.joint_count()),
+            detail::seen_at(poses, campaign.sensor->target_count())};
 }
 
 RowMatrixXd judged_at(const Planning& planning, const SimulatedPlanOptions& options) {
@@ -175,8 +170,8 @@ ErrorRange predict(const Planning& planning, const SimulatedPlanOptions& options
         M -= information(make_blocks(campaign, campaign.nominal, configurations,
                                      times_seen(is_seen, planning.plan.request.repeats)));
     }
-    return predict_range(planning.errors, campaign, M, options.quantity, options.assurance,
-                         planning.plan.request.seed);
+    return predict_range(planning.errors, campaign, M, planning.by_noise, options.quantity,
+                         options.assurance, planning.plan.request.seed);
 }
 
 }  // namespace

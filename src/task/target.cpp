@@ -106,18 +106,20 @@ class Search {
     void check_stop() const { options_.stop.check("a plan that keeps the target"); }
 
     /// Nothing: drop-outs leave parameters unidentified.
-    std::optional<ErrorRange> judge(MatrixXd M, const Blocks& poses) const {
+    std::optional<ErrorRange> judge(MatrixXd M, const Blocks& poses,
+                                    const InformationByNoise& by_noise) const {
         if (target_.robust_to > 0) {
             const auto dropped =
                 drop_worst(problem_.errors.by_parameters, poses, target_.robust_to, M);
             if (std::isinf(dropped.back().rms)) return std::nullopt;
         }
-        return predict_range(problem_.errors, problem_.campaign, M, target_.quantity,
+        return predict_range(problem_.errors, problem_.campaign, M, by_noise, target_.quantity,
                              target_.assurance, options_.seed);
     }
 
     std::optional<ErrorRange> judge(const Planning& planning) const {
-        return judge(planning.information, detail::blocks_of(problem_, planning.plan.poses));
+        return judge(planning.information, detail::blocks_of(problem_, planning.plan.poses),
+                     planning.by_noise);
     }
 
     /// Whether there are enough poses for the limit; or, without one, too many for the duration.
@@ -137,7 +139,8 @@ class Search {
         prediction.pose_count = count;
         const auto chosen = choices_.choose(count);
         if (!chosen) return prediction;
-        prediction.error = judge(choices_.information(*chosen), choices_.blocks(*chosen));
+        prediction.error = judge(choices_.information(*chosen), choices_.blocks(*chosen),
+                                 choices_.by_noise(*chosen));
         const double samples = problem_.request.repeats * static_cast<double>(count);
         prediction.duration =
             detail::straight_tour_time(problem_.constraints,
@@ -252,14 +255,14 @@ void find_floor(const PlanningProblem& problem, const PlanningOptions& options,
                 TargetPlanning& result) {
     const TargetOptions& target = result.target;
     const auto floor_of = [&](const Campaign& campaign) {
-        return predict_range(problem.errors, campaign, {}, target.quantity, target.assurance,
+        return predict_range(problem.errors, campaign, {}, {}, target.quantity, target.assurance,
                              options.seed);
     };
     result.floor = floor_of(problem.campaign);
     Campaign known = problem.campaign;
     known.known_within.model_error = 1;
     result.floor_of_known_model_error = floor_of(known).assured;
-    const ErrorBudget budget = make_budget(problem.errors, problem.campaign, {}, {}, {});
+    const ErrorBudget budget = make_budget(problem.errors, problem.campaign, {}, {});
     result.left_over = budget.left_over;
     result.repeatability = budget.repeatability;
     const Chain& robot = problem.campaign.robot;

@@ -25,13 +25,14 @@ io::CampaignFile design(const std::string& name) {
 
 /// The RMS of robots drawn one by one from the linear model: each parameter a normal number, sizes
 /// and model error log-normal.
-VectorXd draw_rms(const PositionErrors& errors, const Campaign& campaign, const MatrixXd& M) {
-    const PredictedAccuracy accuracy = predict_accuracy(errors.by_parameters, M, campaign);
+VectorXd draw_rms(const PositionErrors& errors, const Campaign& campaign, const MatrixXd& M,
+                  const InformationByNoise& by_noise) {
+    const PredictedAccuracy accuracy =
+        predict_accuracy(errors.by_parameters, M, campaign, by_noise);
     const MatrixXd spread = M.llt().matrixL().solve(errors.by_parameters.matrix.transpose());
     const MatrixXd square =
         3 * spread * spread.transpose() / static_cast<double>(errors.by_parameters.matrix.rows());
     const VectorXd squares = Eigen::SelfAdjointEigenSolver<MatrixXd>(square).eigenvalues();
-    const double share = accuracy.prior_share.value_or(0);
     VectorXd drawn(200000);
     RandomStream random(11);
     for (double& rms : drawn) {
@@ -42,9 +43,8 @@ VectorXd draw_rms(const PositionErrors& errors, const Campaign& campaign, const 
         }
         const double model = std::pow(campaign.known_within.model_error, random.normal());
         const double size = std::pow(campaign.known_within.error_size, random.normal());
-        const double growth = std::pow(size, share) * std::pow(model, 1 - share);
         const double left = model * campaign.model_error;
-        rms = std::sqrt(growth * growth * sum + 3 * left * left);
+        rms = std::sqrt(accuracy.growth(model * model, size * size) * sum + 3 * left * left);
     }
     return drawn;
 }
@@ -58,12 +58,16 @@ TEST(PredictRange, AgreesWithRobotsDrawnOneByOne) {
         };
         const PositionErrors errors = make_position_errors(campaign, configurations(100, 2));
         MatrixXd M = prior_information(campaign);
-        M += information(make_blocks(campaign, campaign.nominal, configurations(15, 1)));
-        const VectorXd drawn = draw_rms(errors, campaign, M);
+        const RowMatrixXd poses = configurations(15, 1);
+        M += information(make_blocks(campaign, campaign.nominal, poses));
+        const InformationByNoise by_noise =
+            information_by_noise(campaign, campaign.nominal, poses,
+                                 RowMatrixXd::Ones(poses.rows(), campaign.sensor->target_count()));
+        const VectorXd drawn = draw_rms(errors, campaign, M, by_noise);
         for (const double assurance : {0.5, 0.95, 0.99}) {
             const double direct = detail::quantile(drawn, assurance, detail::QuantileRule::Linear);
             const ErrorRange range =
-                predict_range(errors, campaign, M, ErrorQuantity::Rms, assurance);
+                predict_range(errors, campaign, M, by_noise, ErrorQuantity::Rms, assurance);
             EXPECT_NEAR(range.assured, direct, 0.05 * direct) << name << ' ' << assurance;
         }
     }
@@ -94,7 +98,8 @@ TEST_F(Target, IsKeptByThePlanAndNotByOneOfAPoseLess) {
     const auto reach = [&](Index count) {
         options_.pose_count = count;
         const Planning plan = make_plan(campaign_, options_);
-        return predict_range(plan.errors, campaign_, plan.information, ErrorQuantity::Rms, 0.95)
+        return predict_range(plan.errors, campaign_, plan.information, plan.by_noise,
+                             ErrorQuantity::Rms, 0.95)
             .assured;
     };
     EXPECT_EQ(reach(planning.search.pose_count), found.error->assured);

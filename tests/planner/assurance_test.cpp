@@ -19,13 +19,17 @@ struct Reach {
     explicit Reach(Index pose_count, double model_error = 1e-4) {
         campaign.model_error = model_error;
         errors = make_position_errors(campaign, fanuc_workspace(30));
-        poses = make_blocks(campaign, campaign.nominal, fanuc_pool(pose_count));
+        const RowMatrixXd configurations = fanuc_pool(pose_count);
+        poses = make_blocks(campaign, campaign.nominal, configurations);
         M = information(poses);
+        by_noise = information_by_noise(campaign, campaign.nominal, configurations,
+                                        RowMatrixXd::Ones(pose_count, 3));
     }
     Campaign campaign = fanuc_planning_campaign();
     PositionErrors errors;
     Blocks poses;
     MatrixXd M;
+    InformationByNoise by_noise;
 };
 
 /// Of one position and a model error that is known the distance is Maxwell's.
@@ -35,12 +39,12 @@ TEST(PredictRange, OfOnePositionIsTheLengthOfANormalVector) {
     campaign.known_within.model_error = 1;
     const PositionErrors errors = make_position_errors(campaign, fanuc_workspace(1), 0);
     for (const auto quantity : {ErrorQuantity::Max, ErrorQuantity::Percentile95}) {
-        const ErrorRange range = predict_range(errors, campaign, {}, quantity, 0.9);
+        const ErrorRange range = predict_range(errors, campaign, {}, {}, quantity, 0.9);
         EXPECT_NEAR(range.assured / 2e-4, std::sqrt(detail::chi_squared_quantile(0.9, 3)), 0.07);
         EXPECT_NEAR(range.expected / 2e-4, std::sqrt(detail::chi_squared_quantile(0.5, 3)), 0.05);
         EXPECT_NEAR(range.lower / 2e-4, std::sqrt(detail::chi_squared_quantile(0.05, 3)), 0.05);
     }
-    const ErrorRange rms = predict_range(errors, campaign, {}, ErrorQuantity::Rms, 0.9);
+    const ErrorRange rms = predict_range(errors, campaign, {}, {}, ErrorQuantity::Rms, 0.9);
     EXPECT_NEAR(rms.assured, std::sqrt(3.0) * 2e-4, 1e-12);
 }
 
@@ -61,12 +65,12 @@ TEST(PredictRange, TakesTheRepeatabilityOfTheJointsIn) {
         };
         square += (place(5e-5) - place(-5e-5)).squaredNorm() / 40;
     }
-    const ErrorRange range = predict_range(errors, campaign, {}, ErrorQuantity::Rms, 0.95);
+    const ErrorRange range = predict_range(errors, campaign, {}, {}, ErrorQuantity::Rms, 0.95);
     EXPECT_NEAR(range.expected, std::sqrt(square), 1e-9);
     EXPECT_NEAR(range.assured, std::sqrt(square), 1e-9);
-    const ErrorRange largest = predict_range(errors, campaign, {}, ErrorQuantity::Max, 0.95);
+    const ErrorRange largest = predict_range(errors, campaign, {}, {}, ErrorQuantity::Max, 0.95);
     EXPECT_GT(largest.assured, 2 * range.assured);
-    EXPECT_NEAR(make_budget(errors, campaign, {}, {}, {}).repeatability, std::sqrt(square), 1e-9);
+    EXPECT_NEAR(make_budget(errors, campaign, {}, {}).repeatability, std::sqrt(square), 1e-9);
 }
 
 TEST(PredictRange, GrowsFromTheRmsToTheLargestAndIsTheSameForAnyThreads) {
@@ -75,9 +79,13 @@ TEST(PredictRange, GrowsFromTheRmsToTheLargestAndIsTheSameForAnyThreads) {
     for (const auto quantity :
          {ErrorQuantity::Rms, ErrorQuantity::Percentile95, ErrorQuantity::Max}) {
         set_thread_count(1);
-        const auto one = predict_range(reach.errors, reach.campaign, reach.M, quantity, 0.95);
+        const auto predict = [&] {
+            return predict_range(reach.errors, reach.campaign, reach.M, reach.by_noise, quantity,
+                                 0.95);
+        };
+        const auto one = predict();
         set_thread_count(3);
-        const auto three = predict_range(reach.errors, reach.campaign, reach.M, quantity, 0.95);
+        const auto three = predict();
         EXPECT_EQ(one.assured, three.assured);
         EXPECT_EQ(one.expected, three.expected);
         EXPECT_GT(one.assured, 1.2 * before);
@@ -85,9 +93,9 @@ TEST(PredictRange, GrowsFromTheRmsToTheLargestAndIsTheSameForAnyThreads) {
         before = one.assured;
     }
     for (const double assurance : {0.0, 1.0, -1.0, std::nan("")}) {
-        EXPECT_THROW(
-            predict_range(reach.errors, reach.campaign, reach.M, ErrorQuantity::Rms, assurance),
-            InputError);
+        EXPECT_THROW(predict_range(reach.errors, reach.campaign, reach.M, reach.by_noise,
+                                   ErrorQuantity::Rms, assurance),
+                     InputError);
     }
 }
 
@@ -95,9 +103,8 @@ TEST(PredictRange, GrowsFromTheRmsToTheLargestAndIsTheSameForAnyThreads) {
 TEST(MakeBudget, DividesWhatThePosesLeaveAsTheNoiseIs) {
     const double sigma = 0.05185e-3;
     const Reach reach(20, 2 * sigma);
-    const ErrorBudget budget =
-        make_budget(reach.errors, reach.campaign, reach.M, 0.8 * reach.M, 0.2 * reach.M);
-    EXPECT_NEAR(budget.model, 2 * budget.noise, 1e-12);
+    const ErrorBudget budget = make_budget(reach.errors, reach.campaign, reach.M, reach.by_noise);
+    EXPECT_NEAR(budget.model, 2 * budget.noise, 1e-9);
     EXPECT_EQ(budget.prior, 0);
     EXPECT_NEAR(std::hypot(budget.model, budget.noise), budget.parameters, 1e-12);
     EXPECT_NEAR(budget.total, std::hypot(budget.parameters, std::sqrt(3.0) * 2 * sigma), 1e-12);

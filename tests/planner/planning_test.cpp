@@ -78,11 +78,11 @@ TEST(PredictTotal, OfAPriorKnowsTheSizesOfErrorsWithinAFactorOfTwo) {
     PredictedAccuracy accuracy;
     accuracy.rms = 3e-4;
     accuracy.degrees_of_freedom = 1e6;
-    accuracy.prior_share = 1;
+    accuracy.by_direction = accuracy.prior_part = VectorXd::Ones(1);
     const PredictedTotal few = predict_total(accuracy, 0);
     EXPECT_NEAR(few.upper / few.rms, std::pow(2, 1.645), 0.2);
     EXPECT_NEAR(few.rms / few.lower, std::pow(2, 1.645), 0.2);
-    accuracy.prior_share = 0;  // all by the noise, which the model error is most of
+    accuracy.prior_part[0] = 0;  // all by the noise, which the model error is most of
     const PredictedTotal many = predict_total(accuracy, 1e-4);
     EXPECT_NEAR(many.upper / many.rms, std::pow(2.5, 1.645), 0.35);
 }
@@ -99,9 +99,45 @@ TEST(PredictAccuracy, SharesWhatItKnowsWithThePrior) {
     const double step = 1e-4;
     const double expected = (log_square(std::exp(step)) - log_square(std::exp(-step))) / (2 * step);
     const PredictedAccuracy accuracy = predict_accuracy(scene.workspace, data + prior, prior);
-    EXPECT_NEAR(accuracy.prior_share.value(), expected, 1e-5);
+    EXPECT_NEAR(accuracy.prior_share(), expected, 1e-5);
     EXPECT_GT(expected, 0.01);
-    EXPECT_FALSE(predict_accuracy(scene.workspace, data + prior).prior_share.has_value());
+    EXPECT_EQ(predict_accuracy(scene.workspace, data + prior).prior_share(), 0);
+}
+
+/// Of the calibration that weights by the noise found and takes the sizes as expected.
+TEST(PredictAccuracy, GrowsAsTheCovarianceOfACalibrationDoes) {
+    const Scene scene(40, 20);
+    const Index L = scene.blocks.parameter_count();
+    const MatrixXd data = information(scene.blocks);
+    const MatrixXd prior = 50 * MatrixXd::Identity(L, L);
+    const MatrixXd J0 = scene.workspace.matrix;
+    const auto square = [&](double noise, double size) {
+        const MatrixXd by = (data / noise + prior).llt().solve(J0.transpose());
+        return (by.transpose() * (data / noise + size * prior) * by).trace();
+    };
+    PredictedAccuracy accuracy = predict_accuracy(scene.workspace, data + prior, prior);
+    EXPECT_NEAR(accuracy.by_direction.sum(), 1, 1e-12);
+    for (const double noise : {0.04, 1.0, 30.0}) {
+        for (const double size : {0.1, 1.0, 10.0}) {
+            EXPECT_NEAR(accuracy.growth(noise, size) / (square(noise, size) / square(1, 1)), 1,
+                        1e-9);
+        }
+    }
+    accuracy.model_share = 0.8;  // of a noise of which a fifth stays
+    EXPECT_NEAR(accuracy.growth(6, 1) / (square(0.8 * 6 + 0.2, 1) / square(1, 1)), 1, 1e-9);
+}
+
+/// Of each kind of noise, and both together are all that the information falls by.
+TEST(InformationByNoise, IsAllOfTheInformationInTheRatioOfTheSquares) {
+    Campaign campaign = fanuc_planning_campaign();
+    constexpr double sigma = 0.05185e-3;
+    campaign.model_error = 3 * sigma;
+    const RowMatrixXd poses = fanuc_pool(5);
+    const RowMatrixXd twice = RowMatrixXd::Constant(5, 3, 2);
+    const MatrixXd M = information(make_blocks(campaign, campaign.nominal, poses, twice));
+    const auto by = information_by_noise(campaign, campaign.nominal, poses, twice);
+    EXPECT_LT((by.model - M * 9 / 9.5).norm(), 1e-5 * M.norm());
+    EXPECT_LT((by.noise - M * 0.5 / 9.5).norm(), 1e-5 * M.norm());
 }
 
 TEST(PlanPoses, BeatsTheBestExchangePlanOfThePoolOnEveryCriterion) {

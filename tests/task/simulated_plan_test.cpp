@@ -39,9 +39,9 @@ Planning plan_of(const Campaign& campaign, Index count = 12, double repeats = 1)
     planning.workspace_count = 60;
     planning.errors =
         make_position_errors(campaign, detail::random_configurations(campaign.robot, 60, 8));
-    const Blocks blocks =
-        make_blocks(campaign, campaign.nominal, poses,
-                    times_seen(all_seen(count, campaign.sensor->target_count()), repeats));
+    const RowMatrixXd times = times_seen(all_seen(count, campaign.sensor->target_count()), repeats);
+    const Blocks blocks = make_blocks(campaign, campaign.nominal, poses, times);
+    planning.by_noise = information_by_noise(campaign, campaign.nominal, poses, times);
     planning.information = prior_information(campaign) + information(blocks);
     MatrixXd left = planning.information;
     planning.drop_outs = drop_worst(planning.errors.by_parameters, blocks, 2, left);

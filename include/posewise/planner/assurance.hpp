@@ -33,14 +33,15 @@ struct ErrorRange {
     double assured = 0;  ///< the `assurance` asked for
 };
 
-/// The error by parameters known within M^-1 (scaled; empty: exactly), by what the model lacks and
-/// by the joints' repeatability at one visit. What is drawn is as of predict_total(), the RMS by
-/// parameters by scaled chi-squared. The other quantities are those of 2048 robots, whose errors of
-/// parameters, and of each position by the model and the visit, are drawn from stream (seed, item).
-/// Throws InputError if M is not positive definite, or for an assurance that is not above 0 and
-/// below 1.
+/// The error by parameters known within M^-1 (scaled; empty: exactly) by poses of which `by_noise`
+/// is, by what the model lacks and by the joints' repeatability at one visit. What is drawn is as
+/// of predict_total(), the RMS by parameters by scaled chi-squared. The other quantities are those
+/// of 2048 robots, whose errors of parameters, and of each position by the model and the visit, are
+/// drawn from stream (seed, item). Throws InputError if M is not positive definite, or for an
+/// assurance that is not above 0 and below 1.
 ErrorRange predict_range(const PositionErrors& errors, const Campaign& campaign, const MatrixXd& M,
-                         ErrorQuantity quantity, double assurance, std::uint64_t seed = 1);
+                         const InformationByNoise& by_noise, ErrorQuantity quantity,
+                         double assurance, std::uint64_t seed = 1);
 
 /// What the expected RMS consists of, m; squares add up.
 struct ErrorBudget {
@@ -53,11 +54,9 @@ struct ErrorBudget {
     double total = 0;
 };
 
-/// M of the whole plan (empty: parameters known exactly). `model_information` and
-/// `noise_information` say by how much it falls, by the logarithm, where the square of the model
-/// error, and of the sensor's and joints' noise, of the poses to measure grow.
+/// M of the whole plan (empty: parameters known exactly), `by_noise` of the poses to measure.
 ErrorBudget make_budget(const PositionErrors& errors, const Campaign& campaign, const MatrixXd& M,
-                        const MatrixXd& model_information, const MatrixXd& noise_information);
+                        const InformationByNoise& by_noise);
 
 /// A pose that is missing.
 struct DropOut {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "posewise/core/blocks.hpp"
 #include "posewise/measurement/campaign.hpp"
@@ -17,10 +16,22 @@ struct PredictedAccuracy {
     /// Of the scaled chi-squared with the mean and variance that the mean square over the workspace
     /// has [Satterthwaite 1946].
     double degrees_of_freedom = 1;
-    /// By which part its square follows that of the expected sizes if they are stated larger or
-    /// smaller; it follows that of the noise by the rest. Nothing without a prior.
-    std::optional<double> prior_share{};
+    /// With a prior, directions of the parameters that are known independently of each other before
+    /// and after measuring: which part of the mean square is by each (sum 1), and which part of
+    /// what is known of it the prior tells. Empty without one.
+    VectorXd by_direction{};
+    VectorXd prior_part{};
+    /// Which part of the noise's square the model error's is; the rest the sensor's and joints'.
+    double model_share = 1;
     KnownWithin known_within{};
+
+    /// By which part the mean square follows that of the expected sizes, by the logarithm; it
+    /// follows that of the noise by the rest.
+    double prior_share() const { return by_direction.dot(prior_part); }
+    /// The mean square is so many times that predicted where the squares of the model error and of
+    /// the parameters' sizes are so many times those expected. A calibration finds the former from
+    /// what it leaves over and weights by it; sizes it takes as expected.
+    double growth(double model_square, double size_square) const;
 };
 
 /// The same with what the model cannot express, which no number of poses reduces: RMS over
@@ -32,9 +43,8 @@ struct PredictedTotal {
 };
 
 /// Of 4096 cases that fill what is not known evenly. Model error and sizes are drawn as
-/// PredictedAccuracy says they are known; the parameters' errors grow with the sizes as
-/// PredictedAccuracy::prior_share says: by the model error, too, which is taken for most of the
-/// noise.
+/// PredictedAccuracy says they are known; the parameters' errors follow by its growth(). The
+/// instrument's noise is as stated.
 PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_error);
 
 /// The RMS, by cases, of which predict_total() gives the interval; `repeatability` (m, RMS of a
@@ -49,6 +59,18 @@ VectorXd total_cases(const PredictedAccuracy& accuracy, double model_error,
 Blocks make_prediction_blocks(const Campaign& campaign, const Parameters& parameters,
                               const RowMatrixXd& workspace, Index target = -1);
 
+/// How much the information of poses falls, by the logarithm, where the square of a noise grows
+/// (scaled parameters).
+struct InformationByNoise {
+    MatrixXd model;  ///< of the model error
+    MatrixXd noise;  ///< of the sensor's and joints' noise
+};
+
+/// Of poses (m x joints), each target measured so many `repeats` (m x targets). By differences.
+InformationByNoise information_by_noise(const Campaign& campaign, const Parameters& parameters,
+                                        const RowMatrixXd& configurations,
+                                        const RowMatrixXd& repeats);
+
 /// Accuracy over prediction blocks by the information matrix M (scaled parameters), of which
 /// `prior` is what was expected before measuring (parameters square; empty or 0: nothing). The
 /// percentile is of 200 draws a position, from stream (seed, position). Throws InputError if M is
@@ -56,8 +78,9 @@ Blocks make_prediction_blocks(const Campaign& campaign, const Parameters& parame
 PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
                                    const MatrixXd& prior = {}, std::uint64_t seed = 1);
 
-/// The same with the campaign's prior, and known as surely as that says.
+/// The same with the campaign's prior, and known as surely as that says; `by_noise` of the poses
+/// tells PredictedAccuracy::model_share, also for what is held of others.
 PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
-                                   const Campaign& campaign);
+                                   const Campaign& campaign, const InformationByNoise& by_noise);
 
 }  // namespace posewise

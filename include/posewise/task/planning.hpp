@@ -28,12 +28,13 @@ struct Planning {
     Plan plan;
     Pool pool;
     Tour tour;
-    Index measured_count = 0;   ///< poses measured already
-    Index workspace_count = 0;  ///< configurations the prediction is over
-    Campaign campaign;          ///< base and targets registered if only held poses tell them
-    PositionErrors errors;      ///< of target positions over the workspace
-    PlanOptions search;         ///< criterion, new poses, nuisance and what was held
-    MatrixXd information;       ///< of all poses and what is held (scaled parameters)
+    Index measured_count = 0;     ///< poses measured already
+    Index workspace_count = 0;    ///< configurations the prediction is over
+    Campaign campaign;            ///< base and targets registered if only held poses tell them
+    PositionErrors errors;        ///< of target positions over the workspace
+    PlanOptions search;           ///< criterion, new poses, nuisance and what was held
+    MatrixXd information;         ///< of all poses and what is held (scaled parameters)
+    InformationByNoise by_noise;  ///< of all poses
     ErrorBudget budget;
     std::vector<DropOut> without_each;  ///< each pose of the plan missing, in its order
     std::vector<DropOut>
