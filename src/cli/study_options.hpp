@@ -33,6 +33,7 @@ struct StudyArguments {
     bool is_simulated = false;
     std::string truth;
     std::vector<std::string> varied;
+    Index points = 0;  ///< that fill the ranges varied
     std::optional<Index> trials;
 
     std::string store;

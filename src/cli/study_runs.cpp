@@ -76,14 +76,17 @@ std::vector<SimulatedCampaign> list_variations(const StudyArguments& arguments,
                                                const io::CampaignFile& file) {
     std::optional<Campaign> truth;
     if (!arguments.truth.empty()) truth = io::read_campaign(arguments.truth);
-    if (arguments.varied.empty()) return {{"", file, truth}};
+    if (arguments.varied.empty() && arguments.points == 0) return {{"", file, truth}};
     std::vector<io::VariedKey> keys;
     for (const std::string& text : arguments.varied) {
         keys.push_back(compute_from("--vary", [&] { return io::parse_varied_key(text); }));
     }
     const std::string& path = file.path;
     std::vector<SimulatedCampaign> campaigns;
-    for (const io::Variation& variation : io::vary_campaign(detail::read_file(path), path, keys)) {
+    const auto variations = compute_from("--vary", [&] {
+        return io::vary_campaign(detail::read_file(path), path, keys, arguments.points);
+    });
+    for (const io::Variation& variation : variations) {
         // Lines of the text that was varied are not those of the file.
         io::CampaignFile varied = compute_from("--vary " + variation.name, [&] {
             return io::parse_campaign(variation.content, path);

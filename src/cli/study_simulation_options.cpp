@@ -68,9 +68,14 @@ void add_simulation_options(CLI::App& command, StudyArguments& arguments) {
     only_simulated(
         command.add_option("--vary", arguments.varied,
                            "A key of the campaign file and values that it takes in turn, "
-                           "sensor.sigma_mm=0.01,0.05; several: every combination"))
+                           "sensor.sigma_mm=0.01,0.05; several: every combination; or a range, "
+                           "sensor.sigma_mm=0.01..0.1, with --points"))
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    only_simulated(command.add_option("--points", arguments.points,
+                                      "Low-discrepancy points that fill all ranges of --vary "
+                                      "together; more begin with the same ones"))
+        ->check(whole_number(1, 10000));
     only_simulated(
         command.add_option("--pool", options.pool_count, "Configurations drawn to choose from"))
         ->check(whole_number(1, 1000000))

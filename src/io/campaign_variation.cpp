@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "posewise/core/errors.hpp"
 #include "text.hpp"
@@ -81,6 +82,59 @@ YAML::Node with_value(const YAML::Node& tree, const VariedKey& varied, const YAM
     return changed;
 }
 
+/// "0.01..0.05"; nothing if it is something else.
+std::optional<std::pair<double, double>> parse_range(const std::string& text) {
+    const auto dots = text.find("..");
+    if (dots == std::string::npos) return std::nullopt;
+    const char* const begin = text.data();
+    const char* const end = begin + text.size();
+    std::pair<double, double> range;
+    const auto lower = std::from_chars(begin, begin + dots, range.first);
+    const auto upper = std::from_chars(begin + dots + 2, end, range.second);
+    if (lower.ec != std::errc() || lower.ptr != begin + dots || upper.ec != std::errc() ||
+        upper.ptr != end) {
+        return std::nullopt;
+    }
+    if (!(range.first < range.second) || !std::isfinite(range.second - range.first)) {
+        throw InputError("the range " + detail::quote(text) +
+                         " is empty; must be from a lower to an upper number");
+    }
+    return range;
+}
+
+/// A value in a range, as far along it as `part` says.
+double value_at(const std::pair<double, double>& range, double part) {
+    constexpr double wide = 10;
+    const auto& [lower, upper] = range;
+    if (lower > 0 && upper >= wide * lower) return lower * std::pow(upper / lower, part);
+    return lower + part * (upper - lower);
+}
+
+/// The positive root of x^(d+1) = x + 1.
+double recurrence_root(std::size_t d) {
+    double x = 2;
+    for (int k = 0; k < 100; ++k) x = std::pow(1 + x, 1 / (static_cast<double>(d) + 1));
+    return x;
+}
+
+/// For each point a value for each of these keys, which are ranges.
+std::vector<std::vector<VariedKey>> fill_ranges(const std::vector<VariedKey>& ranges,
+                                                Index point_count) {
+    const double root = recurrence_root(ranges.size());
+    std::vector<std::vector<VariedKey>> points;
+    for (Index i = 0; i < point_count; ++i) {
+        std::vector<VariedKey>& point = points.emplace_back();
+        double step = 1;
+        for (const VariedKey& varied : ranges) {
+            step /= root;
+            const double along = 0.5 + static_cast<double>(i) * step;
+            const double value = value_at(*varied.range, along - std::floor(along));
+            point.push_back({varied.key, {fmt::format("{:.4g}", value)}});
+        }
+    }
+    return points;
+}
+
 YAML::Node load(const std::string& text, const std::string& what) {
     try {
         return YAML::Load(text);
@@ -97,19 +151,25 @@ VariedKey parse_varied_key(const std::string& text) {
     if (equals != std::string::npos) {
         varied.key = text.substr(0, equals);
         varied.values = split_outside_brackets(text.substr(equals + 1), ',');
+        if (varied.values.size() == 1) varied.range = parse_range(varied.values.front());
+        if (varied.range) varied.values.clear();
     }
     const auto parts = split_outside_brackets(varied.key, '.');
     const auto is_empty = [](const std::string& part) { return part.empty(); };
     if (equals == std::string::npos || std::any_of(parts.begin(), parts.end(), is_empty) ||
         std::any_of(varied.values.begin(), varied.values.end(), is_empty)) {
         throw InputError(detail::quote(text) +
-                         " is not a key and its values; must be like sensor.sigma_mm=0.01,0.05");
+                         " is not a key and its values; must be like sensor.sigma_mm=0.01,0.05 or "
+                         "sensor.sigma_mm=0.01..0.05");
     }
     return varied;
 }
 
-std::vector<Variation> vary_campaign(const std::string& content, const std::string& path,
-                                     const std::vector<VariedKey>& keys) {
+namespace {
+
+/// Every combination of the values.
+std::vector<Variation> combine(const std::string& content, const std::string& path,
+                               const std::vector<VariedKey>& keys) {
     std::vector<Variation> variations{{"", content}};
     for (const VariedKey& varied : keys) {
         std::vector<Variation> more;
@@ -125,6 +185,32 @@ std::vector<Variation> vary_campaign(const std::string& content, const std::stri
             }
         }
         variations = std::move(more);
+    }
+    return variations;
+}
+
+}  // namespace
+
+std::vector<Variation> vary_campaign(const std::string& content, const std::string& path,
+                                     const std::vector<VariedKey>& keys, Index point_count) {
+    std::vector<VariedKey> ranges;
+    std::vector<VariedKey> listed;
+    for (const VariedKey& varied : keys) (varied.range ? ranges : listed).push_back(varied);
+    if (ranges.empty() != (point_count == 0)) {
+        throw InputError(
+            ranges.empty()
+                ? "no range is varied, which points could fill; must be like "
+                  "sensor.sigma_mm=0.01..0.05"
+                : detail::quote(ranges.front().key) +
+                      " is varied over a range: how many points fill it must be said (--points)");
+    }
+    if (ranges.empty()) return combine(content, path, listed);
+    std::vector<Variation> variations;
+    for (std::vector<VariedKey>& point : fill_ranges(ranges, point_count)) {
+        point.insert(point.end(), listed.begin(), listed.end());
+        for (Variation& one : combine(content, path, point)) {
+            variations.push_back(std::move(one));
+        }
     }
     return variations;
 }

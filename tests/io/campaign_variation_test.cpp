@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
+
 #include "posewise/core/errors.hpp"
 
 namespace posewise::io {
@@ -31,6 +34,42 @@ TEST(CampaignVariation, HasEveryCombination) {
     const auto same = vary_campaign(text, "c.yaml", {});
     ASSERT_EQ(same.size(), 1u);
     EXPECT_EQ(same[0].content, text);
+}
+
+/// Each point is in all ranges at once, fewer points are the first ones, and each of them is beside
+/// every value that is listed.
+TEST(CampaignVariation, FillsRangesTogether) {
+    const std::string text = "a: 1\nb: 1\nc: 1\n";
+    const std::vector<VariedKey> keys{parse_varied_key("a=2..3"), parse_varied_key("c=x,y"),
+                                      parse_varied_key("b=0.01..100")};
+    EXPECT_EQ(keys[0].range, (std::pair{2.0, 3.0}));
+    const auto few = vary_campaign(text, "c.yaml", keys, 4);
+    const auto many = vary_campaign(text, "c.yaml", keys, 64);
+    ASSERT_EQ(few.size(), 8u);
+    ASSERT_EQ(many.size(), 128u);
+    EXPECT_EQ(few[0].name, "a=2.5 b=1 c=x");
+    EXPECT_EQ(few[1].name, "a=2.5 b=1 c=y");
+    // In each of 16 boxes, by a and by the ratio of b, are four points of 64, give or take two.
+    int in_box[4][4] = {};
+    for (std::size_t i = 0; i < many.size(); ++i) {
+        if (i < few.size()) {
+            EXPECT_EQ(many[i].name, few[i].name);
+        }
+        double a = 0;
+        double b = 0;
+        ASSERT_EQ(std::sscanf(many[i].name.c_str(), "a=%lf b=%lf", &a, &b), 2);
+        ASSERT_TRUE(a > 2 && a < 3 && b > 0.01 && b < 100) << many[i].name;
+        ++in_box[static_cast<int>(4 * (a - 2))][static_cast<int>(2 + std::log10(b))];
+    }
+    for (const auto& row : in_box) {
+        for (const int count : row) EXPECT_NEAR(count, 8, 4);
+    }
+    EXPECT_THROW(vary_campaign(text, "c.yaml", keys), InputError);
+    EXPECT_THROW(vary_campaign(text, "c.yaml", {keys[1]}, 4), InputError);
+    for (const char* wrong : {"a=2..2", "a=3..2", "a=-1e308..1e308"}) {
+        EXPECT_THROW(parse_varied_key(wrong), InputError) << wrong;
+    }
+    EXPECT_FALSE(parse_varied_key("a=x..y").range.has_value());
 }
 
 TEST(CampaignVariation, AddsKeysAndRefusesThoseUnderNothing) {
