@@ -39,10 +39,20 @@ bool ends_with_any_case(const std::string& path, const std::string& ending) {
            });
 }
 
-std::string terminal(const std::string& image_path) {
-    return ends_with_any_case(image_path, ".svg")
-               ? "svg size 900,560 dynamic rounded font 'Helvetica,15' background '#ffffff'"
-               : "pngcairo size 1350,840 rounded font 'Helvetica,18' linewidth 1.4";
+/// In pixels of SVG.
+double panels_width(std::size_t columns) { return 45 + 400 * static_cast<double>(columns); }
+double panels_height(std::size_t rows) { return 220 + 300 * static_cast<double>(rows); }
+
+/// Of so many panels beside and below each other, a legend below.
+std::string terminal(const std::string& image_path, std::size_t columns, std::size_t rows) {
+    const bool is_svg = ends_with_any_case(image_path, ".svg");
+    const bool is_one = columns * rows == 1;
+    const double scale = is_svg ? 1 : 1.5;
+    return fmt::format("{} size {:.0f},{:.0f} {}", is_svg ? "svg" : "pngcairo",
+                       scale * (is_one ? 900 : 110 + 380 * static_cast<double>(columns)),
+                       scale * (is_one ? 600 : 130 + 280 * static_cast<double>(rows)),
+                       is_svg ? "dynamic rounded font 'Helvetica,15' background '#ffffff'"
+                              : "rounded font 'Helvetica,18' linewidth 1.4");
 }
 
 /// Range of the error axis in mm.
@@ -130,14 +140,15 @@ std::string criterion_lines(const std::vector<StudyRow>& rows, std::size_t crite
 /// Named data and the plot clauses that draw them.
 struct Drawing {
     std::string data;
+    std::string suffix{};  ///< of the names
     std::string clauses;
 
     /// Each of `styles` is one way that the data are drawn.
     void add(const std::string& name, const std::string& lines,
              const std::vector<std::string>& styles) {
         if (lines.empty()) return;
-        data += fmt::format("${} << EOD\n{}EOD\n", name, lines);
-        const std::string data_name = '$' + name + ' ';
+        data += fmt::format("${}{} << EOD\n{}EOD\n", name, suffix, lines);
+        const std::string data_name = '$' + name + suffix + ' ';
         clauses += clauses.empty() ? "plot " : ", \\\n     ";
         clauses += data_name + fmt::format("{}", fmt::join(styles, ", " + data_name));
     }
@@ -148,7 +159,8 @@ struct Drawing {
 void draw(const Study& study, std::size_t number, const ErrorAxis& axis, Drawing& drawing) {
     constexpr std::array colors{"#0b6fa4", "#c8401f", "#2f8f4e", "#8a4fb0", "#c98a00",
                                 "#d0418f", "#5b6b00", "#006d77", "#7f3b08", "#333333"};
-    const std::string of_model = study.model.empty() ? "" : ", " + study.model;
+    const std::string of_model =
+        study.model.empty() || !drawing.suffix.empty() ? "" : ", " + study.model;
     const std::size_t lines_before = number * study.criteria.size();
     const auto color = [&](std::size_t line) {
         return colors[(lines_before + line) % colors.size()];
@@ -174,6 +186,42 @@ void draw(const Study& study, std::size_t number, const ErrorAxis& axis, Drawing
     }
 }
 
+constexpr const char* axis_labels =
+    "set xlabel 'poses used for calibration'\nset ylabel 'held-out distance RMS (mm)'\n";
+
+std::string one_panel(const std::vector<Study>& studies, const ErrorAxis& axis) {
+    Drawing drawing;
+    for (std::size_t i = 0; i < studies.size(); ++i) draw(studies[i], i, axis, drawing);
+    return fmt::format("set title {} noenhanced\n{}set key below\n{}{}\n",
+                       quote(studies.front().campaign), axis_labels, drawing.data, drawing.clauses);
+}
+
+/// A panel a study, with the same axes and one legend.
+std::string panels(const std::vector<Study>& studies, const ErrorAxis& axis, std::size_t columns,
+                   std::size_t rows) {
+    const auto part = [](double pixels, double all) { return pixels / all; };
+    const double width = panels_width(columns);
+    const double height = panels_height(rows);
+    std::string script = fmt::format(
+        "set multiplot layout {},{} title {} noenhanced margins {:.4f},{:.4f},{:.4f},{:.4f} "
+        "spacing {:.4f},{:.4f}\n"
+        "set key at screen 0.5,{:.4f} center bottom\n",
+        rows, columns, quote(studies.front().campaign), part(75, width), 1 - part(25, width),
+        part(220, height), 1 - part(75, height), part(55, width), part(95, height),
+        part(10, height));
+    for (std::size_t i = 0; i < studies.size(); ++i) {
+        Drawing drawing{"", fmt::format("_{}", i), ""};
+        draw(studies[i], 0, axis, drawing);
+        const bool is_left = i % columns == 0;
+        const bool is_lowest = i + columns >= studies.size();
+        script += fmt::format(
+            "set title {} noenhanced\nset xlabel '{}'\nset ylabel '{}'\n{}{}\nunset key\n",
+            quote(studies[i].model), is_lowest ? "poses used for calibration" : "",
+            is_left ? "held-out RMS (mm)" : "", drawing.data, drawing.clauses);
+    }
+    return script + "unset multiplot\n";
+}
+
 }  // namespace
 
 void check_image_path(const std::string& path) {
@@ -194,21 +242,23 @@ std::string study_plot_script(const std::vector<Study>& studies, const std::stri
             "the study has no held-out error to plot: no subset that left a "
             "configuration out identified the model");
     }
-    Drawing drawing;
-    for (std::size_t i = 0; i < studies.size(); ++i) draw(studies[i], i, axis, drawing);
+    // Many curves are read beside each other, not one on the other.
+    constexpr std::size_t most_in_one = 2;
+    const bool is_one = studies.size() <= most_in_one;
+    const std::size_t columns =
+        is_one ? 1 : static_cast<std::size_t>(std::ceil(std::sqrt(studies.size())));
+    const std::size_t rows = is_one ? 1 : (studies.size() + columns - 1) / columns;
     const Study& first = studies.front();
-    return fmt::format(
-        "set terminal {}\nset output {}\nset title {} noenhanced\n"
-        "set xlabel 'poses used for calibration'\n"
-        "set ylabel 'held-out distance RMS (mm)'\n"
+    std::string script = fmt::format(
+        "set terminal {}\nset output {}\n"
         "{}set logscale y\nset yrange [{}:{}]\nset format y '%g'\n"
         "set xtics out nomirror\nset ytics out nomirror ({})\n"
         "set border 3 lc rgb '#5f6b77'\nset grid ytics lc rgb '#dfe3e8'\n"
-        "set offsets graph 0.02, graph 0.02\nset key top right reverse Left\n"
-        "{}{}\nset output\n",
-        terminal(image_path), quote(plain_path(image_path)), quote(first.campaign),
-        count_axis(first.rows), format_short(axis.lower), format_short(axis.upper),
-        axis.format_ticks(), drawing.data, drawing.clauses);
+        "set offsets graph 0.02, graph 0.02\nset key reverse Left\n",
+        terminal(image_path, columns, rows), quote(plain_path(image_path)), count_axis(first.rows),
+        format_short(axis.lower), format_short(axis.upper), axis.format_ticks());
+    script += is_one ? one_panel(studies, axis) : panels(studies, axis, columns, rows);
+    return script + "set output\n";
 }
 
 }  // namespace posewise::detail

@@ -147,6 +147,21 @@ TEST(StudyPlotScript, DrawsTheLinesOfEachModel) {
     EXPECT_NE(script.find("$optimal1 << EOD\n2 0.15\nEOD\n"), std::string::npos);
 }
 
+TEST(StudyPlotScript, DrawsAPanelForEachOfManyModels) {
+    std::vector<Study> studies = two_models();
+    studies.push_back(studies[1]);
+    studies[2].model = "it's full";
+    const auto script = study_plot_script(studies, "out.svg");
+    EXPECT_NE(script.find("set multiplot layout 2,2"), std::string::npos) << script;
+    for (const char* const text :
+         {"set title 'geometric' noenhanced", "set title 'it''s full' noenhanced",
+          "$random_0 using 1:2:4", "$random_2 using 1:2:4", "$optimal0_1 << EOD\n2 0.15\nEOD\n",
+          "'optimal, D'"}) {
+        EXPECT_NE(script.find(text), std::string::npos) << text << script;
+    }
+    EXPECT_EQ(study_plot_script(two_models(), "out.svg").find("multiplot"), std::string::npos);
+}
+
 TEST(StudyPlotScript, DrawsBandMedianAndCriterion) {
     const auto script = study_plot_script({example_study()}, "out.svg");
     EXPECT_NE(script.find("$random << EOD\n2 2 2 3\n3 0.4 0.4 0.4\nEOD\n"), std::string::npos);
@@ -198,6 +213,10 @@ TEST_F(RunGnuplot, DrawsIntoFilesWithAwkwardNames) {
         run_gnuplot(write_script("script with blank.gnuplot", script));
         EXPECT_GT(std::filesystem::file_size(image), 1000u) << name;
     }
+    const std::vector<Study> many{named("a"), named("b"), named("c")};
+    const auto panels = (folder_ / "panels.svg").string();
+    run_gnuplot(write_script("panels.gnuplot", study_plot_script(many, panels)));
+    EXPECT_GT(std::filesystem::file_size(panels), 1000u);
 }
 
 TEST(StudyPlotScript, GivesASinglePoseCountARange) {
