@@ -122,6 +122,39 @@ class Folds {
     std::optional<Linearisation> at_start_;
 };
 
+/// The first row of residuals() of each configuration, and one more.
+std::vector<Index> first_residuals(const Measurements& measurements) {
+    std::vector<Index> first{0};
+    for (Index i = 0; i < measurements.configuration_count(); ++i) {
+        const Index sample = measurements.first_sample[static_cast<std::size_t>(i)];
+        first.push_back(
+            first.back() +
+            measurements.is_seen.middleRows(sample, measurements.sample_count(i)).count());
+    }
+    return first;
+}
+
+/// Rows of the configurations held out in each fold, in the measurements' order.
+RowMatrixXd order_residuals(const Measurements& measurements, Index width,
+                            const std::vector<RowMatrixXd>& by_fold) {
+    const std::vector<Index> first = first_residuals(measurements);
+    const auto folds = std::ssize(by_fold);
+    RowMatrixXd ordered =
+        RowMatrixXd::Constant(first.back(), width, std::numeric_limits<double>::quiet_NaN());
+    for (Index fold = 0; fold < folds; ++fold) {
+        const RowMatrixXd& rows = by_fold[static_cast<std::size_t>(fold)];
+        if (rows.rows() == 0) continue;  // a fold that failed
+        Index row = 0;
+        for (const Index i : fold_members(measurements.configuration_count(), folds, fold)) {
+            const auto k = static_cast<std::size_t>(i);
+            const Index count = first[k + 1] - first[k];
+            ordered.middleRows(first[k], count) = rows.middleRows(row, count);
+            row += count;
+        }
+    }
+    return ordered;
+}
+
 }  // namespace
 
 CrossValidation cross_validate(const Campaign& campaign, const Measurements& measurements,
@@ -166,7 +199,8 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
         }
         return make_metrics(all, campaign.sensor->lengths_per_target());
     };
-    CrossValidation result{folds, join(samples), join(means), distances, angles, {}};
+    CrossValidation result{folds, join(samples), join(means), distances, angles, {}, {}};
+    result.residuals = order_residuals(measurements, campaign.sensor->rows_per_target(), samples);
     std::copy_if(failures.begin(), failures.end(), std::back_inserter(result.failures),
                  [](const std::string& failure) { return !failure.empty(); });
     return result;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
 
 /// The subcommands, one file each. Every function adds its command to the program; the work is done
 /// in the command's callback, once the whole command line is known to be right.
@@ -8,7 +9,8 @@ namespace posewise::cli {
 
 /// What every command takes beside its own options.
 struct CommonOptions {
-    bool json = false;  ///< print the result as a JSON document instead of text
+    bool json = false;         ///< print the result as a JSON document instead of text
+    std::string command_line;  ///< as it was typed
 };
 void add_common_options(CLI::App& command, CommonOptions& common);
 

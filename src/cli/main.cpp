@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "crew.hpp"
 #include "estimates.hpp"
+#include "page.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/reproducible.hpp"
 #include "posewise/core/version.hpp"
@@ -105,6 +106,7 @@ ProgramEnd run(int argc, char** argv) {
     CLI::App program{"Which poses to measure, how many, and what a calibration achieved.",
                      "posewise"};
     posewise::cli::CommonOptions common;
+    common.command_line = posewise::cli::join_command_line(argc, argv);
     try {
         add_commands(program, common);
         const std::string unknown = find_unknown_command(program, argc, argv);

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -7,7 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include "../core/text.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
@@ -17,18 +14,17 @@
 #include "plan_inputs.hpp"
 #include "plan_options.hpp"
 #include "plan_progress.hpp"
+#include "plan_report.hpp"
 #include "plan_target.hpp"
 #include "plan_verification.hpp"
-#include "posewise/io/json_reports.hpp"
 #include "posewise/io/plan_file.hpp"
-#include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
 namespace {
 
 constexpr const char* plan_footer = R"(
 Example:
-  posewise plan campaign.yaml --poses 24 --out plan.json --csv poses.csv
+  posewise plan campaign.yaml --poses 24 --out plan.json --csv poses.csv --report plan.html
   posewise plan campaign.yaml --target-mm 0.2 --assurance 0.95 --verify
   posewise plan campaign.yaml --poses 12 --augment measured.csv --criterion d
   posewise plan campaign.yaml --plan plan.json --drop p7,p12 --out repaired.json
@@ -73,6 +69,7 @@ struct PlanArguments : RequestArguments {
     TargetArguments target;
     VerificationArguments verification;
     std::string csv;
+    std::string page;
 };
 
 void check_plan_usage(const PlanArguments& arguments) {
@@ -88,31 +85,6 @@ void check_plan_usage(const PlanArguments& arguments) {
 
 std::string default_plan_out(const std::string& campaign) {
     return std::filesystem::path(campaign).stem().string() + ".poses.json";
-}
-
-/// A plan of stated size is no target's.
-void print_made(const TargetPlanning& made, const std::optional<SimulatedPlan>& simulated,
-                const io::CampaignFile& campaign, const std::string& out,
-                const CommonOptions& common) {
-    const Planning& planning = *made.planning;
-    const Plan& plan = planning.plan;
-    const bool has_target = made.ending != TargetEnding::NotRun;
-    const bool is_stopped = plan.is_stopped_early();
-    const auto counts =
-        is_stopped || has_target ? std::vector<CountAccuracy>() : predict_other_counts(planning);
-    if (is_stopped) std::fputs("posewise: stopped early; the plan is the best so far\n", stderr);
-    if (common.json)
-        return print(has_target ? io::to_json(made, out, simulated)
-                                : io::to_json(planning, counts, out, simulated));
-    print((has_target ? format(made) : "") + describe_verified(made.target, simulated) +
-          format_planning(planning) + format_budget(planning));
-    print(has_target ? format_curve(made)
-          : is_stopped
-              ? "\nPredicted position error by number of poses: left out, planning was stopped\n"
-              : format_other_counts(counts, planning.campaign));
-    print((simulated ? format(*simulated) : "") + format_deviations(plan));
-    print(fmt::format("\n{}{}plan:        {}\n", describe_planned(campaign, plan.request.repeats),
-                      describe_earlier(plan.request), detail::escape_controls(out)));
 }
 
 TargetPlanning plan_with_progress(const io::CampaignFile& campaign, PlanningOptions& options,
@@ -138,7 +110,7 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     const io::CampaignFile campaign = read_planned(arguments, stop);
     check_outputs({&campaign},
                   {arguments.earlier.from, sources.augment, sources.repaired, sources.workspace},
-                  {out, arguments.csv}, common);
+                  {out, arguments.csv, arguments.page}, common);
     const PlanRequest request = make_request(arguments, &campaign, Criterion::V);
     PlanningOptions options = read_planning_inputs(request, campaign);
     check_verification(arguments.verification, campaign, options);
@@ -151,7 +123,7 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     const auto simulated = verify_made(arguments.verification, made, options, arguments.progress);
     if (simulated) note_overtime(request.time_limit, stop, read, "plan and verify");
     interrupted.reset();
-    print_made(made, simulated, campaign, out, common);
+    report_plan({made, simulated, campaign, options, out}, arguments.page, common);
 }
 
 // ---- The command line ----
@@ -200,6 +172,7 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
     add_verification_options(command, arguments.verification);
     command.add_option("--csv", arguments.csv, "Write the configurations as CSV, too")
         ->check(file_name());
+    add_report_option(command, arguments.page);
     add_progress_flag(command, arguments);
 }
 

@@ -9,6 +9,7 @@
 
 #include "../core/progress_counter.hpp"
 #include "earlier_estimate.hpp"
+#include "nominal_residuals.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -122,15 +123,6 @@ Metrics judge(const Campaign& campaign, const Parameters& parameters, const Meas
                         campaign.sensor->lengths_per_target());
 }
 
-/// Base and targets fitted, as far as they are not known, the robot as its maker says; as they are
-/// registered where that takes more configurations.
-Metrics fit_nominal(const Work& work, Parameters registered) {
-    registered.robot.resize(0);
-    const Campaign nominal = with_robot(work.campaign, without_parameters(work.whole.robot));
-    const Estimate found = identify(nominal, work.used, registered, work.beside());
-    return found.undetermined.empty() ? found.fit : judge(nominal, registered, work.used);
-}
-
 /// Nothing if it was stopped on the way.
 std::optional<CrossValidation> hold_out(Work& work, const Calibration& result) {
     if (work.folds == 0 || work.options.stop.is_set()) return std::nullopt;
@@ -203,7 +195,10 @@ void calibrate_with(Work& work, Calibration& result) {
     identify_by_method(work, registered, result);
     work.counter.count();
     if (!result.is_identified()) return;
-    result.nominal = fit_nominal(work, registered);
+    result.nominal_residuals = detail::nominal_residuals(work.campaign, work.whole.robot, work.used,
+                                                         registered, work.beside());
+    result.nominal =
+        make_metrics(result.nominal_residuals, work.campaign.sensor->lengths_per_target());
     result.repeatability = repeatability(*work.campaign.sensor, work.used);
     result.campaign = with_model_error(work.campaign, result.estimate);
     result.held_out = hold_out(work, result);

@@ -60,28 +60,18 @@ Plan solve(ChoiceProblem& problem, const ChoiceOptions& options) {
     return plan;
 }
 
-/// Over the candidates, evenly taken; nothing where base and targets are not determined.
+/// Nothing where base and targets are not determined.
 std::optional<PredictedAccuracy> predict(const Campaign& campaign, const ChoiceProblem& problem,
                                          const std::vector<PlannedPose>& poses) {
-    constexpr Index most_configurations = 500;
-    const detail::CandidateIndex index(problem.ids, detail::ids_of(poses));
-    std::vector<Index> chosen;
-    for (const PlannedPose& pose : poses) {
-        const Index candidate = index.find(pose.id, "pose");
-        chosen.insert(chosen.end(), static_cast<std::size_t>(pose.times), candidate);
-    }
-    MatrixXd M = information(problem.blocks, chosen);
-    if (problem.options.held.size() > 0) M += problem.options.held;
+    const MatrixXd M = information_of(problem, poses);
     if (Eigen::LLT<MatrixXd>(M).info() != Eigen::Success) return std::nullopt;
-    const auto workspace = evenly_spaced(problem.configurations.rows(), most_configurations);
-    const auto at = [&](const std::vector<Index>& candidates) {
-        return RowMatrixXd(problem.configurations(candidates, Eigen::all));
-    };
+    const std::vector<Index> chosen = candidates_of(problem, poses);
     const RowMatrixXd repeats =
         problem.request.repeats * RowMatrixXd(problem.share(chosen, Eigen::all));
     return predict_accuracy(
-        make_prediction_blocks(campaign, problem.parameters, at(workspace)), M, campaign,
-        information_by_noise(campaign, problem.parameters, at(chosen), repeats));
+        make_prediction_blocks(campaign, problem.parameters, workspace_of(problem)), M, campaign,
+        information_by_noise(campaign, problem.parameters,
+                             RowMatrixXd(problem.configurations(chosen, Eigen::all)), repeats));
 }
 
 /// Plan::value_rms. Where whitening divided every coordinate of every target at every test pose by

@@ -183,6 +183,29 @@ std::vector<std::string> ids_of(const std::vector<PlannedPose>& poses) {
     return ids;
 }
 
+std::vector<Index> candidates_of(const ChoiceProblem& problem,
+                                 const std::vector<PlannedPose>& poses) {
+    const CandidateIndex index(problem.ids, ids_of(poses));
+    std::vector<Index> chosen;
+    for (const PlannedPose& pose : poses) {
+        const Index candidate = index.find(pose.id, "pose");
+        chosen.insert(chosen.end(), static_cast<std::size_t>(pose.times), candidate);
+    }
+    return chosen;
+}
+
+MatrixXd information_of(const ChoiceProblem& problem, const std::vector<PlannedPose>& poses) {
+    MatrixXd M = information(problem.blocks, candidates_of(problem, poses));
+    if (problem.options.held.size() > 0) M += problem.options.held;
+    return M;
+}
+
+RowMatrixXd workspace_of(const ChoiceProblem& problem) {
+    constexpr Index most_configurations = 500;
+    const auto workspace = evenly_spaced(problem.configurations.rows(), most_configurations);
+    return problem.configurations(workspace, Eigen::all);
+}
+
 CandidateIndex::CandidateIndex(const std::vector<std::string>& ids,
                                const std::vector<std::string>& wanted) {
     const std::unordered_set<std::string> among(wanted.begin(), wanted.end());

@@ -31,6 +31,14 @@ ChoiceProblem state_choice(Blocks candidates, const ChoiceOptions& options);
 
 std::vector<std::string> ids_of(const std::vector<PlannedPose>& poses);
 
+/// Where poses are among the candidates, as often as they are measured.
+std::vector<Index> candidates_of(const ChoiceProblem& problem,
+                                 const std::vector<PlannedPose>& poses);
+/// What poses among the candidates tell, with what was held.
+MatrixXd information_of(const ChoiceProblem& problem, const std::vector<PlannedPose>& poses);
+/// Where the accuracy is predicted: candidates, evenly taken.
+RowMatrixXd workspace_of(const ChoiceProblem& problem);
+
 /// Where some of the candidates are.
 class CandidateIndex {
   public:

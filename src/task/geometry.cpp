@@ -5,6 +5,7 @@
 
 #include "../core/decompositions.hpp"
 #include "../model/sampling.hpp"
+#include "nominal_fit.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/sensors.hpp"
@@ -237,15 +238,24 @@ Geometry nearest_geometry(const Campaign& campaign, const Parameters& found,
 
 PositionLoss nominal_loss(const Campaign& campaign, const Parameters& found,
                           const GeometryOptions& options) {
+    return loss_of(-fit_nominal(campaign, found, options).displacements);
+}
+
+namespace detail {
+
+NominalFit fit_nominal(const Campaign& campaign, const Parameters& found,
+                       const GeometryOptions& options) {
     const RowMatrixXd configurations = draw_workspace(campaign, found, options);
     const FlangePoints points{target_positions(campaign, found), known_axes(campaign)};
     const Campaign nominal = geometric_campaign(
         campaign, without_parameters(without_terms(campaign.robot)), found, points);
     const VectorXd wanted = predict_positions(campaign, found, points.positions, configurations);
     const Parameters nearest = fit(nominal, configurations, wanted);
-    return loss_of(
-        predict_positions(nominal, nearest, target_positions(nominal, nearest), configurations) -
-        wanted);
+    return {configurations,
+            wanted - predict_positions(nominal, nearest, target_positions(nominal, nearest),
+                                       configurations)};
 }
+
+}  // namespace detail
 
 }  // namespace posewise

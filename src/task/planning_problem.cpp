@@ -156,13 +156,15 @@ std::optional<Box> workspace_box(const PlanRequest& request) {
                Vector3d(box[3], box[4], box[5]) / mm_per_m};
 }
 
-void draw_workspace(PlanningProblem& problem, const PlanningOptions& options) {
+RowMatrixXd workspace_of(const PlanningProblem& problem, const PlanningOptions& options) {
     const PlanRequest& request = problem.request;
-    const RowMatrixXd workspace =
-        options.workspace.rows() > 0
-            ? options.workspace
-            : workspace_configurations(problem.campaign, workspace_box(request),
-                                       request.workspace_count, request.seed + 1);
+    if (options.workspace.rows() > 0) return options.workspace;
+    return workspace_configurations(problem.campaign, workspace_box(request),
+                                    request.workspace_count, request.seed + 1);
+}
+
+void draw_workspace(PlanningProblem& problem, const PlanningOptions& options) {
+    const RowMatrixXd workspace = workspace_of(problem, options);
     problem.workspace_count = workspace.rows();
     problem.errors =
         make_position_errors(problem.campaign, workspace, problem.request.workspace_target - 1);

@@ -29,7 +29,9 @@ void count_new_poses(PlanningProblem& problem, const StopSignal& stop);
 /// The box that targets are in where the workspace is drawn, if one was stated.
 std::optional<Box> workspace_box(const PlanRequest& request);
 
-/// Draws the workspace, unless `options` state it.
+/// The workspace's configurations: drawn, unless `options` state them.
+RowMatrixXd workspace_of(const PlanningProblem& problem, const PlanningOptions& options);
+/// Fills in what errors are there.
 void draw_workspace(PlanningProblem& problem, const PlanningOptions& options);
 
 /// poses x targets.

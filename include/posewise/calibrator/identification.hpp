@@ -97,6 +97,9 @@ struct CrossValidation {
     RowMatrixXd squared_distances;      ///< of the means, see squared_distances(); 0 in failures
     RowMatrixXd squared_angles;         ///< likewise
     std::vector<std::string> failures;  ///< folds that could not be identified, and why
+    /// As residuals() of the measurements has them, each row by the identification without it; NaN
+    /// in failures.
+    RowMatrixXd residuals{};
 };
 CrossValidation cross_validate(const Campaign& campaign, const Measurements& measurements,
                                const Parameters& start, Index folds,

@@ -105,6 +105,7 @@ struct Calibration {
     Index starts = 0;                            ///< of Global
     Index starts_at_best = 0;                    ///< of Global; one alone: there may be better ones
     Metrics nominal;                             ///< base and targets fitted only, all samples
+    RowMatrixXd nominal_residuals;               ///< of these, as residuals() has them
     std::optional<Repeatability> repeatability;  ///< nothing: no configuration was repeated
     std::optional<CrossValidation> held_out;
     /// At poses like those measured, at the configurations not used, and at the validation's.

@@ -1,0 +1,64 @@
+#include "plan_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "../core/text.hpp"
+#include "estimates.hpp"
+#include "measured.hpp"
+#include "posewise/io/json_reports.hpp"
+#include "posewise/report/reports.hpp"
+#include "posewise/task/error_map.hpp"
+
+namespace posewise::cli {
+namespace {
+
+std::string describe(const MadePlan& plan, const std::vector<CountAccuracy>& counts) {
+    const Planning& planning = *plan.made.planning;
+    const bool has_target = plan.made.ending != TargetEnding::NotRun;
+    std::string text = (has_target ? format(plan.made) : "") +
+                       describe_verified(plan.made.target, plan.simulated) +
+                       format_planning(planning) + format_budget(planning);
+    text += has_target ? format_curve(plan.made)
+            : planning.plan.is_stopped_early()
+                ? "\nPredicted position error by number of poses: left out, planning was stopped\n"
+                : format_other_counts(counts, planning.campaign);
+    text += (plan.simulated ? format(*plan.simulated) : "") + format_deviations(planning.plan);
+    return text + fmt::format("\n{}{}plan:        {}\n",
+                              describe_planned(plan.campaign, planning.plan.request.repeats),
+                              describe_earlier(planning.plan.request),
+                              detail::escape_controls(plan.out));
+}
+
+}  // namespace
+
+void report_plan(const MadePlan& plan, const std::string& page, const CommonOptions& common) {
+    const Planning& planning = *plan.made.planning;
+    const bool has_target = plan.made.ending != TargetEnding::NotRun;
+    const bool is_stopped = planning.plan.is_stopped_early();
+    const auto counts =
+        is_stopped || has_target ? std::vector<CountAccuracy>() : predict_other_counts(planning);
+    if (is_stopped) std::fputs("posewise: stopped early; the plan is the best so far\n", stderr);
+    Printed printed{describe(plan, counts), ""};
+    if (needs_document(common, page)) {
+        printed.document = has_target ? io::to_json(plan.made, plan.out, plan.simulated)
+                                      : io::to_json(planning, counts, plan.out, plan.simulated);
+    }
+    print(printed, common);
+    if (page.empty()) return;
+    io::PagePart part = show_plan(planning.plan, planning.campaign);
+    part.error_map =
+        map_if_possible([&] { return map_errors(planning.plan, plan.campaign, plan.options); });
+    write_page(page, std::move(part), printed, common);
+}
+
+io::PagePart show_plan(const Plan& plan, const Campaign& campaign) {
+    io::PagePart part;
+    part.title = campaign.name;
+    part.scene = make_scene(campaign, campaign.nominal);
+    if (!plan.poses.empty()) part.first_pose = plan.poses.front().configuration;
+    return part;
+}
+
+}  // namespace posewise::cli

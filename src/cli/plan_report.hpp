@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "page.hpp"
+#include "posewise/io/campaign_file.hpp"
+#include "posewise/task/simulated_plan.hpp"
+#include "posewise/task/target.hpp"
+
+/// What plan says of the plan that it has written.
+namespace posewise::cli {
+
+struct MadePlan {
+    const TargetPlanning& made;  ///< a plan of stated size is no target's
+    const std::optional<SimulatedPlan>& simulated;
+    const io::CampaignFile& campaign;
+    const PlanningOptions& options;  ///< that made it
+    std::string out;
+};
+
+/// Prints it, and then writes the page, if there is a path for one.
+void report_plan(const MadePlan& plan, const std::string& page, const CommonOptions& common);
+
+/// What a page shows of a plan, but for what was printed.
+io::PagePart show_plan(const Plan& plan, const Campaign& campaign);
+
+}  // namespace posewise::cli

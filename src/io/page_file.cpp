@@ -1,0 +1,267 @@
+#include "posewise/io/page_file.hpp"
+
+#include <cmath>
+
+#include "atomic_file.hpp"
+#include "json.hpp"
+#include "page_template.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/units.hpp"
+
+namespace posewise::io {
+namespace {
+
+using detail::Json;
+
+constexpr int page_format = 1;
+
+/// Numbers that are drawn need not be read back exactly: nm and nrad, and less text.
+double rounded(double value) { return std::round(1e9 * value) / 1e9; }
+
+Json drawn(const Eigen::Ref<const VectorXd>& values, double factor = 1) {
+    Json list = Json::array();
+    for (const double value : values) list.push_back(rounded(factor * value));
+    return list;
+}
+
+Json pose_to_json(const Isometry3d& pose) {
+    Json list = Json::array();
+    for (Index row = 0; row < 4; ++row) {
+        for (Index column = 0; column < 4; ++column) list.push_back(pose.matrix()(row, column));
+    }
+    return list;
+}
+
+// ---- The scene ----
+
+Json chain_joint_to_json(const Joint& joint) {
+    return {{"name", joint.name},
+            {"kind", joint.motion == Motion::Rotation ? "revolute" : "prismatic"},
+            {"lower", joint.lower},
+            {"upper", joint.upper}};
+}
+
+Json chain_element_to_json(const Element& element) {
+    Json joints = Json::array();
+    for (const JointTerm& term : element.joints) {
+        joints.push_back({{"joint", term.joint}, {"coefficient", term.coefficient}});
+    }
+    return {{"motion", transform_name(element)},
+            {"amount", element.value},
+            {"joints", std::move(joints)}};
+}
+
+Json capsule_to_json(const SceneCapsule& capsule) {
+    return {{"name", capsule.name},
+            {"kind", capsule.is_obstacle ? "keep_out" : "link"},
+            {"after_element", capsule.after_element},
+            {"from", drawn(capsule.solid.from)},
+            {"to", drawn(capsule.solid.to)},
+            {"radius", capsule.solid.radius}};
+}
+
+Json box_to_json(const SceneBox& box) {
+    return {{"name", box.name},
+            {"kind", box.is_obstacle ? "keep_out" : "targets"},
+            {"world_from_box", pose_to_json(box.world_from_box)},
+            {"size", drawn(box.size)}};
+}
+
+Json targets_to_json(const std::vector<SceneTarget>& targets) {
+    Json names = Json::array();
+    Json positions = Json::array();
+    for (const SceneTarget& target : targets) {
+        names.push_back(target.name);
+        positions.push_back(detail::vector_to_json(target.position));
+    }
+    return {{"names", std::move(names)}, {"positions", std::move(positions)}};
+}
+
+/// Of measured torques nothing is drawn.
+Json configurations_to_json(const PageConfigurations& configurations, Index joint_count) {
+    Json list = Json::array();
+    for (std::size_t i = 0; i < configurations.ids.size(); ++i) {
+        const VectorXd row = configurations.joints.row(static_cast<Index>(i)).transpose();
+        list.push_back({{"id", configurations.ids[i]},
+                        {"joints", detail::vector_to_json(row.head(joint_count))}});
+    }
+    return list;
+}
+
+Json scene_to_json(const PagePart& part) {
+    const Scene& scene = *part.scene;
+    Json json = {{"joints", Json::array()},
+                 {"elements", Json::array()},
+                 {"world_from_base", pose_to_json(scene.world_from_base)},
+                 {"targets", targets_to_json(scene.targets)},
+                 {"capsules", Json::array()},
+                 {"boxes", Json::array()},
+                 {"walls", Json::array()}};
+    for (const Joint& joint : scene.robot.joints()) {
+        json["joints"].push_back(chain_joint_to_json(joint));
+    }
+    for (const Element& element : scene.robot.elements()) {
+        json["elements"].push_back(chain_element_to_json(element));
+    }
+    for (const SceneCapsule& capsule : scene.capsules) {
+        json["capsules"].push_back(capsule_to_json(capsule));
+    }
+    for (const SceneBox& box : scene.boxes) json["boxes"].push_back(box_to_json(box));
+    for (const SceneWall& wall : scene.walls) {
+        json["walls"].push_back(
+            {{"name", wall.name}, {"point", drawn(wall.point)}, {"normal", drawn(wall.normal)}});
+    }
+    if (scene.floor_z) json["floor_z"] = *scene.floor_z;
+    if (scene.instrument) {
+        json["instrument"] = {{"kind", scene.instrument->kind},
+                              {"position", drawn(scene.instrument->position)}};
+    }
+    const RowMatrixXd& measured = part.configurations.joints;
+    if (part.first_pose || measured.rows() > 0) {
+        const VectorXd first = part.first_pose ? *part.first_pose : measured.row(0).transpose();
+        json["flange_of_first_pose"] = pose_to_json(world_from_flange(scene, first));
+    }
+    if (measured.rows() > 0) {
+        json["configurations"] =
+            configurations_to_json(part.configurations, scene.robot.joint_count());
+    }
+    return json;
+}
+
+// ---- Residuals and errors ----
+
+/// In mm and mrad.
+Json residual_to_json(const VectorXd& residual) { return drawn(residual, mm_per_m); }
+
+Json residuals_to_json(const PageResiduals& residuals) {
+    const Measurements& measured = residuals.measurements;
+    Json json = {{"axes", residuals.axes}, {"unit", Json::array()}, {"rows", Json::array()}};
+    for (const bool is_angle : residuals.is_angle) {
+        json["unit"].push_back(units_of(is_angle).error);
+    }
+    for (const ReadingResidual& reading : residuals.readings) {
+        const auto target = static_cast<std::size_t>(reading.target);
+        const std::string& id = measured.ids[static_cast<std::size_t>(reading.configuration)];
+        const std::string sample = measured.sample_name(reading.configuration, reading.sample);
+        Json row = {
+            {"configuration", id},
+            {"sample", sample.substr(id.size() + 1)},  // less "7:"
+            {"target", residuals.names[target]},
+            {"joints", drawn(measured.configurations.row(reading.configuration).transpose())},
+            {"residual", residual_to_json(reading.calibrated)},
+            {"nominal", residual_to_json(reading.nominal)}};
+        if (reading.held_out) row["held_out"] = residual_to_json(*reading.held_out);
+        row["standardised"] = drawn(reading.standardised);
+        if (reading.direction) {
+            row["range"] = rounded(reading.direction->range);
+            row["azimuth"] = rounded(reading.direction->azimuth);
+            row["elevation"] = rounded(reading.direction->elevation);
+        }
+        json["rows"].push_back(std::move(row));
+    }
+    return json;
+}
+
+Json error_map_to_json(const ErrorMap& map) {
+    Json points = Json::array();
+    for (const MappedError& error : map) {
+        Json point = {{"position", drawn(error.position)},
+                      {"joints", drawn(error.configuration)},
+                      {"predicted_mm", mm_per_m * error.predicted}};
+        if (error.displacement) {
+            point["displacement_mm"] = drawn(*error.displacement, mm_per_m);
+        }
+        points.push_back(std::move(point));
+    }
+    return {{"points", std::move(points)}};
+}
+
+// ---- The page ----
+
+/// Whatever a user typed, which need not be UTF-8.
+Json typed_text(const std::optional<std::string>& text) {
+    if (!text) return nullptr;
+    return Json::parse(Json(*text).dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+Json part_to_json(const PagePart& part) {
+    Json json = {{"title", part.title},
+                 {"command", typed_text(part.command)},
+                 {"made_at", part.made_at},
+                 {"printed", typed_text(part.printed)}};
+    try {
+        json["document"] = Json::parse(part.document);
+    } catch (const Json::exception&) {
+        throw input_error_at({part.title}, "is not JSON; must be a document of posewise");
+    }
+    if (part.scene) json["scene"] = scene_to_json(part);
+    if (part.residuals) json["residuals"] = residuals_to_json(*part.residuals);
+    if (part.error_map) json["error_map"] = error_map_to_json(*part.error_map);
+    return json;
+}
+
+/// Nothing in it can end a script or begin another; these stand in texts only.
+std::string escape_for_script(const std::string& text) {
+    std::string escaped;
+    escaped.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const std::string_view rest = std::string_view(text).substr(i, 3);
+        if (text[i] == '<') {
+            escaped += "\\u003c";
+        } else if (text[i] == '>') {
+            escaped += "\\u003e";
+        } else if (text[i] == '&') {
+            escaped += "\\u0026";
+        } else if (rest == "\u2028" || rest == "\u2029") {
+            escaped += rest == "\u2028" ? "\\u2028" : "\\u2029";
+            i += 2;
+        } else {
+            escaped += text[i];
+        }
+    }
+    return escaped;
+}
+
+/// The template with this document where its own is.
+std::string fill_template(std::string_view page, const std::string& document) {
+    constexpr std::string_view begin = R"(<script type="application/json" id="posewise">)";
+    constexpr std::string_view end = "</script>";
+    const std::size_t first = page.find(begin) + begin.size();
+    const std::size_t last = page.find(end, first);
+    std::string filled(page.substr(0, first));
+    filled += document;
+    return filled += page.substr(last);
+}
+
+std::string make_page(const std::vector<PagePart>& parts, const std::string& place) {
+    Json document = detail::make_document("page", page_format);
+    Json& list = document["parts"] = Json::array();
+    for (const PagePart& part : parts) list.push_back(part_to_json(part));
+    try {
+        return fill_template(detail::page_template(), escape_for_script(document.dump()));
+    } catch (const Json::type_error&) {
+        throw input_error_at({place},
+                             "cannot be written, since a name or id is not UTF-8 text; "
+                             "must be UTF-8 (or plain ASCII)");
+    }
+}
+
+}  // namespace
+
+PageResiduals page_residuals(const Campaign& campaign, const Measurements& measurements,
+                             std::vector<ReadingResidual> readings) {
+    PageResiduals residuals{
+        residual_axes(campaign), {}, reading_names(campaign), measurements, std::move(readings)};
+    for (Index row = 0; row < campaign.sensor->rows_per_target(); ++row) {
+        residuals.is_angle.push_back(campaign.sensor->is_angle(row));
+    }
+    return residuals;
+}
+
+std::string to_page(const std::vector<PagePart>& parts) { return make_page(parts, "the page"); }
+
+void write_page(const std::string& path, const std::vector<PagePart>& parts) {
+    detail::write_file(path, make_page(parts, path));
+}
+
+}  // namespace posewise::io

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "posewise/calibrator/identification.hpp"
+
+namespace posewise::detail {
+
+/// Residuals of the robot as its maker says: base and targets of the campaign fitted, as far as
+/// they are not known, `robot` without its errors; as they are registered where fitting takes more
+/// configurations.
+RowMatrixXd nominal_residuals(const Campaign& campaign, const Chain& robot,
+                              const Measurements& measurements, Parameters registered,
+                              const LevenbergMarquardtOptions& options);
+
+}  // namespace posewise::detail
