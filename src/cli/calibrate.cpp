@@ -5,8 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "../core/text.hpp"
-#include "calibrate_options.hpp"
+#include "calibrate_report.hpp"
 #include "commands.hpp"
 #include "estimates.hpp"
 #include "files.hpp"
@@ -14,7 +13,6 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/io/estimate_file.hpp"
-#include "posewise/io/json_reports.hpp"
 #include "posewise/report/reports.hpp"
 #include "validation.hpp"
 
@@ -23,7 +21,7 @@ namespace {
 
 constexpr const char* calibrate_footer = R"(
 Example:
-  posewise calibrate campaign.yaml -m measurements.csv --out estimate.json
+  posewise calibrate campaign.yaml -m measurements.csv --out estimate.json --report page.html
 
 Finds base and targets (or tool; of sockets ball and sockets: they need a column socket instead of
 readings) from nothing, then identifies all parameters together, and prints
@@ -123,29 +121,17 @@ void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& ar
     require(options.folds != 0, "--model-selection", "needs --folds of 2 or more");
 }
 
-/// Which estimate it goes on from.
-std::string describe_start(const CalibrateArguments& arguments) {
-    const EarlierArguments& earlier = arguments.earlier;
-    if (earlier.from.empty()) return "";
-    if (earlier.builds_on()) return '\n' + describe_earlier(earlier);
-    return fmt::format("\nfrom:       {}: where it began\n", detail::escape_controls(earlier.from));
-}
-
-void print_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
-                       const Calibration& result, const io::Provenance& made_from) {
-    print(common.json ? io::to_json(result, made_from)
-                      : format(result, arguments.has_all_parameters) + describe_start(arguments));
-}
-
 /// With faults it is printed, but not written.
 void check_faults(const CalibrateArguments& arguments, const CommonOptions& common,
-                  const Calibration& result, const io::Provenance& made_from) {
+                  const Calibration& result, const Printed& printed) {
     const std::string words = "this is no calibration: " + join_some(result.faults);
     if (arguments.earlier.is_forced) return print_warning(words);
-    print_calibration(arguments, common, result, made_from);
-    throw NoCalibration(fmt::format(
-        "{}: {}; {}--force takes it all the same", arguments.paths.measurements, words,
-        arguments.out.empty() && arguments.predict_out.empty() ? "" : "nothing was written, "));
+    print(printed, common);
+    throw NoCalibration(fmt::format("{}: {}; {}--force takes it all the same",
+                                    arguments.paths.measurements, words,
+                                    (arguments.out + arguments.predict_out + arguments.page).empty()
+                                        ? ""
+                                        : "nothing was written, "));
 }
 
 /// What is wrong names the file that it is in.
@@ -170,7 +156,7 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     check_outputs(
         {&file, validation.campaign ? &*validation.campaign : nullptr},
         {paths.measurements, arguments.plan, arguments.validate, arguments.predict, earlier.from},
-        {arguments.out, arguments.predict_out}, common);
+        {arguments.out, arguments.predict_out, arguments.page}, common);
     CalibrationOptions options = make_options(arguments, file.seed);
     const Measurements measured =
         read_measured_without(options.excluded, paths.measurements, file, earlier);
@@ -192,12 +178,16 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
         throw input_error_at({paths.measurements}, result.estimate.undetermined);
     }
     std::ranges::for_each(describe_doubts(result, paths.measurements), print_warning);
-    if (!result.faults.empty()) check_faults(arguments, common, result, made_from);
+    const Printed printed = describe_calibration(arguments, common, result, made_from);
+    if (!result.faults.empty()) check_faults(arguments, common, result, printed);
     if (!arguments.out.empty()) io::write_estimate(arguments.out, result, made_from);
     if (!arguments.predict_out.empty()) {
         io::write_predictions_csv(arguments.predict_out, predicted.ids, result.predicted);
     }
-    print_calibration(arguments, common, result, made_from);
+    print(printed, common);
+    const std::vector<Index>& used = options.used;
+    write_calibration_page(arguments, common, result,
+                           used.empty() ? measured : take(measured, used), printed);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "measured.hpp"
 #include "options.hpp"
+#include "page.hpp"
 
 namespace posewise::cli {
 
@@ -87,6 +88,7 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
         ->needs(refit);
     command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
         ->check(file_name());
+    add_report_option(command, arguments.page);
 }
 
 }  // namespace posewise::cli

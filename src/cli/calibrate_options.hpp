@@ -18,6 +18,7 @@ struct CalibrateArguments {
     std::string predict;
     std::string predict_out;
     std::string out;
+    std::string page;
     std::string method = "lm";
     std::string search = "random";
     std::string loss = "squares";

@@ -172,8 +172,8 @@ std::string describe_earlier(const std::string& path, const EarlierUse& use) {
 io::Provenance provenance_of(const CLI::App& command, const io::CampaignFile& file,
                              const std::string& path, const Measurements& measured) {
     io::Provenance made_from{path, io::checksum_of(measured), file.path, file.checksum, {}};
-    const std::vector<std::string> of_no_matter{"--out", "--predict-out", "--all-parameters",
-                                                "--json", "--threads"};
+    const std::vector<std::string> of_no_matter{
+        "--out", "--predict-out", "--all-parameters", "--report", "--plot", "--json", "--threads"};
     for (const CLI::Option* const option : command.get_options()) {
         const std::string name = option->get_name();
         const bool matters = name.starts_with("--") && !contains(of_no_matter, name.c_str());

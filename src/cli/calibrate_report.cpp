@@ -1,0 +1,54 @@
+#include "calibrate_report.hpp"
+
+#include <fmt/format.h>
+
+#include "../core/text.hpp"
+#include "posewise/io/json_reports.hpp"
+#include "posewise/report/reports.hpp"
+#include "posewise/task/error_map.hpp"
+#include "posewise/task/residuals.hpp"
+
+namespace posewise::cli {
+namespace {
+
+/// Which estimate it goes on from.
+std::string describe_start(const CalibrateArguments& arguments) {
+    const EarlierArguments& earlier = arguments.earlier;
+    if (earlier.from.empty()) return "";
+    if (earlier.builds_on()) return '\n' + describe_earlier(earlier);
+    return fmt::format("\nfrom:       {}: where it began\n", detail::escape_controls(earlier.from));
+}
+
+}  // namespace
+
+Printed describe_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
+                             const Calibration& result, const io::Provenance& made_from) {
+    Printed printed{format(result, arguments.has_all_parameters) + describe_start(arguments), ""};
+    if (needs_document(common, arguments.page)) {
+        printed.document = io::to_json(result, made_from);
+    }
+    return printed;
+}
+
+io::PagePart show_estimate(const Campaign& campaign, const Estimate& estimate,
+                           const Measurements* measurements) {
+    io::PagePart part;
+    part.title = campaign.name;
+    part.scene = make_scene(campaign, estimate.parameters);
+    if (measurements != nullptr) {
+        part.configurations = {measurements->ids, measurements->configurations};
+    }
+    part.error_map = map_if_possible([&] { return map_errors(campaign, estimate); });
+    return part;
+}
+
+void write_calibration_page(const CalibrateArguments& arguments, const CommonOptions& common,
+                            const Calibration& result, const Measurements& used,
+                            const Printed& printed) {
+    if (arguments.page.empty()) return;
+    io::PagePart part = show_estimate(result.campaign, result.estimate, &used);
+    part.residuals = io::page_residuals(result.campaign, used, list_residuals(result, used));
+    write_page(arguments.page, std::move(part), printed, common);
+}
+
+}  // namespace posewise::cli

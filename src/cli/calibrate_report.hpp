@@ -1,0 +1,24 @@
+#pragma once
+
+#include "calibrate_options.hpp"
+#include "page.hpp"
+#include "posewise/io/estimate_file.hpp"
+
+/// What calibrate says of a calibration.
+namespace posewise::cli {
+
+/// `document` is left out where nobody asks for it.
+Printed describe_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
+                             const Calibration& result, const io::Provenance& made_from);
+
+/// What a page shows of an estimate beside its document: the robot calibrated, where it was
+/// measured, and its errors over the workspace.
+io::PagePart show_estimate(const Campaign& campaign, const Estimate& estimate,
+                           const Measurements* measurements);
+
+/// The page of one that was made with these measurements; nothing if there is no path.
+void write_calibration_page(const CalibrateArguments& arguments, const CommonOptions& common,
+                            const Calibration& result, const Measurements& used,
+                            const Printed& printed);
+
+}  // namespace posewise::cli
