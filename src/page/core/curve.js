@@ -1,0 +1,47 @@
+// Error against number of poses, as plans predict and studies find it.
+
+const pointOf = (one, error) => ({
+  count: one.new_pose_count, isPlanned: one.is_planned, expected: error.expected_mm ?? error.total_rms_mm,
+  lower: error.lower_mm ?? error.total_lower_mm, upper: error.upper_mm ?? error.total_upper_mm,
+  assured: error.assured_mm ?? null, parameters: error.rms_mm ?? null,
+});
+
+/** Of a plan: points, that of the plan itself, floor and limit, mm; null where it states none. */
+export function plannedCurve(document) {
+  const { target, budget } = document;
+  const list = target ? target.curve : document.other_counts;
+  if (!list) return null;
+  const points = list.filter((one) => one.error ?? one.accuracy).map((one) => pointOf(one, one.error ?? one.accuracy));
+  const counts = new Set(points.map((one) => one.count));
+  if (counts.size < 2) return null;
+  const wanted = document.new_pose_count;
+  const current = points.find((one) => one.isPlanned && one.count === wanted) ?? points.find((one) => one.isPlanned) ?? points[0];
+  return {
+    points, current,
+    floor: target ? target.floor.expected_mm : budget ? Math.hypot(budget.left_over_mm, budget.repeatability_mm) : null,
+    limit: target?.limit_mm ?? null, assurance: target?.assurance ?? null,
+  };
+}
+
+/**
+ * How many poses more leave `part` of what `count` poses leave, by points (count, value) that fall:
+ * interpolated between them on logarithmic axes; null beyond the last.
+ */
+export function moreFor(points, count, part = 0.8) {
+  const list = points.filter((one) => one.value > 0).sort((a, b) => a.count - b.count);
+  const value = (n) => {
+    const k = list.findIndex((one) => one.count >= n);
+    if (k < 0) return null;
+    if (list[k].count === n || k === 0) return list[k].value;
+    const [a, b] = [list[k - 1], list[k]];
+    const at = Math.log(n / a.count) / Math.log(b.count / a.count);
+    return a.value * (b.value / a.value) ** at;
+  };
+  const now = value(count);
+  const last = list.at(-1);
+  if (!now || !last) return null;
+  for (let n = count + 1; n <= last.count; ++n) {
+    if (value(n) <= part * now) return { more: n - count, ratio: value(n) / now };
+  }
+  return { more: null, upTo: last.count, ratio: value(last.count) / now };
+}

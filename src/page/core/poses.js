@@ -1,0 +1,46 @@
+// The configurations of a part: those planned, or those measured.
+
+import { fixed, reading, splitUnit } from './format.js';
+
+/** `id`, `joints` (m, rad), `keys` of them, and of plans `value` (mm; null: needed), `targets`, `via`. */
+export function posesOf(part) {
+  const { document, scene } = part;
+  const planned = document.poses;
+  if (planned?.length > 0 && planned[0].joints) {
+    const values = new Map((document.pose_values ?? []).map((one) => [one.id, one.value_mm]));
+    return planned.map((pose) => {
+      const keys = Object.keys(pose.joints);
+      const drawn = keys.filter((key) => splitUnit(key).unit !== 'Nm');
+      return {
+        id: pose.id, times: pose.times, keys, all: keys.map((key) => pose.joints[key]),
+        joints: drawn.map((key) => pose.joints[key]),
+        via: pose.via ? drawn.map((key) => pose.via[key]) : null,
+        blocked: pose.way_is_blocked, kept: pose.kept, hasWay: 'via' in pose,
+        value: values.get(pose.id), targets: pose.visible_targets ?? null,
+      };
+    });
+  }
+  const keys = (scene?.joints ?? []).map((joint) =>
+    `${joint.name}_${joint.kind === 'prismatic' ? 'm' : 'rad'}`);
+  return (scene?.configurations ?? []).map(({ id, joints }) => ({
+    id, keys, all: joints, joints: joints.slice(0, keys.length), via: null, targets: null, times: 1,
+  }));
+}
+
+/** "q1/deg". */
+export const columnTitle = (key) => {
+  const { name, unit } = reading(key, 0);
+  return `${name}/${unit}`;
+};
+
+export const cellOf = (key, value) => fixed(reading(key, value).value, 2);
+
+/** How it gets there: "straight", "via 1.00 2.00", "BLOCKED". */
+export function wayOf(pose) {
+  if (pose.blocked) return 'BLOCKED';
+  if (!pose.via) return 'straight';
+  return ['via', ...pose.via.map((value, k) => cellOf(pose.keys[k], value))].join(' ');
+}
+
+/** "0.0123", or "needed" of a pose without which parameters are left open. */
+export const valueOf = (pose) => (pose.value === null ? 'needed' : fixed(pose.value, 4));

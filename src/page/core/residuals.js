@@ -1,0 +1,32 @@
+// What residuals of a calibration come to.
+
+/** Columns that are of one unit with the first: lengths, or else angles. */
+export function mainColumns({ axes, unit }) {
+  return axes.map((unused, k) => k).filter((k) => unit[k] === unit[0]);
+}
+
+export const distance = (values, columns) => Math.hypot(...columns.map((k) => values[k]));
+
+/** RMS of the distances of each configuration. */
+export function rmsByConfiguration(residuals, key = 'residual') {
+  const columns = mainColumns(residuals);
+  const sums = new Map();
+  for (const row of residuals.rows) {
+    if (!row[key]) continue;
+    const sum = sums.get(row.configuration) ?? { square: 0, count: 0 };
+    sum.square += distance(row[key], columns) ** 2;
+    sum.count += 1;
+    sums.set(row.configuration, sum);
+  }
+  return new Map([...sums].map(([id, sum]) => [id, Math.sqrt(sum.square / sum.count)]));
+}
+
+/** Groups rows by configuration, in the order measured. */
+export function byConfiguration(residuals) {
+  const groups = new Map();
+  for (const row of residuals.rows) {
+    if (!groups.has(row.configuration)) groups.set(row.configuration, []);
+    groups.get(row.configuration).push(row);
+  }
+  return [...groups].map(([id, rows]) => ({ id, rows }));
+}

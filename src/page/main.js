@@ -1,0 +1,50 @@
+import { el } from './core/dom.js';
+import { watchTheme } from './core/theme.js';
+import { footer, header } from './sections/frame.js';
+import * as accuracy from './sections/accuracy_by_count.js';
+import * as budget from './sections/budget.js';
+import * as measured from './sections/measured.js';
+import * as optimality from './sections/optimality.js';
+import * as poses from './sections/poses.js';
+import * as printed from './sections/printed.js';
+import * as verdict from './sections/verdict.js';
+
+const sections = [verdict, poses, accuracy, budget, optimality, measured, printed];
+
+/** One section with all parts that have something to show, side by side where there are several. */
+function sectionOf(section, parts) {
+  const shown = parts.filter((part) => section.isShown(part));
+  if (shown.length === 0) return null;
+  const id = section.title.toLowerCase().replace(/[^a-z0-9]+/g, '-');
+  const isAlone = parts.length === 1;
+  return el('section', { id, 'aria-labelledby': `${id}-title` },
+    el('h2', { id: `${id}-title` }, section.title),
+    el('div', { class: shown.length > 1 ? 'parts parts-beside' : 'parts' }, shown.map((part) =>
+      el('div', { class: 'part' }, isAlone ? null : el('h3', {}, part.name), section.render(part, parts)))));
+}
+
+/** Parts with names that differ. */
+function namedParts(document) {
+  const parts = document.parts ?? [];
+  const kindOf = (part) => part.document.kind.replace(/^posewise /, '');
+  return parts.map((part, k) => {
+    const plain = `${part.title} (${kindOf(part)})`;
+    const isTwice = parts.some((other, i) => i !== k && `${other.title} (${kindOf(other)})` === plain);
+    return { ...part, kind: kindOf(part), name: isTwice ? `${k + 1}. ${plain}` : plain };
+  });
+}
+
+function draw() {
+  const source = document.getElementById('posewise').textContent;
+  const page = JSON.parse(source);
+  const parts = namedParts(page);
+  const drawn = sections.map((section) => sectionOf(section, parts)).filter(Boolean);
+  document.title = `posewise: ${parts.map((part) => part.title).join(', ')}`;
+  document.body.append(
+    el('a', { class: 'skip', href: '#verdict' }, 'Skip to the verdict'),
+    header(parts, drawn), el('main', {}, drawn), footer(page, source));
+  watchTheme();
+  document.documentElement.dataset.drawn = 'true';
+}
+
+draw();

@@ -1,0 +1,162 @@
+import { el } from '../core/dom.js';
+import { behind, figure, lead } from '../core/figure.js';
+import { count, fixed, mm } from '../core/format.js';
+import { checkFlange } from '../core/kinematics.js';
+import { cellOf, columnTitle, posesOf, valueOf, wayOf } from '../core/poses.js';
+import { rmsByConfiguration } from '../core/residuals.js';
+import { table } from '../core/table.js';
+import { ramp } from '../core/theme.js';
+import { colourBar } from '../draw/colour_bar.js';
+import { parallelCoordinates } from '../draw/parallel.js';
+import { makeCanvas, Viewer } from '../draw/viewer.js';
+import { player } from './player.js';
+
+export const title = 'Poses';
+
+export const isShown = (part) => posesOf(part).length > 0;
+
+/** A number of each pose to colour it by, and what it is. */
+function colouring(part, poses) {
+  let name = 'order of the visit';
+  let numbers = poses.map((unused, k) => k + 1);
+  let text = (value) => fixed(value, 0);
+  if (poses.some((pose) => typeof pose.value === 'number')) {
+    name = 'value of the pose/mm';
+    numbers = poses.map((pose) => pose.value);
+    text = mm;
+  } else if (part.residuals) {
+    const rms = rmsByConfiguration(part.residuals);
+    name = `residual RMS/${part.residuals.unit[0]}`;
+    numbers = poses.map((pose) => rms.get(pose.id) ?? null);
+    text = mm;
+  }
+  const known = numbers.filter((value) => typeof value === 'number');
+  const [low, high] = [Math.min(...known), Math.max(...known)];
+  const colours = numbers.map((value) => (typeof value === 'number' ? ramp(high > low ? (value - low) / (high - low) : 0.5) : 'rgb(214, 40, 57)'));
+  const bar = known.length > 1 ? colourBar(name, text(low), text(high)) : null;
+  return { colours, bar, hasNeeded: numbers.includes(null) && part.document.pose_values };
+}
+
+function poseTable(part, poses) {
+  const isPlan = poses[0].hasWay;
+  const header = ['pose', ...poses[0].keys.map(columnTitle)];
+  if (poses.some((pose) => pose.value !== undefined)) header.push('value/mm');
+  if (poses.some((pose) => pose.targets)) header.push('targets seen');
+  if (isPlan) header.push('way there');
+  const rows = poses.map((pose) => {
+    const row = [pose.id, ...pose.all.map((value, k) => cellOf(pose.keys[k], value))];
+    if (header.includes('value/mm')) row.push(pose.value === undefined ? '-' : valueOf(pose));
+    if (header.includes('targets seen')) row.push((pose.targets ?? []).join(' '));
+    if (isPlan) row.push(wayOf(pose));
+    return row;
+  });
+  return table(isPlan ? 'Poses, in the order to visit them' : 'Poses', header, rows);
+}
+
+function rangeTable(joints, poses) {
+  const rows = joints.map((joint, j) => {
+    const key = poses[0].keys[j];
+    const used = poses.map((pose) => pose.joints[j]);
+    const [low, high] = [Math.min(...used), Math.max(...used)];
+    const part = (high - low) / (joint.upper - joint.lower);
+    return [columnTitle(key), cellOf(key, joint.lower), cellOf(key, joint.upper), cellOf(key, low), cellOf(key, high),
+      Number.isFinite(part) ? `${fixed(100 * part, 0)} %` : '-'];
+  });
+  return table('Joint ranges', ['joint', 'lower limit', 'upper limit', 'least used', 'largest used', 'of the range'], rows);
+}
+
+/** Joints of one pose; changes in place. */
+function jointTable(joints, poses) {
+  const cells = joints.map(() => el('td', { class: 'number' }));
+  const bars = joints.map(() => el('span', { class: 'bar-mark' }));
+  const element = el('table', { class: 'joints' },
+    el('caption', {}, 'Joints of this pose'),
+    el('thead', {}, el('tr', {}, ['joint', 'value', 'between its limits'].map((text) => el('th', { scope: 'col' }, text)))),
+    el('tbody', {}, joints.map((joint, j) => el('tr', {}, el('th', { scope: 'row' }, columnTitle(poses[0].keys[j])), cells[j],
+      el('td', {}, el('span', { class: 'bar-track' }, bars[j]))))));
+  return {
+    element,
+    show(values) {
+      values.forEach((value, j) => {
+        cells[j].textContent = cellOf(poses[0].keys[j], value);
+        const part = (value - joints[j].lower) / (joints[j].upper - joints[j].lower);
+        bars[j].style.left = `${100 * Math.min(1, Math.max(0, Number.isFinite(part) ? part : 0.5))}%`;
+      });
+    },
+  };
+}
+
+function describe(poses, k) {
+  const pose = poses[k];
+  const parts = [`Pose ${pose.id}, ${k + 1} of ${poses.length}`];
+  if (pose.value !== undefined) parts.push(pose.value === null ? 'needed' : `value ${mm(pose.value)} mm`);
+  if (pose.targets) parts.push(pose.targets.length > 0 ? `targets seen: ${pose.targets.join(' ')}` : 'no target seen');
+  if (pose.blocked) parts.push('no free way there was found');
+  else if (pose.via) parts.push('reached over a via point');
+  return parts.join(' \u00b7 ');
+}
+
+function views(viewer) {
+  const names = { all: 'Whole', front: 'Front', side: 'Side', top: 'Top' };
+  const frames = el('input', { type: 'checkbox', checked: true });
+  frames.addEventListener('change', () => viewer.showFrames(frames.checked));
+  return el('div', { class: 'views' }, Object.entries(names).map(([key, name]) =>
+    el('button', { type: 'button', onclick: () => viewer.look(key) }, name)), el('label', {}, frames, 'Frames'));
+}
+
+/** The robot in 3D where there is WebGL and a scene; a sentence else. */
+function stageOf(part, poses, colours) {
+  const stage = el('div', { class: 'stage' });
+  if (!part.scene) return { stage: null };
+  checkFlange(part.scene, poses[0].joints);
+  const made = makeCanvas();
+  if (!made) {
+    stage.classList.add('stage-empty');
+    stage.append(el('p', {}, 'No 3D view: this browser offers no WebGL. The poses are in the tables below.'));
+    return { stage };
+  }
+  made.canvas.setAttribute('aria-label', `Robot in 3D: ${part.title}. Drag to turn, wheel to come nearer; arrow keys step through the poses.`);
+  stage.append(made.canvas);
+  return { stage, makeViewer: () => new Viewer(made, stage, part.scene, poses, colours) };
+}
+
+export function render(part) {
+  const poses = posesOf(part);
+  const joints = part.scene?.joints ?? poses[0].keys.slice(0, poses[0].joints.length).map((key) => ({ name: key, lower: null, upper: null }));
+  const { colours, bar, hasNeeded } = colouring(part, poses);
+  const { stage, makeViewer } = stageOf(part, poses, colours);
+  const coordinates = parallelCoordinates(joints, poses, colours, `Joints of ${count(poses.length, 'pose')} between their limits, as parallel coordinates`);
+  const one = jointTable(joints, poses);
+  let viewer = null;
+  const steps = player(poses, stage ?? coordinates.element, (k, onTheWay) => {
+    one.show(onTheWay ?? poses[k].joints);
+    viewer?.show(onTheWay ?? poses[k].joints, onTheWay ? [] : poses[k].targets);
+    if (!onTheWay) coordinates.show(k);
+  }, (k) => describe(poses, k));
+  const side = el('div', { class: 'stage-side' }, one.element, bar,
+    hasNeeded ? el('p', { class: 'note' }, 'Red: without this pose parameters are left unidentified.') : null);
+  const together = el('div', { class: 'stage-row' }, stage ? el('div', {}, stage) : null, side);
+  const element = el('div', {}, introduction(part, poses), steps.bar, together,
+    figure('Joint values of all poses between the limits; the current pose is dark.', coordinates.element, [rangeTable(joints, poses)]),
+    behind([poseTable(part, poses)], `All ${count(poses.length, 'pose')} as a table`));
+  if (makeViewer) {
+    // After the page stands: to make a context and its programs takes a while.
+    requestAnimationFrame(() => requestAnimationFrame(() => {
+      viewer = makeViewer();
+      stage.after(views(viewer));
+      steps.go(0);
+      stage.dataset.ready = 'true';
+    }));
+  }
+  steps.go(0);
+  return element;
+}
+
+function introduction(part, poses) {
+  const { document } = part;
+  if (!document.poses) return lead(`${count(poses.length, 'configuration')}, as measured.`);
+  const text = [`${count(poses.length, 'pose')}${poses[0].hasWay ? ', in the order to visit them' : ''}`];
+  if (document.tour) text.push(`all moves take ${fixed(document.tour.time_s, 1)} s at the joints' speeds`);
+  if (document.tour?.blocked_count > 0) text.push(`${count(document.tour.blocked_count, 'move')} blocked: find a way by hand`);
+  return lead(`${text.join('; ')}.`);
+}

@@ -1,0 +1,89 @@
+import { count, mm, short } from '../core/format.js';
+import { driftOf } from '../core/drift.js';
+import { influence, intervalOfRms } from '../core/influence.js';
+import { limitOf } from './verdict_plan.js';
+
+/** What the calibration leaves where it was not measured: of what is known the most honest. */
+function errorOf({ accuracy }) {
+  const unit = accuracy.fit.distance_rms_mm === undefined ? 'mrad' : 'mm';
+  const pick = (metrics) => ({ rms: metrics[unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'], p95: metrics.distance_p95_mm, unit });
+  if (accuracy.validation) return { ...pick(accuracy.validation), where: 'on the measurements kept for validation', key: null };
+  if (accuracy.left_out) return { ...pick(accuracy.left_out), where: 'on configurations not in the plan', key: null };
+  if (accuracy.held_out) return { ...pick(accuracy.held_out.samples), where: `on configurations not measured (held out, ${accuracy.held_out.folds} folds)`, key: 'held_out' };
+  return { ...pick(accuracy.fit), where: 'on the measurements it was made from (nothing was held out)', key: 'residual' };
+}
+
+export function describeDrift(drift) {
+  if (!drift) return 'Not known: too few configurations, or their residuals are not at hand.';
+  const { worst } = drift;
+  const size = `${worst.axis}: ${mm(worst.change)} ${worst.unit} from first to last configuration, p = ${short(worst.corrected, 2)} for ${drift.slopes.length} axes`;
+  if (drift.verdict === 'yes') return `Yes: residuals follow the ${drift.unit === 'h' ? 'time' : 'order'} (${size}).`;
+  if (drift.verdict === 'perhaps') return `Perhaps: ${size}.`;
+  return `None seen (strongest in ${size}); ${mm(Math.max(...drift.slopes.map((one) => one.seen)))} ${worst.unit} over the campaign would have been seen with 95 % confidence.`;
+}
+
+function mostOf(part) {
+  if (!part.residuals) return 'Not known: the residuals are not at hand.';
+  const list = influence(part.residuals);
+  const unit = part.residuals.unit[0];
+  if (list.length === 0) return 'Not known: nothing was held out.';
+  const [first] = list;
+  const folds = part.document.accuracy.held_out?.folds;
+  const alone = folds === list.length ? 'the others' : 'other groups';
+  return `Configuration ${first.id}: ${alone} predict it to ${mm(first.heldOut)} ${unit} RMS, with it the fit is ${mm(first.fit)} ${unit}; no other is missed as much more.`;
+}
+
+/** Poses more for 0.8 of the error, if they tell as much as those measured: of variances only that of the parameters falls. */
+function moreOf({ document }) {
+  const expected = document.accuracy.expected?.at_measured;
+  if (!expected) return null;
+  const unit = 'total_mm' in expected ? 'mm' : 'mrad';
+  const [all, parameters] = [expected[`total_${unit}`] ** 2, expected[`parameters_${unit}`] ** 2];
+  const rest = all - parameters;
+  const wanted = 0.64 * all - rest;
+  const now = document.measured.configurations;
+  if (!(wanted > 0)) return `More poses like these do not help: the parameters are only ${mm(Math.sqrt(parameters))} of ${mm(Math.sqrt(all))} ${unit}; without their part ${mm(Math.sqrt(rest))} ${unit} are left. A better model or instrument would.`;
+  return `About ${count(Math.ceil((now * parameters) / wanted - now), 'configuration')} more, if they tell as much as those measured.`;
+}
+
+const doubtTexts = {
+  missing_errors: (part) => `About ${(100 * part).toFixed(0)} % of the squares left over follow the joints' positions: joints bend or have periodic errors that this model leaves out.`,
+  gross_error_mm: (value) => `The nominal robot misses by ${short(value, 4)} mm: outliers, or a wrong robot?`,
+  lacks_length: () => 'No distance is stated: nothing says how large everything is.',
+  negative_compliances: (joints) => `Negative compliance of ${joints.join(', ')}: is the sign of the torques right?`,
+  misfit: (one) => `The nominal robot misses half of the points by at least ${short(one.distance_mm, 4)} mm.`,
+  small_residuals: () => 'Residuals are far smaller than stated: sigma or model error in another unit?',
+  residuals: (list) => list.map((one) => `Residuals are ${short(one.ratio, 2)} times what sigma and model error say.`).join(' '),
+  sizes: (list) => `Far above the expected size: ${list.map((one) => `${one.parameter} (${short(one.times_expected, 3)} times)`).join(', ')}.`,
+  scatter: (one) => `Repeats differ by ${short(one.ratio, 3)} times sigma${one.sample ? `; the farthest is ${one.sample}` : ''}.`,
+};
+
+function doubtsOf(document) {
+  const texts = Object.entries(document.doubts ?? {}).filter(([key, value]) => key in doubtTexts && value !== false)
+    .map(([key, value]) => doubtTexts[key](value));
+  return [...[document.faults ?? []].flat().map(String), ...texts];
+}
+
+export function answerEstimate(part) {
+  const { document } = part;
+  const { accuracy } = document;
+  if (!accuracy?.fit) return { sentence: 'This calibration identified nothing.', rows: [] };
+  const error = errorOf(document);
+  const nominal = accuracy.nominal?.[error.unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'];
+  const interval = part.residuals && error.key ? intervalOfRms(part.residuals, error.key) : null;
+  const within = interval ? ` (95 %: ${mm(interval.lower)} to ${mm(interval.upper)})` : '';
+  const times = nominal > 0 ? `, ${short(nominal / error.rms, 3)} times less than the robot that is not calibrated (${mm(nominal)} ${error.unit})` : '';
+  return {
+    sentence: `Calibrated, the robot is off by ${mm(error.rms)} ${error.unit} RMS${within} ${error.where}${times}.`,
+    warnings: doubtsOf(document),
+    rows: [
+      ['How accurate', `${mm(error.rms)} ${error.unit} RMS${error.p95 === undefined ? '' : `, 95 % are below ${mm(error.p95)} mm`}, ${error.where}, noise of the instrument included.`],
+      ['How sure', interval ? `RMS with 95 % confidence between ${mm(interval.lower)} and ${mm(interval.upper)} ${error.unit}, by how ${interval.count} configurations differ; ${document.degrees_of_freedom} degrees of freedom, variance factor ${short(document.variance_factor, 4)}.`
+        : `${document.degrees_of_freedom} degrees of freedom, variance factor ${short(document.variance_factor, 4)}.`],
+      ['What limits it', limitOf(part)],
+      ['Which pose matters most', mostOf(part)],
+      ['Drift', describeDrift(part.residuals ? driftOf(part.residuals) : null)],
+      ['20 % better', moreOf(part)],
+    ],
+  };
+}

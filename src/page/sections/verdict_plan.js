@@ -1,0 +1,87 @@
+import { count, fixed, mm, short } from '../core/format.js';
+import { moreFor, plannedCurve } from '../core/curve.js';
+import { budgetOf } from './budget.js';
+
+export const noDrift = 'Not known: drift shows in measurements only.';
+
+/** The largest part of a budget, and what would lower it. */
+export function limitOf(part) {
+  const budget = budgetOf(part);
+  if (!budget) return null;
+  const largest = budget.parts.reduce((a, b) => (b[1] > a[1] ? b : a));
+  const share = fixed(100 * (largest[1] / budget.total) ** 2, 1);
+  return `${largest[0][0].toUpperCase()}${largest[0].slice(1)}: ${mm(largest[1])} ${budget.unit} RMS, ${share} % of the square.`;
+}
+
+function accuracyOf({ document }) {
+  const { accuracy, target, predicted } = document;
+  if (target) {
+    const names = { rms: 'RMS', p95: '95 % of positions', max: 'maximum' };
+    return { value: target.error.expected_mm, lower: target.error.lower_mm, upper: target.error.upper_mm, name: names[target.quantity] };
+  }
+  if (accuracy) return { value: accuracy.total_rms_mm, lower: accuracy.total_lower_mm, upper: accuracy.total_upper_mm, name: 'RMS' };
+  if (!predicted?.position_error_rms_m) return null;
+  return { value: 1e3 * predicted.position_error_rms_m, name: 'RMS by the parameters alone' };
+}
+
+function surenessOf(document, found) {
+  const text = [];
+  if (found?.lower !== undefined) {
+    text.push(`With 90 % confidence between ${mm(found.lower)} and ${mm(found.upper)} mm: before measuring, the model error is known within a factor only.`);
+  }
+  const checked = document.monte_carlo;
+  if (checked?.expected?.found_mm) {
+    text.push(`Checked on ${checked.robot_count} robots that were drawn and calibrated: see Coverage.`);
+  }
+  const efficiency = document.bounds?.pool.efficiency ?? document.efficiency;
+  if (typeof efficiency === 'number') text.push(`Of the poses: ${fixed(efficiency, 4)} of the best possible value of the criterion is proven.`);
+  return text.join(' ');
+}
+
+function mostOf({ pose_values: values, drop_outs: dropOuts, accuracy }) {
+  if (!values?.length) return 'Not computed for a choice of measured poses.';
+  const needed = values.filter((one) => one.value_mm === null);
+  if (needed.length > 0) return `${needed.map((one) => one.id).join(', ')}: without ${needed.length === 1 ? 'it' : 'any of them'} parameters are left unidentified.`;
+  const most = values.reduce((a, b) => (b.value_mm > a.value_mm ? b : a));
+  const first = dropOuts?.find((one) => one.id === most.id);
+  const rest = first ? ` (${mm(first.rms_mm)} instead of ${mm(accuracy.rms_mm)} mm)` : '';
+  return `${most.id}: without it the RMS by the parameters grows by ${mm(most.value_mm)} mm${rest}.`;
+}
+
+function moreOf(document) {
+  const curve = plannedCurve(document);
+  if (!curve) return 'Not known from this plan: it was made for one number of poses only. "posewise plan --poses" and "study" compare numbers.';
+  const chosen = curve.points.filter((one) => !one.isPlanned);
+  const points = (chosen.length > 1 ? chosen : curve.points).map((one) => ({ count: one.count, value: one.expected }));
+  const found = moreFor(points, curve.current.count);
+  const floor = curve.floor === null ? '' : ` Were all parameters known, ${mm(curve.floor)} mm would be left.`;
+  if (!found) return `Not known.${floor}`;
+  if (found.more !== null) return `About ${count(found.more, 'pose')} more, interpolated on the curve below.${floor}`;
+  const rest = found.upTo > curve.current.count ? `Not by poses up to ${found.upTo}: ${found.upTo} leave ${short(100 * found.ratio, 2)} % of what ${curve.current.count} do.` : 'Not known: no larger number of poses was tried.';
+  return `${rest}${floor}`;
+}
+
+export function answerPlan(part) {
+  const { document } = part;
+  const found = accuracyOf(part);
+  const poses = count(document.poses.reduce((sum, pose) => sum + (pose.times ?? 1), 0), 'pose');
+  const interval = found?.lower === undefined ? '' : ` (90 %: ${mm(found.lower)} to ${mm(found.upper)} mm)`;
+  const over = document.workspace_count ? ` over ${document.workspace_count} workspace poses` : '';
+  const sentence = found ? `Calibrated with these ${poses}, the robot is expected to have a position error of ${mm(found.value)} mm ${found.name}${interval}${over}, model error included.`
+    : `${poses} chosen for criterion ${document.criterion}.`;
+  const warnings = [];
+  const limit = document.monte_carlo?.limit;
+  if (limit === 'not kept') warnings.push(`The limit of ${short(document.target.limit_mm)} mm is not kept on robots that were drawn.`);
+  if (document.search.stop_reason === 'interrupted' || document.search.stop_reason === 'time limit') warnings.push(`The search ended early (${document.search.stop_reason}): there may be better poses.`);
+  return {
+    sentence, warnings,
+    rows: [
+      ['How accurate', found ? `${mm(found.value)} mm ${found.name} expected; by the parameters alone ${mm(document.accuracy?.rms_mm ?? null)} mm RMS, 95 % are below ${mm(document.accuracy?.p95_mm ?? null)} mm.` : null],
+      ['How sure', surenessOf(document, found)],
+      ['What limits it', limitOf(part)],
+      ['Which pose matters most', mostOf(document)],
+      ['Drift', noDrift],
+      ['20 % better', moreOf(document)],
+    ],
+  };
+}

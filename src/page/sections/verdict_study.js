@@ -1,0 +1,57 @@
+import { count, fixed, mm } from '../core/format.js';
+import { moreFor } from '../core/curve.js';
+import { noDrift } from './verdict_plan.js';
+
+/** Where more poses stop paying: the least number within 10 % of the best found. */
+function enoughOf(points) {
+  const best = Math.min(...points.map((one) => one.value));
+  return points.find((one) => one.value <= 1.1 * best);
+}
+
+function pointsOf(model, c) {
+  return model.rows.filter((row) => row.planned[c]?.held_out_rms_mm)
+    .map((row) => ({ count: row.pose_count, value: row.planned[c].held_out_rms_mm, row, one: row.planned[c] }));
+}
+
+function moreOf(points) {
+  const steps = points.map(({ count: n }) => [n, moreFor(points, n)]).filter(([, found]) => found?.more);
+  if (steps.length === 0) return `Not seen: no number of poses up to ${points.at(-1).count} leaves 20 % less than a smaller one.`;
+  const last = points.at(-1).count;
+  const [largest] = steps.at(-1);
+  const rest = largest < last ? ` Beyond ${largest} poses up to ${last} no 20 % were gained.` : '';
+  return `${steps.slice(0, 8).map(([n, { more }]) => `from ${n}: ${more} more`).join('; ')}.${rest}`;
+}
+
+function verdictsOf(model, c) {
+  const lists = new Map();
+  for (const row of model.rows) {
+    const verdict = row.planned[c]?.against_random?.verdict ?? 'not known';
+    lists.set(verdict, [...(lists.get(verdict) ?? []), row.pose_count]);
+  }
+  return [...lists].map(([verdict, counts]) => `${verdict} at ${counts.join(', ')}`).join('; ');
+}
+
+export function answerStudy(part) {
+  const { document } = part;
+  const model = document.models.find((one) => one.rows.length > 0);
+  const points = model ? pointsOf(model, 0) : [];
+  if (points.length === 0) return { sentence: 'No number of poses of this study identifies the model.', rows: [] };
+  const enough = enoughOf(points);
+  const { row, one } = enough;
+  const criterion = one.criterion;
+  const random = row.random?.held_out_rms_p50_mm;
+  const what = document.simulated ? 'over the workspace' : 'on configurations held out';
+  const ratio = one.against_random;
+  return {
+    sentence: `${count(enough.count, 'pose')} chosen by ${criterion} leave ${mm(enough.value)} mm RMS ${what}${random ? `, random ones ${mm(random)} mm (median)` : ''}; more gain less than 10 %.`,
+    rows: [
+      ['How accurate', `${mm(enough.value)} mm RMS ${what} with ${count(enough.count, 'pose')}${model.name ? ` (${model.name})` : ''}; the calibrations themselves expect ${mm(one.expected_rms_mm)} mm.`],
+      ['How sure', ratio ? `Planned against random ${fixed(ratio.ratio, 2)}, with 95 % confidence ${fixed(ratio.lower, 2)} to ${fixed(ratio.upper, 2)}; medians over ${count(document.splits, document.simulated ? 'robot' : 'split')}, judged on ${count(document.judged_on, 'configuration')}.` : null],
+      ['Does planning pay', `${criterion}, planned against random: ${verdictsOf(model, 0)}.`],
+      ['What limits it', `Beyond ${count(enough.count, 'pose')} the number of poses does not: what is left is noise and what the model cannot express.`],
+      ['Which pose matters most', 'A study compares numbers of poses; a plan says what each pose is worth.'],
+      ['Drift', document.simulated ? noDrift : 'Not looked at here: a calibration of all measurements shows it.'],
+      ['20 % better', moreOf(points)],
+    ],
+  };
+}
