@@ -47,17 +47,39 @@ void report_plan(const MadePlan& plan, const std::string& page, const CommonOpti
     }
     print(printed, common);
     if (page.empty()) return;
-    io::PagePart part = show_plan(planning.plan, planning.campaign);
-    part.error_map =
-        map_if_possible([&] { return map_errors(planning.plan, plan.campaign, plan.options); });
-    write_page(page, std::move(part), printed, common);
+    write_page(page, show_plan(planning.plan, planning.campaign, plan.options), printed, common);
 }
 
-io::PagePart show_plan(const Plan& plan, const Campaign& campaign) {
+io::PagePart show_plan(const Plan& plan, const Campaign& campaign, const PlanningOptions& options) {
     io::PagePart part;
     part.title = campaign.name;
-    part.scene = make_scene(campaign, campaign.nominal);
-    if (!plan.poses.empty()) part.first_pose = plan.poses.front().configuration;
+    const bool is_measured = options.held && !campaign.has_nominal_base;
+    part.scene = make_scene(campaign, is_measured ? &*options.held : nullptr);
+    part.first_pose = plan.poses.front().configuration;
+    part.error_map = map_if_possible([&] { return map_errors(plan, campaign, options); });
+    return part;
+}
+
+io::PagePart show_choice(const Plan& plan, const ChoiceInputs& inputs) {
+    io::PagePart part;
+    if (!inputs.campaign) {
+        part.title = plan.request.sources.candidates;
+        return part;
+    }
+    const Campaign& campaign = *inputs.campaign;
+    const auto& measured = inputs.candidates.measured;
+    const auto& held = inputs.options.held;
+    const bool is_held = held && !campaign.has_nominal_base;
+    part.title = campaign.name;
+    part.scene = make_scene(campaign, measured ? &*measured : is_held ? &*held : nullptr);
+    part.first_pose = plan.poses.front().configuration;
+    part.error_map = map_if_possible([&] {
+        const Candidates drawn =
+            plan.kind == CandidateKind::Random
+                ? random_candidates(campaign, plan.candidate_count, plan.request.seed)
+                : inputs.candidates;
+        return map_errors(plan, campaign, drawn, inputs.options);
+    });
     return part;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "page.hpp"
+#include "plan_inputs.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/task/simulated_plan.hpp"
 #include "posewise/task/target.hpp"
@@ -22,7 +23,9 @@ struct MadePlan {
 /// Prints it, and then writes the page, if there is a path for one.
 void report_plan(const MadePlan& plan, const std::string& page, const CommonOptions& common);
 
-/// What a page shows of a plan, but for what was printed.
-io::PagePart show_plan(const Plan& plan, const Campaign& campaign);
+/// What a page shows of a plan that make_plan() made, beside its document.
+io::PagePart show_plan(const Plan& plan, const Campaign& campaign, const PlanningOptions& options);
+/// The same of a choice from these inputs.
+io::PagePart show_choice(const Plan& plan, const ChoiceInputs& inputs);
 
 }  // namespace posewise::cli

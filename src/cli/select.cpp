@@ -14,6 +14,7 @@
 #include "interrupt.hpp"
 #include "measured.hpp"
 #include "plan_inputs.hpp"
+#include "plan_report.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/io/json_reports.hpp"
 #include "posewise/io/plan_file.hpp"
@@ -26,7 +27,7 @@ namespace {
 
 constexpr const char* select_footer = R"(
 Example:
-  posewise select campaign.yaml -m measurements.csv -k 12 -c d --proof 60
+  posewise select campaign.yaml -m measurements.csv -k 12 -c d --proof 60 --report plan.html
   posewise select campaign.yaml --random 2000 -k 20 --prior --least-distance-deg 10
   posewise select campaign.yaml --candidates pool.csv -k 6 --augment measured.csv
   posewise select --blocks jacobians.csv --rows 9 -k 40 --criterion a
@@ -98,13 +99,24 @@ void print_design(const ApproximateDesign& design, const SelectArguments& argume
     note_interrupt(design.ending, "weights are");
 }
 
-void print_plan(const Plan& plan, const SelectArguments& arguments, const ChoiceInputs& inputs,
+/// A copy where a page needs them again; random ones, which may be many, it draws.
+Candidates candidates_to_spend(ChoiceInputs& inputs, const SelectArguments& arguments) {
+    const bool are_needed = !arguments.page.empty() && arguments.random == 0;
+    return are_needed ? inputs.candidates : std::move(inputs.candidates);
+}
+
+/// On the page, too, if there is a path for one.
+void print_plan(const Plan& plan, const SelectArguments& arguments, ChoiceInputs& inputs,
                 const std::string& out, const CommonOptions& common) {
-    print(common.json
-              ? io::to_json(plan, out)
-              : format_choice(plan, arguments.digits) + describe_robot(inputs, plan.request) +
-                    "plan:       " + detail::escape_controls(out) + '\n');
+    Printed printed{format_choice(plan, arguments.digits) + describe_robot(inputs, plan.request) +
+                        "plan:       " + detail::escape_controls(out) + '\n',
+                    ""};
+    if (needs_document(common, arguments.page)) printed.document = io::to_json(plan, out);
+    print(printed, common);
     note_interrupt(plan.ending, "plan is");
+    if (arguments.page.empty()) return;
+    static_cast<PlanRequest&>(inputs.options) = plan.request;
+    write_page(arguments.page, show_choice(plan, inputs), printed, common);
 }
 
 void select(const SelectArguments& arguments, const CommonOptions& common) {
@@ -120,7 +132,7 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     check_outputs(
         {file ? &*file : nullptr},
         {sources.estimate, sources.candidates, sources.augment, sources.test_poses, sources.groups},
-        {out}, common);
+        {out, arguments.page}, common);
     ChoiceInputs inputs =
         read_choice_inputs(request, kind_of(arguments), arguments.random, std::move(file));
     inputs.options.stop = stop;
@@ -138,9 +150,10 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     }
     ProgressLine line("selecting", arguments.progress);
     inputs.options.progress = [&](const Progress& state) { line(state); };
-    const Plan plan = inputs.campaign
-                          ? choose(*inputs.campaign, std::move(inputs.candidates), inputs.options)
-                          : choose(std::move(inputs.blocks), inputs.options);
+    const Plan plan =
+        inputs.campaign
+            ? choose(*inputs.campaign, candidates_to_spend(inputs, arguments), inputs.options)
+            : choose(std::move(inputs.blocks), inputs.options);
     note_overtime(request.time_limit, stop, read, "choose");
     warn_of_few(plan.candidate_count, arguments.random);
     io::write_plan(out, plan);

@@ -2,6 +2,7 @@
 
 #include "common.hpp"
 #include "options.hpp"
+#include "page.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -83,6 +84,7 @@ void add_select_search(CLI::App& command, SelectArguments& arguments) {
     add_search_options(command, arguments,
                        "Of the random starts and of --random (default: the campaign's, else 1)",
                        "<candidates>.plan.json");
+    add_report_option(command, arguments.page);
     add_progress_flag(command, arguments);
     command.add_flag("--relax", arguments.relaxes,
                      "Weights and bound instead of a choice; --out writes them (.csv or .json)");
@@ -119,6 +121,7 @@ void check_select_usage(const SelectArguments& arguments) {
     const std::string& out = arguments.out;
     require_usage(sources.groups.empty(), "--groups", "cannot be kept by weights, --relax");
     require_usage(!has_distance, "--least-distance-deg", "cannot be kept by weights, --relax");
+    require_usage(arguments.page.empty(), "--report", "shows a plan, which --relax makes none of");
     require_usage(request.starts == 0, "--starts", "are of a search, which --relax does not need");
     require_usage(out.empty() || out.ends_with(".csv") || out.ends_with(".json"), "--out",
                   "must end in .csv or .json with --relax");

@@ -16,6 +16,7 @@ struct SelectArguments : RequestArguments {
     double least_distance_deg = 0;
     bool relaxes = false;  ///< weights instead of a choice
     int digits = 8;
+    std::string page;
 };
 
 void add_select_options(CLI::App& command, SelectArguments& arguments);

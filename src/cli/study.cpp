@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* study_footer = R"(
 Example:
-  posewise study campaign.yaml -m measurements.csv --criteria v,d --random 100 --plot study.svg
+  posewise study campaign.yaml -m measurements.csv --criteria v,d --random 100 --report study.html
   posewise study campaign.yaml --simulate --poses 8,12,20 --trials 1000 --store results.sqlite
   posewise study --from results.sqlite
 
@@ -65,54 +65,39 @@ Under mpirun or srun trials are shared out to all processes (designs/cluster). T
 same for any threads, processes, shards and order, and however often it was killed.)";
 
 void print_studies(const std::vector<Study>& studies, const StudyArguments& arguments,
-                   const CommonOptions& common, const std::string& notes) {
-    const bool compares = studies.size() > 1 || !studies.front().model.empty();
-    print(common.json ? io::to_json(studies)
-                      : (compares ? format(studies) : format(studies.front())) + notes);
+                   const CommonOptions& common, StudyExtras extras) {
+    Printed printed{describe_studies(studies) + extras.notes, ""};
+    if (needs_document(common, arguments.page)) printed.document = io::to_json(studies);
+    print(printed, common);
     if (!arguments.csv.empty()) {
+        const bool compares = studies.size() > 1 || !studies.front().model.empty();
         detail::write_file(arguments.csv,
                            compares ? study_csv(studies) : study_csv(studies.front()));
     }
-    std::fflush(stdout);  // gnuplot may take its time
+    extras.page.title = studies.front().campaign;
+    write_page(arguments.page, std::move(extras.page), printed, common);
     if (!arguments.plot.empty()) draw_plot(arguments.plot, studies);
-}
-
-/// Studies that one table can show.
-bool belong_together(const Study& a, const Study& b) {
-    const auto counts = [](const Study& study) {
-        std::vector<Index> all;
-        for (const StudyRow& row : study.rows) all.push_back(row.pose_count);
-        return all;
-    };
-    return a.campaign == b.campaign && a.criteria == b.criteria && counts(a) == counts(b) &&
-           a.is_simulated == b.is_simulated && (a.splits > 0) == (b.splits > 0);
 }
 
 /// A table for those studies of a store that belong together each.
 void print_store(const std::string& path, const StudyArguments& arguments,
                  const CommonOptions& common) {
-    std::vector<std::vector<Study>> groups;
-    for (const Study& study : read_store(path)) {
-        if (study.rows.empty()) continue;
-        const auto group =
-            std::find_if(groups.begin(), groups.end(), [&](const std::vector<Study>& others) {
-                return belong_together(others.front(), study);
-            });
-        (group == groups.end() ? groups.emplace_back() : *group).push_back(study);
-    }
-    if (groups.empty()) throw input_error_at({path}, "holds no pose count that is complete yet");
-    const bool makes_one = common.json || !arguments.csv.empty() || !arguments.plot.empty();
+    check_outputs({}, {path}, {arguments.csv, arguments.plot, arguments.page}, common);
+    const std::vector<std::vector<Study>> groups = read_store_groups(path);
+    const bool makes_one =
+        common.json || !(arguments.csv + arguments.plot + arguments.page).empty();
     if (groups.size() > 1 && makes_one) {
-        throw input_error_at({path}, fmt::format("holds {} studies of which no single table can be "
-                                                 "made; --json, --csv and --plot must be of one",
-                                                 groups.size()));
+        throw input_error_at(
+            {path}, fmt::format("holds {} studies of which no single table can be made; --json, "
+                                "--csv, --plot and --report must be of one",
+                                groups.size()));
     }
     for (const std::vector<Study>& one : groups) {
         if (groups.size() > 1) {
             print((&one == &groups.front() ? "" : "\n") +
                   detail::escape_controls(one.front().campaign) + '\n');
         }
-        print_studies(one, arguments, common, "");
+        print_studies(one, arguments, common, {});
     }
 }
 
@@ -141,10 +126,10 @@ void study(const CLI::App& command, const StudyArguments& arguments, const Commo
     }
     std::optional<InterruptFlag> interrupted(std::in_place);
     const StopSignal stop{interrupted->get(), deadline_after(arguments.time_limit)};
-    std::string notes;
+    StudyExtras extras;
     const std::vector<Study> studies = arguments.is_simulated
-                                           ? study_simulated(arguments, common, stop, notes)
-                                           : study_measured(arguments, common, stop, notes);
+                                           ? study_simulated(arguments, common, stop, extras)
+                                           : study_measured(arguments, common, stop, extras);
     interrupted.reset();
     if (studies.front().rows.empty()) {
         throw InputError(stop.is_set() ? "stopped before any pose count was complete; must have "
@@ -153,7 +138,7 @@ void study(const CLI::App& command, const StudyArguments& arguments, const Commo
                                          "then their stores be merged (--merge)");
     }
     if (stop.is_set()) std::fputs("posewise: stopped early; what is complete is shown\n", stderr);
-    print_studies(studies, arguments, common, notes);
+    print_studies(studies, arguments, common, std::move(extras));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "../core/text.hpp"
 #include "measured.hpp"
 #include "options.hpp"
+#include "page.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::cli {
@@ -122,6 +123,7 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
         ->check(file_name());
     command.add_option("--plot", arguments.plot, "Draw error against pose count: .svg or .png")
         ->check(file_name());
+    add_report_option(command, arguments.page);
     command.add_flag("--progress", arguments.progress,
                      "Show progress on standard error even if it is no terminal");
 }

@@ -27,6 +27,7 @@ struct StudyArguments {
     double time_limit = 0;  ///< s; 0: none
     std::string csv;
     std::string plot;
+    std::string page;
     bool progress = false;
     SimulatedStudyOptions options;  ///< but for what stands here by itself
 

@@ -97,15 +97,26 @@ std::vector<SimulatedCampaign> list_variations(const StudyArguments& arguments,
     return campaigns;
 }
 
+/// Studies that one table can show.
+bool belong_together(const Study& a, const Study& b) {
+    const auto counts = [](const Study& study) {
+        std::vector<Index> all;
+        for (const StudyRow& row : study.rows) all.push_back(row.pose_count);
+        return all;
+    };
+    return a.campaign == b.campaign && a.criteria == b.criteria && counts(a) == counts(b) &&
+           a.is_simulated == b.is_simulated && (a.splits > 0) == (b.splits > 0);
+}
+
 }  // namespace
 
 std::vector<Study> study_measured(const StudyArguments& arguments, const CommonOptions& common,
-                                  const StopSignal& stop, std::string& notes) {
+                                  const StopSignal& stop, StudyExtras& extras) {
     const InputPaths& paths = arguments.paths;
     const std::vector<io::CampaignFile> files = read_files(arguments);
     const io::CampaignFile& file = files.front();
     check_outputs({&file}, {paths.measurements, arguments.earlier.from},
-                  {arguments.csv, arguments.plot}, common);
+                  {arguments.csv, arguments.plot, arguments.page}, common);
     const auto measurements =
         read_measured_without(arguments.excluded, paths.measurements, file, arguments.earlier);
     StudyOptions options = arguments.options;
@@ -113,7 +124,12 @@ std::vector<Study> study_measured(const StudyArguments& arguments, const CommonO
     complete_options(options, arguments, file, stop);
     ProgressLine line("calibrating", arguments.progress);
     options.progress = [&](const Progress& progress) { line(progress); };
-    notes = describe_earlier(arguments.earlier) + describe_unused_planning(file);
+    extras.notes = describe_earlier(arguments.earlier) + describe_unused_planning(file);
+    if (!arguments.page.empty()) {
+        extras.page.configurations = {measurements.ids, measurements.configurations};
+        extras.page.scene =
+            compute_from(paths.measurements, [&] { return make_scene(file, &measurements); });
+    }
     const bool compares = !arguments.models.empty();
     const std::vector<Study> studies = compute_from(paths.measurements, [&] {
         return compares ? compare_models(list_models(files), measurements, options)
@@ -128,16 +144,18 @@ std::vector<Study> study_measured(const StudyArguments& arguments, const CommonO
 }
 
 std::vector<Study> study_simulated(const StudyArguments& arguments, const CommonOptions& common,
-                                   const StopSignal& stop, std::string& notes) {
+                                   const StopSignal& stop, StudyExtras& extras) {
     io::CampaignFile file = read_with_prior(arguments.paths.campaign, arguments.prior, stop);
-    check_outputs({&file}, {arguments.truth}, {arguments.csv, arguments.plot}, common);
+    check_outputs({&file}, {arguments.truth}, {arguments.csv, arguments.plot, arguments.page},
+                  common);
     SimulatedStudyOptions options = arguments.options;
     options.random_subsets = arguments.random_subsets.value_or(options.random_subsets);
     constexpr Index most_trials = 100000;  // where a precision says when it ends
     options.trials =
         arguments.trials.value_or(options.precision > 0 ? most_trials : options.trials);
     complete_options(options, arguments, file, stop);
-    notes = describe_unused_planning(file);
+    extras.notes = describe_unused_planning(file);
+    extras.page.scene = make_scene(file);
     ProgressLine line("simulating", arguments.progress);
     const RateNote note;
     options.progress = [&](const Progress& progress) { line(progress, note(progress)); };
@@ -155,6 +173,25 @@ std::vector<Study> read_store(const std::string& path) {
             compute_from(path, [&] { return study_of_trials(one, store.finished(one)); }));
     }
     return studies;
+}
+
+std::vector<std::vector<Study>> read_store_groups(const std::string& path) {
+    std::vector<std::vector<Study>> groups;
+    for (const Study& study : read_store(path)) {
+        if (study.rows.empty()) continue;
+        const auto group =
+            std::find_if(groups.begin(), groups.end(), [&](const std::vector<Study>& others) {
+                return belong_together(others.front(), study);
+            });
+        (group == groups.end() ? groups.emplace_back() : *group).push_back(study);
+    }
+    if (groups.empty()) throw input_error_at({path}, "holds no pose count that is complete yet");
+    return groups;
+}
+
+std::string describe_studies(const std::vector<Study>& studies) {
+    const bool compares = studies.size() > 1 || !studies.front().model.empty();
+    return compares ? format(studies) : format(studies.front());
 }
 
 }  // namespace posewise::cli

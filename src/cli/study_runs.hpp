@@ -3,21 +3,32 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
+#include "page.hpp"
 #include "study_options.hpp"
 
 namespace posewise::cli {
 
-/// The study of measured configurations; of each error model, if several are asked for. `notes` are
-/// lines for below the tables.
+/// What goes with the tables of a study.
+struct StudyExtras {
+    std::string notes;  ///< lines below them
+    io::PagePart page;  ///< what a page shows besides
+};
+
+/// The study of measured configurations; of each error model, if several are asked for.
 std::vector<Study> study_measured(const StudyArguments& arguments, const CommonOptions& common,
-                                  const StopSignal& stop, std::string& notes);
+                                  const StopSignal& stop, StudyExtras& extras);
 
 /// The study of robots that are drawn; of each variation, if some are asked for.
 std::vector<Study> study_simulated(const StudyArguments& arguments, const CommonOptions& common,
-                                   const StopSignal& stop, std::string& notes);
+                                   const StopSignal& stop, StudyExtras& extras);
 
 /// Everything that a store holds.
 std::vector<Study> read_store(const std::string& path);
+/// The same, those together that one table can show; without those of which no pose count is
+/// complete. Throws InputError if there is nothing else.
+std::vector<std::vector<Study>> read_store_groups(const std::string& path);
+
+/// The tables of studies of error models or variations, or of one.
+std::string describe_studies(const std::vector<Study>& studies);
 
 }  // namespace posewise::cli

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <variant>
 
+#include "posewise/calibrator/registration.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/error_terms.hpp"
 
@@ -122,6 +123,13 @@ Scene make_scene(const Campaign& campaign, const Parameters& parameters) {
         scene.instrument = SceneInstrument{"tracker", *position};
     }
     return scene;
+}
+
+Scene make_scene(const Campaign& campaign, const Measurements* measurements) {
+    if (measurements == nullptr) return make_scene(campaign, campaign.nominal);
+    const Registration registered = register_base_and_targets(campaign, *measurements);
+    return make_scene(campaign,
+                      registered.is_determined() ? registered.parameters : campaign.nominal);
 }
 
 Isometry3d world_from_flange(const Scene& scene, const VectorXd& configuration) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/measurements.hpp"
 
 /// What there is to draw of a robot and of what stands around it. m and rad; places are in the
 /// world, that of the measurements.
@@ -57,6 +58,10 @@ struct Scene {
 
 /// The robot with these parameters and its cell.
 Scene make_scene(const Campaign& campaign, const Parameters& parameters);
+
+/// The same before any calibration: base and targets as the measurements show them, as far as they
+/// do, else as the campaign expects them. Throws InputError for measurements that do not fit it.
+Scene make_scene(const Campaign& campaign, const Measurements* measurements = nullptr);
 
 /// Where a scene's robot has its flange. `configuration` may have measured torques behind the
 /// joints; they are not looked at.
