@@ -24,5 +24,6 @@ void add_export(CLI::App& program, const CommonOptions& common);
 void add_correct(CLI::App& program, const CommonOptions& common);
 void add_study(CLI::App& program, const CommonOptions& common);
 void add_simulate(CLI::App& program, const CommonOptions& common);
+void add_report(CLI::App& program, const CommonOptions& common);
 
 }  // namespace posewise::cli

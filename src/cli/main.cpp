@@ -39,6 +39,7 @@ Start with:
   posewise calibrate campaign.yaml -m measurements.csv       what came out, how sure
   posewise export campaign.yaml estimate.json --urdf out.urdf    the calibrated robot
   posewise correct campaign.yaml estimate.json --poses p.csv     joint values that hit the poses
+  posewise report plan.json estimate.json --out page.html        a page to look at
 
 posewise COMMAND --help explains each with an example. With --json each prints one JSON document, which
 designs/json.md explains, and nothing else.
@@ -95,8 +96,9 @@ void add_commands(CLI::App& program, posewise::cli::CommonOptions& common) {
     program.require_subcommand(1);
     program.set_version_flag("--version", std::string("posewise ") + posewise::version);
     program.footer(program_footer);
-    for (const auto add : {add_inspect, add_indices, add_select, add_plan, add_verify,
-                           add_calibrate, add_export, add_correct, add_study, add_simulate}) {
+    for (const auto add :
+         {add_inspect, add_indices, add_select, add_plan, add_verify, add_calibrate, add_export,
+          add_correct, add_study, add_simulate, add_report}) {
         add(program, common);
     }
     for (CLI::App* command : program.get_subcommands(nullptr)) add_common_options(*command, common);

@@ -311,32 +311,15 @@ std::vector<std::string> find_changes(const JsonValue& assumes, const Campaign& 
     return changes;
 }
 
-/// Throws InputError for a format that this version does not know.
-detail::Json read_estimate_document(const std::string& path) {
-    detail::Json document = detail::read_document(path, "estimate");
-    const JsonValue root(document, path);
-    if (!root.has("format")) {
-        throw input_error_at({path}, fmt::format("has no key format; must be {}, as posewise "
-                                                 "writes it",
-                                                 detail::estimate_format));
-    }
-    const JsonValue format = root["format"];
-    if (format.count(0) != detail::estimate_format) {
-        throw format.error(fmt::format("is {}; this posewise reads {}: calibrate again with it",
-                                       format.count(0), detail::estimate_format));
-    }
-    return document;
-}
-
 }  // namespace
 
 Estimate read_estimate(const std::string& path, const Campaign& campaign) {
-    const detail::Json document = read_estimate_document(path);
+    const detail::Json document = detail::read_estimate_document(path);
     return read_estimate_of(JsonValue(document, path), campaign, true);
 }
 
 EarlierFile read_earlier(const std::string& path, const Campaign& campaign, const EarlierUse& use) {
-    const detail::Json document = read_estimate_document(path);
+    const detail::Json document = detail::read_estimate_document(path);
     const JsonValue root(document, path);
     EarlierFile earlier;
     earlier.estimate = read_estimate_of(root, campaign, !use.has_new_targets);
@@ -360,7 +343,7 @@ bool are_of_checksum(const std::string& checksum, const Measurements& measuremen
 }
 
 bool is_made_from(const std::string& estimate_path, const Measurements& measurements) {
-    const detail::Json document = read_estimate_document(estimate_path);
+    const detail::Json document = detail::read_estimate_document(estimate_path);
     const JsonValue root(document, estimate_path);
     constexpr const char* key = "measurements_checksum";
     if (!root.has("made_from") || !root["made_from"].has(key)) return false;
@@ -370,3 +353,23 @@ bool is_made_from(const std::string& estimate_path, const Measurements& measurem
 }
 
 }  // namespace posewise::io
+
+namespace posewise::detail {
+
+Json read_estimate_document(const std::string& path) {
+    Json document = read_document(path, "estimate");
+    const JsonValue root(document, path);
+    if (!root.has("format")) {
+        throw input_error_at({path}, fmt::format("has no key format; must be {}, as posewise "
+                                                 "writes it",
+                                                 estimate_format));
+    }
+    const JsonValue format = root["format"];
+    if (format.count(0) != estimate_format) {
+        throw format.error(fmt::format("is {}; this posewise reads {}: calibrate again with it",
+                                       format.count(0), estimate_format));
+    }
+    return document;
+}
+
+}  // namespace posewise::detail

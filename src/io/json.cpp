@@ -50,6 +50,18 @@ void append_json(const Json& value, const std::string& indent, std::string& text
     text += '\n' + indent + (value.is_object() ? '}' : ']');
 }
 
+/// What `write` gives; it throws as Json::dump() does.
+template <class Write>
+std::string write_text(const std::string& place, Write&& write) {
+    try {
+        return write();
+    } catch (const Json::type_error&) {  // the only one dump() has
+        throw input_error_at({place},
+                             "cannot be written, since a name or id is not UTF-8 text; "
+                             "must be UTF-8 (or plain ASCII)");
+    }
+}
+
 /// Notes the first key that an object has twice, of which a parser would keep one silently.
 class RepeatedKey {
   public:
@@ -81,22 +93,22 @@ Json make_document(const std::string& kind, int format) {
 }
 
 std::string json_text(const Json& document, const std::string& place) {
-    try {
+    return write_text(place, [&] {
         std::string text;
         append_json(document, "", text);
         return text + '\n';
-    } catch (const Json::type_error&) {  // the only one dump() has
-        throw input_error_at({place},
-                             "cannot be written, since a name or id is not UTF-8 text; "
-                             "must be UTF-8 (or plain ASCII)");
-    }
+    });
+}
+
+std::string json_line(const Json& document, const std::string& place) {
+    return write_text(place, [&] { return document.dump(); });
 }
 
 void write_json(const std::string& path, const Json& document) {
     write_file(path, json_text(document, path));
 }
 
-Json read_document(const std::string& path, const std::string& kind, const std::string& old_kind) {
+Json read_json(const std::string& path, const std::string& what) {
     const std::string content = read_file(path);
     Json document;
     RepeatedKey repeated;
@@ -113,15 +125,20 @@ Json read_document(const std::string& path, const std::string& kind, const std::
         const auto location =
             content.empty() ? FileLocation{path} : locate(path, content, problem.byte);
         throw input_error_at(
-            location, "is not JSON here; must be " + with_article(kind) + " as posewise writes it");
+            location, "is not JSON here; must be " + with_article(what) + " as posewise writes it");
     } catch (const Json::exception&) {  // a number that overflows; it has no place
         throw input_error_at({path}, "has a number beyond the range of numbers; must be " +
-                                         with_article(kind) + " as posewise writes it");
+                                         with_article(what) + " as posewise writes it");
     }
     if (repeated.key()) {
         throw input_error_at({path}, "key " + quote(*repeated.key()) +
                                          " stands twice in one object; must stand once");
     }
+    return document;
+}
+
+Json read_document(const std::string& path, const std::string& kind, const std::string& old_kind) {
+    Json document = read_json(path, kind);
     const auto found = document.is_object() ? document.find("kind") : document.end();
     const bool is_old =
         found != document.end() && !old_kind.empty() && *found == "posewise " + old_kind;

@@ -20,7 +20,13 @@ Json make_document(const std::string& kind, int format);
 /// is infinite or unknown becomes null. Throws InputError, which names the place it is for, if a
 /// text in it is not UTF-8.
 std::string json_text(const Json& document, const std::string& place = "standard output");
+/// The same without line breaks.
+std::string json_line(const Json& document, const std::string& place);
 void write_json(const std::string& path, const Json& document);
+
+/// Reads JSON, which should be what is said: "plan or estimate". Throws InputError for anything
+/// else than JSON, and for a key that stands twice.
+Json read_json(const std::string& path, const std::string& what);
 
 /// Reads a document of that kind, or of an old one. Throws InputError for anything else, and for a
 /// key that stands twice.

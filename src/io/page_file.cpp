@@ -233,17 +233,16 @@ std::string fill_template(std::string_view page, const std::string& document) {
     return filled += page.substr(last);
 }
 
-std::string make_page(const std::vector<PagePart>& parts, const std::string& place) {
+Json page_to_json(const std::vector<PagePart>& parts) {
     Json document = detail::make_document("page", page_format);
     Json& list = document["parts"] = Json::array();
     for (const PagePart& part : parts) list.push_back(part_to_json(part));
-    try {
-        return fill_template(detail::page_template(), escape_for_script(document.dump()));
-    } catch (const Json::type_error&) {
-        throw input_error_at({place},
-                             "cannot be written, since a name or id is not UTF-8 text; "
-                             "must be UTF-8 (or plain ASCII)");
-    }
+    return document;
+}
+
+std::string make_page(const std::vector<PagePart>& parts, const std::string& place) {
+    const std::string text = detail::json_line(page_to_json(parts), place);
+    return fill_template(detail::page_template(), escape_for_script(text));
 }
 
 }  // namespace
@@ -256,6 +255,10 @@ PageResiduals page_residuals(const Campaign& campaign, const Measurements& measu
         residuals.is_angle.push_back(campaign.sensor->is_angle(row));
     }
     return residuals;
+}
+
+std::string to_json(const std::vector<PagePart>& parts) {
+    return detail::json_text(page_to_json(parts));
 }
 
 std::string to_page(const std::vector<PagePart>& parts) { return make_page(parts, "the page"); }

@@ -30,6 +30,10 @@ inline constexpr std::array plan_endings{Ending::Converged, Ending::Optimal, End
 /// in rad nor in m.
 std::optional<NamedNumber> readable_joint(const std::string& column, double value);
 
+/// A plan's file as a document of format 2, but for what those of format 1 lack. Throws InputError
+/// for a newer one.
+Json read_plan_document(const std::string& path);
+
 /// A document of a pose plan of format 1 as one of format 2. What it lacks stays missing.
 Json upgrade_pose_plan(const Json& old);
 

@@ -325,24 +325,10 @@ void check_poses(const JsonValue& document, const Plan& plan) {
     }
 }
 
-Json read_plan_document(const std::string& path) {
-    Json json = detail::read_document(path, detail::plan_kind, detail::old_pose_plan_kind);
-    if (json["kind"] != std::string("posewise ") + detail::plan_kind)
-        return detail::upgrade_pose_plan(json);
-    if (!json.contains("format")) return json;  // a choice of format 1, which has the same keys
-    const Index format = JsonValue(json, path)["format"].count(1);
-    if (format > detail::plan_format) {
-        throw input_error_at({path}, "format: is " + std::to_string(format) +
-                                         ", written by a newer posewise; must be at most " +
-                                         std::to_string(detail::plan_format));
-    }
-    return json;
-}
-
 }  // namespace
 
 Plan read_plan(const std::string& path) {
-    const Json json = read_plan_document(path);
+    const Json json = detail::read_plan_document(path);
     const JsonValue document(json, path);
     Plan plan;
     read_poses(json, path, plan);
@@ -362,3 +348,20 @@ Plan read_plan(const std::string& path) {
 }
 
 }  // namespace posewise::io
+
+namespace posewise::detail {
+
+Json read_plan_document(const std::string& path) {
+    Json json = read_document(path, plan_kind, old_pose_plan_kind);
+    if (json["kind"] != std::string("posewise ") + plan_kind) return upgrade_pose_plan(json);
+    if (!json.contains("format")) return json;  // a choice of format 1, which has the same keys
+    const Index format = JsonValue(json, path)["format"].count(1);
+    if (format > plan_format) {
+        throw input_error_at({path}, "format: is " + std::to_string(format) +
+                                         ", written by a newer posewise; must be at most " +
+                                         std::to_string(plan_format));
+    }
+    return json;
+}
+
+}  // namespace posewise::detail

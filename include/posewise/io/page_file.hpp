@@ -45,8 +45,11 @@ struct PagePart {
     std::optional<ErrorMap> error_map{};
 };
 
-/// The page, parts side by side. Throws InputError if a document is none, or if a name in it is not
-/// UTF-8.
+/// The document of a page. Throws InputError if a document of a part is none, or if a name in it is
+/// not UTF-8.
+std::string to_json(const std::vector<PagePart>& parts);
+
+/// The page, parts side by side. Throws InputError as to_json().
 std::string to_page(const std::vector<PagePart>& parts);
 
 /// Writes it, all or nothing. Throws InputError as to_page(), and if it cannot be written.

@@ -1,0 +1,189 @@
+#include "saved.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "../core/text.hpp"
+#include "calibrate_report.hpp"
+#include "common.hpp"
+#include "estimates.hpp"
+#include "measured.hpp"
+#include "page.hpp"
+#include "plan_inputs.hpp"
+#include "plan_report.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/io/json_reports.hpp"
+#include "posewise/io/plan_file.hpp"
+#include "posewise/io/saved_file.hpp"
+#include "posewise/measurement/exclusion.hpp"
+#include "posewise/task/residuals.hpp"
+#include "study_runs.hpp"
+
+namespace posewise::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+void warn_of_missing(const std::string& path, const char* what, const std::string& reason) {
+    print_warning(fmt::format("{}: {} not shown: {}", path, what, reason));
+}
+
+/// Does it as far as the files allow that are named in `path`.
+bool try_to_show(const std::string& path, const char* what, const std::function<void()>& show) {
+    try {
+        show();
+        return true;
+    } catch (const InputError& error) {
+        warn_of_missing(path, what, error.what());
+        return false;
+    }
+}
+
+/// As it was typed where the estimate was made, or beside it.
+std::string find_file(const std::string& typed, const std::string& estimate) {
+    std::error_code ignored;
+    if (fs::exists(typed, ignored)) return typed;
+    const fs::path beside = fs::path(estimate).parent_path() / typed;
+    return fs::exists(beside, ignored) ? beside.string() : typed;
+}
+
+// ---- Plans ----
+
+/// Everything but the document, from the files that the plan names.
+void show_again(const Plan& plan, io::PagePart& part) {
+    const PlanRequest& request = plan.request;
+    std::optional<io::CampaignFile> campaign;
+    if (plan.kind != CandidateKind::Blocks) {
+        campaign = read_planned(request.sources, request.earlier, request.has_prior, true);
+        const std::string mismatch = describe_mismatch(plan, *campaign);
+        if (!mismatch.empty()) throw InputError(mismatch);
+    }
+    if (plan.is_continuous()) {
+        const PlanningOptions options = read_planning_inputs(request, *campaign);
+        part = show_plan(plan, *campaign, options);
+    } else {
+        part = show_choice(plan, read_choice_inputs(request, plan.kind, plan.candidate_count,
+                                                    std::move(campaign)));
+    }
+}
+
+ShownFile show_plan_file(const std::string& path) {
+    const Plan plan = io::read_plan(path);
+    ShownFile shown;
+    io::PagePart& part = shown.parts.emplace_back();
+    try_to_show(path, "robot and errors are", [&] { show_again(plan, part); });
+    part.document = io::read_saved_document(path, io::SavedKind::Plan);
+    const PlanSources& sources = plan.request.sources;
+    shown.read = {sources.campaign,   sources.estimate, sources.candidates, sources.augment,
+                  sources.test_poses, sources.groups,   sources.workspace};
+    shown.summary = "plan of " + detail::count_of(std::ssize(plan.poses), "pose");
+    return shown;
+}
+
+// ---- Estimates ----
+
+/// The campaign that an estimate is of, as it was calibrated.
+io::CampaignFile read_calibrated(const io::EstimateRecord& record, const std::string& campaign,
+                                 const std::string& path, Estimate& estimate) {
+    std::optional<bool> prior;
+    if (record.has_option("--prior")) prior = true;
+    if (record.has_option("--no-prior")) prior = false;
+    io::CampaignFile file = read_with_prior(campaign, prior);
+    io::EarlierFile read = io::read_earlier(path, file, {});
+    if (!read.changes.empty()) {
+        print_warning(
+            fmt::format("{}: {} says otherwise now: {}", path, campaign, join_some(read.changes)));
+    }
+    estimate = std::move(read.estimate);
+    if (read.spread) file.spread = *read.spread;
+    static_cast<Campaign&>(file) = with_model_error(file, estimate);
+    return file;
+}
+
+/// The measurements that it was made with, if they are still the same. Throws InputError otherwise.
+Measurements read_calibrated_with(const io::EstimateRecord& record, const std::string& measurements,
+                                  const std::string& estimate, const io::CampaignFile& file) {
+    const Measurements all = io::read_measurements(measurements, file);
+    if (!io::are_of_checksum(record.made_from.measurements_checksum, all, record.excluded)) {
+        throw input_error_at({measurements}, "is not what it was made from any more");
+    }
+    const Measurements used = leave_out(all, record.excluded);
+    for (const auto& [name, values] : record.made_from.options) {
+        if (name != "--plan" || values.empty()) continue;
+        const std::string plan = find_file(values.front(), estimate);
+        return take(used, find_planned(file, used, plan, record.excluded));
+    }
+    return used;
+}
+
+ShownFile show_estimate_file(const std::string& path) {
+    const io::EstimateRecord record = io::read_estimate_record(path);
+    const std::string campaign = find_file(record.made_from.campaign_file, path);
+    const std::string measurements = find_file(record.made_from.measurements, path);
+    ShownFile shown;
+    shown.read = {campaign, measurements};
+    io::PagePart& part = shown.parts.emplace_back();
+    try_to_show(path, "robot and errors are", [&] {
+        Estimate estimate;
+        const io::CampaignFile file = read_calibrated(record, campaign, path, estimate);
+        std::optional<Measurements> used;
+        try_to_show(path, "residuals are",
+                    [&] { used = read_calibrated_with(record, measurements, path, file); });
+        part = show_estimate(file, estimate, used ? &*used : nullptr);
+        if (!used) return;
+        try_to_show(path, "residuals are", [&] {
+            // An earlier estimate that was built on may be another one now.
+            const Index folds = record.has_option("--from") ? 0 : record.folds;
+            part.residuals = io::page_residuals(
+                file, *used, list_residuals(file, estimate, *used, {record.loss, folds}));
+        });
+    });
+    part.title = record.campaign;
+    part.document = io::read_saved_document(path, io::SavedKind::Estimate);
+    shown.summary = "estimate";
+    return shown;
+}
+
+// ---- Studies ----
+
+ShownFile show_study_file(const std::string& path, io::SavedKind kind) {
+    ShownFile shown;
+    shown.summary = "study";
+    if (kind == io::SavedKind::Study) {
+        shown.parts.emplace_back().document = io::read_saved_document(path, kind);
+        return shown;
+    }
+    for (const std::vector<Study>& studies : read_store_groups(path)) {
+        io::PagePart& part = shown.parts.emplace_back();
+        part.title = studies.front().campaign;
+        part.document = io::to_json(studies);
+    }
+    if (shown.parts.size() > 1) shown.summary = fmt::format("{} studies", shown.parts.size());
+    return shown;
+}
+
+ShownFile show_by_kind(const std::string& path) {
+    const io::SavedKind kind = io::kind_of_saved(path);
+    if (kind == io::SavedKind::Plan) return show_plan_file(path);
+    if (kind == io::SavedKind::Estimate) return show_estimate_file(path);
+    return show_study_file(path, kind);
+}
+
+}  // namespace
+
+ShownFile show_saved(const std::string& path) {
+    ShownFile shown = show_by_kind(path);
+    std::error_code ignored;
+    for (io::PagePart& part : shown.parts) {
+        if (part.title.empty()) part.title = path;
+        part.made_at = format_time(fs::last_write_time(path, ignored));
+        shown.summary += part.scene ? ", with the robot" : "";
+        shown.summary += part.residuals ? ", residuals" : "";
+        shown.summary += part.error_map ? ", errors over the workspace" : "";
+    }
+    return shown;
+}
+
+}  // namespace posewise::cli

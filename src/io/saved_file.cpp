@@ -1,0 +1,109 @@
+#include "posewise/io/saved_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "../core/text.hpp"
+#include "estimate_format.hpp"
+#include "json_reader.hpp"
+#include "plan_format.hpp"
+#include "posewise/io/trial_store.hpp"
+
+namespace posewise::io {
+namespace {
+
+using detail::Json;
+using detail::JsonValue;
+
+constexpr const char* saved_kinds = "plan, estimate or study";
+
+std::string text_or_none(const JsonValue& object, const char* key) {
+    return object.has(key) ? object[key].text() : "";
+}
+
+Provenance read_provenance(const JsonValue& root) {
+    Provenance made_from;
+    made_from.measurements = text_or_none(root, "measurements");
+    if (!root.has("made_from")) return made_from;
+    const JsonValue stated = root["made_from"];
+    made_from.measurements_checksum = text_or_none(stated, "measurements_checksum");
+    made_from.campaign_file = text_or_none(stated, "campaign_file");
+    made_from.campaign_checksum = text_or_none(stated, "campaign_checksum");
+    if (!stated.has("options")) return made_from;
+    const JsonValue options = stated["options"];
+    options.values();  // an object
+    for (const auto& [name, values] : options.json().items()) {
+        made_from.options.emplace_back(name, options[name].texts());
+    }
+    return made_from;
+}
+
+Loss read_loss(const JsonValue& root) {
+    Loss loss;
+    if (!root.has("loss")) return loss;
+    const JsonValue kind = root["loss"]["kind"];
+    for (const LossKind one : {LossKind::Huber, LossKind::Cauchy}) {
+        if (kind.text() == loss_name(one)) loss.kind = one;
+    }
+    if (loss.kind == LossKind::Squares) throw kind.error("must be huber or cauchy");
+    loss.width = root["loss"]["width_standard_deviations"].number();
+    return loss;
+}
+
+}  // namespace
+
+SavedKind kind_of_saved(const std::string& path) {
+    if (is_trial_store(path)) return SavedKind::Trials;
+    const Json document = detail::read_json(path, saved_kinds);
+    static const std::array<std::pair<std::string, SavedKind>, 4> kinds{
+        {{"posewise plan", SavedKind::Plan},
+         {"posewise pose plan", SavedKind::Plan},
+         {"posewise estimate", SavedKind::Estimate},
+         {"posewise study", SavedKind::Study}}};
+    const JsonValue root(document, path);
+    const std::string stated = document.is_object() && root.has("kind") ? root["kind"].text() : "";
+    for (const auto& [name, kind] : kinds) {
+        if (stated == name) return kind;
+    }
+    throw input_error_at({path},
+                         fmt::format("kind: is {}; must be that of a {}, as posewise writes "
+                                     "them, or the file a store of study",
+                                     detail::quote(stated), saved_kinds));
+}
+
+std::string read_saved_document(const std::string& path, SavedKind kind) {
+    switch (kind) {
+        case SavedKind::Plan:
+            return detail::json_text(detail::read_plan_document(path), path);
+        case SavedKind::Estimate:
+            return detail::json_text(detail::read_estimate_document(path), path);
+        case SavedKind::Study:
+            return detail::json_text(detail::read_document(path, "study"), path);
+        case SavedKind::Trials:
+            break;
+    }
+    throw input_error_at({path}, "is a store of trials, which has no document");
+}
+
+bool EstimateRecord::has_option(const std::string& name) const {
+    return std::any_of(made_from.options.begin(), made_from.options.end(),
+                       [&](const auto& option) { return option.first == name; });
+}
+
+EstimateRecord read_estimate_record(const std::string& path) {
+    const Json document = detail::read_estimate_document(path);
+    const JsonValue root(document, path);
+    EstimateRecord record;
+    record.campaign = root["campaign"].text();
+    record.made_from = read_provenance(root);
+    if (root.has("excluded")) record.excluded = root["excluded"].texts();
+    const JsonValue accuracy = root["accuracy"];
+    if (accuracy.has("held_out")) record.folds = accuracy["held_out"]["folds"].count(2);
+    record.loss = read_loss(root);
+    return record;
+}
+
+}  // namespace posewise::io
