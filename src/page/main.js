@@ -2,14 +2,23 @@ import { el } from './core/dom.js';
 import { watchTheme } from './core/theme.js';
 import { footer, header } from './sections/frame.js';
 import * as accuracy from './sections/accuracy_by_count.js';
+import * as before from './sections/before_after.js';
 import * as budget from './sections/budget.js';
+import * as coverage from './sections/coverage.js';
+import * as map from './sections/error_map.js';
 import * as measured from './sections/measured.js';
+import * as models from './sections/model_selection.js';
 import * as optimality from './sections/optimality.js';
+import * as parameters from './sections/parameters.js';
 import * as poses from './sections/poses.js';
 import * as printed from './sections/printed.js';
+import * as readBack from './sections/read_back.js';
+import * as residuals from './sections/residual_plots.js';
 import * as verdict from './sections/verdict.js';
 
-const sections = [verdict, poses, accuracy, budget, optimality, measured, printed];
+const sections = [
+  verdict, poses, accuracy, before, map, residuals, parameters, models, coverage, budget, optimality, readBack, measured, printed,
+];
 
 /** One section with all parts that have something to show, side by side where there are several. */
 function sectionOf(section, parts) {

@@ -17,13 +17,12 @@ export function influence(residuals) {
   })).sort((a, b) => b.heldOut - b.fit - (a.heldOut - a.fit));
 }
 
-/** 95 % interval of the RMS over configurations like those measured: their squares vary. */
-export function intervalOfRms(residuals, key) {
+/** The RMS of configurations like those measured is within this factor with 95 %, as their squares vary. */
+export function factorOfRms(residuals, key) {
   const columns = mainColumns(residuals);
   const squares = byConfiguration(residuals).filter(({ rows }) => rows.every((row) => row[key])).map(({ rows }) => squareOf(rows, key, columns));
   if (squares.length < 3) return null;
   const middle = mean(squares);
   const error = Math.sqrt(squares.reduce((sum, value) => sum + (value - middle) ** 2, 0) / (squares.length - 1) / squares.length);
-  const factor = Math.exp((studentT(0.05, squares.length - 1) * error) / (2 * middle));
-  return { lower: Math.sqrt(middle) / factor, upper: Math.sqrt(middle) * factor, count: squares.length };
+  return { factor: Math.exp((studentT(0.05, squares.length - 1) * error) / (2 * middle)), count: squares.length };
 }

@@ -68,3 +68,9 @@ export function way(from, to, via, steps = 12) {
   }
   return list;
 }
+
+/** A point of the world in the frame `m`. */
+export function applyInverse(m, point) {
+  const off = [0, 1, 2].map((k) => point[k] - m[4 * k + 3]);
+  return [0, 1, 2].map((j) => m[j] * off[0] + m[4 + j] * off[1] + m[8 + j] * off[2]);
+}

@@ -1,6 +1,7 @@
 // Colours of canvases follow those of the styles: light, dark, or light on paper.
 
 const listeners = new Set();
+let known = {};
 
 /** Calls `draw` now and whenever colours change. */
 export function onTheme(draw) {
@@ -8,10 +9,14 @@ export function onTheme(draw) {
   draw();
 }
 
-export const colour = (name) =>
-  getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+/** A colour of the styles. */
+export function colour(name) {
+  known[name] ??= getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  return known[name];
+}
 
 function redraw() {
+  known = {};
   for (const draw of listeners) draw();
 }
 
@@ -35,9 +40,10 @@ export function watchTheme() {
 const scale = ['#440154', '#472d7b', '#3b528b', '#2c728e', '#21918c', '#28ae80', '#5ec962', '#addc30', '#fde725']
   .map((text) => [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16)));
 
-/** A perceptually even colour of 0..1, as "rgb(r, g, b)". */
+/** A perceptually even colour of 0..1, as "rgb(r, g, b)", of those that can be told from the paper. */
 export function ramp(part) {
-  const at = Math.min(1, Math.max(0, part)) * (scale.length - 1);
+  const [low, high] = colour('ramp').split(' ').map(Number);
+  const at = (low + Math.min(1, Math.max(0, part)) * (high - low)) * (scale.length - 1);
   const k = Math.min(scale.length - 2, Math.floor(at));
   const mixed = scale[k].map((value, i) => Math.round(value + (at - k) * (scale[k + 1][i] - value)));
   return `rgb(${mixed.join(', ')})`;

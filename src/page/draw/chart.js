@@ -8,7 +8,7 @@ const font = '12px system-ui, sans-serif';
 
 function axis(label, values) {
   return {
-    label, labelFont: `12px system-ui, sans-serif`, font, labelSize: 22, stroke: () => colour('ink-soft'),
+    label, labelFont: `12px system-ui, sans-serif`, font, labelSize: 20, stroke: () => colour('ink-soft'),
     grid: { stroke: () => colour('rule'), width: 1 }, ticks: { stroke: () => colour('rule'), width: 1, size: 4 },
     ...values,
   };
@@ -45,7 +45,7 @@ function logTicks(low, high) {
 }
 
 /** Names of what is drawn, before the picture so that they never lie on it. */
-function legend(series, bands) {
+export function legend(series, bands = []) {
   const item = (kind, name, label, dash) => {
     const key = el('span', { class: `key key-${kind}${dash ? ' key-dashed' : ''}` });
     key.style.setProperty('--key', `var(--${name})`);
@@ -59,11 +59,11 @@ function legend(series, bands) {
 /**
  * Curves over common x values. `series`: `label`, `values`, `colour` (of the styles), `kind` line, dots,
  * both, steps or bars, `dash`; `bands`: `label`, `low`, `high`, `colour`; `x` and `y`: `label`, `log`,
- * `range`, `ticks`.
+ * `range`, `ticks`. Without `hasLegend` names stand elsewhere.
  */
-export function chart({ label, x, y, xs, series, bands = [], height = 300 }) {
+export function chart({ label, x, y, xs, series, bands = [], height = 300, hasLegend = true }) {
   const picture = el('div', { class: 'plot', role: 'img', 'aria-label': label });
-  const holder = el('div', { class: 'chart' }, series.length + bands.length > 1 ? legend(series, bands) : null, picture);
+  const holder = el('div', { class: 'chart' }, hasLegend && series.length + bands.length > 1 ? legend(series, bands) : null, picture);
   const hidden = bands.flatMap((one) => [one.high, one.low].map((values) => ({ values, colour: one.colour, width: 0 })));
   const all = [...hidden, ...series];
   const xRange = x.range ?? span(xs, x.margin ?? 0.04);
@@ -75,8 +75,8 @@ export function chart({ label, x, y, xs, series, bands = [], height = 300 }) {
     padding: [10, 14, 0, 4],
     scales: { x: { time: false, range: () => xRange, distr: x.log ? 3 : 1 }, y: { range: () => yRange, distr: y.log ? 3 : 1 } },
     axes: [
-      axis(x.label, { size: 38, ...(x.ticks ? { splits: () => x.ticks } : { splits: (u) => ticks(...xRange, Math.max(3, u.width / 110)) }),
-        values: (u, splits) => splits.map((value) => (value === null ? '' : short(value, 4))) }),
+      axis(x.label, { size: 26, ...(x.ticks ? { splits: () => x.ticks } : { splits: (u) => ticks(...xRange, Math.max(3, u.width / 110)) }),
+        ...(x.log ? { filter: (u, splits) => splits } : {}), values: (u, splits) => splits.map((value) => (value === null ? '' : short(value, 4))) }),
       axis(y.label, { size: 62, splits: () => (y.log ? logTicks(...yRange) : ticks(...yRange, 6)),
         ...(y.log ? { filter: (u, splits) => splits } : {}),
         values: (u, splits) => splits.map((value) => (value === null ? '' : short(value, 4))) }),

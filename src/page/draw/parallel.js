@@ -2,14 +2,14 @@ import { columnTitle, cellOf } from '../core/poses.js';
 import { colour } from '../core/theme.js';
 import { drawing } from './canvas.js';
 
-/** Joints side by side, each between its limits; a line for each pose. */
+/** Joints side by side, each over its range, limits marked; a line for each pose. */
 export function parallelCoordinates(joints, poses, colours, label) {
   let current = 0;
   const keys = poses[0].keys.slice(0, joints.length);
   const ranges = joints.map((joint, j) => {
     const used = poses.map((pose) => pose.joints[j]);
-    const finite = (value, other) => (Number.isFinite(value) ? value : other);
-    return [finite(joint.lower, Math.min(...used)), finite(joint.upper, Math.max(...used))];
+    const limits = [joint.lower, joint.upper].filter(Number.isFinite);
+    return [Math.min(...used, ...limits), Math.max(...used, ...limits)];
   });
   const { element, redraw } = drawing(label, 250, (context, width, height) => {
     const [left, right, top, bottom] = [36, width - 36, 36, height - 22];
@@ -27,7 +27,7 @@ export function parallelCoordinates(joints, poses, colours, label) {
     };
     context.textAlign = 'center';
     context.globalAlpha = poses.length > 60 ? 0.35 : 0.85;
-    poses.forEach((pose, k) => line(pose, colours[k], 1.4));
+    poses.forEach((pose, k) => line(pose, colours(k), 1.4));
     context.globalAlpha = 1;
     line(poses[current], colour('paper'), 6);
     line(poses[current], colour('ink'), 2.6);
@@ -35,6 +35,7 @@ export function parallelCoordinates(joints, poses, colours, label) {
       context.strokeStyle = colour('muted');
       context.lineWidth = 1;
       context.strokeRect(x(j), top, 0.01, bottom - top);
+      for (const limit of [joint.lower, joint.upper].filter(Number.isFinite)) context.strokeRect(x(j) - 5, y(j, limit), 10, 0.01);
       context.fillStyle = colour('ink');
       context.fillText(columnTitle(keys[j]), x(j), 14);
       context.fillStyle = colour('ink-soft');

@@ -41,26 +41,31 @@ export class Viewer {
     this.scene.add(this.robot.group, cell.group);
     this.addLights();
     this.addPoses(colours);
-    this.labels = cell.labels.map(({ world, text }) => {
-      const label = el('span', { class: 'label', 'aria-hidden': 'true' }, text);
-      holder.append(label);
-      return { label, world: new Vector3(...world) };
-    });
+    this.labels = cell.labels.map(({ world, text }) => this.addLabel(text, world));
+    this.current = this.addLabel('', [0, 0, 0]);
+    this.current.label.classList.add('label-pose');
+    this.labels.push(this.current);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.request());
+    this.resize();
     this.look('all');
     onTheme(() => this.recolour());
     new ResizeObserver(() => this.resize()).observe(holder);
-    this.resize();
   }
 
-  /** Reach of the robot in these poses, m; and what is to be in view. */
+  /** Points of the robot in these poses and of what else is to be in view; gives the robot's size, m. */
   measure() {
-    this.box = new Box3();
-    for (const pose of this.poses) {
-      for (const frame of frames(this.data, pose.joints)) this.box.expandByPoint(new Vector3(...origin(frame)));
-    }
-    return Math.max(this.box.getSize(new Vector3()).length() / 2, 0.05);
+    const places = this.poses.flatMap((pose) => frames(this.data, pose.joints).map(origin));
+    this.near = places.map((place) => new Vector3(...place));
+    const others = [this.data.instrument?.position, ...(this.data.boxes ?? []).filter((one) => one.is_obstacle !== false).map((one) => origin(one.world_from_box))];
+    this.whole = [...this.near, ...others.filter(Boolean).map((place) => new Vector3(...place))];
+    return Math.max(new Box3().setFromPoints(this.near).getSize(new Vector3()).length() / 2, 0.05);
+  }
+
+  addLabel(text, world) {
+    const label = el('span', { class: 'label', 'aria-hidden': 'true' }, text);
+    this.holder.append(label);
+    return { label, world: new Vector3(...world) };
   }
 
   addLights() {
@@ -77,11 +82,14 @@ export class Viewer {
     const at = this.data.targets?.positions?.[0] ?? [0, 0, 0];
     const place = (joints) => apply(flange(this.data, joints), at);
     this.places = this.poses.map((pose) => place(pose.joints));
-    this.dots = new InstancedMesh(new SphereGeometry(0.016 * this.size, 12, 8), new MeshBasicMaterial({}), this.poses.length);
+    this.dots = new InstancedMesh(new SphereGeometry((this.poses.length > 100 ? 0.012 : 0.02) * this.size, 16, 10), new MeshBasicMaterial({}), this.poses.length);
     this.places.forEach((point, k) => {
       this.dots.setMatrixAt(k, new Matrix4().makeTranslation(...point));
-      this.dots.setColorAt(k, new Color(colours[k]));
     });
+    this.colourDots = () => {
+      this.places.forEach((unused, k) => this.dots.setColorAt(k, new Color(colours(k))));
+      this.dots.instanceColor.needsUpdate = true;
+    };
     this.scene.add(this.dots);
     if (this.poses.length < 2 || !this.poses[0].hasWay) return;
     const points = this.poses.slice(1).flatMap((pose, k) =>
@@ -91,29 +99,61 @@ export class Viewer {
 
   recolour() {
     for (const [name, variable] of Object.entries(palette)) this.materials[name].color.set(colour(variable));
+    this.colourDots();
     this.renderer.setClearColor(colour('stage'));
     this.render();
   }
 
-  /** `all`, `front`, `side` or `top`. */
+  /** `all` with the instrument, `robot` from the same side; `front`, `side` or `top`. */
   look(from) {
     const { up } = this.camera;
     const front = new Vector3(...[0, 4, 8].map((k) => this.data.world_from_base[k]));
     const side = new Vector3().crossVectors(up, front).normalize();
-    const centre = this.box.getCenter(new Vector3());
-    const direction = {
-      all: new Vector3().addScaledVector(front, 1).addScaledVector(side, -1.1).addScaledVector(up, 0.7),
-      front: front.clone(), side: side.clone().negate(),
-      top: new Vector3().addScaledVector(up, 1).addScaledVector(front, -0.002),
-    }[from].normalize();
-    this.controls.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(direction, 4.1 * this.size);
+    const oblique = this.beside(front).addScaledVector(up, 0.42);
+    const direction = { all: oblique, robot: oblique, front, side: side.negate(), top: up.clone().addScaledVector(front, -0.002) }[from].normalize();
+    this.fit(from === 'all' ? this.whole : this.near, direction);
     this.controls.update();
     this.render();
   }
 
-  /** The robot in a configuration. */
-  show(joints, seen) {
+  /** Stands where all points are in view, in the middle of it. */
+  fit(points, direction) {
+    const centre = new Box3().setFromPoints(points).getCenter(new Vector3());
+    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    const room = 0.24 * this.size;
+    let away = 4 * this.size;
+    for (let k = 0; k < 6; ++k) {
+      this.camera.position.copy(centre).addScaledVector(direction, away);
+      this.camera.lookAt(centre);
+      this.camera.updateMatrixWorld();
+      const eye = this.camera.matrixWorld.clone().invert();
+      const seen = new Box3().setFromPoints(points.map((point) => point.clone().applyMatrix4(eye)));
+      const middle = seen.getCenter(new Vector3()).setZ(0).applyQuaternion(this.camera.quaternion);
+      centre.add(middle);
+      // What is near the eye takes the most room; the middle depth does for a first guess, the front is safe.
+      const extent = seen.getSize(new Vector3());
+      const need = Math.max((extent.x / 2 + room) / this.camera.aspect, extent.y / 2 + room) / half;
+      away = need + 0.3 * extent.z;
+    }
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(direction, away);
+  }
+
+  /** A level direction from which robot and instrument stand side by side. */
+  beside(front) {
+    const { up } = this.camera;
+    const at = this.data.instrument?.position;
+    if (!at) return front.clone().addScaledVector(new Vector3().crossVectors(up, front), -1.1).normalize();
+    const between = new Vector3(...at).sub(new Vector3(...origin(this.data.world_from_base)));
+    const across = new Vector3().crossVectors(up, between).normalize();
+    // From the side that the robot reaches to rather than from behind it, and a little from the instrument.
+    const middle = new Box3().setFromPoints(this.near).getCenter(new Vector3());
+    const isFront = middle.sub(new Vector3(...origin(this.data.world_from_base))).dot(across) >= 0;
+    return across.multiplyScalar(isFront ? 1 : -1).addScaledVector(between.normalize(), 0.55).normalize();
+  }
+
+  /** The robot in a configuration, and the name of the pose if it is one. */
+  show(joints, seen, name) {
     const targets = this.robot.show(joints, seen ?? null);
     if (this.sight) {
       this.scene.remove(this.sight);
@@ -122,6 +162,8 @@ export class Viewer {
     const from = this.data.instrument?.position;
     this.sight = lines(from ? targets.filter((one) => one.isSeen).flatMap((one) => [from, one.world]) : [], this.materials.sight);
     this.scene.add(this.sight);
+    this.current.world.set(...(targets[0]?.world ?? origin(flange(this.data, joints))));
+    this.current.label.textContent = name;
     this.render();
   }
 

@@ -5,7 +5,7 @@ import { checkFlange } from '../core/kinematics.js';
 import { cellOf, columnTitle, posesOf, valueOf, wayOf } from '../core/poses.js';
 import { rmsByConfiguration } from '../core/residuals.js';
 import { table } from '../core/table.js';
-import { ramp } from '../core/theme.js';
+import { colour, ramp } from '../core/theme.js';
 import { colourBar } from '../draw/colour_bar.js';
 import { parallelCoordinates } from '../draw/parallel.js';
 import { makeCanvas, Viewer } from '../draw/viewer.js';
@@ -15,7 +15,7 @@ export const title = 'Poses';
 
 export const isShown = (part) => posesOf(part).length > 0;
 
-/** A number of each pose to colour it by, and what it is. */
+/** What poses are coloured by: the colour of pose k as the theme has it, and what it means. */
 function colouring(part, poses) {
   let name = 'order of the visit';
   let numbers = poses.map((unused, k) => k + 1);
@@ -32,7 +32,7 @@ function colouring(part, poses) {
   }
   const known = numbers.filter((value) => typeof value === 'number');
   const [low, high] = [Math.min(...known), Math.max(...known)];
-  const colours = numbers.map((value) => (typeof value === 'number' ? ramp(high > low ? (value - low) / (high - low) : 0.5) : 'rgb(214, 40, 57)'));
+  const colours = (k) => (typeof numbers[k] !== 'number' ? colour('needed') : ramp(high > low ? (numbers[k] - low) / (high - low) : 0.5));
   const bar = known.length > 1 ? colourBar(name, text(low), text(high)) : null;
   return { colours, bar, hasNeeded: numbers.includes(null) && part.document.pose_values };
 }
@@ -97,7 +97,7 @@ function describe(poses, k) {
 }
 
 function views(viewer) {
-  const names = { all: 'Whole', front: 'Front', side: 'Side', top: 'Top' };
+  const names = { all: 'Whole', robot: 'Robot', front: 'Front', side: 'Side', top: 'Top' };
   const frames = el('input', { type: 'checkbox', checked: true });
   frames.addEventListener('change', () => viewer.showFrames(frames.checked));
   return el('div', { class: 'views' }, Object.entries(names).map(([key, name]) =>
@@ -130,7 +130,7 @@ export function render(part) {
   let viewer = null;
   const steps = player(poses, stage ?? coordinates.element, (k, onTheWay) => {
     one.show(onTheWay ?? poses[k].joints);
-    viewer?.show(onTheWay ?? poses[k].joints, onTheWay ? [] : poses[k].targets);
+    viewer?.show(onTheWay ?? poses[k].joints, onTheWay ? [] : poses[k].targets, onTheWay ? '' : poses[k].id);
     if (!onTheWay) coordinates.show(k);
   }, (k) => describe(poses, k));
   const side = el('div', { class: 'stage-side' }, one.element, bar,

@@ -6,6 +6,9 @@ import { chart } from '../draw/chart.js';
 
 const lines = ['accent', 'fourth', 'third', 'second'];
 
+/** Errors so many times the least are not drawn. */
+const cut = 40;
+
 const interval = (one) => (!one || one.lower === one.upper ? '-' : `${fixed(one.lower, 2)}..${fixed(one.upper, 2)}`);
 
 function studyTable(model, splits) {
@@ -29,10 +32,14 @@ function studyFigure({ document }, model) {
   const middle = { label: 'random, median', values: values((row) => row.random?.held_out_rms_p50_mm), colour: 'muted', width: 1.5 };
   const band = { label: 'random, 10 to 90 %', low: values((row) => row.random?.held_out_rms_p10_mm), high: values((row) => row.random?.held_out_rms_p90_mm), colour: 'muted' };
   const hasBand = band.low.some((value) => value !== null) && band.high.some((value) => value !== null);
+  // Random subsets that hardly identify the model would press all else together.
+  const least = Math.min(...found.flatMap((one) => one.values).filter((value) => value !== null));
+  const all = [...found, ...expected, middle, { values: band.high }].flatMap((one) => one.values).filter((value) => value !== null);
+  const range = [0.8 * Math.min(...all, ...band.low.filter((value) => value !== null)), Math.min(1.15 * Math.max(...all), cut * least)];
   const series = [...found, ...expected, middle].filter((one) => one.values.some((value) => value !== null));
   return figure(`RMS position error${document.simulated ? ' over the workspace' : ', held out'}, against the number of poses${model.name ? `: ${model.name}` : ''}.`, chart({
     label: `Error against number of poses: ${rows.map((row) => `${row.pose_count} poses ${mm(row.planned[0].held_out_rms_mm)} mm planned, ${mm(row.random?.held_out_rms_p50_mm)} mm random`).join('; ')}`,
-    x: { label: 'poses', ticks: xs.length <= 10 ? xs : undefined }, y: { label: 'RMS error/mm', log: true }, xs, series, bands: hasBand ? [band] : [],
+    x: { label: 'poses', ticks: xs.length <= 10 ? xs : undefined }, y: { label: 'RMS error/mm', log: true, range }, xs, series, bands: hasBand ? [band] : [],
   }), [studyTable(model, document.splits)]);
 }
 

@@ -1,6 +1,6 @@
 import { count, mm, short } from '../core/format.js';
 import { driftOf } from '../core/drift.js';
-import { influence, intervalOfRms } from '../core/influence.js';
+import { factorOfRms, influence } from '../core/influence.js';
 import { limitOf } from './verdict_plan.js';
 
 /** What the calibration leaves where it was not measured: of what is known the most honest. */
@@ -70,7 +70,8 @@ export function answerEstimate(part) {
   if (!accuracy?.fit) return { sentence: 'This calibration identified nothing.', rows: [] };
   const error = errorOf(document);
   const nominal = accuracy.nominal?.[error.unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'];
-  const interval = part.residuals && error.key ? intervalOfRms(part.residuals, error.key) : null;
+  const sure = part.residuals && error.key ? factorOfRms(part.residuals, error.key) : null;
+  const interval = sure && { lower: error.rms / sure.factor, upper: error.rms * sure.factor, count: sure.count };
   const within = interval ? ` (95 %: ${mm(interval.lower)} to ${mm(interval.upper)})` : '';
   const times = nominal > 0 ? `, ${short(nominal / error.rms, 3)} times less than the robot that is not calibrated (${mm(nominal)} ${error.unit})` : '';
   return {

@@ -1,0 +1,120 @@
+import { el } from '../core/dom.js';
+import { behind, figure, lead } from '../core/figure.js';
+import { count, fixed, mm, short } from '../core/format.js';
+import { driftOf } from '../core/drift.js';
+import { cellOf, columnTitle } from '../core/poses.js';
+import { byConfiguration } from '../core/residuals.js';
+import { line, mean, normalQuantile } from '../core/statistics.js';
+import { table } from '../core/table.js';
+import { chart } from '../draw/chart.js';
+import { scatter, scatterLegend } from '../draw/scatter.js';
+import { describeDrift } from './verdict_estimate.js';
+
+export const title = 'Residuals';
+
+export const isShown = (part) => part.residuals?.rows.length > 0;
+
+const keyOf = (part, j) => {
+  const joint = part.scene?.joints[j];
+  return joint ? `${joint.name}_${joint.kind === 'prismatic' ? 'm' : 'rad'}` : `joint ${j + 1}_rad`;
+};
+
+/** Means of configurations: what is independent from one to the next. */
+function meansOf(residuals) {
+  return byConfiguration(residuals).map(({ id, rows }) => ({
+    id, joints: rows[0].joints, means: residuals.axes.map((unused, k) => mean(rows.map((row) => row.residual[k]))),
+    ...Object.fromEntries(['range', 'azimuth', 'elevation'].filter((key) => typeof rows[0][key] === 'number')
+      .map((key) => [key, mean(rows.map((row) => row[key]))])),
+  }));
+}
+
+function driftFigure(residuals) {
+  const drift = driftOf(residuals);
+  if (!drift) return null;
+  const { slopes } = drift;
+  const unit = slopes[0].unit;
+  const rows = slopes.map((one) => [one.axis, short(one.slope, 3), short(one.error, 3), mm(one.change), one.unit, short(one.p, 3), short(one.corrected, 3), mm(one.seen)]);
+  return figure(describeDrift(drift), scatter({
+    label: `Residuals in the order measured. ${describeDrift(drift)}`, x: { label: drift.name }, y: { label: `mean residual/${unit}` },
+    xs: drift.xs, columns: slopes.map((one) => one.ys), names: slopes.map((one) => one.axis), fits: slopes.map((one) => ({ ...one, label: undefined })), size: 6, height: 280,
+  }), [table('Straight lines through the means of configurations',
+    ['axis', `slope a ${drift.unit}`, 'std. error', 'over all', '', 'p', `p for ${slopes.length} axes`, 'would have been seen'], rows)]);
+}
+
+/** Small pictures, one for each of what residuals are drawn against. */
+function against(residuals, groups, list) {
+  const unit = residuals.unit[0];
+  const columns = residuals.axes.map((unused, k) => groups.map((group) => group.means[k]));
+  const rows = [];
+  const pictures = list.map(({ name, xs }) => {
+    residuals.axes.forEach((axis, k) => {
+      const fit = line(xs, columns[k]);
+      if (fit) rows.push([name, axis, short(fit.slope, 3), short(fit.error, 3), short(fit.p, 3)]);
+    });
+    return figure(null, scatter({ label: `Mean residuals against ${name}`, x: { label: name }, y: { label: `residual/${unit}` }, xs, columns, names: residuals.axes, height: 190, size: 4, hasLegend: false }));
+  });
+  return el('div', {}, scatterLegend(residuals.axes), el('div', { class: 'figures figures-small' }, pictures),
+    behind([table('Straight lines through them', ['against', 'axis', 'slope', 'std. error', 'p'], rows)], 'Trends as numbers'));
+}
+
+function normalFigure(residuals) {
+  const values = residuals.rows.flatMap((row) => row.standardised ?? []).filter(Number.isFinite).sort((a, b) => a - b);
+  if (values.length < 8) return null;
+  const every = Math.max(1, Math.floor(values.length / 600));
+  const shown = values.map((value, k) => [normalQuantile((k + 0.5) / values.length), value]).filter((unused, k) => k % every === 0 || k < 20 || k >= values.length - 20);
+  const xs = shown.map(([x]) => x);
+  const within = (size) => values.filter((value) => Math.abs(value) <= size).length / values.length;
+  const rows = [[1, 0.682689], [1.959964, 0.95], [2.575829, 0.99], [3.290527, 0.999]].map(([size, part]) =>
+    [fixed(size, 2), `${fixed(100 * part, 1)} %`, `${fixed(100 * within(size), 1)} %`]);
+  return figure(`Normal plot of ${values.length} standardised residuals: on the line they are as large, and as often, as stated; steeper at the ends: outliers.`, chart({
+    label: `Normal plot of standardised residuals; ${fixed(100 * within(1.959964), 1)} % are within 1.96`,
+    x: { label: 'quantile of the normal distribution' }, y: { label: 'standardised residual' }, xs, height: 280,
+    series: [{ label: 'expected', values: xs, colour: 'muted', width: 1.5, dash: [5, 4] }, { label: 'found', values: shown.map(([, y]) => y), colour: 'accent', kind: 'dots', size: 5 }],
+  }), [table('Part of the standardised residuals within', ['std. devs.', 'expected', 'found'], rows)]);
+}
+
+/** The readings farthest off, by name; those that chance would have in 1 of 20 campaigns at most are marked. */
+function farthest(residuals) {
+  const all = residuals.rows.filter((row) => row.standardised?.every(Number.isFinite));
+  if (all.length === 0) return null;
+  const size = (row) => Math.max(...row.standardised.map(Math.abs));
+  const limit = normalQuantile(1 - 0.025 / (all.length * residuals.axes.length));
+  const list = [...all].sort((a, b) => size(b) - size(a)).slice(0, 12);
+  const beyond = all.filter((row) => size(row) > limit).length;
+  const header = ['configuration', 'sample', 'target', ...residuals.axes.map((axis, k) => `${axis}/${residuals.unit[k]}`), 'std. devs.', 'by chance'];
+  return [el('h4', {}, 'Farthest readings'),
+    el('p', {}, `${beyond === 0 ? 'None is' : `${beyond} ${beyond === 1 ? 'is' : 'are'}`} farther off than chance would have it (${fixed(limit, 2)} standard deviations, 1 campaign in 20).`),
+    table('Farthest readings', header, list.map((row) => [row.configuration, row.sample, row.target, ...row.residual.map(mm), fixed(size(row), 2), size(row) > limit ? 'no' : 'yes'])
+      .map((row) => row.map((cell) => String(cell ?? ''))))];
+}
+
+function outliers({ outliers: list, loss }) {
+  if (!loss) return null;
+  const sorted = [...(list ?? [])].sort((a, b) => b.standard_deviations - a.standard_deviations);
+  return [el('h4', {}, 'Outliers'), el('p', {}, `Loss ${loss.kind} with width ${short(loss.width_standard_deviations, 4)} standard deviations: ${count(sorted.length, 'outlier')}.`),
+    sorted.length === 0 ? null : table('Outliers, farthest first', ['configuration', 'target', 'error/mm', 'std. devs.', 'weight'], sorted.map((one) =>
+      [one.configuration, String(one.target), mm(one.distance_mm), fixed(one.standard_deviations, 1), fixed(one.weight, 3)]))];
+}
+
+function meansTable(part, residuals, groups) {
+  const keys = groups[0].joints.map((unused, j) => keyOf(part, j));
+  const header = ['configuration', ...keys.map(columnTitle), ...residuals.axes.map((axis, k) => `${axis}/${residuals.unit[k]}`)];
+  return table('Mean residual of each configuration', header, groups.map((group) =>
+    [group.id, ...group.joints.map((value, j) => cellOf(keys[j], value)), ...group.means.map(mm)]));
+}
+
+export function render(part) {
+  const { residuals } = part;
+  const groups = meansOf(residuals);
+  const joints = groups[0].joints.map((unused, j) => {
+    const name = columnTitle(keyOf(part, j));
+    return { name, xs: groups.map((group) => Number(cellOf(keyOf(part, j), group.joints[j]))) };
+  });
+  const sight = [['range', 'range/m', 1], ['azimuth', 'azimuth/deg', 180 / Math.PI], ['elevation', 'elevation/deg', 180 / Math.PI]]
+    .filter(([key]) => groups.every((group) => key in group)).map(([key, name, factor]) => ({ name, xs: groups.map((group) => factor * group[key]) }));
+  return el('div', {}, lead(`What ${residuals.rows.length} readings miss the calibrated robot by. Dots are means of ${count(groups.length, 'configuration')}.`),
+    el('div', { class: 'figures' }, driftFigure(residuals), normalFigure(residuals)),
+    el('h4', {}, 'Against each joint'), against(residuals, groups, joints),
+    sight.length > 0 ? [el('h4', {}, 'Against range and angles of the instrument'), against(residuals, groups, sight)] : null,
+    outliers(part.document), farthest(residuals), behind([meansTable(part, residuals, groups)], 'Mean residuals as a table'));
+}
