@@ -34,7 +34,9 @@ function sectionOf(section, parts) {
 
 /** Parts with names that differ. */
 function namedParts(document) {
-  const parts = document.parts ?? [];
+  const parts = (document.parts ?? []).map((part) => ({
+    ...part, robot: part.document.campaign ?? part.title, title: part.title.replace(/^.*[/\\](?=.)/, ''), file: part.title === part.document.campaign ? null : part.title,
+  }));
   const kindOf = (part) => part.document.kind.replace(/^posewise /, '');
   return parts.map((part, k) => {
     const plain = `${part.title} (${kindOf(part)})`;
@@ -48,7 +50,7 @@ function draw() {
   const page = JSON.parse(source);
   const parts = namedParts(page);
   const drawn = sections.map((section) => sectionOf(section, parts)).filter(Boolean);
-  document.title = `posewise: ${parts.map((part) => part.title).join(', ')}`;
+  document.title = `posewise: ${[...new Set(parts.map((part) => part.robot))].join(', ')}`;
   document.body.append(
     el('a', { class: 'skip', href: '#verdict' }, 'Skip to the verdict'),
     header(parts, drawn), el('main', {}, drawn), footer(page, source));

@@ -28,9 +28,9 @@ export function drawCell(scene, materials, size) {
   const base = origin(scene.world_from_base);
   for (const one of scene.boxes ?? []) {
     group.add(box(one, materials));
-    if (one.is_obstacle !== false) labels.push({ world: origin(one.world_from_box), text: one.name });
+    if (one.kind === 'keep_out') labels.push({ world: origin(one.world_from_box), text: one.name });
   }
-  for (const one of (scene.capsules ?? []).filter((solid) => solid.is_obstacle)) {
+  for (const one of (scene.capsules ?? []).filter((solid) => solid.kind === 'keep_out')) {
     const holder = new Group();
     holder.add(capsule(one.from, one.to, one.radius, materials.obstacle));
     place(holder, scene.world_from_base);

@@ -16,7 +16,7 @@ export class Robot {
   }
 
   addLinks(size) {
-    this.links = (this.scene.capsules ?? []).filter((one) => !one.is_obstacle).map((one) => {
+    this.links = (this.scene.capsules ?? []).filter((one) => one.kind === 'link').map((one) => {
       const holder = new Group();
       holder.add(capsule(one.from, one.to, one.radius, this.materials.link));
       this.group.add(holder);

@@ -53,11 +53,12 @@ export function stretch(mesh, from, to) {
 export const ball = (radius, material) => new Mesh(new SphereGeometry(radius, 20, 14), material);
 
 /** A box about its centre: an obstacle, or edges alone. */
-export function box({ size, world_from_box: rows, is_obstacle: isObstacle }, materials) {
+export function box({ size, world_from_box: rows, kind }, materials) {
   const group = new Group();
+  const isObstacle = kind === 'keep_out';
   const geometry = new BoxGeometry(...size);
-  if (isObstacle !== false) group.add(new Mesh(geometry, materials.obstacle));
-  group.add(new LineSegments(new EdgesGeometry(geometry), isObstacle === false ? materials.faint : materials.edge));
+  if (isObstacle) group.add(new Mesh(geometry, materials.obstacle));
+  group.add(new LineSegments(new EdgesGeometry(geometry), isObstacle ? materials.edge : materials.faint));
   place(group, rows);
   return group;
 }

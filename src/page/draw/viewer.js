@@ -57,7 +57,7 @@ export class Viewer {
   measure() {
     const places = this.poses.flatMap((pose) => frames(this.data, pose.joints).map(origin));
     this.near = places.map((place) => new Vector3(...place));
-    const others = [this.data.instrument?.position, ...(this.data.boxes ?? []).filter((one) => one.is_obstacle !== false).map((one) => origin(one.world_from_box))];
+    const others = [this.data.instrument?.position, ...(this.data.boxes ?? []).filter((one) => one.kind === 'keep_out').map((one) => origin(one.world_from_box))];
     this.whole = [...this.near, ...others.filter(Boolean).map((place) => new Vector3(...place))];
     return Math.max(new Box3().setFromPoints(this.near).getSize(new Vector3()).length() / 2, 0.05);
   }

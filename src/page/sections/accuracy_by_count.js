@@ -10,11 +10,12 @@ export const title = 'Accuracy against number of poses';
 
 export const isShown = (part) => (part.kind === 'study' ? part.document.models?.some((model) => model.rows.length > 0) : plannedCurve(part.document) !== null);
 
+const quantities = { rms: 'RMS', p95: '95 % of positions', max: 'maximum' };
+
 function planTable({ document }, curve) {
   if (document.target) {
     const below = `${short(100 * document.target.assurance)} % below/mm`;
-    const names = { rms: 'RMS', p95: '95 % of positions', max: 'maximum' };
-    return table(`Position error (${names[document.target.quantity] ?? document.target.quantity}) by number of poses, model error and repeatability included`,
+    return table(`Position error (${quantities[document.target.quantity] ?? document.target.quantity}) by number of poses, model error and repeatability included`,
       ['new poses', 'how', 'expected/mm', '5..95 %/mm', below, 'minutes'],
       document.target.curve.map((one) => [String(one.new_pose_count), one.is_planned ? 'planned' : 'chosen from the pool',
         mm(one.error?.expected_mm), one.error ? `${mm(one.error.lower_mm)}..${mm(one.error.upper_mm)}` : '-', mm(one.error?.assured_mm),
@@ -46,7 +47,7 @@ function planFigure(part) {
   const bands = [{ label: '90 % interval, over robots whose model error differs', low: at(band, 'lower'), high: at(band, 'upper'), colour: 'second', alpha: 0.15 }];
   return figure('Predicted position error over the workspace against the number of new poses.', chart({
     label: `Predicted position error against number of poses: ${curve.points.map((one) => `${one.count} poses ${mm(one.expected)} mm`).join(', ')}`,
-    x: { label: 'new poses', ticks: xs.length <= 9 ? xs : undefined }, y: { label: 'position error RMS/mm', log: true }, xs, series, bands,
+    x: { label: 'new poses', ticks: xs.length <= 9 ? xs : undefined }, y: { label: `position error ${quantities[part.document.target?.quantity ?? 'rms']}/mm`, log: true }, xs, series, bands,
   }), [planTable(part, curve)]);
 }
 

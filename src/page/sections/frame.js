@@ -3,7 +3,7 @@ import { el, saveFile } from '../core/dom.js';
 const kinds = { plan: 'Plan', estimate: 'Calibration', study: 'Study' };
 
 export function header(parts, sections) {
-  const names = [...new Set(parts.map((part) => part.title))];
+  const names = [...new Set(parts.map((part) => part.robot))];
   const what = [...new Set(parts.map((part) => kinds[part.kind] ?? part.kind))].join(', ');
   return el('header', {},
     el('p', { class: 'kind' }, `posewise \u00b7 ${what}`),

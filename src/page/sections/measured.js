@@ -84,7 +84,8 @@ const kinds = { plan: ofPlan, estimate: ofEstimate, study: ofStudy };
 export function render(part) {
   const { document } = part;
   return el('div', {}, facts([
-    ['Robot', document.campaign ?? part.title],
+    ['Robot', part.robot],
+    ['File', part.file],
     ['Joints', part.scene ? part.scene.joints.map((joint) => joint.name).join(' ') : null],
     ['Instrument', part.scene?.instrument?.kind],
     ['Made at', part.made_at],

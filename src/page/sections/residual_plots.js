@@ -35,10 +35,10 @@ function driftFigure(residuals) {
   const unit = slopes[0].unit;
   const rows = slopes.map((one) => [one.axis, short(one.slope, 3), short(one.error, 3), mm(one.change), one.unit, short(one.p, 3), short(one.corrected, 3), mm(one.seen)]);
   return figure(describeDrift(drift), scatter({
-    label: `Residuals in the order measured. ${describeDrift(drift)}`, x: { label: drift.name }, y: { label: `mean residual/${unit}` },
+    label: `Residuals in the order measured. ${describeDrift(drift)}`, x: { label: 'configuration, in the order measured' }, y: { label: `mean residual/${unit}` },
     xs: drift.xs, columns: slopes.map((one) => one.ys), names: slopes.map((one) => one.axis), fits: slopes.map((one) => ({ ...one, label: undefined })), size: 6, height: 280,
   }), [table('Straight lines through the means of configurations',
-    ['axis', `slope a ${drift.unit}`, 'std. error', 'over all', '', 'p', `p for ${slopes.length} axes`, 'would have been seen'], rows)]);
+    ['axis', 'slope a configuration', 'std. error', 'over all', '', 'p', `p for ${slopes.length} axes`, 'would have been seen'], rows)]);
 }
 
 /** Small pictures, one for each of what residuals are drawn against. */

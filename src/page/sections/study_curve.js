@@ -48,6 +48,6 @@ export function studyFigures(part) {
   const where = document.simulated ? `${count(document.judged_on, 'configuration')} of the workspace, ${count(document.splits, 'robot')} drawn`
     : `${count(document.judged_on, 'configuration')} held out, ${count(document.splits, 'split')}`;
   return el('div', {}, lead(`Judged on ${where}; planned and random subsets see the same.`),
-    document.models.filter((model) => model.rows.length > 0).map((model) => studyFigure(part, model)),
+    el('div', { class: document.models.length > 1 ? 'figures' : null }, document.models.filter((model) => model.rows.length > 0).map((model) => studyFigure(part, model))),
     note('Medians; planned against random is the geometric mean with its 95 % interval: better where all of it is below 1.'));
 }

@@ -1,6 +1,7 @@
 import { count, mm, short } from '../core/format.js';
 import { driftOf } from '../core/drift.js';
 import { factorOfRms, influence } from '../core/influence.js';
+import { rms } from '../core/statistics.js';
 import { limitOf } from './verdict_plan.js';
 
 /** What the calibration leaves where it was not measured: of what is known the most honest. */
@@ -17,7 +18,7 @@ export function describeDrift(drift) {
   if (!drift) return 'Not known: too few configurations, or their residuals are not at hand.';
   const { worst } = drift;
   const size = `${worst.axis}: ${mm(worst.change)} ${worst.unit} from first to last configuration, p = ${short(worst.corrected, 2)} for ${drift.slopes.length} axes`;
-  if (drift.verdict === 'yes') return `Yes: residuals follow the ${drift.unit === 'h' ? 'time' : 'order'} (${size}).`;
+  if (drift.verdict === 'yes') return `Yes: residuals follow the order of the measurements (${size}).`;
   if (drift.verdict === 'perhaps') return `Perhaps: ${size}.`;
   return `None seen (strongest in ${size}); ${mm(Math.max(...drift.slopes.map((one) => one.seen)))} ${worst.unit} over the campaign would have been seen with 95 % confidence.`;
 }
@@ -58,6 +59,12 @@ const doubtTexts = {
   scatter: (one) => `Repeats differ by ${short(one.ratio, 3)} times sigma${one.sample ? `; the farthest is ${one.sample}` : ''}.`,
 };
 
+/** What the parameters alone leave over the workspace, where these poses may not have told enough. */
+function workspaceOf(part) {
+  const points = part.error_map?.points ?? [];
+  return points.length === 0 ? null : { rms: rms(points.map((one) => one.predicted_mm)), most: Math.max(...points.map((one) => one.predicted_mm)), count: points.length };
+}
+
 function doubtsOf(document) {
   const texts = Object.entries(document.doubts ?? {}).filter(([key, value]) => key in doubtTexts && value !== false)
     .map(([key, value]) => doubtTexts[key](value));
@@ -72,19 +79,25 @@ export function answerEstimate(part) {
   const nominal = accuracy.nominal?.[error.unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'];
   const sure = part.residuals && error.key ? factorOfRms(part.residuals, error.key) : null;
   const interval = sure && { lower: error.rms / sure.factor, upper: error.rms * sure.factor, count: sure.count };
+  const warnings = doubtsOf(document);
+  const workspace = workspaceOf(part);
+  if (error.unit === 'mm' && workspace?.rms > 2 * error.rms) {
+    warnings.push(`The poses measured cover the workspace badly: over ${workspace.count} of its configurations the parameters alone are expected to leave ${mm(workspace.rms)} mm RMS, ${mm(workspace.most)} mm at worst.`);
+  }
   const within = interval ? ` (95 %: ${mm(interval.lower)} to ${mm(interval.upper)})` : '';
   const times = nominal > 0 ? `, ${short(nominal / error.rms, 3)} times less than the robot that is not calibrated (${mm(nominal)} ${error.unit})` : '';
   return {
     sentence: `Calibrated, the robot is off by ${mm(error.rms)} ${error.unit} RMS${within} ${error.where}${times}.`,
-    warnings: doubtsOf(document),
+    warnings,
     rows: [
       ['How accurate', `${mm(error.rms)} ${error.unit} RMS${error.p95 === undefined ? '' : `, 95 % are below ${mm(error.p95)} mm`}, ${error.where}, noise of the instrument included.`],
       ['How sure', interval ? `RMS with 95 % confidence between ${mm(interval.lower)} and ${mm(interval.upper)} ${error.unit}, by how ${interval.count} configurations differ; ${document.degrees_of_freedom} degrees of freedom, variance factor ${short(document.variance_factor, 4)}.`
         : `${document.degrees_of_freedom} degrees of freedom, variance factor ${short(document.variance_factor, 4)}.`],
+      ['Over the workspace', workspace ? `${mm(workspace.rms)} mm RMS, ${mm(workspace.most)} mm at worst, are expected by the parameters alone, at ${workspace.count} configurations within the limits: see the error map.` : null],
       ['What limits it', limitOf(part)],
       ['Which pose matters most', mostOf(part)],
       ['Drift', describeDrift(part.residuals ? driftOf(part.residuals) : null)],
-      ['20 % better', moreOf(part)],
+      ['Poses more for 20 % better', moreOf(part)],
     ],
   };
 }

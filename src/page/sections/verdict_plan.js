@@ -4,13 +4,24 @@ import { budgetOf } from './budget.js';
 
 export const noDrift = 'Not known: drift shows in measurements only.';
 
-/** The largest part of a budget, and what would lower it. */
+/** Parts of budgets in other words than those of the table. */
+const causes = {
+  'left over: the model error itself': 'What the model of the robot cannot express',
+  'parameters, by noise of measuring': 'Parameters are not known better, by the noise of measuring',
+  'parameters, by the model error': 'Parameters are not known better, by the model error at the poses',
+  'parameters, left of their prior': 'Parameters are not known better than before measuring',
+  parameters: 'Parameters are not known better',
+  'noise of the instrument': 'Noise of the instrument',
+  'repeatability of one visit': 'The robot itself does not return better',
+};
+
+/** The largest part of a budget. */
 export function limitOf(part) {
   const budget = budgetOf(part);
   if (!budget) return null;
   const largest = budget.parts.reduce((a, b) => (b[1] > a[1] ? b : a));
   const share = fixed(100 * (largest[1] / budget.total) ** 2, 1);
-  return `${largest[0][0].toUpperCase()}${largest[0].slice(1)}: ${mm(largest[1])} ${budget.unit} RMS, ${share} % of the square.`;
+  return `${causes[largest[0]]}: ${mm(largest[1])} ${budget.unit} RMS, ${share} % of the square.`;
 }
 
 function accuracyOf({ document }) {
@@ -21,7 +32,7 @@ function accuracyOf({ document }) {
   }
   if (accuracy) return { value: accuracy.total_rms_mm, lower: accuracy.total_lower_mm, upper: accuracy.total_upper_mm, name: 'RMS' };
   if (!predicted?.position_error_rms_m) return null;
-  return { value: 1e3 * predicted.position_error_rms_m, name: 'RMS by the parameters alone' };
+  return { value: 1e3 * predicted.position_error_rms_m, p95: 1e3 * predicted.position_error_p95_m, name: 'RMS by the parameters alone', isPartial: true };
 }
 
 function surenessOf(document, found) {
@@ -39,7 +50,7 @@ function surenessOf(document, found) {
 }
 
 function mostOf({ pose_values: values, drop_outs: dropOuts, accuracy }) {
-  if (!values?.length) return 'Not computed for a choice of measured poses.';
+  if (!values?.length) return 'Not known: only the command that plans computes it, and plan files do not hold it.';
   const needed = values.filter((one) => one.value_mm === null);
   if (needed.length > 0) return `${needed.map((one) => one.id).join(', ')}: without ${needed.length === 1 ? 'it' : 'any of them'} parameters are left unidentified.`;
   const most = values.reduce((a, b) => (b.value_mm > a.value_mm ? b : a));
@@ -64,10 +75,11 @@ function moreOf(document) {
 export function answerPlan(part) {
   const { document } = part;
   const found = accuracyOf(part);
+  const alone = document.accuracy ?? { rms_mm: null, p95_mm: found?.p95 };
   const poses = count(document.poses.reduce((sum, pose) => sum + (pose.times ?? 1), 0), 'pose');
   const interval = found?.lower === undefined ? '' : ` (90 %: ${mm(found.lower)} to ${mm(found.upper)} mm)`;
   const over = document.workspace_count ? ` over ${document.workspace_count} workspace poses` : '';
-  const sentence = found ? `Calibrated with these ${poses}, the robot is expected to have a position error of ${mm(found.value)} mm ${found.name}${interval}${over}, model error included.`
+  const sentence = found ? `Calibrated with these ${poses}, the robot is expected to have a position error of ${mm(found.value)} mm ${found.name}${interval}${over}, ${found.isPartial ? 'without the model error' : 'model error included'}.`
     : `${poses} chosen for criterion ${document.criterion}.`;
   const warnings = [];
   const limit = document.monte_carlo?.limit;
@@ -76,12 +88,13 @@ export function answerPlan(part) {
   return {
     sentence, warnings,
     rows: [
-      ['How accurate', found ? `${mm(found.value)} mm ${found.name} expected; by the parameters alone ${mm(document.accuracy?.rms_mm ?? null)} mm RMS, 95 % are below ${mm(document.accuracy?.p95_mm ?? null)} mm.` : null],
+      ['How accurate', !found ? null : found.isPartial ? `${mm(found.value)} mm ${found.name}, 95 % are below ${mm(alone.p95_mm)} mm.`
+        : `${mm(found.value)} mm ${found.name} expected; by the parameters alone ${mm(alone.rms_mm)} mm RMS, 95 % are below ${mm(alone.p95_mm)} mm.`],
       ['How sure', surenessOf(document, found)],
       ['What limits it', limitOf(part)],
       ['Which pose matters most', mostOf(document)],
       ['Drift', noDrift],
-      ['20 % better', moreOf(document)],
+      ['Poses more for 20 % better', moreOf(document)],
     ],
   };
 }

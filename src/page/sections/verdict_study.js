@@ -51,7 +51,7 @@ export function answerStudy(part) {
       ['What limits it', `Beyond ${count(enough.count, 'pose')} the number of poses does not: what is left is noise and what the model cannot express.`],
       ['Which pose matters most', 'A study compares numbers of poses; a plan says what each pose is worth.'],
       ['Drift', document.simulated ? noDrift : 'Not looked at here: a calibration of all measurements shows it.'],
-      ['20 % better', moreOf(points)],
+      ['Poses more for 20 % better', moreOf(points)],
     ],
   };
 }

@@ -1,0 +1,225 @@
+// What the page shows in a browser.
+import assert from 'node:assert/strict';
+import { createRequire } from 'node:module';
+import { after, before, test } from 'node:test';
+import { join } from 'node:path';
+import { drawn, launch, open, output, write } from './browser.mjs';
+import { makeEstimate, makePlan, makeStudy, page } from './fixture.mjs';
+
+let browser;
+before(async () => {
+  browser = await launch();
+});
+after(() => browser?.close());
+
+const sections = {
+  plan: ['Verdict', 'Poses', 'Accuracy against number of poses', 'Error map of the workspace', 'Coverage: predicted against found', 'Uncertainty budget',
+    'What the plan is best for', 'What it rests on', 'As printed'],
+  estimate: ['Verdict', 'Poses', 'Before and after', 'Error map of the workspace', 'Residuals', 'Parameters', 'Model selection', 'Coverage: predicted against found',
+    'Uncertainty budget', 'What it rests on'],
+  study: ['Verdict', 'Accuracy against number of poses', 'Coverage: predicted against found', 'What it rests on', 'As printed'],
+};
+const makers = { plan: () => makePlan(), estimate: () => makeEstimate({ errors: 54 }), study: () => makeStudy() };
+
+for (const kind of Object.keys(sections)) {
+  test(`a ${kind} has its sections, figures with tables, and asks for nothing`, async () => {
+    const { tab, complaints, requests, close } = await open(browser, write(kind, page(makers[kind]())));
+    await drawn(tab);
+    assert.deepEqual(await tab.locator('h2').allTextContents(), sections[kind]);
+    assert.deepEqual(await tab.locator('nav a').allTextContents(), sections[kind]);
+    const bare = await tab.evaluate(() => [...document.querySelectorAll('section')].filter((one) => one.querySelector('figure') && !one.querySelector('table')).map((one) => one.id));
+    assert.deepEqual(bare, []);
+    const unnamed = await tab.evaluate(() => [...document.querySelectorAll('canvas, .plot')].filter((one) => !one.closest('[role=img][aria-label]')).length);
+    assert.equal(unnamed, 0);
+    assert.deepEqual(requests, []);
+    await tab.screenshot({ path: join(output, `${kind}.png`), fullPage: true });
+    assert.deepEqual(complaints, []);
+    await close();
+  });
+}
+
+test('a plan of 1000 poses is drawn at once', async (t) => {
+  const { tab, complaints, close } = await open(browser, write('thousand', page(makePlan(1000))));
+  const { load, script } = await tab.evaluate(() => {
+    const [entry] = performance.getEntriesByType('navigation');
+    return { load: entry.loadEventEnd, script: entry.domContentLoadedEventEnd - entry.responseEnd };
+  });
+  t.diagnostic(`1000 poses: loaded in ${load.toFixed(0)} ms, of which reading and drawing ${script.toFixed(0)} ms`);
+  assert.equal(await tab.locator('table', { hasText: 'Poses, in the order to visit them' }).locator('tbody tr').count(), 1000);
+  await drawn(tab);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+/** How many colours a 3D view has, and a digest of its pixels. */
+const pixels = (tab) => tab.evaluate(() => {
+  const source = document.querySelector('.stage canvas');
+  const copy = document.createElement('canvas');
+  [copy.width, copy.height] = [source.width, source.height];
+  const context = copy.getContext('2d');
+  context.drawImage(source, 0, 0);
+  const values = new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
+  let digest = 0;
+  for (const value of values) digest = (Math.imul(digest, 31) + value) | 0;
+  return { colours: new Set(values).size, digest };
+});
+
+test('stepping through the poses moves the robot, the table and what is read out', async () => {
+  const { tab, complaints, close } = await open(browser, write('steps', page(makePlan())));
+  await drawn(tab);
+  const status = () => tab.locator('.status').textContent();
+  const joints = () => tab.locator('.joints td.number').allTextContents();
+  const views = [await pixels(tab)];
+  const texts = [await joints()];
+  assert.ok(views[0].colours > 100, `${views[0].colours} colours`);
+  assert.match(await status(), /^Pose p1, 1 of 12 · value [0-9.]+ mm · targets seen: 1$/);
+  await tab.getByRole('button', { name: 'Next pose' }).click();
+  assert.match(await status(), /^Pose p2, 2 of 12 .*targets seen: 1 2 · reached over a via point$/);
+  views.push(await pixels(tab));
+  texts.push(await joints());
+  await tab.locator('.stage canvas').focus();
+  await tab.keyboard.press('ArrowRight');
+  assert.match(await status(), /^Pose p3/);
+  views.push(await pixels(tab));
+  texts.push(await joints());
+  await tab.getByRole('slider', { name: 'Pose' }).fill('12');
+  assert.match(await status(), /^Pose p12/);
+  await tab.getByRole('button', { name: 'Previous pose' }).click();
+  assert.match(await status(), /^Pose p11/);
+  assert.equal(new Set(views.map((one) => one.digest)).size, 3);
+  assert.equal(new Set(texts.map(String)).size, 3);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('it plays from pose to pose', async () => {
+  const { tab, close } = await open(browser, write('play', page(makePlan(2))));
+  await drawn(tab);
+  await tab.getByRole('button', { name: 'Play' }).click();
+  await tab.waitForFunction(() => document.querySelector('.status').textContent.startsWith('Pose p2'));
+  await tab.getByRole('button', { name: 'Play' }).waitFor();
+  await close();
+});
+
+test('without WebGL it says so, and the tables are there', async () => {
+  const { tab, complaints, close } = await open(browser, write('without_webgl', page(makePlan())), {
+    before: () => {
+      const { getContext } = HTMLCanvasElement.prototype;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+        return kind.startsWith('webgl') ? null : getContext.call(this, kind, ...rest);
+      };
+    },
+  });
+  assert.match(await tab.locator('.stage').textContent(), /no WebGL/);
+  await tab.getByRole('button', { name: 'Next pose' }).click();
+  assert.match(await tab.locator('.status').textContent(), /^Pose p2/);
+  assert.equal(await tab.locator('table', { hasText: 'Poses, in the order to visit them' }).locator('tbody tr').count(), 12);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('names are text, whatever they are', async () => {
+  const evil = '</script><script>alert(1)</script><img src=x onerror=alert(2)>\u2028';
+  const part = makePlan(3, evil);
+  part.document.poses[0].id = evil;
+  part.document.pose_values[0].id = evil;
+  part.scene.joints[0].name = evil;
+  part.scene.boxes[0].name = evil;
+  part.command = evil;
+  part.printed = evil;
+  const estimate = makeEstimate({ name: evil });
+  estimate.residuals.rows[0].target = evil;
+  estimate.document.model_selection.sets[0].name = evil;
+  const { tab, complaints, requests, close } = await open(browser, write('hostile', page(part, estimate)));
+  await drawn(tab);
+  assert.equal(await tab.locator('h1').textContent(), evil);
+  assert.equal(await tab.evaluate(() => document.querySelectorAll('img, iframe, object').length), 0);
+  assert.equal(await tab.evaluate(() => document.querySelectorAll('script').length), 2);
+  assert.ok((await tab.locator('.status').first().textContent()).includes(evil));
+  assert.ok((await tab.locator('pre').textContent()).includes(evil));
+  assert.deepEqual(requests, []);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('the policy stops scripts that are not its own', async () => {
+  const { tab, complaints, close } = await open(browser, write('policy', page(makeStudy())));
+  const ran = await tab.evaluate(() => {
+    const script = document.createElement('script');
+    script.textContent = 'window.strangerRan = true';
+    document.body.append(script);
+    return Boolean(window.strangerRan);
+  });
+  assert.equal(ran, false);
+  assert.ok(complaints.some((text) => text.includes('Content Security Policy')), complaints.join());
+  await close();
+});
+
+test('a flange drawn elsewhere than the program has it is told', async () => {
+  const part = makePlan();
+  part.scene.flange_of_first_pose[3] += 1e-6;
+  const { tab, complaints, close } = await open(browser, write('flange', page(part)));
+  await drawn(tab);
+  assert.equal(complaints.length, 1);
+  assert.match(complaints[0], /flange drawn .* from where it is/);
+  await close();
+});
+
+for (const width of [400, 1920]) {
+  test(`nothing is cut ${width} pixels wide`, async () => {
+    const { tab, close } = await open(browser, write(`wide_${width}`, page(makePlan(), makeEstimate({ errors: 54 }))), { width });
+    await drawn(tab);
+    for (const isOpen of [false, true]) {
+      const over = await tab.evaluate((all) => {
+        for (const one of document.querySelectorAll('details')) one.open = all;
+        return [...document.querySelectorAll('body *')].filter((one) => !one.closest('.scroll, .stage, pre, svg, .skip') && one.getBoundingClientRect().right > innerWidth + 1)
+          .map((one) => `${one.tagName}.${one.className}`);
+      }, isOpen);
+      assert.deepEqual(over, []);
+      assert.ok(await tab.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    }
+    await tab.evaluate(() => document.querySelectorAll('details').forEach((one) => { one.open = false; }));
+    await tab.locator('#verdict').screenshot({ path: join(output, `verdict_${width}.png`) });
+    await tab.locator('#poses').screenshot({ path: join(output, `poses_${width}.png`) });
+    await close();
+  });
+}
+
+test('paper has every section and all tables', async () => {
+  const { tab, complaints, close } = await open(browser, write('paper', page(makeEstimate(), makePlan())), { scheme: 'dark' });
+  await drawn(tab);
+  const headings = await tab.locator('h2').allTextContents();
+  await tab.evaluate(() => {
+    addEventListener('beforeprint', () => {
+      window.printed = {
+        closed: document.querySelectorAll('details:not([open])').length,
+        paper: getComputedStyle(document.body).backgroundColor,
+      };
+    });
+  });
+  const pdf = (await tab.pdf({ path: join(output, 'paper.pdf'), format: 'A4', printBackground: true, outline: true, tagged: true })).toString('latin1');
+  assert.deepEqual(await tab.evaluate(() => window.printed), { closed: 0, paper: 'rgb(255, 255, 255)' });
+  assert.ok(await tab.evaluate(() => document.querySelectorAll('details:not([open])').length > 0));
+  for (const heading of headings) assert.ok(pdf.includes(`(${heading})`), `${heading} is not in the outline of the PDF`);
+  assert.ok(pdf.split(/\/Type \/Page\b/).length > 5);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+for (const scheme of ['light', 'dark']) {
+  test(`axe finds nothing serious in the ${scheme} page`, async (t) => {
+    const { tab, close } = await open(browser, write(`axe_${scheme}`, page(makePlan(), makeEstimate(), makeStudy())), { scheme });
+    await drawn(tab);
+    await tab.evaluate(() => document.querySelectorAll('details').forEach((one) => { one.open = true; }));
+    await tab.evaluate((path) => path, '');
+    const source = createRequire(import.meta.url)('axe-core').source;
+    // As a debugger would: the page's own policy lets no script in.
+    const session = await tab.context().newCDPSession(tab);
+    await session.send('Runtime.evaluate', { expression: source });
+    const { violations, passes } = await tab.evaluate(() => window.axe.run(document));
+    const text = violations.map((one) => `${one.impact}: ${one.id}: ${one.nodes.slice(0, 3).map((node) => node.html.slice(0, 200)).join(' | ')}`);
+    t.diagnostic(`axe: ${passes.length} rules passed, ${violations.length} violated ${text.join('; ')}`);
+    assert.deepEqual(text.filter((line) => /^(serious|critical)/.test(line)), []);
+    await close();
+  });
+}
