@@ -96,6 +96,29 @@ TEST(CrossValidate, LeavesOutEachConfigurationOnce) {
               identify(campaign, measurements, start).fit.distance_rms);
 }
 
+TEST(CrossValidate, KeepsResidualsInTheMeasurementsOrder) {
+    const Campaign campaign = tracked_campaign(fanuc());
+    Measurements measured = simulate(campaign, {.pose_count = 13, .repeats = 2}).measurements;
+    testing::hide_at_random(measured, 0.2, 3);
+    const Parameters start = identify(campaign, measured, campaign.nominal).parameters;
+    const CrossValidation held_out = cross_validate(campaign, measured, start, 3);
+    ASSERT_EQ(held_out.residuals.rows(), measured.is_seen.count());
+    EXPECT_NEAR(make_metrics(held_out.residuals).distance_rms, held_out.samples.distance_rms,
+                1e-15);
+    Index row = 0;
+    for (Index i = 0; i < measured.configuration_count(); ++i) {
+        std::vector<Index> fold;
+        for (Index k = i % 3; k < 13; k += 3) fold.push_back(k);
+        const Estimate others = identify(campaign, take(measured, all_but(13, fold)), start);
+        const RowMatrixXd expected = residuals(campaign, others.parameters, take(measured, {i}));
+        EXPECT_LT(
+            (held_out.residuals.middleRows(row, expected.rows()) - expected).cwiseAbs().maxCoeff(),
+            1e-8);
+        row += expected.rows();
+    }
+    EXPECT_EQ(row, held_out.residuals.rows());
+}
+
 TEST(CrossValidate, TellsItsProgressAndPassesOnWhatTheCallbackThrows) {
     const Campaign campaign = precise_campaign(5e-5);
     const auto measurements = simulate(campaign, {12, 1, 7, 8}).measurements;

@@ -1,0 +1,232 @@
+#include <sys/stat.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+/// Pages that commands write with --report, and report from what they have written.
+namespace posewise::testing {
+namespace {
+
+using nlohmann::json;
+
+const std::string cell_design =
+    std::string("'") + POSEWISE_SOURCE_DIR + "/designs/cell_demo/campaign.yaml'";
+
+class Report : public Program {
+  protected:
+    /// The document in a page.
+    json shown_in(const std::string& page) const {
+        const std::string text = text_of(page);
+        const std::string mark = R"(<script type="application/json" id="posewise">)";
+        const auto begin = text.find(mark);
+        EXPECT_NE(begin, std::string::npos) << page << " holds no document";
+        if (begin == std::string::npos) return {};
+        const auto end = text.find("</script>", begin);
+        return json::parse(text.substr(begin + mark.size(), end - begin - mark.size()));
+    }
+    json part_in(const std::string& page) const { return shown_in(page)["parts"][0]; }
+
+    void simulate() const {
+        run_well("simulate " + fanuc_design + " --truth 7 --seed 3 --poses 16 -o s.csv");
+    }
+
+    static double rms_of_map(const json& part) {
+        double squares = 0;
+        const json& points = part["error_map"]["points"];
+        for (const json& point : points) {
+            squares += std::pow(point["predicted_mm"].get<double>(), 2);
+        }
+        return std::sqrt(squares / static_cast<double>(points.size()));
+    }
+};
+
+TEST_F(Report, OfAPlanHasWhatItPrintsAndWhatItsFileAndCampaignTell) {
+    const std::string plan = "plan " + cell_design +
+                             " -k 4 --prior --pool 60 --starts 1 --workspace-poses 20 "
+                             "--criterion d -o p.json";
+    const std::string text = run_well(plan + " --report 'my page.html'");
+    const json part = part_in("my page.html");
+    EXPECT_EQ(part["printed"], text);
+    EXPECT_EQ(part["title"], "FANUC R-2000iC/165F in a cell");
+    const std::string command = part["command"].get<std::string>();
+    EXPECT_EQ(command.rfind("posewise plan ", 0), 0U) << command;
+    EXPECT_TRUE(command.ends_with(" --report 'my page.html'")) << command;
+    EXPECT_EQ(part["document"]["poses"].size(), 4U);
+    const double rms = part["document"]["accuracy"]["rms_mm"];
+    EXPECT_NEAR(rms_of_map(part), rms, 1e-9 * rms);
+    EXPECT_EQ(part["error_map"]["points"].size(), 20U);
+    EXPECT_EQ(part["scene"]["floor_z"], -1.27);
+
+    run_well("report p.json -o again.html");
+    const json again = part_in("again.html");
+    EXPECT_EQ(again["document"], json::parse(text_of("p.json")));
+    EXPECT_EQ(again["scene"], part["scene"]);
+    EXPECT_EQ(again["error_map"], part["error_map"]);
+    EXPECT_TRUE(again["command"].is_null() && again["printed"].is_null());
+
+    const json printed = json::parse(run_well(plan + " --json --report j.html"));
+    EXPECT_EQ(part_in("j.html")["document"], printed);
+    EXPECT_EQ(part_in("j.html")["printed"], text);
+}
+
+TEST_F(Report, OfACalibrationIsTheSameFromItsFile) {
+    simulate();
+    const std::string text = run_well("calibrate " + fanuc_design +
+                                      " -m s.csv --exclude 3 --folds 4 --loss huber -o e.json "
+                                      "--report c.html");
+    const json part = part_in("c.html");
+    EXPECT_EQ(part["printed"], text);
+    EXPECT_EQ(part["document"], json::parse(text_of("e.json")));
+    EXPECT_EQ(part["scene"]["configurations"].size(), 15U);
+    const json& rows = part["residuals"]["rows"];
+    ASSERT_EQ(rows.size(), 45U);
+    double squares = 0;
+    for (const json& row : rows) {
+        for (const json& one : row["held_out"]) squares += std::pow(one.get<double>(), 2);
+    }
+    EXPECT_NEAR(std::sqrt(squares / 45),
+                part["document"]["accuracy"]["held_out"]["samples"]["distance_rms_mm"], 1e-6);
+
+    run_well("report e.json -o again.html");
+    const json again = part_in("again.html");
+    EXPECT_EQ(again["document"], part["document"]);
+    ASSERT_EQ(again["residuals"]["rows"].size(), rows.size());
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        const json& other = again["residuals"]["rows"][k];
+        EXPECT_EQ(other["configuration"], rows[k]["configuration"]);
+        for (const char* const part_name : {"residual", "nominal", "held_out", "standardised"}) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                EXPECT_NEAR(other[part_name][axis].get<double>(),
+                            rows[k][part_name][axis].get<double>(), 1e-6);
+            }
+        }
+    }
+    EXPECT_NEAR(rms_of_map(again), rms_of_map(part), 1e-9);
+}
+
+TEST_F(Report, SaysWhatItLeavesOut) {
+    simulate();
+    write_text("c.yaml", read_text(std::string(POSEWISE_SOURCE_DIR) +
+                                   "/designs/fanuc_r2000ic_165f/campaign.yaml"));
+    run_well("calibrate c.yaml -m s.csv --folds 0 -o e.json");
+    run_well("simulate " + fanuc_design + " --truth 7 --seed 4 --poses 16 -o s.csv");
+    const Outcome changed = run("report e.json -o r.html");
+    EXPECT_EQ(changed.code, 0);
+    EXPECT_EQ(changed.err,
+              "posewise: warning: e.json: residuals are not shown: s.csv: is not what it was made "
+              "from any more\n");
+    EXPECT_EQ(changed.out,
+              "e.json: estimate, with the robot, errors over the workspace\npage: r.html\n");
+    EXPECT_FALSE(part_in("r.html").contains("residuals"));
+    std::filesystem::remove(folder_ / "c.yaml");
+    const Outcome gone = run("report e.json -o r.html");
+    EXPECT_EQ(gone.code, 0);
+    EXPECT_NE(gone.err.find("robot and errors are not shown: c.yaml: cannot be read"),
+              std::string::npos)
+        << gone.err;
+    EXPECT_EQ(part_in("r.html")["document"], json::parse(text_of("e.json")));
+    EXPECT_FALSE(part_in("r.html").contains("scene"));
+    // Moved together, they are found beside the estimate.
+    const std::string beside =
+        "mkdir d && mv e.json d && sed 's/x/x/' > d/c.yaml " + fanuc_design + " && cp s.csv d";
+    EXPECT_EQ(run_line(beside).code, 0);
+    EXPECT_EQ(run("report d/e.json -o r.html").code, 0);
+    EXPECT_TRUE(part_in("r.html").contains("scene"));
+}
+
+TEST_F(Report, ShowsSeveralSideBySide) {
+    simulate();
+    const std::string study = "study " + fanuc_design + " -m s.csv -k 6 --random 3 --splits 0 ";
+    const json document = json::parse(run_well(study + "--store s.sqlite --report st.html --json"));
+    EXPECT_EQ(part_in("st.html")["document"], document);
+    EXPECT_EQ(part_in("st.html")["scene"]["configurations"].size(), 16U);
+    write_text("st.json", document.dump());
+    run_well("select " + fanuc_design + " -m s.csv -k 8 --report sel.html");
+    EXPECT_NEAR(rms_of_map(part_in("sel.html")),
+                part_in("sel.html")["document"]["accuracy"]["rms_mm"].get<double>(), 1e-9);
+    const std::string text = run_well("report s.sqlite st.json s.plan.json -o all.html");
+    EXPECT_EQ(text,
+              "s.sqlite: study\nst.json: study\ns.plan.json: plan of 8 poses, with the robot, "
+              "errors over the workspace\npage: all.html\n");
+    const json all = shown_in("all.html");
+    ASSERT_EQ(all["parts"].size(), 3U);
+    EXPECT_EQ(all["parts"][0]["document"], document);
+    EXPECT_EQ(all["parts"][1]["document"], document);
+    EXPECT_EQ(all["parts"][2]["title"], "s.plan.json");
+    EXPECT_EQ(all["parts"][2]["document"], json::parse(text_of("s.plan.json")));
+    EXPECT_EQ(json::parse(run_well("report s.sqlite st.json s.plan.json -o all.html --json")), all);
+
+    write_text("blocks.csv", "1,0\n0,1\n1,1\n1,2\n3,1\n");
+    run_well("select --blocks blocks.csv --rows 1 -k 3 --report blocks.html");
+    EXPECT_EQ(part_in("blocks.html")["title"], "blocks.csv");
+    EXPECT_FALSE(part_in("blocks.html").contains("scene"));
+    run_well("report blocks.plan.json -o again.html");
+}
+
+TEST_F(Report, LeavesAHostileNameText) {
+    simulate();
+    std::string campaign =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    const std::string name = "name: FANUC R-2000iC/165F";
+    ASSERT_NE(campaign.find(name), std::string::npos);
+    campaign.replace(campaign.find(name), name.size(),
+                     "name: '</script><script>alert(1)</script>'");
+    write_text("c.yaml", campaign);
+    run_well("calibrate c.yaml -m s.csv --folds 0 --report r.html");
+    EXPECT_EQ(text_of("r.html").find("alert(1)</script>"), std::string::npos);
+    EXPECT_EQ(part_in("r.html")["title"], "</script><script>alert(1)</script>");
+}
+
+TEST_F(Report, RefusesWhatItCannotReadOrWrite) {
+    simulate();
+    run_well("calibrate " + fanuc_design + " -m s.csv --folds 0 -o e.json");
+    write_text("notes.txt", "a plan\n");
+    expect_input_error("report absent.json -o r.html", "absent.json: cannot be read");
+    expect_input_error("report notes.txt -o r.html", "must be a plan, estimate or study");
+    expect_input_error("report e.json -o e.json", "is read and shall be written");
+    expect_input_error("report e.json -o s.csv", "is read and shall be written");
+    expect_input_error("report e.json -o " + fanuc_design, "is read and shall be written");
+    expect_input_error("report e.json -o absent/r.html", "cannot be written");
+    const std::string calibrate = "calibrate " + fanuc_design + " -m s.csv --folds 0 ";
+    expect_input_error(calibrate + "--report s.csv", "is read and shall be written");
+    expect_input_error(calibrate + "--out a --report ./a", "shall be written twice");
+    expect_input_error(calibrate + "--report absent/r.html", "cannot be written");
+    expect_input_error(calibrate + "--report .", "is a folder");
+    expect_input_error("study " + fanuc_design + " -m s.csv --report s.csv", "is read and shall");
+    expect_input_error("select " + fanuc_design + " -m s.csv -k 8 --report s.csv", "is read and");
+    expect_input_error("plan " + cell_design + " -k 8 --report " + cell_design, "is read and");
+    const Outcome both = run(calibrate + "--json --report /dev/stdout");
+    EXPECT_EQ(both.code, 1);
+    EXPECT_NE(both.err.find("is standard output"), std::string::npos);
+    EXPECT_EQ(run("report -o r.html").code, 2);
+    EXPECT_EQ(run("report e.json").code, 2);
+    EXPECT_EQ(run("select " + fanuc_design + " -m s.csv -k 8 --relax --report r.html").code, 2);
+    EXPECT_FALSE(has_file("r.html"));
+}
+
+/// The page comes last: what was found is printed and written before.
+TEST_F(Report, LosesNothingWhereThePageCannotBeWritten) {
+    simulate();
+    const Outcome outcome =
+        run("calibrate " + fanuc_design + " -m s.csv --folds 0 -o e.json --report r.html",
+            "ulimit -f 200;");
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.out.find("distance RMS"), std::string::npos);
+    EXPECT_EQ(outcome.err, "posewise: r.html: cannot be written: File too large\n");
+    EXPECT_TRUE(has_file("e.json"));
+    EXPECT_FALSE(has_file("r.html"));
+}
+
+TEST_F(Report, IsWrittenWhenTimeIsUp) {
+    const Outcome outcome = run("plan " + cell_design +
+                                " -k 8 --prior --pool 300 --starts 1000 --time 1 -o p.json "
+                                "--workspace-poses 20 --report r.html");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(part_in("r.html")["document"]["search"]["stop_reason"], "time limit");
+    EXPECT_TRUE(part_in("r.html").contains("error_map"));
+}
+
+}  // namespace
+}  // namespace posewise::testing

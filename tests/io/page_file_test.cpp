@@ -1,0 +1,203 @@
+#include "posewise/io/page_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "../../src/io/atomic_file.hpp"
+#include "posewise/io/json_reports.hpp"
+#include "posewise/io/saved_file.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "support/cells.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace posewise::io {
+namespace {
+
+using nlohmann::json;
+using testing::input_error_of;
+using testing::TemporaryFolder;
+
+const std::string begin_mark = R"(<script type="application/json" id="posewise">)";
+
+/// The text of the page's document.
+std::string embedded(const std::string& page) {
+    const auto begin = page.find(begin_mark) + begin_mark.size();
+    return page.substr(begin, page.find("</script>", begin) - begin);
+}
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
+PagePart part_of(const std::string& title) {
+    PagePart part;
+    part.title = title;
+    part.made_at = "2026-11-23T13:14:29Z";
+    part.document = R"({"kind": "posewise study", "campaign": ")" + title + R"("})";
+    return part;
+}
+
+TEST(ToPage, PutsTheDocumentWhereItBelongsAndNothingElse) {
+    const std::string empty = to_page({});
+    ASSERT_EQ(count_of(empty, begin_mark), 1U);
+    EXPECT_EQ(json::parse(embedded(empty))["parts"], json::array());
+    const std::string page = to_page({part_of("a"), part_of("b")});
+    const std::string before = page.substr(0, page.find(begin_mark));
+    EXPECT_EQ(before, empty.substr(0, empty.find(begin_mark)));
+    const std::string behind = page.substr(page.find(embedded(page)) + embedded(page).size());
+    EXPECT_TRUE(empty.ends_with(behind));
+    const json document = json::parse(embedded(page));
+    EXPECT_EQ(document["kind"], "posewise page");
+    ASSERT_EQ(document["parts"].size(), 2U);
+    EXPECT_EQ(document["parts"][1]["document"]["campaign"], "b");
+    EXPECT_TRUE(document["parts"][1]["command"].is_null());
+    EXPECT_FALSE(document["parts"][1].contains("scene"));
+    EXPECT_EQ(document, json::parse(to_json(std::vector<PagePart>{part_of("a"), part_of("b")})));
+}
+
+TEST(ToPage, LeavesHostileNamesText) {
+    for (const std::string name :
+         {"</script><script>alert(1)</script>", "<!-- <script>", "a & b &lt;", "]]>",
+          "line\u2028and\u2029line", "$& $1 {{x}} \\\\u003c"}) {
+        const std::string page = to_page({part_of(name)});
+        const std::string text = embedded(page);
+        EXPECT_EQ(text.find_first_of("<>&"), std::string::npos) << name;
+        EXPECT_EQ(text.find("\u2028"), std::string::npos);
+        EXPECT_EQ(text.find("\u2029"), std::string::npos);
+        EXPECT_EQ(count_of(page, "</script"), count_of(to_page({}), "</script"));
+        const json part = json::parse(text)["parts"][0];
+        EXPECT_EQ(part["title"], name);
+        EXPECT_EQ(part["document"], json::parse(part_of(name).document));
+    }
+}
+
+TEST(ToPage, RefusesWhatIsNoDocument) {
+    PagePart part = part_of("plan.json");
+    part.document = "{";
+    EXPECT_EQ(input_error_of([&] { to_page({part}); }),
+              "plan.json: is not JSON; must be a document of posewise");
+    part = part_of("a");
+    part.title = "\xff";
+    EXPECT_NE(input_error_of([&] { to_page({part}); }).find("is not UTF-8"), std::string::npos);
+    part.title = "a";
+    part.command = "posewise plan \xff.yaml";  // as the user typed it
+    EXPECT_EQ(json::parse(embedded(to_page({part})))["parts"][0]["command"],
+              "posewise plan \uFFFD.yaml");
+}
+
+TEST(ToPage, HasTheSceneAndWhatIsLeftOfReadings) {
+    Campaign campaign = testing::cell_campaign();
+    campaign.cell = testing::demo_cell();
+    const Measurements measured = simulate(campaign, {.pose_count = 12, .repeats = 2}).measurements;
+    const Calibration found = calibrate(campaign, measured);
+    PagePart part = part_of("cell");
+    part.scene = make_scene(found.campaign, found.estimate.parameters);
+    part.configurations = {measured.ids, measured.configurations};
+    part.residuals = page_residuals(found.campaign, measured, list_residuals(found, measured));
+    part.error_map =
+        ErrorMap{{measured.configurations.row(0), {1, 2, 3}, 1e-4, Vector3d(1e-3, 0, 0)}};
+    const json shown = json::parse(embedded(to_page({part})))["parts"][0];
+
+    const json& scene = shown["scene"];
+    const Isometry3d flange = world_from_flange(found.campaign, found.estimate.parameters,
+                                                measured.configurations.row(0).transpose());
+    for (std::size_t k = 0; k < 16; ++k) {
+        const auto number = static_cast<Index>(k);
+        EXPECT_NEAR(scene["flange_of_first_pose"][k].get<double>(),
+                    flange.matrix()(number / 4, number % 4), 1e-12);
+    }
+    EXPECT_EQ(scene["joints"][1]["name"], campaign.robot.joint(1).name);
+    EXPECT_EQ(scene["capsules"][0]["kind"], "link");
+    EXPECT_EQ(scene["boxes"][0]["kind"], "keep_out");
+    EXPECT_EQ(scene["instrument"]["kind"], "tracker");
+    ASSERT_EQ(scene["configurations"].size(), 12U);
+    EXPECT_EQ(scene["configurations"][3]["id"], measured.ids[3]);
+    EXPECT_EQ(scene["configurations"][3]["joints"][2], measured.configurations(3, 2));
+
+    const json& rows = shown["residuals"]["rows"];
+    ASSERT_EQ(rows.size(), 72U);
+    EXPECT_EQ(shown["residuals"]["unit"], json({"mm", "mm", "mm"}));
+    EXPECT_EQ(rows[4]["sample"], "2");
+    EXPECT_EQ(rows[4]["target"], "target2");
+    double squares = 0;
+    for (const json& row : rows) {
+        for (const json& one : row["residual"]) squares += one.get<double>() * one.get<double>();
+    }
+    EXPECT_NEAR(std::sqrt(squares / 72), 1e3 * found.estimate.fit.distance_rms, 1e-6);
+    EXPECT_EQ(shown["error_map"]["points"][0]["predicted_mm"], 0.1);
+    EXPECT_EQ(shown["error_map"]["points"][0]["displacement_mm"], json({1.0, 0.0, 0.0}));
+
+    part.residuals->readings[0].held_out.reset();
+    const json again = json::parse(to_json(std::vector<PagePart>{part}))["parts"][0];
+    EXPECT_FALSE(again["residuals"]["rows"][0].contains("held_out"));
+    EXPECT_TRUE(again["residuals"]["rows"][1].contains("held_out"));
+}
+
+TEST(WritePage, WritesAllOrNothing) {
+    const TemporaryFolder folder;
+    write_page(folder.path("a.html"), {part_of("a")});
+    EXPECT_EQ(detail::read_file(folder.path("a.html")), to_page({part_of("a")}));
+    PagePart wrong = part_of("a");
+    wrong.document = "";
+    EXPECT_NE(input_error_of([&] { write_page(folder.path("a.html"), {wrong}); }), "no error");
+    EXPECT_EQ(detail::read_file(folder.path("a.html")), to_page({part_of("a")}));
+    EXPECT_EQ(folder.file_count(), 1U);
+    EXPECT_EQ(input_error_of([&] {
+                  write_page(folder.path("no/a.html"), {part_of("a")});
+              }).find("no/a.html: cannot be written"),
+              0U);
+}
+
+TEST(KindOfSaved, IsFoundFromTheContent) {
+    const TemporaryFolder folder;
+    const auto kind_of = [&](const std::string& text) {
+        return kind_of_saved(folder.write("f", text));
+    };
+    EXPECT_EQ(kind_of(R"({"kind": "posewise plan"})"), SavedKind::Plan);
+    EXPECT_EQ(kind_of(R"({"kind": "posewise pose plan"})"), SavedKind::Plan);
+    EXPECT_EQ(kind_of(R"({"kind": "posewise estimate"})"), SavedKind::Estimate);
+    EXPECT_EQ(kind_of(R"({"kind": "posewise study"})"), SavedKind::Study);
+    const auto error_of = [&](const std::string& text) {
+        return input_error_of([&] { kind_of(text); });
+    };
+    EXPECT_EQ(error_of(R"({"kind": "posewise export"})"),
+              "f: kind: is 'posewise export'; must be that of a plan, estimate or study, as "
+              "posewise writes them, or the file a store of study");
+    EXPECT_EQ(error_of("[1]").find("f: kind: is ''; must be"), 0U);
+    EXPECT_EQ(error_of(R"({"kind": 3})"), "f: kind: is of type number; must be text");
+    EXPECT_EQ(error_of("name: a"),
+              "f:1:2: is not JSON here; must be a plan, estimate or study as posewise writes it");
+}
+
+TEST(ReadEstimateRecord, SaysWhatTheEstimateWasMadeFrom) {
+    const TemporaryFolder folder;
+    const Campaign campaign = testing::cell_campaign();
+    const Measurements measured = simulate(campaign, {.pose_count = 14}).measurements;
+    CalibrationOptions options;
+    options.folds = 3;
+    options.excluded = {"4"};
+    options.joint.loss.kind = LossKind::Huber;
+    const Calibration found = calibrate(campaign, measured, options);
+    const Provenance made_from{"m.csv", "c2", "c.yaml", "c1", {{"--prior", {"true"}}}};
+    write_estimate(folder.path("e.json"), found, made_from);
+    const EstimateRecord record = read_estimate_record(folder.path("e.json"));
+    EXPECT_EQ(record.campaign, campaign.name);
+    EXPECT_EQ(record.made_from.measurements, "m.csv");
+    EXPECT_EQ(record.made_from.measurements_checksum, "c2");
+    EXPECT_EQ(record.made_from.campaign_file, "c.yaml");
+    EXPECT_TRUE(record.has_option("--prior"));
+    EXPECT_FALSE(record.has_option("--from"));
+    EXPECT_EQ(record.excluded, options.excluded);
+    EXPECT_EQ(record.folds, 3);
+    EXPECT_EQ(record.loss.kind, LossKind::Huber);
+    EXPECT_EQ(record.loss.width, found.estimate.loss.width);
+    EXPECT_EQ(json::parse(read_saved_document(folder.path("e.json"), SavedKind::Estimate)),
+              json::parse(to_json(found, made_from)));
+}
+
+}  // namespace
+}  // namespace posewise::io
