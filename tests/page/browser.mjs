@@ -47,6 +47,6 @@ export async function open(browser, path, { width = 1280, height = 900, scheme =
 
 /** Waits until each 3D view is drawn. */
 export const drawn = (tab) => tab.waitForFunction(() => {
-  const stages = [...document.querySelectorAll('.stage:not(.stage-empty)')];
+  const stages = [...document.querySelectorAll('.stage')];
   return stages.every((stage) => stage.dataset.ready === 'true');
 });

@@ -53,8 +53,8 @@ export function makeScene(extra = {}) {
 
 const draw = (scene) => scene.joints.map(({ lower, upper }) => lower + random() * (upper - lower));
 
-/** A plan of so many poses. */
-export function makePlan(count = 12, name = 'cell') {
+/** A plan of so many poses, with an error map of so many places. */
+export function makePlan(count = 12, name = 'cell', places = 200) {
   const scene = makeScene();
   const poses = Array.from({ length: count }, (unused, k) => {
     const joints = draw(scene);
@@ -74,7 +74,7 @@ export function makePlan(count = 12, name = 'cell') {
     search: { seed: 1, starts: 4, starts_at_best: 1, stop_reason: 'converged' },
     predicted: { position_error_rms_m: 0.00015382351, position_error_p95_m: 0.00026046, standard_deviation: { 'base.x_m': 0.0000774, dq2_rad: 0.0000531 } },
     visiting_time_s: 7.295, assumes: { range_sigma_m: 1e-5, angle_sigma_rad: 1.5e-5, model_error_m: 1e-4, expected_error: { 'base.x_m': 0.001, dq2_rad: 0.001 } },
-    poses, accuracy: accuracy(1), new_pose_count: count, measured_count: 0, workspace_count: 300,
+    poses, accuracy: accuracy(1), new_pose_count: count, measured_count: 0, workspace_count: places,
     pool: { drawn: 2000, feasible: 246, rejections: [{ constraint: 'keep_out', in_all: 294, first: 70 }] },
     tour: { time_s: 7.295, as_planned_s: 11.2, to_the_nearest_s: 8.2, blocked_count: 0 }, duration_s: 7.295,
     budget: { noise_mm: 0.0640, model_mm: 0.1399, prior_mm: 0, parameters_mm: 0.15382351, left_over_mm: 0.17320508, repeatability_mm: 0, total_mm: 0.23170013 },
@@ -87,7 +87,7 @@ export function makePlan(count = 12, name = 'cell') {
       ending: 'converged', is_sure: true, robot_count: 500, expected_robot_count: 120, uncalibrated_count: 0, limit: null,
     },
   };
-  const points = Array.from({ length: 300 }, () => {
+  const points = Array.from({ length: places }, () => {
     const joints = draw(scene);
     return { position: apply(flange(scene, joints), scene.targets.positions[0]), joints, predicted_mm: 0.1 + 0.1 * random() };
   });

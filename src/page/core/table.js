@@ -11,7 +11,7 @@ export function table(caption, header, rows) {
     rows.length > 0 && rows.every((row) => row[k] === '' || row[k] === undefined || isNumeric(String(row[k]))));
   const cell = (tag, k, text, scope) =>
     el(tag, { class: numeric[k] ? 'number' : null, scope }, text ?? '');
-  return el('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': caption },
+  return el('div', { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': caption },
     el('table', {},
       el('caption', {}, caption),
       el('thead', {}, el('tr', {}, header.map((text, k) =>

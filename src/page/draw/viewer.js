@@ -31,6 +31,7 @@ export class Viewer {
     this.poses = poses;
     this.materials = makeMaterials();
     this.renderer = new WebGLRenderer({ canvas, context, antialias: true });
+    this.renderer.debug.checkShaderErrors = false;
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(32, 1, 0.01, 500);
     const up = [2, 6, 10].map((k) => scene.world_from_base[k]);
@@ -82,7 +83,8 @@ export class Viewer {
     const at = this.data.targets?.positions?.[0] ?? [0, 0, 0];
     const place = (joints) => apply(flange(this.data, joints), at);
     this.places = this.poses.map((pose) => place(pose.joints));
-    this.dots = new InstancedMesh(new SphereGeometry((this.poses.length > 100 ? 0.012 : 0.02) * this.size, 16, 10), new MeshBasicMaterial({}), this.poses.length);
+    const isMany = this.poses.length > 100;
+    this.dots = new InstancedMesh(new SphereGeometry((isMany ? 0.012 : 0.02) * this.size, isMany ? 8 : 16, isMany ? 6 : 10), new MeshBasicMaterial({}), this.poses.length);
     this.places.forEach((point, k) => {
       this.dots.setMatrixAt(k, new Matrix4().makeTranslation(...point));
     });
@@ -101,6 +103,7 @@ export class Viewer {
     for (const [name, variable] of Object.entries(palette)) this.materials[name].color.set(colour(variable));
     this.colourDots();
     this.renderer.setClearColor(colour('stage'));
+    // At once: paper does not wait.
     this.render();
   }
 
@@ -113,7 +116,7 @@ export class Viewer {
     const direction = { all: oblique, robot: oblique, front, side: side.negate(), top: up.clone().addScaledVector(front, -0.002) }[from].normalize();
     this.fit(from === 'all' ? this.whole : this.near, direction);
     this.controls.update();
-    this.render();
+    this.request();
   }
 
   /** Stands where all points are in view, in the middle of it. */
@@ -164,12 +167,12 @@ export class Viewer {
     this.scene.add(this.sight);
     this.current.world.set(...(targets[0]?.world ?? origin(flange(this.data, joints))));
     this.current.label.textContent = name;
-    this.render();
+    this.request();
   }
 
   showFrames(isShown) {
     this.robot.frameAxes.visible = isShown;
-    this.render();
+    this.request();
   }
 
   resize() {
@@ -179,7 +182,7 @@ export class Viewer {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.render();
+    this.request();
   }
 
   request() {

@@ -44,7 +44,7 @@ function matrix({ names, at }, text) {
   });
   // Never so narrow that names could not be read.
   picture.element.style.minWidth = `${Math.ceil(11 * n + room)}px`;
-  return el('div', { class: 'scroll scroll-all', tabindex: 0, role: 'region', 'aria-label': 'Correlation matrix' }, picture.element);
+  return el('div', { class: 'scroll scroll-all', tabindex: 0, role: 'group', 'aria-label': 'Correlation matrix' }, picture.element);
 }
 
 function matrixTable({ names, at }) {

@@ -104,27 +104,27 @@ function views(viewer) {
     el('button', { type: 'button', onclick: () => viewer.look(key) }, name)), el('label', {}, frames, 'Frames'));
 }
 
-/** The robot in 3D where there is WebGL and a scene; a sentence else. */
-function stageOf(part, poses, colours) {
-  const stage = el('div', { class: 'stage' });
-  if (!part.scene) return { stage: null };
-  checkFlange(part.scene, poses[0].joints);
+/** Fills the stage with the robot in 3D where there is WebGL, with a sentence else; gives the viewer. */
+function fillStage(stage, part, poses, colours) {
   const made = makeCanvas();
+  stage.dataset.ready = 'true';
   if (!made) {
     stage.classList.add('stage-empty');
     stage.append(el('p', {}, 'No 3D view: this browser offers no WebGL. The poses are in the tables below.'));
-    return { stage };
+    return null;
   }
-  made.canvas.setAttribute('aria-label', `Robot in 3D: ${part.title}. Drag to turn, wheel to come nearer; arrow keys step through the poses.`);
+  made.canvas.setAttribute('aria-label', `Robot in 3D: ${part.name}. Drag to turn, wheel to come nearer; arrow keys step through the poses.`);
   stage.append(made.canvas);
-  return { stage, makeViewer: () => new Viewer(made, stage, part.scene, poses, colours) };
+  const viewer = new Viewer(made, stage, part.scene, poses, colours);
+  stage.after(views(viewer));
+  return viewer;
 }
 
 export function render(part) {
   const poses = posesOf(part);
   const joints = part.scene?.joints ?? poses[0].keys.slice(0, poses[0].joints.length).map((key) => ({ name: key, lower: null, upper: null }));
   const { colours, bar, hasNeeded } = colouring(part, poses);
-  const { stage, makeViewer } = stageOf(part, poses, colours);
+  const stage = part.scene ? el('div', { class: 'stage' }) : null;
   const coordinates = parallelCoordinates(joints, poses, colours, `Joints of ${count(poses.length, 'pose')} between their limits, as parallel coordinates`);
   const one = jointTable(joints, poses);
   let viewer = null;
@@ -139,13 +139,12 @@ export function render(part) {
   const element = el('div', {}, introduction(part, poses), steps.bar, together,
     figure('Joint values of all poses between the limits; the current pose is dark.', coordinates.element, [rangeTable(joints, poses)]),
     behind([poseTable(part, poses)], `All ${count(poses.length, 'pose')} as a table`));
-  if (makeViewer) {
+  if (stage) {
+    checkFlange(part.scene, poses[0].joints);
     // After the page stands: to make a context and its programs takes a while.
     requestAnimationFrame(() => requestAnimationFrame(() => {
-      viewer = makeViewer();
-      stage.after(views(viewer));
+      viewer = fillStage(stage, part, poses, colours);
       steps.go(0);
-      stage.dataset.ready = 'true';
     }));
   }
   steps.go(0);
