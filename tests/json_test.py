@@ -29,6 +29,7 @@ robot: {urdf: arm.urdf, base_link: base, tip_link: tool, errors: geometric}
 sensor: {kind: points, sigma_mm: 0.05, targets: {position_mm: [[0, 0, 50], [30, 0, 0], [0, 40, 0]]}}
 base: {position_mm: [2000, 0, 0], rpy_deg: [0, 0, 90]}
 """
+PAGE_MANUAL = (ROOT / "designs/page.md").read_text()
 OTHER_WORDS = {"config"}  # of CSV files
 faults = []
 
@@ -67,6 +68,10 @@ def read_manual():
         if cell:
             keys.setdefault(section, []).extend(
                 key.split(".") for key in re.findall(r"`([^`]+)`", cell[1]))
+    keys["page"] = []
+    for key in re.findall(r"`([^`]+)`", "".join(re.findall(r"^\| (`.*?`) \|", PAGE_MANUAL, re.MULTILINE))):
+        of_part = key.startswith(("scene", "residuals", "error_map"))
+        keys["page"].append((["parts[]"] if of_part else []) + key.split("."))
     return keys
 
 
@@ -110,6 +115,9 @@ def parse(text, command):
     section = document["kind"].removeprefix("posewise ")
     PRINTED.add(section)
     expect(list(document)[:3] == ["kind", "posewise_version", "format"], f"{command}: {list(document)}")
+    for part in document.get("parts", []):  # of a page: each has a document
+        parse(json.dumps(part["document"]), command)
+        part["document"] = None
     for steps, is_empty in set(steps_of(document)):
         expect(any(explains(key, steps, is_empty) for key in MANUAL.get(section, []) + MANUAL[""]),
                f"designs/json.md, {section}: {'.'.join(steps)} is not explained")
@@ -310,14 +318,29 @@ def check_export():
                  number_behind(pathlib.Path("k.yaml").read_text(), "forearm:\n    x: "), 12), "export: frames")
 
 
+def check_report():
+    run("simulate", CELL, "-k", 12, "--truth", 5, "-o", "cell.csv")
+    run("calibrate", CELL, "-m", "cell.csv", "-o", "cell.json", "--folds", 3, "--prior")
+    files = ["cell.json", "campaign.poses.json", "s.plan.json"]
+    document, text = both("report", *files, "-o", "page.html")
+    expect([part["title"] for part in document["parts"]] == files, "report: titles")
+    expect(text.endswith("\npage: page.html\n") and text.startswith("cell.json: estimate, "), text)
+    page = pathlib.Path("page.html").read_text()
+    shown = json.loads(page.split('<script type="application/json" id="posewise">')[1].split("</script>")[0])
+    for part in shown["parts"]:
+        expect(part["document"] == json.loads(pathlib.Path(part["title"]).read_text()), part["title"])
+        part["document"] = None
+    expect(shown == document, "report: page.html has another document")
+
+
 def check_writers():
     """Each word that those who write documents know is in the manual, and each key of the manual theirs:
     those of cases that are not met here, too."""
     sources = "".join((ROOT / "src/io" / f"{name}.cpp").read_text() for name in (
         "json", "json_reports", "plan_file", "estimate_file", "parameters_json", "doubts_json", "robot_statement",
-        "weights_file"))
+        "weights_file", "page_file"))
     sources = re.sub(r"#include.*", "", sources)
-    manual = (ROOT / "designs/json.md").read_text()
+    manual = (ROOT / "designs/json.md").read_text() + PAGE_MANUAL
     for word in sorted(set(re.findall(r'"([a-z][A-Za-z0-9_]*)"', sources)) - OTHER_WORDS):
         expect(word in manual, f"designs/json.md: {word} is not explained")
     for key in (key for keys in MANUAL.values() for key in keys if "<" not in key[-1]):
@@ -358,7 +381,7 @@ with tempfile.TemporaryDirectory() as folder:
     pathlib.Path("arm.urdf").write_text(URDF)
     pathlib.Path("arm.yaml").write_text(ARM)
     for check in (check_simulate, check_inspect, check_indices, check_select, check_relax, check_verify,
-                  check_calibrate, check_study, check_plan, check_correct, check_export, check_writers,
+                  check_calibrate, check_study, check_plan, check_correct, check_export, check_report, check_writers,
                   check_errors, check_threads):
         check()
     expect(PRINTED | {""} == set(MANUAL), f"sections {sorted(MANUAL)}, printed {sorted(PRINTED)}")
