@@ -7,7 +7,7 @@ import { fixed, short } from '../../src/page/core/format.js';
 import { factorOfRms, influence } from '../../src/page/core/influence.js';
 import { applyInverse, apply, elementary, flange, multiply, way } from '../../src/page/core/kinematics.js';
 import { correlationsOf, parametersOf } from '../../src/page/core/parameters.js';
-import { line, normalQuantile, quantile, studentT, twoSided } from '../../src/page/core/statistics.js';
+import { line, normalQuantile, quantile, studentT, trend, twoSided } from '../../src/page/core/statistics.js';
 import { makeEstimate, makePlan, makeScene } from './fixture.mjs';
 
 const near = (found, expected, tolerance) => assert.ok(Math.abs(found - expected) <= tolerance, `${found} is not ${expected}`);
@@ -56,6 +56,31 @@ test('drift is seen where there is some, and hardly ever where there is none', (
   assert.equal(driftOf(makeEstimate({ drift: 0.4 }).residuals).worst.axis, 'z');
   const verdicts = Array.from({ length: 40 }, () => driftOf(makeEstimate().residuals).verdict);
   assert.ok(verdicts.filter((one) => one !== 'no').length <= 6, verdicts.join(' '));
+});
+
+test('poses measured in an order of theirs are not taken for drift', () => {
+  const { residuals } = makeEstimate();
+  residuals.rows.forEach((row, k) => {
+    // The model misses by the sine of a joint that turns steadily.
+    row.residual = row.residual.map((value) => value + 0.4 * Math.sin(k / 60));
+    row.joints = row.joints.slice(0, 2);
+  });
+  assert.equal(driftOf(residuals).besideJoints, true);
+  assert.equal(driftOf(residuals).verdict, 'yes');
+  residuals.rows.forEach((row, k) => { row.joints[0] = k / 60; });
+  assert.equal(driftOf(residuals).verdict, 'no');
+});
+
+test('a slope among neighbours that are alike is less sure', () => {
+  const xs = Array.from({ length: 200 }, (unused, k) => k);
+  const alone = trend(xs, xs.map((k) => Math.sin(1.7 * k * k)));
+  near(alone.error, line(xs, xs.map((k) => Math.sin(1.7 * k * k))).error, 0.3 * alone.error);
+  const alike = trend(xs, xs.map((k) => Math.sin(k / 8)));
+  assert.ok(alike.error > 3 * line(xs, xs.map((k) => Math.sin(k / 8))).error);
+  assert.ok(alike.p > 0.05);
+  // y = 2 + 3 x + 5 cos x, to the digit.
+  const exact = trend(xs, xs.map((k) => 2 + 3 * k + 5 * Math.cos(k)), [xs.map(Math.cos)]);
+  near(exact.slope, 3, 1e-10);
 });
 
 test('the configuration that matters most is the one the others miss', () => {

@@ -80,6 +80,16 @@ for (const [name, words] of Object.entries(commands)) {
     assert.equal(tables.length, printedCount[name]);
     const shown = await shownTables(tab);
     for (const table of tables) assert.ok(holds(shown, table), `not on the page: ${table.header.join(' | ')}\n${table.rows.map((row) => row.join(' | ')).join('\n')}`);
+    if (name === 'calibrate') {
+      // The residuals behind the figures are those of the table.
+      const accuracy = shown.find(({ header }) => header[0] === 'error/mm');
+      const readings = shown.find(({ header }) => header[0] === 'of' && header[1] === 'readings');
+      for (const [of, , rms, , p95, most] of readings.rows) {
+        const column = accuracy.header.indexOf(of);
+        assert.deepEqual([rms, p95, most], ['distance RMS', 'distance 95 %', 'distance max'].map((row) => accuracy.rows.find((one) => one[0] === row)[column]), of);
+      }
+      assert.equal(readings.rows.length, 3);
+    }
     // What the sentence says, and that it is the document's.
     const sentence = await tab.locator('.verdict').textContent();
     const numbers = sentence.match(/\d+\.\d{4}/g) ?? [];

@@ -4,7 +4,11 @@ export const mean = (values) => values.reduce((sum, value) => sum + value, 0) / 
 
 export const rms = (values) => Math.sqrt(mean(values.map((value) => value * value)));
 
-/** Between order statistics, as the program takes it: p of 0..1 of values in any order. */
+/** The least value that part p of them do not exceed: as errors of readings are stated. */
+export const lowerQuantile = (values, p) =>
+  Float64Array.from(values).sort()[Math.max(0, Math.min(values.length - 1, Math.ceil(p * values.length) - 1))];
+
+/** Between order statistics: p of 0..1 of values in any order. */
 export function quantile(values, p) {
   const sorted = Float64Array.from(values).sort();
   const at = p * (sorted.length - 1);
@@ -77,4 +81,44 @@ export function line(xs, ys) {
   const error = Math.sqrt(squares / freedom / sxx);
   const p = error > 0 ? twoSided(slope / error, freedom) : slope === 0 ? 1 : 0;
   return { slope, error, offset, freedom, p };
+}
+
+const dot = (a, b) => a.reduce((sum, value, k) => sum + value * b[k], 0);
+
+/** What of `values` the orthonormal `basis` cannot express. */
+function beside(values, basis) {
+  const rest = [...values];
+  for (let twice = 0; twice < 2; ++twice) {
+    for (const one of basis) {
+      const part = dot(rest, one);
+      for (let k = 0; k < rest.length; ++k) rest[k] -= part * one[k];
+    }
+  }
+  return rest;
+}
+
+/**
+ * Slope of ys over xs, which stand in order, beside a constant and `others`; its error is widened by how much
+ * neighbours are alike, as of a process that remembers one step. As line().
+ */
+export function trend(xs, ys, others = []) {
+  const basis = [];
+  for (const column of [xs.map(() => 1), ...others]) {
+    const rest = beside(column, basis);
+    const size = Math.sqrt(dot(rest, rest));
+    if (size > 1e-6 * Math.sqrt(dot(column, column))) basis.push(rest.map((value) => value / size));
+  }
+  const [x, y] = [beside(xs, basis), beside(ys, basis)];
+  const degrees = xs.length - basis.length - 1;
+  const sxx = dot(x, x);
+  if (degrees < 1 || !(sxx > 1e-9 * dot(xs, xs))) return null;
+  const slope = dot(x, y) / sxx;
+  const rest = y.map((value, k) => value - slope * x[k]);
+  const square = dot(rest, rest);
+  const alike = square > 0 ? Math.min(0.95, Math.max(0, dot(rest.slice(1), rest.slice(0, -1)) / square)) : 0;
+  const wider = (1 + alike) / (1 - alike);
+  const freedom = Math.max(1, degrees / wider);
+  const error = Math.sqrt((square / degrees / sxx) * wider);
+  const p = error > 0 ? twoSided(slope / error, freedom) : slope === 0 ? 1 : 0;
+  return { slope, error, offset: mean(ys) - slope * mean(xs), freedom, p };
 }

@@ -2,7 +2,7 @@ import { el } from '../core/dom.js';
 import { figure, lead } from '../core/figure.js';
 import { mm } from '../core/format.js';
 import { distance, mainColumns } from '../core/residuals.js';
-import { quantile, rms } from '../core/statistics.js';
+import { lowerQuantile, quantile, rms } from '../core/statistics.js';
 import { table } from '../core/table.js';
 import { chart } from '../draw/chart.js';
 
@@ -95,7 +95,7 @@ function cumulative(sets, unit) {
   });
 }
 
-const summary = (values) => [rms(values), quantile(values, 0.5), quantile(values, 0.95), Math.max(...values)].map(mm);
+const summary = (values) => [rms(values), lowerQuantile(values, 0.5), lowerQuantile(values, 0.95), Math.max(...values)].map(mm);
 
 function targetTable(residuals, unit) {
   const columns = mainColumns(residuals);

@@ -28,33 +28,40 @@ function meansOf(residuals) {
   }));
 }
 
-function driftFigure(residuals) {
-  const drift = driftOf(residuals);
+/** Columns of lengths, and of angles. */
+const kindsOf = ({ axes, unit }) => [...new Set(unit)].map((one) => ({ unit: one, columns: axes.map((axis, k) => k).filter((k) => unit[k] === one) }));
+
+const dotSize = (count, size) => (count > 400 ? Math.ceil(size / 2) : size);
+
+function driftFigures(drift) {
   if (!drift) return null;
-  const { slopes } = drift;
-  const unit = slopes[0].unit;
-  const rows = slopes.map((one) => [one.axis, short(one.slope, 3), short(one.error, 3), mm(one.change), one.unit, short(one.p, 3), short(one.corrected, 3), mm(one.seen)]);
-  return figure(describeDrift(drift), scatter({
-    label: `Residuals in the order measured. ${describeDrift(drift)}`, x: { label: 'configuration, in the order measured' }, y: { label: `mean residual/${unit}` },
-    xs: drift.xs, columns: slopes.map((one) => one.ys), names: slopes.map((one) => one.axis), fits: slopes.map((one) => ({ ...one, label: undefined })), size: 6, height: 280,
-  }), [table('Straight lines through the means of configurations',
-    ['axis', 'slope a configuration', 'std. error', 'over all', '', 'p', `p for ${slopes.length} axes`, 'would have been seen'], rows)]);
+  const text = describeDrift(drift);
+  const rows = drift.slopes.map((one) => [one.axis, short(one.slope, 3), short(one.error, 3), mm(one.change), one.unit, short(one.p, 3), short(one.corrected, 3), mm(one.seen)]);
+  const numbers = table(`Straight lines through the means of configurations${drift.besideJoints ? ', beside sine and cosine of the joints' : ''}`,
+    ['axis', 'slope a configuration', 'std. error', 'over all', '', 'p', `p for ${drift.slopes.length} axes`, 'would have been seen'], rows);
+  const units = [...new Set(drift.slopes.map((one) => one.unit))];
+  return units.map((unit, k) => {
+    const slopes = drift.slopes.filter((one) => one.unit === unit);
+    return figure(k === 0 ? text : null, scatter({
+      label: `Residuals/${unit} in the order measured. ${text}`, x: { label: 'configuration, in the order measured' }, y: { label: `mean residual/${unit}` },
+      xs: drift.xs, columns: slopes.map((one) => one.ys), names: slopes.map((one) => one.axis), fits: slopes.map((one) => ({ ...one, label: undefined })), size: dotSize(drift.xs.length, 6), height: 280,
+    }), k === 0 ? [numbers] : []);
+  });
 }
 
 /** Small pictures, one for each of what residuals are drawn against. */
 function against(residuals, groups, list) {
-  const unit = residuals.unit[0];
   const columns = residuals.axes.map((unused, k) => groups.map((group) => group.means[k]));
-  const rows = [];
-  const pictures = list.map(({ name, xs }) => {
-    residuals.axes.forEach((axis, k) => {
-      const fit = line(xs, columns[k]);
-      if (fit) rows.push([name, axis, short(fit.slope, 3), short(fit.error, 3), short(fit.p, 3)]);
-    });
-    return figure(null, scatter({ label: `Mean residuals against ${name}`, x: { label: name }, y: { label: `residual/${unit}` }, xs, columns, names: residuals.axes, height: 190, size: 4, hasLegend: false }));
-  });
-  return el('div', {}, scatterLegend(residuals.axes), el('div', { class: 'figures figures-small' }, pictures),
-    behind([table('Straight lines through them', ['against', 'axis', 'slope', 'std. error', 'p'], rows)], 'Trends as numbers'));
+  const rows = list.flatMap(({ name, xs }) => residuals.axes.map((axis, k) => {
+    const fit = line(xs, columns[k]);
+    return fit ? [name, axis, short(fit.slope, 3), short(fit.error, 3), short(fit.p, 3)] : null;
+  })).filter(Boolean);
+  const pictures = kindsOf(residuals).map((kind) => [scatterLegend(kind.columns.map((k) => residuals.axes[k])),
+    el('div', { class: 'figures figures-small' }, list.map(({ name, xs }) => figure(null, scatter({
+      label: `Mean residuals/${kind.unit} against ${name}`, x: { label: name }, y: { label: `residual/${kind.unit}` }, xs, columns: kind.columns.map((k) => columns[k]),
+      names: kind.columns.map((k) => residuals.axes[k]), height: 190, size: dotSize(xs.length, 4), hasLegend: false,
+    }))))]);
+  return el('div', {}, pictures, behind([table('Straight lines through them', ['against', 'axis', 'slope', 'std. error', 'p'], rows)], 'Trends as numbers'));
 }
 
 function normalFigure(residuals) {
@@ -113,7 +120,7 @@ export function render(part) {
   const sight = [['range', 'range/m', 1], ['azimuth', 'azimuth/deg', 180 / Math.PI], ['elevation', 'elevation/deg', 180 / Math.PI]]
     .filter(([key]) => groups.every((group) => key in group)).map(([key, name, factor]) => ({ name, xs: groups.map((group) => factor * group[key]) }));
   return el('div', {}, lead(`What ${residuals.rows.length} readings miss the calibrated robot by. Dots are means of ${count(groups.length, 'configuration')}.`),
-    el('div', { class: 'figures' }, driftFigure(residuals), normalFigure(residuals)),
+    el('div', { class: 'figures' }, driftFigures(driftOf(residuals, part.scene?.joints)), normalFigure(residuals)),
     el('h4', {}, 'Against each joint'), against(residuals, groups, joints),
     sight.length > 0 ? [el('h4', {}, 'Against range and angles of the instrument'), against(residuals, groups, sight)] : null,
     outliers(part.document), farthest(residuals), behind([meansTable(part, residuals, groups)], 'Mean residuals as a table'));

@@ -18,8 +18,9 @@ export function describeDrift(drift) {
   if (!drift) return 'Not known: too few configurations, or their residuals are not at hand.';
   const { worst } = drift;
   const size = `${worst.axis}: ${mm(worst.change)} ${worst.unit} from first to last configuration, p = ${short(worst.corrected, 2)} for ${drift.slopes.length} axes`;
-  if (drift.verdict === 'yes') return `Yes: residuals follow the order of the measurements (${size}).`;
-  if (drift.verdict === 'perhaps') return `Perhaps: ${size}.`;
+  const beside = drift.besideJoints ? ', besides what follows the joints\u2019 positions' : '; poses that were measured in an order of theirs look alike';
+  if (drift.verdict === 'yes') return `Yes: residuals follow the order of the measurements (${size}${beside}).`;
+  if (drift.verdict === 'perhaps') return `Perhaps: ${size}${beside}.`;
   return `None seen (strongest in ${size}); ${mm(Math.max(...drift.slopes.map((one) => one.seen)))} ${worst.unit} over the campaign would have been seen with 95 % confidence.`;
 }
 
@@ -96,7 +97,7 @@ export function answerEstimate(part) {
       ['Over the workspace', workspace ? `${mm(workspace.rms)} mm RMS, ${mm(workspace.most)} mm at worst, are expected by the parameters alone, at ${workspace.count} configurations within the limits: see the error map.` : null],
       ['What limits it', limitOf(part)],
       ['Which pose matters most', mostOf(part)],
-      ['Drift', describeDrift(part.residuals ? driftOf(part.residuals) : null)],
+      ['Drift', describeDrift(part.residuals ? driftOf(part.residuals, part.scene?.joints) : null)],
       ['Poses more for 20 % better', moreOf(part)],
     ],
   };
