@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "../report/plot.hpp"
 #include "calibrate_report.hpp"
 #include "commands.hpp"
 #include "estimates.hpp"
@@ -127,11 +128,11 @@ void check_faults(const CalibrateArguments& arguments, const CommonOptions& comm
     const std::string words = "this is no calibration: " + join_some(result.faults);
     if (arguments.earlier.is_forced) return print_warning(words);
     print(printed, common);
-    throw NoCalibration(fmt::format("{}: {}; {}--force takes it all the same",
-                                    arguments.paths.measurements, words,
-                                    (arguments.out + arguments.predict_out + arguments.page).empty()
-                                        ? ""
-                                        : "nothing was written, "));
+    throw NoCalibration(fmt::format(
+        "{}: {}; {}--force takes it all the same", arguments.paths.measurements, words,
+        (arguments.out + arguments.predict_out + arguments.page + arguments.plot).empty()
+            ? ""
+            : "nothing was written, "));
 }
 
 /// What is wrong names the file that it is in.
@@ -149,6 +150,7 @@ Calibration calibrate_files(const CalibrateArguments& arguments, const io::Campa
 
 void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
                const CommonOptions& common) {
+    if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
     const InputPaths& paths = arguments.paths;
     const EarlierArguments& earlier = arguments.earlier;
     const io::CampaignFile file = read_with_prior(paths.campaign, arguments.prior);
@@ -156,7 +158,7 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     check_outputs(
         {&file, validation.campaign ? &*validation.campaign : nullptr},
         {paths.measurements, arguments.plan, arguments.validate, arguments.predict, earlier.from},
-        {arguments.out, arguments.predict_out, arguments.page}, common);
+        {arguments.out, arguments.predict_out, arguments.page, arguments.plot}, common);
     CalibrationOptions options = make_options(arguments, file.seed);
     const Measurements measured =
         read_measured_without(options.excluded, paths.measurements, file, earlier);
@@ -186,8 +188,8 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     }
     print(printed, common);
     const std::vector<Index>& used = options.used;
-    write_calibration_page(arguments, common, result,
-                           used.empty() ? measured : take(measured, used), printed);
+    show_calibration(arguments, common, result, used.empty() ? measured : take(measured, used),
+                     printed);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "measured.hpp"
 #include "options.hpp"
 #include "page.hpp"
+#include "plot.hpp"
 
 namespace posewise::cli {
 
@@ -89,6 +90,7 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
         ->check(file_name());
     add_report_option(command, arguments.page);
+    add_plot_option(command, arguments.plot, "Draw what is left of each reading");
 }
 
 }  // namespace posewise::cli

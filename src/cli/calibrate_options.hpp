@@ -19,6 +19,7 @@ struct CalibrateArguments {
     std::string predict_out;
     std::string out;
     std::string page;
+    std::string plot;
     std::string method = "lm";
     std::string search = "random";
     std::string loss = "squares";

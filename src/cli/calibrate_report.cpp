@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "../core/text.hpp"
+#include "../report/plot.hpp"
+#include "plot.hpp"
 #include "posewise/io/json_reports.hpp"
 #include "posewise/report/reports.hpp"
 #include "posewise/task/error_map.hpp"
@@ -42,13 +44,19 @@ io::PagePart show_estimate(const Campaign& campaign, const Estimate& estimate,
     return part;
 }
 
-void write_calibration_page(const CalibrateArguments& arguments, const CommonOptions& common,
-                            const Calibration& result, const Measurements& used,
-                            const Printed& printed) {
-    if (arguments.page.empty()) return;
-    io::PagePart part = show_estimate(result.campaign, result.estimate, &used);
-    part.residuals = io::page_residuals(result.campaign, used, list_residuals(result, used));
-    write_page(arguments.page, std::move(part), printed, common);
+void show_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
+                      const Calibration& result, const Measurements& used, const Printed& printed) {
+    if ((arguments.page + arguments.plot).empty()) return;
+    const std::vector<ReadingResidual> readings = list_residuals(result, used);
+    if (!arguments.page.empty()) {
+        io::PagePart part = show_estimate(result.campaign, result.estimate, &used);
+        part.residuals = io::page_residuals(result.campaign, used, readings);
+        write_page(arguments.page, std::move(part), printed, common);
+    }
+    if (arguments.plot.empty()) return;
+    draw_plot(arguments.plot, [&](const std::string& image) {
+        return detail::residual_plot_script(result.campaign, readings, image);
+    });
 }
 
 }  // namespace posewise::cli

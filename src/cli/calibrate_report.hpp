@@ -16,9 +16,8 @@ Printed describe_calibration(const CalibrateArguments& arguments, const CommonOp
 io::PagePart show_estimate(const Campaign& campaign, const Estimate& estimate,
                            const Measurements* measurements);
 
-/// The page of one that was made with these measurements; nothing if there is no path.
-void write_calibration_page(const CalibrateArguments& arguments, const CommonOptions& common,
-                            const Calibration& result, const Measurements& used,
-                            const Printed& printed);
+/// The page and the plot of one that was made with these measurements, if there are paths for them.
+void show_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
+                      const Calibration& result, const Measurements& used, const Printed& printed);
 
 }  // namespace posewise::cli

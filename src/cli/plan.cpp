@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "../report/plot.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
@@ -17,6 +18,7 @@
 #include "plan_report.hpp"
 #include "plan_target.hpp"
 #include "plan_verification.hpp"
+#include "plot.hpp"
 #include "posewise/io/plan_file.hpp"
 
 namespace posewise::cli {
@@ -70,6 +72,7 @@ struct PlanArguments : RequestArguments {
     VerificationArguments verification;
     std::string csv;
     std::string page;
+    std::string plot;
 };
 
 void check_plan_usage(const PlanArguments& arguments) {
@@ -102,6 +105,7 @@ TargetPlanning plan_with_progress(const io::CampaignFile& campaign, PlanningOpti
 
 void plan(const PlanArguments& arguments, const CommonOptions& common) {
     check_plan_usage(arguments);
+    if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
     const PlanSources& sources = arguments.request.sources;
     const std::string out =
         arguments.out.empty() ? default_plan_out(sources.campaign) : arguments.out;
@@ -110,7 +114,7 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     const io::CampaignFile campaign = read_planned(arguments, stop);
     check_outputs({&campaign},
                   {arguments.earlier.from, sources.augment, sources.repaired, sources.workspace},
-                  {out, arguments.csv, arguments.page}, common);
+                  {out, arguments.csv, arguments.page, arguments.plot}, common);
     const PlanRequest request = make_request(arguments, &campaign, Criterion::V);
     PlanningOptions options = read_planning_inputs(request, campaign);
     check_verification(arguments.verification, campaign, options);
@@ -123,7 +127,7 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     const auto simulated = verify_made(arguments.verification, made, options, arguments.progress);
     if (simulated) note_overtime(request.time_limit, stop, read, "plan and verify");
     interrupted.reset();
-    report_plan({made, simulated, campaign, options, out}, arguments.page, common);
+    report_plan({made, simulated, campaign, options, out}, arguments.page, arguments.plot, common);
 }
 
 // ---- The command line ----
@@ -173,6 +177,7 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
     command.add_option("--csv", arguments.csv, "Write the configurations as CSV, too")
         ->check(file_name());
     add_report_option(command, arguments.page);
+    add_plot_option(command, arguments.plot, "Draw the poses from the side and from above");
     add_progress_flag(command, arguments);
 }
 

@@ -5,8 +5,10 @@
 #include <cstdio>
 
 #include "../core/text.hpp"
+#include "../report/plot.hpp"
 #include "estimates.hpp"
 #include "measured.hpp"
+#include "plot.hpp"
 #include "posewise/io/json_reports.hpp"
 #include "posewise/report/reports.hpp"
 #include "posewise/task/error_map.hpp"
@@ -33,7 +35,8 @@ std::string describe(const MadePlan& plan, const std::vector<CountAccuracy>& cou
 
 }  // namespace
 
-void report_plan(const MadePlan& plan, const std::string& page, const CommonOptions& common) {
+void report_plan(const MadePlan& plan, const std::string& page, const std::string& plot,
+                 const CommonOptions& common) {
     const Planning& planning = *plan.made.planning;
     const bool has_target = plan.made.ending != TargetEnding::NotRun;
     const bool is_stopped = planning.plan.is_stopped_early();
@@ -46,8 +49,15 @@ void report_plan(const MadePlan& plan, const std::string& page, const CommonOpti
                                       : io::to_json(planning, counts, plan.out, plan.simulated);
     }
     print(printed, common);
-    if (page.empty()) return;
-    write_page(page, show_plan(planning.plan, planning.campaign, plan.options), printed, common);
+    if (!page.empty()) {
+        write_page(page, show_plan(planning.plan, planning.campaign, plan.options), printed,
+                   common);
+    }
+    if (plot.empty()) return;
+    const Scene scene = make_scene(planning.campaign);
+    draw_plot(plot, [&](const std::string& image) {
+        return detail::plan_plot_script(planning.plan, scene, image);
+    });
 }
 
 io::PagePart show_plan(const Plan& plan, const Campaign& campaign, const PlanningOptions& options) {

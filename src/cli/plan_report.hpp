@@ -20,8 +20,9 @@ struct MadePlan {
     std::string out;
 };
 
-/// Prints it, and then writes the page, if there is a path for one.
-void report_plan(const MadePlan& plan, const std::string& page, const CommonOptions& common);
+/// Prints it, and then writes the page and draws the plot, if there are paths for them.
+void report_plan(const MadePlan& plan, const std::string& page, const std::string& plot,
+                 const CommonOptions& common);
 
 /// What a page shows of a plan that make_plan() made, beside its document.
 io::PagePart show_plan(const Plan& plan, const Campaign& campaign, const PlanningOptions& options);

@@ -10,11 +10,11 @@
 #include "commands.hpp"
 #include "files.hpp"
 #include "interrupt.hpp"
+#include "plot.hpp"
 #include "posewise/io/json_reports.hpp"
 #include "posewise/io/trial_store.hpp"
 #include "posewise/report/reports.hpp"
 #include "study_options.hpp"
-#include "study_plot.hpp"
 #include "study_runs.hpp"
 
 namespace posewise::cli {
@@ -76,7 +76,9 @@ void print_studies(const std::vector<Study>& studies, const StudyArguments& argu
     }
     extras.page.title = studies.front().campaign;
     write_page(arguments.page, std::move(extras.page), printed, common);
-    if (!arguments.plot.empty()) draw_plot(arguments.plot, studies);
+    if (arguments.plot.empty()) return;
+    draw_plot(arguments.plot,
+              [&](const std::string& image) { return detail::study_plot_script(studies, image); });
 }
 
 /// A table for those studies of a store that belong together each.

@@ -7,6 +7,7 @@
 #include "measured.hpp"
 #include "options.hpp"
 #include "page.hpp"
+#include "plot.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::cli {
@@ -121,8 +122,7 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
         ->check(real_number(0, 1e9));
     command.add_option("--csv", arguments.csv, "Write every subset's result to this file")
         ->check(file_name());
-    command.add_option("--plot", arguments.plot, "Draw error against pose count: .svg or .png")
-        ->check(file_name());
+    add_plot_option(command, arguments.plot, "Draw error against pose count");
     add_report_option(command, arguments.page);
     command.add_flag("--progress", arguments.progress,
                      "Show progress on standard error even if it is no terminal");

@@ -5,54 +5,27 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "../core/format.hpp"
+#include "gnuplot.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 
 namespace posewise::detail {
 namespace {
 
-/// A gnuplot single-quoted string: nothing in it is expanded; a quote is written twice.
-std::string quote(const std::string& text) {
-    std::string quoted = "'";
-    for (const char c : text) {
-        if (c == '\'') quoted += '\'';
-        quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-    return quoted + "'";
-}
-
-/// A name that begins with "|" would be a program to run.
-std::string plain_path(const std::string& path) {
-    return path.starts_with('/') ? path : "./" + path;
-}
-
-bool ends_with_any_case(const std::string& path, const std::string& ending) {
-    return path.size() > ending.size() &&
-           std::equal(ending.rbegin(), ending.rend(), path.rbegin(), [](char a, char b) {
-               return a == std::tolower(static_cast<unsigned char>(b));
-           });
-}
-
 /// In pixels of SVG.
 double panels_width(std::size_t columns) { return 45 + 400 * static_cast<double>(columns); }
 double panels_height(std::size_t rows) { return 220 + 300 * static_cast<double>(rows); }
 
 /// Of so many panels beside and below each other, a legend below.
-std::string terminal(const std::string& image_path, std::size_t columns, std::size_t rows) {
-    const bool is_svg = ends_with_any_case(image_path, ".svg");
+std::string study_output(const std::string& image_path, std::size_t columns, std::size_t rows) {
     const bool is_one = columns * rows == 1;
-    const double scale = is_svg ? 1 : 1.5;
-    return fmt::format("{} size {:.0f},{:.0f} {}", is_svg ? "svg" : "pngcairo",
-                       scale * (is_one ? 900 : 110 + 380 * static_cast<double>(columns)),
-                       scale * (is_one ? 600 : 130 + 280 * static_cast<double>(rows)),
-                       is_svg ? "dynamic rounded font 'Helvetica,15' background '#ffffff'"
-                              : "rounded font 'Helvetica,18' linewidth 1.4");
+    return gnuplot_output(image_path, is_one ? 900 : 110 + 380 * static_cast<double>(columns),
+                          is_one ? 600 : 130 + 280 * static_cast<double>(rows));
 }
 
 /// Range of the error axis in mm.
@@ -167,11 +140,11 @@ void draw(const Study& study, std::size_t number, const ErrorAxis& axis, Drawing
     };
     std::vector<std::string> random{
         fmt::format("using 1:3 with lines lw 2 dt (8,5) lc rgb '{}' title {}",
-                    number == 0 ? "#5f6b77" : color(0), quote("random, median" + of_model))};
+                    number == 0 ? "#5f6b77" : color(0), gnuplot_text("random, median" + of_model))};
     if (number == 0) {
         const std::string title = "random, 10-90 % (open top: not identifiable)" + of_model;
-        random.insert(random.begin(),
-                      "using 1:2:4 with filledcurves fc rgb '#c9cfd6' title " + quote(title));
+        random.insert(random.begin(), "using 1:2:4 with filledcurves fc rgb '#c9cfd6' title " +
+                                          gnuplot_text(title));
     }
     drawing.add(number == 0 ? "random" : fmt::format("random{}", number),
                 band_lines(study.rows, axis), random);
@@ -182,7 +155,7 @@ void draw(const Study& study, std::size_t number, const ErrorAxis& axis, Drawing
             fmt::format("optimal{}", lines_before + i),
             criterion_lines(study.rows, i, study.criteria.size()),
             {fmt::format("using 1:2 with linespoints lw 2.5 pt 7 ps 0.6 lc rgb '{}' title {}",
-                         color(i), quote("optimal, " + name + of_model))});
+                         color(i), gnuplot_text("optimal, " + name + of_model))});
     }
 }
 
@@ -193,7 +166,8 @@ std::string one_panel(const std::vector<Study>& studies, const ErrorAxis& axis) 
     Drawing drawing;
     for (std::size_t i = 0; i < studies.size(); ++i) draw(studies[i], i, axis, drawing);
     return fmt::format("set title {} noenhanced\n{}set key below\n{}{}\n",
-                       quote(studies.front().campaign), axis_labels, drawing.data, drawing.clauses);
+                       gnuplot_text(studies.front().campaign), axis_labels, drawing.data,
+                       drawing.clauses);
 }
 
 /// A panel a study, with the same axes and one legend.
@@ -206,7 +180,7 @@ std::string panels(const std::vector<Study>& studies, const ErrorAxis& axis, std
         "set multiplot layout {},{} title {} noenhanced margins {:.4f},{:.4f},{:.4f},{:.4f} "
         "spacing {:.4f},{:.4f}\n"
         "set key at screen 0.5,{:.4f} center bottom\n",
-        rows, columns, quote(studies.front().campaign), part(75, width), 1 - part(25, width),
+        rows, columns, gnuplot_text(studies.front().campaign), part(75, width), 1 - part(25, width),
         part(220, height), 1 - part(75, height), part(55, width), part(95, height),
         part(10, height));
     for (std::size_t i = 0; i < studies.size(); ++i) {
@@ -216,23 +190,13 @@ std::string panels(const std::vector<Study>& studies, const ErrorAxis& axis, std
         const bool is_lowest = i + columns >= studies.size();
         script += fmt::format(
             "set title {} noenhanced\nset xlabel '{}'\nset ylabel '{}'\n{}{}\nunset key\n",
-            quote(studies[i].model), is_lowest ? "poses used for calibration" : "",
+            gnuplot_text(studies[i].model), is_lowest ? "poses used for calibration" : "",
             is_left ? "held-out RMS (mm)" : "", drawing.data, drawing.clauses);
     }
     return script + "unset multiplot\n";
 }
 
 }  // namespace
-
-void check_image_path(const std::string& path) {
-    if (std::any_of(path.begin(), path.end(),
-                    [](char c) { return static_cast<unsigned char>(c) < 0x20; })) {
-        throw InputError("the plot's path holds a control character");
-    }
-    if (!ends_with_any_case(path, ".svg") && !ends_with_any_case(path, ".png")) {
-        throw InputError("the plot is '" + path + "', its ending must be .svg or .png");
-    }
-}
 
 std::string study_plot_script(const std::vector<Study>& studies, const std::string& image_path) {
     check_image_path(image_path);
@@ -250,13 +214,12 @@ std::string study_plot_script(const std::vector<Study>& studies, const std::stri
     const std::size_t rows = is_one ? 1 : (studies.size() + columns - 1) / columns;
     const Study& first = studies.front();
     std::string script = fmt::format(
-        "set terminal {}\nset output {}\n"
-        "{}set logscale y\nset yrange [{}:{}]\nset format y '%g'\n"
+        "{}{}set logscale y\nset yrange [{}:{}]\nset format y '%g'\n"
         "set xtics out nomirror\nset ytics out nomirror ({})\n"
         "set border 3 lc rgb '#5f6b77'\nset grid ytics lc rgb '#dfe3e8'\n"
         "set offsets graph 0.02, graph 0.02\nset key reverse Left\n",
-        terminal(image_path, columns, rows), quote(plain_path(image_path)), count_axis(first.rows),
-        format_short(axis.lower), format_short(axis.upper), axis.format_ticks());
+        study_output(image_path, columns, rows), count_axis(first.rows), format_short(axis.lower),
+        format_short(axis.upper), axis.format_ticks());
     script += is_one ? one_panel(studies, axis) : panels(studies, axis, columns, rows);
     return script + "set output\n";
 }

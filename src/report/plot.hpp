@@ -4,6 +4,9 @@
 #include <functional>
 #include <string>
 
+#include "posewise/task/plan.hpp"
+#include "posewise/task/residuals.hpp"
+#include "posewise/task/scene.hpp"
 #include "posewise/task/study.hpp"
 
 namespace posewise::detail {
@@ -19,6 +22,20 @@ void check_image_path(const std::string& path);
 /// Texts and paths are quoted, so nothing in them is executed. Throws InputError as
 /// check_image_path() does, or for a study without any held-out error.
 std::string study_plot_script(const std::vector<Study>& studies, const std::string& image_path);
+
+/// The script that draws the poses of a plan in the base frame, from the side and from above: each
+/// as a line through the joints to the targets, coloured in the order to visit them, with the
+/// cell's solids, floor and walls along an axis, and the tracker. Throws InputError as
+/// check_image_path(), and for a plan without a robot.
+std::string plan_plot_script(const Plan& plan, const Scene& scene, const std::string& image_path);
+
+/// The script that draws what is left of the readings of a calibration: each in the order measured,
+/// an axis a colour; and how many are off by less than how much, of the nominal robot, calibrated,
+/// and held out. Lengths if there are some, else angles. Throws InputError as check_image_path(),
+/// and where nothing was measured.
+std::string residual_plot_script(const Campaign& campaign,
+                                 const std::vector<ReadingResidual>& readings,
+                                 const std::string& image_path);
 
 /// Runs gnuplot on a script file, not through a shell. Throws InputError if gnuplot is absent or
 /// fails, or is ended because it takes longer than `limit` or `is_stopped` says so.

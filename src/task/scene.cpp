@@ -1,5 +1,6 @@
 #include "posewise/task/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
@@ -135,6 +136,18 @@ Scene make_scene(const Campaign& campaign, const Measurements* measurements) {
 Isometry3d world_from_flange(const Scene& scene, const VectorXd& configuration) {
     return scene.world_from_base *
            scene.robot.base_from_flange(configuration.head(scene.robot.joint_count()), VectorXd());
+}
+
+std::vector<Vector3d> arm_places(const Scene& scene, const VectorXd& configuration) {
+    const std::vector<Isometry3d> frames =
+        scene.robot.base_from_links(configuration.head(scene.robot.joint_count()), VectorXd());
+    std::vector<Vector3d> places;
+    for (const Isometry3d& frame : frames) places.push_back(frame.translation());
+    Vector3d centre = Vector3d::Zero();
+    for (const SceneTarget& target : scene.targets) centre += target.position;
+    const auto count = static_cast<double>(scene.targets.size());
+    places.emplace_back(frames.back() * Vector3d(centre / std::max(count, 1.0)));
+    return places;
 }
 
 std::optional<Vector3d> instrument_position(const Campaign& campaign) {

@@ -1,6 +1,5 @@
-#include <sys/stat.h>
-
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "program.hpp"
@@ -217,6 +216,20 @@ TEST_F(Report, LosesNothingWhereThePageCannotBeWritten) {
     EXPECT_EQ(outcome.err, "posewise: r.html: cannot be written: File too large\n");
     EXPECT_TRUE(has_file("e.json"));
     EXPECT_FALSE(has_file("r.html"));
+}
+
+TEST_F(Report, HasPlotsBesideIt) {
+    if (std::system("gnuplot --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no gnuplot here";
+    simulate();
+    run_well("calibrate " + fanuc_design + " -m s.csv --folds 0 --plot r.svg --report r.html");
+    EXPECT_NE(text_of("r.svg").find("left after calibration"), std::string::npos);
+    run_well("plan " + cell_design +
+             " -k 4 --prior --pool 60 --starts 1 --workspace-poses 20 -c d -o p.json --plot p.svg");
+    EXPECT_NE(text_of("p.svg").find("from above"), std::string::npos);
+    expect_input_error("plan " + cell_design + " -k 4 --plot p.pdf", "must be .svg or .png");
+    expect_input_error("calibrate " + fanuc_design + " -m s.csv --plot s.csv", "must be .svg");
+    expect_input_error("calibrate " + fanuc_design + " -m s.csv --plot a.svg --report a.svg",
+                       "shall be written twice");
 }
 
 TEST_F(Report, IsWrittenWhenTimeIsUp) {

@@ -67,6 +67,10 @@ Scene make_scene(const Campaign& campaign, const Measurements* measurements = nu
 /// joints; they are not looked at.
 Isometry3d world_from_flange(const Scene& scene, const VectorXd& configuration);
 
+/// Where its arm is then: the places of the base, of each joint, of the flange and of the targets'
+/// centre, in the base frame.
+std::vector<Vector3d> arm_places(const Scene& scene, const VectorXd& configuration);
+
 /// Where the instrument stands in the world, if the campaign tells: that of a laser tracker's
 /// noise, or of a cell that says what it sees.
 std::optional<Vector3d> instrument_position(const Campaign& campaign);

@@ -1,4 +1,4 @@
-#include "study_plot.hpp"
+#include "plot.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -6,6 +6,7 @@
 #include "../io/atomic_file.hpp"
 #include "../io/signal_delay.hpp"
 #include "../report/plot.hpp"
+#include "options.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::cli {
@@ -56,21 +57,23 @@ std::string leave_script(const std::string& script, const std::string& image_pat
 
 }  // namespace
 
-void draw_plot(const std::string& image_path, const std::vector<Study>& studies) {
+void add_plot_option(CLI::App& command, std::string& path, const std::string& what) {
+    command.add_option("--plot", path, what + ": .svg or .png")->check(file_name());
+}
+
+void draw_plot(const std::string& image_path, const MakeScript& make_script) {
     const detail::SignalDelay delay;
     const ScratchFolder folder;
     const std::string image = folder.path_of("image" + fs::path(image_path).extension().string());
     const std::string script = folder.path_of("script.gnuplot");
-    detail::write_file(script, detail::study_plot_script(studies, image));
+    detail::write_file(script, make_script(image));
     try {
         detail::run_gnuplot(script, detail::SignalDelay::has_come);
         if (!fs::exists(image)) throw InputError("gnuplot wrote no image");
     } catch (const InputError& error) {
         if (detail::SignalDelay::has_come()) return;  // it ends the program
-        throw input_error_at(
-            {image_path},
-            std::string("the plot was not drawn, ") + error.what() +
-                leave_script(detail::study_plot_script(studies, image_path), image_path));
+        throw input_error_at({image_path}, std::string("the plot was not drawn, ") + error.what() +
+                                               leave_script(make_script(image_path), image_path));
     }
     detail::write_file(image_path, detail::read_file(image));
 }
