@@ -41,7 +41,8 @@ function namedParts(document) {
   return parts.map((part, k) => {
     const plain = `${part.title} (${kindOf(part)})`;
     const isTwice = parts.some((other, i) => i !== k && `${other.title} (${kindOf(other)})` === plain);
-    return { ...part, kind: kindOf(part), name: isTwice ? `${k + 1}. ${plain}` : plain };
+    // Headings within a part follow that of the section, or of the part.
+    return { ...part, sub: parts.length === 1 ? 'h3' : 'h4', kind: kindOf(part), name: isTwice ? `${k + 1}. ${plain}` : plain };
   });
 }
 

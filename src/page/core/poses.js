@@ -2,11 +2,19 @@
 
 import { fixed, reading, splitUnit } from './format.js';
 
-/** `id`, `joints` (m, rad), `keys` of them, and of plans `value` (mm; null: needed), `targets`, `via`. */
+/** Names of sockets that poses touch, in their order, by the parameters of a plan; empty of other sensors. */
+const socketsOf = ({ predicted }) =>
+  [...new Set(Object.keys(predicted?.standard_deviation ?? {}).map((key) => /^socket\.(.+)\.[^.]+$/.exec(key)?.[1]).filter(Boolean))];
+
+/**
+ * `id`, `joints` (m, rad), `keys` of them, and of plans `value` (mm; null: needed), `targets` it shows or
+ * `touched` sockets, `via`.
+ */
 export function posesOf(part) {
   const { document, scene } = part;
   const planned = document.poses;
   if (planned?.length > 0 && planned[0].joints) {
+    const sockets = socketsOf(document);
     const values = new Map((document.pose_values ?? []).map((one) => [one.id, one.value_mm]));
     return planned.map((pose) => {
       const keys = Object.keys(pose.joints);
@@ -16,7 +24,8 @@ export function posesOf(part) {
         joints: drawn.map((key) => pose.joints[key]),
         via: pose.via ? drawn.map((key) => pose.via[key]) : null,
         blocked: pose.way_is_blocked, kept: pose.kept, hasWay: 'via' in pose,
-        value: values.get(pose.id), targets: pose.visible_targets ?? null,
+        value: values.get(pose.id), targets: sockets.length > 0 ? null : pose.visible_targets ?? null,
+        touched: sockets.length > 0 ? (pose.visible_targets ?? []).map((number) => sockets[number - 1] ?? number) : null,
       };
     });
   }

@@ -20,6 +20,13 @@ export function table(caption, header, rows) {
         (k === 0 ? cell('th', k, row[k], 'row') : cell('td', k, row[k]))))))));
 }
 
+/** The same, but for paper: too long or wide for it. */
+export function screenTable(...arguments_) {
+  const element = table(...arguments_);
+  element.classList.add('not-on-paper');
+  return element;
+}
+
 /** A list of what is stated: pairs of a name and text or elements. */
 export function facts(pairs) {
   const shown = pairs.filter(([, value]) => value !== null && value !== undefined && value !== '');

@@ -2,7 +2,7 @@ import { el } from '../core/dom.js';
 import { figure } from '../core/figure.js';
 import { fixed } from '../core/format.js';
 import { correlationsOf } from '../core/parameters.js';
-import { table } from '../core/table.js';
+import { screenTable, table } from '../core/table.js';
 import { colour, diverging } from '../core/theme.js';
 import { colourBar } from '../draw/colour_bar.js';
 import { drawing } from '../draw/canvas.js';
@@ -48,7 +48,7 @@ function matrix({ names, at }, text) {
 }
 
 function matrixTable({ names, at }) {
-  return table('Correlation matrix', ['', ...names], names.map((name, i) => [name, ...names.map((unused, j) => (j <= i ? fixed(at(i, j), 2) : ''))]));
+  return screenTable('Correlation matrix', ['', ...names], names.map((name, i) => [name, ...names.map((unused, j) => (j <= i ? fixed(at(i, j), 2) : ''))]));
 }
 
 export function correlationFigure(document) {

@@ -3,7 +3,7 @@ import { figure, lead } from '../core/figure.js';
 import { count, fixed, mm } from '../core/format.js';
 import { applyInverse } from '../core/kinematics.js';
 import { quantile } from '../core/statistics.js';
-import { table } from '../core/table.js';
+import { screenTable, table } from '../core/table.js';
 import { ramp } from '../core/theme.js';
 import { colourBar } from '../draw/colour_bar.js';
 import { drawSlices, sliced } from '../draw/slices.js';
@@ -29,7 +29,7 @@ function summaryTable(sets) {
 
 function pointTable(points) {
   const hasDisplacement = points.some((one) => one.displacement_mm);
-  return table('Points of the map, in the robot\u2019s base frame', ['x/m', 'y/m', 'z/m', 'predicted/mm', ...(hasDisplacement ? ['dx/mm', 'dy/mm', 'dz/mm'] : [])],
+  return screenTable('Points of the map, in the robot\u2019s base frame', ['x/m', 'y/m', 'z/m', 'predicted/mm', ...(hasDisplacement ? ['dx/mm', 'dy/mm', 'dz/mm'] : [])],
     points.map((one) => [...one.at.map((value) => fixed(value, 3)), mm(one.predicted_mm), ...(hasDisplacement ? (one.displacement ?? [null, null, null]).map(mm) : [])]));
 }
 

@@ -42,11 +42,13 @@ function poseTable(part, poses) {
   const header = ['pose', ...poses[0].keys.map(columnTitle)];
   if (poses.some((pose) => pose.value !== undefined)) header.push('value/mm');
   if (poses.some((pose) => pose.targets)) header.push('targets seen');
+  if (poses.some((pose) => pose.touched)) header.push('socket');
   if (isPlan) header.push('way there');
   const rows = poses.map((pose) => {
     const row = [pose.id, ...pose.all.map((value, k) => cellOf(pose.keys[k], value))];
     if (header.includes('value/mm')) row.push(pose.value === undefined ? '-' : valueOf(pose));
     if (header.includes('targets seen')) row.push((pose.targets ?? []).join(' '));
+    if (header.includes('socket')) row.push((pose.touched ?? []).join(' '));
     if (isPlan) row.push(wayOf(pose));
     return row;
   });
@@ -91,6 +93,7 @@ function describe(poses, k) {
   const parts = [`Pose ${pose.id}, ${k + 1} of ${poses.length}`];
   if (pose.value !== undefined) parts.push(pose.value === null ? 'needed' : `value ${mm(pose.value)} mm`);
   if (pose.targets) parts.push(pose.targets.length > 0 ? `targets seen: ${pose.targets.join(' ')}` : 'no target seen');
+  if (pose.touched) parts.push(`socket: ${pose.touched.join(' ')}`);
   if (pose.blocked) parts.push('no free way there was found');
   else if (pose.via) parts.push('reached over a via point');
   return parts.join(' \u00b7 ');

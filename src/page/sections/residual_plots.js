@@ -81,7 +81,7 @@ function normalFigure(residuals) {
 }
 
 /** The readings farthest off, by name; those that chance would have in 1 of 20 campaigns at most are marked. */
-function farthest(residuals) {
+function farthest({ residuals, sub }) {
   const all = residuals.rows.filter((row) => row.standardised?.every(Number.isFinite));
   if (all.length === 0) return null;
   const size = (row) => Math.max(...row.standardised.map(Math.abs));
@@ -89,16 +89,16 @@ function farthest(residuals) {
   const list = [...all].sort((a, b) => size(b) - size(a)).slice(0, 12);
   const beyond = all.filter((row) => size(row) > limit).length;
   const header = ['configuration', 'sample', 'target', ...residuals.axes.map((axis, k) => `${axis}/${residuals.unit[k]}`), 'std. devs.', 'by chance'];
-  return [el('h4', {}, 'Farthest readings'),
+  return [el(sub, { class: 'sub' }, 'Farthest readings'),
     el('p', {}, `${beyond === 0 ? 'None is' : `${beyond} ${beyond === 1 ? 'is' : 'are'}`} farther off than chance would have it (${fixed(limit, 2)} standard deviations, 1 campaign in 20).`),
     table('Farthest readings', header, list.map((row) => [row.configuration, row.sample, row.target, ...row.residual.map(mm), fixed(size(row), 2), size(row) > limit ? 'no' : 'yes'])
       .map((row) => row.map((cell) => String(cell ?? ''))))];
 }
 
-function outliers({ outliers: list, loss }) {
+function outliers({ document: { outliers: list, loss }, sub }) {
   if (!loss) return null;
   const sorted = [...(list ?? [])].sort((a, b) => b.standard_deviations - a.standard_deviations);
-  return [el('h4', {}, 'Outliers'), el('p', {}, `Loss ${loss.kind} with width ${short(loss.width_standard_deviations, 4)} standard deviations: ${count(sorted.length, 'outlier')}.`),
+  return [el(sub, { class: 'sub' }, 'Outliers'), el('p', {}, `Loss ${loss.kind} with width ${short(loss.width_standard_deviations, 4)} standard deviations: ${count(sorted.length, 'outlier')}.`),
     sorted.length === 0 ? null : table('Outliers, farthest first', ['configuration', 'target', 'error/mm', 'std. devs.', 'weight'], sorted.map((one) =>
       [one.configuration, String(one.target), mm(one.distance_mm), fixed(one.standard_deviations, 1), fixed(one.weight, 3)]))];
 }
@@ -111,7 +111,7 @@ function meansTable(part, residuals, groups) {
 }
 
 export function render(part) {
-  const { residuals } = part;
+  const { residuals, sub } = part;
   const groups = meansOf(residuals);
   const joints = groups[0].joints.map((unused, j) => {
     const name = columnTitle(keyOf(part, j));
@@ -121,7 +121,7 @@ export function render(part) {
     .filter(([key]) => groups.every((group) => key in group)).map(([key, name, factor]) => ({ name, xs: groups.map((group) => factor * group[key]) }));
   return el('div', {}, lead(`What ${residuals.rows.length} readings miss the calibrated robot by. Dots are means of ${count(groups.length, 'configuration')}.`),
     el('div', { class: 'figures' }, driftFigures(driftOf(residuals, part.scene?.joints)), normalFigure(residuals)),
-    el('h4', {}, 'Against each joint'), against(residuals, groups, joints),
-    sight.length > 0 ? [el('h4', {}, 'Against range and angles of the instrument'), against(residuals, groups, sight)] : null,
-    outliers(part.document), farthest(residuals), behind([meansTable(part, residuals, groups)], 'Mean residuals as a table'));
+    el(sub, { class: 'sub' }, 'Against each joint'), against(residuals, groups, joints),
+    sight.length > 0 ? [el(sub, { class: 'sub' }, 'Against range and angles of the instrument'), against(residuals, groups, sight)] : null,
+    outliers(part), farthest(part), behind([meansTable(part, residuals, groups)], 'Mean residuals as a table'));
 }

@@ -7,7 +7,7 @@ import { limitOf } from './verdict_plan.js';
 /** What the calibration leaves where it was not measured: of what is known the most honest. */
 function errorOf({ accuracy }) {
   const unit = accuracy.fit.distance_rms_mm === undefined ? 'mrad' : 'mm';
-  const pick = (metrics) => ({ rms: metrics[unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'], p95: metrics.distance_p95_mm, unit });
+  const pick = (metrics) => ({ rms: metrics[unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'], p95: metrics.distance_p95_mm, turn: unit === 'mm' ? metrics.orientation_rms_mrad : undefined, unit });
   if (accuracy.validation) return { ...pick(accuracy.validation), where: 'on the measurements kept for validation', key: null };
   if (accuracy.left_out) return { ...pick(accuracy.left_out), where: 'on configurations not in the plan', key: null };
   if (accuracy.held_out) return { ...pick(accuracy.held_out.samples), where: `on configurations not measured (held out, ${accuracy.held_out.folds} folds)`, key: 'held_out' };
@@ -21,7 +21,7 @@ export function describeDrift(drift) {
   const beside = drift.besideJoints ? ', besides what follows the joints\u2019 positions' : '; poses that were measured in an order of theirs look alike';
   if (drift.verdict === 'yes') return `Yes: residuals follow the order of the measurements (${size}${beside}).`;
   if (drift.verdict === 'perhaps') return `Perhaps: ${size}${beside}.`;
-  return `None seen (strongest in ${size}); ${mm(Math.max(...drift.slopes.map((one) => one.seen)))} ${worst.unit} over the campaign would have been seen with 95 % confidence.`;
+  return `None seen (strongest in ${size}); ${mm(Math.max(...drift.slopes.filter((one) => one.unit === worst.unit).map((one) => one.seen)))} ${worst.unit} over the campaign would have been seen with 95 % confidence.`;
 }
 
 function mostOf(part) {
@@ -31,8 +31,8 @@ function mostOf(part) {
   if (list.length === 0) return 'Not known: nothing was held out.';
   const [first] = list;
   const folds = part.document.accuracy.held_out?.folds;
-  const alone = folds === list.length ? 'the others' : 'other groups';
-  return `Configuration ${first.id}: ${alone} predict it to ${mm(first.heldOut)} ${unit} RMS, with it the fit is ${mm(first.fit)} ${unit}; no other is missed as much more.`;
+  const alone = folds === list.length ? 'the others' : 'the other groups';
+  return `Configuration ${first.id}: predicted by ${alone} it is missed by ${mm(first.heldOut)} ${unit} RMS, with it by ${mm(first.fit)} ${unit}: the largest difference of all.`;
 }
 
 /** Poses more for 0.8 of the error, if they tell as much as those measured: of variances only that of the parameters falls. */
@@ -44,7 +44,7 @@ function moreOf({ document }) {
   const rest = all - parameters;
   const wanted = 0.64 * all - rest;
   const now = document.measured.configurations;
-  if (!(wanted > 0)) return `More poses like these do not help: the parameters are only ${mm(Math.sqrt(parameters))} of ${mm(Math.sqrt(all))} ${unit}; without their part ${mm(Math.sqrt(rest))} ${unit} are left. A better model or instrument would.`;
+  if (!(wanted > 0)) return `More poses like these cannot do it: of the ${mm(Math.sqrt(all))} ${unit} RMS expected only ${mm(Math.sqrt(parameters))} ${unit} are by parameters not known better; without that ${mm(Math.sqrt(rest))} ${unit} would be left. A better model of the robot or a better instrument would help.`;
   return `About ${count(Math.ceil((now * parameters) / wanted - now), 'configuration')} more, if they tell as much as those measured.`;
 }
 
@@ -91,7 +91,7 @@ export function answerEstimate(part) {
     sentence: `Calibrated, the robot is off by ${mm(error.rms)} ${error.unit} RMS${within} ${error.where}${times}.`,
     warnings,
     rows: [
-      ['How accurate', `${mm(error.rms)} ${error.unit} RMS${error.p95 === undefined ? '' : `, 95 % are below ${mm(error.p95)} mm`}, ${error.where}, noise of the instrument included.`],
+      ['How accurate', `${mm(error.rms)} ${error.unit} RMS${error.p95 === undefined ? '' : `, 95 % are below ${mm(error.p95)} mm`}${error.turn === undefined ? '' : `, orientations ${mm(error.turn)} mrad RMS`}, ${error.where}, noise of the instrument included.`],
       ['How sure', interval ? `RMS with 95 % confidence between ${mm(interval.lower)} and ${mm(interval.upper)} ${error.unit}, by how ${interval.count} configurations differ; ${document.degrees_of_freedom} degrees of freedom, variance factor ${short(document.variance_factor, 4)}.`
         : `${document.degrees_of_freedom} degrees of freedom, variance factor ${short(document.variance_factor, 4)}.`],
       ['Over the workspace', workspace ? `${mm(workspace.rms)} mm RMS, ${mm(workspace.most)} mm at worst, are expected by the parameters alone, at ${workspace.count} configurations within the limits: see the error map.` : null],

@@ -45,7 +45,7 @@ function surenessOf(document, found) {
     text.push(`Checked on ${checked.robot_count} robots that were drawn and calibrated: see Coverage.`);
   }
   const efficiency = document.bounds?.pool.efficiency ?? document.efficiency;
-  if (typeof efficiency === 'number') text.push(`Of the poses: ${fixed(efficiency, 4)} of the best possible value of the criterion is proven.`);
+  if (typeof efficiency === 'number') text.push(`${document.bounds ? 'The best choice from the pool' : 'This choice'} is proven to reach ${fixed(100 * efficiency, 2)} % of the largest possible value of its criterion, at least.`);
   return text.join(' ');
 }
 
@@ -68,7 +68,7 @@ function moreOf(document) {
   const floor = curve.floor === null ? '' : ` Were all parameters known, ${mm(curve.floor)} mm would be left.`;
   if (!found) return `Not known.${floor}`;
   if (found.more !== null) return `About ${count(found.more, 'pose')} more, interpolated on the curve below.${floor}`;
-  const rest = found.upTo > curve.current.count ? `Not by poses up to ${found.upTo}: ${found.upTo} leave ${short(100 * found.ratio, 2)} % of what ${curve.current.count} do.` : 'Not known: no larger number of poses was tried.';
+  const rest = found.upTo > curve.current.count ? `No number tried is enough: ${found.upTo} poses still leave ${short(100 * found.ratio, 2)} % of what ${curve.current.count} leave.` : 'Not known: no larger number of poses was tried.';
   return `${rest}${floor}`;
 }
 
