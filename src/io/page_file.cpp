@@ -15,8 +15,9 @@ using detail::Json;
 
 constexpr int page_format = 1;
 
-/// Numbers that are drawn need not be read back exactly: nm and nrad, and less text.
-double rounded(double value) { return std::round(1e9 * value) / 1e9; }
+/// Numbers that are drawn need not be read back exactly: um and urad, nm of small errors, which are
+/// in mm, and less text.
+double rounded(double value) { return std::round(1e6 * value) / 1e6; }
 
 Json drawn(const Eigen::Ref<const VectorXd>& values, double factor = 1) {
     Json list = Json::array();
@@ -55,8 +56,8 @@ Json capsule_to_json(const SceneCapsule& capsule) {
     return {{"name", capsule.name},
             {"kind", capsule.is_obstacle ? "keep_out" : "link"},
             {"after_element", capsule.after_element},
-            {"from", drawn(capsule.solid.from)},
-            {"to", drawn(capsule.solid.to)},
+            {"from", detail::vector_to_json(capsule.solid.from)},
+            {"to", detail::vector_to_json(capsule.solid.to)},
             {"radius", capsule.solid.radius}};
 }
 
@@ -139,17 +140,18 @@ Json residuals_to_json(const PageResiduals& residuals) {
     for (const bool is_angle : residuals.is_angle) {
         json["unit"].push_back(units_of(is_angle).error);
     }
+    Index last = -1;
     for (const ReadingResidual& reading : residuals.readings) {
-        const auto target = static_cast<std::size_t>(reading.target);
-        const std::string& id = measured.ids[static_cast<std::size_t>(reading.configuration)];
-        const std::string sample = measured.sample_name(reading.configuration, reading.sample);
-        Json row = {
-            {"configuration", id},
-            {"sample", sample.substr(id.size() + 1)},  // less "7:"
-            {"target", residuals.names[target]},
-            {"joints", drawn(measured.configurations.row(reading.configuration).transpose())},
-            {"residual", residual_to_json(reading.calibrated)},
-            {"nominal", residual_to_json(reading.nominal)}};
+        const Index k = reading.configuration;
+        const std::string& id = measured.ids[static_cast<std::size_t>(k)];
+        const std::string sample = measured.sample_name(k, reading.sample);
+        Json row = {{"configuration", id},
+                    {"sample", sample.substr(id.size() + 1)},  // less "7:"
+                    {"target", residuals.names[static_cast<std::size_t>(reading.target)]}};
+        if (k != last) row["joints"] = drawn(measured.configurations.row(k).transpose());
+        last = k;
+        row["residual"] = residual_to_json(reading.calibrated);
+        row["nominal"] = residual_to_json(reading.nominal);
         if (reading.held_out) row["held_out"] = residual_to_json(*reading.held_out);
         row["standardised"] = drawn(reading.standardised);
         if (reading.direction) {

@@ -43,9 +43,12 @@ class Report : public Program {
 
 TEST_F(Report, OfAPlanHasWhatItPrintsAndWhatItsFileAndCampaignTell) {
     const std::string plan = "plan " + cell_design +
-                             " -k 4 --prior --pool 60 --starts 1 --workspace-poses 20 "
+                             " -k 4 --prior --pool 120 --starts 1 --workspace-poses 20 "
                              "--criterion d -o p.json";
-    const std::string text = run_well(plan + " --report 'my page.html'");
+    const bool has_gnuplot = std::system("gnuplot --version > /dev/null 2>&1") == 0;
+    const std::string text =
+        run_well(plan + (has_gnuplot ? " --plot p.svg" : "") + " --report 'my page.html'");
+    EXPECT_EQ(has_gnuplot, text_of("p.svg").find("from above") != std::string::npos);
     const json part = part_in("my page.html");
     EXPECT_EQ(part["printed"], text);
     EXPECT_EQ(part["title"], "FANUC R-2000iC/165F in a cell");
@@ -64,10 +67,6 @@ TEST_F(Report, OfAPlanHasWhatItPrintsAndWhatItsFileAndCampaignTell) {
     EXPECT_EQ(again["scene"], part["scene"]);
     EXPECT_EQ(again["error_map"], part["error_map"]);
     EXPECT_TRUE(again["command"].is_null() && again["printed"].is_null());
-
-    const json printed = json::parse(run_well(plan + " --json --report j.html"));
-    EXPECT_EQ(part_in("j.html")["document"], printed);
-    EXPECT_EQ(part_in("j.html")["printed"], text);
 }
 
 TEST_F(Report, OfACalibrationIsTheSameFromItsFile) {
@@ -88,6 +87,12 @@ TEST_F(Report, OfACalibrationIsTheSameFromItsFile) {
     EXPECT_NEAR(std::sqrt(squares / 45),
                 part["document"]["accuracy"]["held_out"]["samples"]["distance_rms_mm"], 1e-6);
 
+    const json printed = json::parse(run_well("calibrate " + fanuc_design +
+                                              " -m s.csv --exclude 3 --folds 4 --loss huber "
+                                              "--json --report j.html"));
+    EXPECT_EQ(part_in("j.html")["document"], printed);
+    EXPECT_EQ(part_in("j.html")["printed"], text);
+
     run_well("report e.json -o again.html");
     const json again = part_in("again.html");
     EXPECT_EQ(again["document"], part["document"]);
@@ -98,7 +103,7 @@ TEST_F(Report, OfACalibrationIsTheSameFromItsFile) {
         for (const char* const part_name : {"residual", "nominal", "held_out", "standardised"}) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 EXPECT_NEAR(other[part_name][axis].get<double>(),
-                            rows[k][part_name][axis].get<double>(), 1e-6);
+                            rows[k][part_name][axis].get<double>(), 2e-6);
             }
         }
     }
@@ -223,9 +228,6 @@ TEST_F(Report, HasPlotsBesideIt) {
     simulate();
     run_well("calibrate " + fanuc_design + " -m s.csv --folds 0 --plot r.svg --report r.html");
     EXPECT_NE(text_of("r.svg").find("left after calibration"), std::string::npos);
-    run_well("plan " + cell_design +
-             " -k 4 --prior --pool 60 --starts 1 --workspace-poses 20 -c d -o p.json --plot p.svg");
-    EXPECT_NE(text_of("p.svg").find("from above"), std::string::npos);
     expect_input_error("plan " + cell_design + " -k 4 --plot p.pdf", "must be .svg or .png");
     expect_input_error("calibrate " + fanuc_design + " -m s.csv --plot s.csv", "must be .svg");
     expect_input_error("calibrate " + fanuc_design + " -m s.csv --plot a.svg --report a.svg",

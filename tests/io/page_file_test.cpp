@@ -123,6 +123,8 @@ TEST(ToPage, HasTheSceneAndWhatIsLeftOfReadings) {
     EXPECT_EQ(shown["residuals"]["unit"], json({"mm", "mm", "mm"}));
     EXPECT_EQ(rows[4]["sample"], "2");
     EXPECT_EQ(rows[4]["target"], "target2");
+    EXPECT_TRUE(rows[6].contains("joints"));
+    EXPECT_FALSE(rows[7].contains("joints")) << "as the row before has them";
     double squares = 0;
     for (const json& row : rows) {
         for (const json& one : row["residual"]) squares += one.get<double>() * one.get<double>();

@@ -24,7 +24,7 @@ class MapErrors : public ::testing::Test {
         campaign_.cell = testing::demo_cell();
         campaign_.spread.is_prior = true;
         options_.pose_count = 4;
-        options_.pool_count = 60;
+        options_.pool_count = 120;
         options_.starts = 1;
         options_.criterion = Criterion::D;
         options_.workspace_count = 10;
