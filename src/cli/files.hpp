@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,12 +20,14 @@ void check_outputs(const std::vector<const io::CampaignFile*>& campaigns,
                    std::vector<std::string> inputs, const std::vector<std::string>& outputs,
                    const CommonOptions& common);
 
-/// What `compute` returns; its InputErrors, which are about the content of the file, name it.
+/// What `compute` returns; its InputErrors, which are about the content of the file, name it, unless
+/// they name a file already.
 template <class Compute>
 auto compute_from(const std::string& path, Compute&& compute) {
     try {
         return std::forward<Compute>(compute)();
     } catch (const InputError& error) {
+        if (std::string_view(error.what()).starts_with(path + ": ")) throw;
         throw input_error_at({path}, error.what());
     }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "../core/text.hpp"
@@ -84,7 +85,7 @@ void print_studies(const std::vector<Study>& studies, const StudyArguments& argu
 /// A table for those studies of a store that belong together each.
 void print_store(const std::string& path, const StudyArguments& arguments,
                  const CommonOptions& common) {
-    check_outputs({}, {path}, {arguments.csv, arguments.plot, arguments.page}, common);
+    check_study_outputs(arguments, {}, {path}, common);
     const std::vector<std::vector<Study>> groups = read_store_groups(path);
     const bool makes_one =
         common.json || !(arguments.csv + arguments.plot + arguments.page).empty();
@@ -103,13 +104,35 @@ void print_store(const std::string& path, const StudyArguments& arguments,
     }
 }
 
+/// A store says all that the trials in it depend on.
+void check_printing_only(const CLI::App& command) {
+    const std::vector<std::string> used{"--from", "--csv",         "--plot", "--report",
+                                        "--json", "--progress", "--help"};
+    for (const CLI::Option* option : command.get_options()) {
+        const std::string name = option->get_name();
+        if (option->count() == 0 || std::ranges::find(used, name) != used.end()) continue;
+        throw CLI::ValidationError(name,
+                                   "is not looked at where --from prints what a store holds; "
+                                   "leave it out, or run the study with --store");
+    }
+}
+
 void check_study_usage(const CLI::App& command, const StudyArguments& arguments, bool reads_store) {
     for (const char* option : {"--from", "--exclude", "--splits", "--holdout", "--models"}) {
         if (!arguments.is_simulated || command.count(option) == 0) continue;
         throw CLI::ValidationError(option,
                                    "is of measured configurations; leave it out, or --simulate");
     }
-    if (reads_store || !arguments.merged.empty()) return;
+    if (reads_store) return check_printing_only(command);
+    if (!arguments.merged.empty()) return;
+    const std::string& from = arguments.earlier.from;
+    if (arguments.paths.campaign.empty() && !from.empty()) {
+        std::error_code ignored;
+        throw input_error_at({from}, std::filesystem::exists(from, ignored)
+                                         ? "is no store of trials, or damaged from its beginning; "
+                                           "must be one, or an estimate and then a campaign, too"
+                                         : "is not there; must be a store of trials");
+    }
     if (arguments.paths.campaign.empty()) throw CLI::RequiredError("CAMPAIGN");
     if (arguments.is_simulated == !arguments.paths.measurements.empty()) {
         throw CLI::ValidationError("study",
@@ -123,6 +146,7 @@ void study(const CLI::App& command, const StudyArguments& arguments, const Commo
     if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
     if (reads_store) return print_store(arguments.earlier.from, arguments, common);
     if (!arguments.merged.empty()) {
+        check_study_outputs(arguments, {}, arguments.merged, common);
         io::merge_trial_stores(arguments.merged, arguments.store);
         return print_store(arguments.store, arguments, common);
     }

@@ -110,13 +110,25 @@ bool belong_together(const Study& a, const Study& b) {
 
 }  // namespace
 
+void check_study_outputs(const StudyArguments& arguments,
+                         const std::vector<const io::CampaignFile*>& campaigns,
+                         std::vector<std::string> inputs, const CommonOptions& common) {
+    const std::vector<std::string> outputs{arguments.csv, arguments.plot, arguments.page};
+    // The store of a run is read and written; others that are there already were not made in vain.
+    inputs.push_back(arguments.store);
+    check_outputs(campaigns, std::move(inputs), outputs, common);
+    for (const std::string& path : outputs) {
+        if (!io::is_trial_store(path)) continue;
+        throw input_error_at({path}, "is a store of trials; must be another file");
+    }
+}
+
 std::vector<Study> study_measured(const StudyArguments& arguments, const CommonOptions& common,
                                   const StopSignal& stop, StudyExtras& extras) {
     const InputPaths& paths = arguments.paths;
     const std::vector<io::CampaignFile> files = read_files(arguments);
     const io::CampaignFile& file = files.front();
-    check_outputs({&file}, {paths.measurements, arguments.earlier.from},
-                  {arguments.csv, arguments.plot, arguments.page}, common);
+    check_study_outputs(arguments, {&file}, {paths.measurements, arguments.earlier.from}, common);
     const auto measurements =
         read_measured_without(arguments.excluded, paths.measurements, file, arguments.earlier);
     StudyOptions options = arguments.options;
@@ -146,8 +158,7 @@ std::vector<Study> study_measured(const StudyArguments& arguments, const CommonO
 std::vector<Study> study_simulated(const StudyArguments& arguments, const CommonOptions& common,
                                    const StopSignal& stop, StudyExtras& extras) {
     io::CampaignFile file = read_with_prior(arguments.paths.campaign, arguments.prior, stop);
-    check_outputs({&file}, {arguments.truth}, {arguments.csv, arguments.plot, arguments.page},
-                  common);
+    check_study_outputs(arguments, {&file}, {arguments.truth}, common);
     SimulatedStudyOptions options = arguments.options;
     options.random_subsets = arguments.random_subsets.value_or(options.random_subsets);
     constexpr Index most_trials = 100000;  // where a precision says when it ends

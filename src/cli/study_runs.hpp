@@ -14,6 +14,11 @@ struct StudyExtras {
     io::PagePart page;  ///< what a page shows besides
 };
 
+/// Throws InputError as check_outputs(), the store and its kind included.
+void check_study_outputs(const StudyArguments& arguments,
+                         const std::vector<const io::CampaignFile*>& campaigns,
+                         std::vector<std::string> inputs, const CommonOptions& common);
+
 /// The study of measured configurations; of each error model, if several are asked for.
 std::vector<Study> study_measured(const StudyArguments& arguments, const CommonOptions& common,
                                   const StopSignal& stop, StudyExtras& extras);

@@ -195,7 +195,13 @@ std::vector<Variation> vary_campaign(const std::string& content, const std::stri
                                      const std::vector<VariedKey>& keys, Index point_count) {
     std::vector<VariedKey> ranges;
     std::vector<VariedKey> listed;
-    for (const VariedKey& varied : keys) (varied.range ? ranges : listed).push_back(varied);
+    for (const VariedKey& varied : keys) {
+        if (std::ranges::count(keys, varied.key, &VariedKey::key) > 1) {
+            throw InputError(detail::quote(varied.key) +
+                             " is varied twice; must be once, with all values");
+        }
+        (varied.range ? ranges : listed).push_back(varied);
+    }
     if (ranges.empty() != (point_count == 0)) {
         throw InputError(
             ranges.empty()

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <memory>
 #include <optional>
 
@@ -99,6 +98,8 @@ class StoreFile {
 
     std::vector<TrialSeries> series() const;
     std::vector<Trial> finished(const TrialSeries& series) const;
+    /// So that series are in the order in which a study has them, whichever trial is ready first.
+    void state(const TrialSeries& series);
     void keep(const TrialSeries& series, const Trial& trial);
     void merge(const std::vector<std::string>& from);
 
@@ -116,7 +117,7 @@ class StoreFile {
     KeptSeries add(const TrialSeries& series) const;
 
     Database database_;
-    std::vector<KeptSeries> series_;  // by increasing statement
+    std::vector<KeptSeries> series_;  // as they were stated
     std::optional<Statement> insertion_;
 };
 
@@ -180,21 +181,20 @@ void StoreFile::check_kind() const {
     for (const std::string& table : {series_table, trials_table}) {
         if (!tables.step() || tables.text(0) != table) throw database_.damaged();
     }
-    if (tables.step() || database_.text("PRAGMA quick_check(1)") != "ok") throw database_.damaged();
+    if (tables.step() || database_.text("PRAGMA integrity_check(1)") != "ok")
+        throw database_.damaged();
 }
 
 void StoreFile::read_series() {
-    std::map<std::string, KeptSeries> by_statement;
-    Statement rows(database_, "SELECT statement, id, checksum FROM series");
+    Statement rows(database_, "SELECT statement, id, checksum FROM series ORDER BY id");
     while (rows.step()) {
         const std::string statement(rows.text(0));
         const std::string checksum = detail::checksum_of(statement);
         if (rows.text(2) != checksum) throw database_.damaged();
         const detail::StatedSeries stated =
             detail::read_trial_statement(statement, database_.path());
-        by_statement[statement] = {stated.series, stated.version, rows.number(1), checksum};
+        series_.push_back({stated.series, stated.version, rows.number(1), checksum});
     }
-    for (auto& [statement, series] : by_statement) series_.push_back(std::move(series));
 }
 
 void StoreFile::check_version() const {
@@ -237,6 +237,14 @@ std::vector<Trial> StoreFile::finished(const TrialSeries& series) const {
     return trials;
 }
 
+void StoreFile::state(const TrialSeries& series) {
+    if (std::ranges::find(series_, series, &KeptSeries::series) != series_.end()) return;
+    Transaction transaction(database_);
+    KeptSeries added = add(series);
+    transaction.commit();
+    series_.push_back(std::move(added));
+}
+
 void StoreFile::keep(const TrialSeries& series, const Trial& trial) {
     if (database_.has_moved()) {
         throw input_error_at({database_.path()}, "was moved or removed while it was written");
@@ -253,7 +261,6 @@ void StoreFile::keep(const TrialSeries& series, const Trial& trial) {
 bool StoreFile::put(const TrialSeries& series, const Trial& trial) {
     const auto kept = std::ranges::find(series_, series, &KeptSeries::series);
     if (kept != series_.end()) return put(*kept, trial);
-    // Together, so that there are no series without trials.
     Transaction transaction(database_);
     KeptSeries added = add(series);
     put(added, trial);
@@ -304,7 +311,10 @@ void StoreFile::take_all_of(const StoreFile& other) {
 
 TrialStore open_trial_store(const std::string& path) {
     const auto file = std::make_shared<StoreFile>(path, Access::Write);
-    return {[file](const TrialSeries& series) { return file->finished(series); },
+    return {[file](const TrialSeries& series) {
+                file->state(series);
+                return file->finished(series);
+            },
             [file](const TrialSeries& series, const Trial& trial) { file->keep(series, trial); }};
 }
 

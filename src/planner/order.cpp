@@ -37,7 +37,10 @@ MatrixXd penalise(const MatrixXd& times) {
 class Improver {
   public:
     Improver(const MatrixXd& times, Path& path)
-        : times_(times), path_(path), last_(static_cast<Index>(path.size()) - 1) {}
+        : times_(times),
+          path_(path),
+          last_(static_cast<Index>(path.size()) - 1),
+          least_gain_(rounding * std::max(1.0, longest(times))) {}
 
     void run() {
         while (reverse_something() || move_something()) {
@@ -45,7 +48,13 @@ class Improver {
     }
 
   private:
-    static constexpr double least_gain_ = 1e-12;
+    /// Sums of times that long differ by so much of them though they are of the same legs; more is
+    /// gained, or the search would go round for ever.
+    static constexpr double rounding = 1e-12;
+
+    static double longest(const MatrixXd& times) {
+        return times.array().isFinite().select(times.array(), 0).maxCoeff();
+    }
 
     Index node(Index position) const { return path_[static_cast<std::size_t>(position)]; }
     /// Time between neighbours; nothing follows the last.
@@ -105,6 +114,7 @@ class Improver {
     const MatrixXd& times_;
     Path& path_;
     Index last_;
+    double least_gain_;
 };
 
 double path_time(const MatrixXd& times, const Path& path) {

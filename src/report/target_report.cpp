@@ -76,12 +76,13 @@ std::string describe_remedy(const TargetPlanning& found) {
                              : "the repeatability of the joints, which no calibration mends");
     if (!is_model) return text + "halving it needs a robot that returns twice as well";
     text += found.has_error_terms
-                ? "halving it needs half the model error (model_error_mm)"
-                : "halving it needs a model that has more of the robot's errors (errors: full)";
+                ? "halving it needs a robot of which the model leaves half as much (model_error_mm)"
+                : "halving it needs a model that has more of the robot's errors (errors: full), of "
+                  "which half as much is left (model_error_mm)";
     if (found.floor_of_known_model_error < found.floor.assured) {
         text += fmt::format(
-            "; were it known, as a first calibration tells (--from), the floor "
-            "would be {} mm",
+            "; were it known, as a first calibration with priors (calibrate --prior) tells plan "
+            "--from, the floor would be {} mm",
             format_mm(found.floor_of_known_model_error));
     }
     return text;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "../core/statistics.hpp"
+#include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/measurement/simulation.hpp"
@@ -108,6 +109,19 @@ bool is_precise(const Study& study, double precision) {
     return true;
 }
 
+/// Throws InputError for variations of which nothing comes.
+void check_differences(const std::vector<TrialSeries>& series) {
+    for (std::size_t s = 0; s < series.size(); ++s) {
+        for (std::size_t other = 0; other < s; ++other) {
+            if (series[s].checksum != series[other].checksum) continue;
+            throw InputError(fmt::format(
+                "{} and {} are the same study: what was varied changes no robot, pool or "
+                "measurement; must be left out (criteria and seed are options, not keys)",
+                detail::quote(series[other].variation), detail::quote(series[s].variation)));
+        }
+    }
+}
+
 /// Runs trials of each series until there are enough.
 void run_trials(const std::vector<TrialSeries>& series, const SimulatedStudyOptions& options,
                 const RunTrials& run, detail::TrialRuns& runs) {
@@ -143,6 +157,7 @@ std::vector<Study> simulate_study(const std::vector<SimulatedCampaign>& campaign
     const auto compute = [&](const TrialId& id) {
         return run_trial(settings[static_cast<std::size_t>(id.series)], options, id.number);
     };
+    check_differences(series);
     std::vector<Study> studies;
     options.crew(compute, [&](const RunTrials& run) {
         detail::TrialRuns runs(series, options);

@@ -103,7 +103,7 @@ class Search {
   private:
     bool has_limit() const { return target_.limit.has_value(); }
 
-    void check_stop() const { options_.stop.check("a plan that keeps the target"); }
+    void check_stop() const { options_.stop.check("it was found how many poses keep the target"); }
 
     /// Nothing: drop-outs leave parameters unidentified.
     std::optional<ErrorRange> judge(MatrixXd M, const Blocks& poses,

@@ -105,6 +105,20 @@ TEST(ShortestOrder, AvoidsImpossibleMovesIfItCan) {
     EXPECT_TRUE(is_permutation(shortest_order(times).poses, 9));
 }
 
+/// Times of which sums are rounded by more than any gain: it ends, with the same order.
+TEST(ShortestOrder, EndsForMovesOfAnyLength) {
+    RandomStream stream(3);
+    for (int k = 0; k < 20; ++k) {
+        const MatrixXd times = random_times(stream, 14);
+        const auto order = shortest_order(times, {});
+        for (const double scale : {1e-6, 1e7, 1e200}) {
+            const auto scaled = shortest_order(scale * times, {});
+            EXPECT_NEAR(path_length(scale * times, scaled) / path_length(scale * times, order), 1,
+                        1e-9);
+        }
+    }
+}
+
 TEST(ShortestOrder, TakesNoPoseAndOnePose) {
     EXPECT_TRUE(shortest_order(MatrixXd::Zero(1, 1)).poses.empty());
     MatrixXd two(2, 2);
