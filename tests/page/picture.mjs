@@ -1,11 +1,11 @@
-// A picture of the top of a page: picture.mjs PAGE.html PICTURE.png [HEIGHT]; Chromium as for the tests.
+// A picture of a page's section, else of its top: picture.mjs PAGE.html PICTURE.png [SECTION]; Chromium as for the tests.
 import { resolve } from 'node:path';
 import { drawn, launch, open } from './browser.mjs';
 
-const [page, picture, height = '1000'] = process.argv.slice(2);
+const [page, picture, section] = process.argv.slice(2);
 const browser = await launch();
-const { tab } = await open(browser, resolve(page), { width: 1180, height: Number(height) });
+const { tab } = await open(browser, resolve(page), { width: 1000, height: 1000 });
 await drawn(tab);
 await tab.waitForTimeout(500);
-await tab.screenshot({ path: picture });
+await (section ? tab.locator(`#${section}`) : tab).screenshot({ path: picture });
 await browser.close();

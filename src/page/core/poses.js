@@ -36,6 +36,9 @@ export function posesOf(part) {
   }));
 }
 
+/** Ids of a plan's poses, with how often each is to be measured. */
+export const idsOf = ({ poses }) => poses.map(({ id, times }) => (times > 1 ? `${id} (x${times})` : id)).join(' ');
+
 /** "q1/deg". */
 export const columnTitle = (key) => {
   const { name, unit } = reading(key, 0);

@@ -1,6 +1,7 @@
 import { el } from '../core/dom.js';
 import { behind, lead, note } from '../core/figure.js';
 import { count, fixed, milli, short } from '../core/format.js';
+import { idsOf } from '../core/poses.js';
 import { facts, table } from '../core/table.js';
 
 export const title = 'What the plan is best for';
@@ -50,6 +51,7 @@ export function render(part) {
   return el('div', {},
     lead(`The poses have the best ${meanings[document.criterion] ?? document.criterion} that was found.`),
     facts([
+      ['Chosen', document.bounds ? null : idsOf(document)],
       ['Criterion', document.criterion],
       ['Value', valueOf(part, document.value)],
       ...(document.bounds ? ofPool(part) : [

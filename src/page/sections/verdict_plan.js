@@ -1,5 +1,6 @@
 import { count, fixed, mm, short } from '../core/format.js';
 import { moreFor, plannedCurve } from '../core/curve.js';
+import { idsOf } from '../core/poses.js';
 import { budgetOf } from './budget.js';
 
 export const noDrift = 'Not known: drift shows in measurements only.';
@@ -68,7 +69,7 @@ function moreOf(document) {
   const floor = curve.floor === null ? '' : ` Were all parameters known, ${mm(curve.floor)} mm would be left.`;
   if (!found) return `Not known.${floor}`;
   if (found.more !== null) return `About ${count(found.more, 'pose')} more, interpolated on the curve below.${floor}`;
-  const rest = found.upTo > curve.current.count ? `No number tried is enough: ${found.upTo} poses still leave ${short(100 * found.ratio, 2)} % of what ${curve.current.count} leave.` : 'Not known: no larger number of poses was tried.';
+  const rest = found.upTo > curve.current.count ? `No number tried is enough: ${count(found.upTo, 'new pose')} still leave ${fixed(100 * found.ratio, 0)} % of what ${curve.current.count} leave.` : 'Not known: no larger number of poses was tried.';
   return `${rest}${floor}`;
 }
 
@@ -79,8 +80,9 @@ export function answerPlan(part) {
   const poses = count(document.poses.reduce((sum, pose) => sum + (pose.times ?? 1), 0), 'pose');
   const interval = found?.lower === undefined ? '' : ` (90 %: ${mm(found.lower)} to ${mm(found.upper)} mm)`;
   const over = document.workspace_count ? ` over ${document.workspace_count} workspace poses` : '';
-  const sentence = found ? `Calibrated with these ${poses}, the robot is expected to have a position error of ${mm(found.value)} mm ${found.name}${interval}${over}, ${found.isPartial ? 'without the model error' : 'model error included'}.`
-    : `${poses} chosen for criterion ${document.criterion}.`;
+  const sentence = found ? `Calibrated with these ${poses}${document.measured_count > 0 ? ` and ${document.measured_count} measured already` : ''}, the robot is expected to have a position error of ${mm(found.value)} mm ${found.name}${interval}${over}, ${found.isPartial ? 'without the model error' : 'model error included'}.`
+    : `${poses} chosen for criterion ${document.criterion}: ${idsOf(document)}.`;
+  const isRobot = document.candidates.kind !== 'blocks';
   const warnings = [];
   const limit = document.monte_carlo?.limit;
   if (limit === 'not kept') warnings.push(`The limit of ${short(document.target.limit_mm)} mm is not kept on robots that were drawn.`);
@@ -92,9 +94,9 @@ export function answerPlan(part) {
         : `${mm(found.value)} mm ${found.name} expected; by the parameters alone ${mm(alone.rms_mm)} mm RMS, 95 % are below ${mm(alone.p95_mm)} mm.`],
       ['How sure', surenessOf(document, found)],
       ['What limits it', limitOf(part)],
-      ['Which pose matters most', mostOf(document)],
-      ['Drift', noDrift],
-      ['Poses more for 20 % better', moreOf(document)],
+      ['Which pose matters most', isRobot ? mostOf(document) : null],
+      ['Drift', isRobot ? noDrift : null],
+      ['Poses more for 20 % better', isRobot ? moreOf(document) : null],
     ],
   };
 }

@@ -2,7 +2,7 @@ import { count, fixed, mm } from '../core/format.js';
 import { moreFor } from '../core/curve.js';
 import { noDrift } from './verdict_plan.js';
 
-/** Where more poses stop paying: the least number within 10 % of the best found. */
+/** Where more poses stop paying, if they do: the least number within 10 % of the best found. */
 function enoughOf(points) {
   const best = Math.min(...points.map((one) => one.value));
   return points.find((one) => one.value <= 1.1 * best);
@@ -31,26 +31,35 @@ function verdictsOf(model, c) {
   return [...lists].map(([verdict, counts]) => `${verdict} at ${counts.join(', ')}`).join('; ');
 }
 
+/** What one model or variation comes to. */
+function sentenceOf(points, what) {
+  const enough = enoughOf(points);
+  const random = enough.row.random?.held_out_rms_p50_mm;
+  const more = enough === points.at(-1) ? 'more were not tried' : 'more gain less than 10 %';
+  return `${count(enough.count, 'pose')} chosen by ${enough.one.criterion} leave ${mm(enough.value)} mm RMS ${what}${random ? `, random ones ${mm(random)} mm (median)` : ''}; ${more}.`;
+}
+
 export function answerStudy(part) {
   const { document } = part;
-  const model = document.models.find((one) => one.rows.length > 0);
-  const points = model ? pointsOf(model, 0) : [];
-  if (points.length === 0) return { sentence: 'No number of poses of this study identifies the model.', rows: [] };
+  const models = document.models.map((model) => ({ model, points: pointsOf(model, 0) })).filter(({ points }) => points.length > 0);
+  if (models.length === 0) return { sentence: 'No number of poses of this study identifies the model.', rows: [] };
+  const [{ model, points }, ...others] = models;
   const enough = enoughOf(points);
-  const { row, one } = enough;
-  const criterion = one.criterion;
-  const random = row.random?.held_out_rms_p50_mm;
+  const { one } = enough;
+  const { criterion } = one;
   const what = document.simulated ? 'over the workspace' : 'on configurations held out';
   const ratio = one.against_random;
   return {
-    sentence: `${count(enough.count, 'pose')} chosen by ${criterion} leave ${mm(enough.value)} mm RMS ${what}${random ? `, random ones ${mm(random)} mm (median)` : ''}; more gain less than 10 %.`,
+    sentence: `${model.name ? `${model.name}: ` : ''}${sentenceOf(points, what)}`,
     rows: [
       ['How accurate', `${mm(enough.value)} mm RMS ${what} with ${count(enough.count, 'pose')}${model.name ? ` (${model.name})` : ''}; the calibrations themselves expect ${mm(one.expected_rms_mm)} mm.`],
       ['How sure', ratio ? `Planned against random ${fixed(ratio.ratio, 2)}, with 95 % confidence ${fixed(ratio.lower, 2)} to ${fixed(ratio.upper, 2)}; medians over ${count(document.splits, document.simulated ? 'robot' : 'split')}, judged on ${count(document.judged_on, 'configuration')}.` : null],
       ['Does planning pay', `${criterion}, planned against random: ${verdictsOf(model, 0)}.`],
-      ['What limits it', `Beyond ${count(enough.count, 'pose')} the number of poses does not: what is left is noise and what the model cannot express.`],
+      ['What limits it', enough === points.at(-1) ? 'The number of poses: the error still falls at the most that were tried.'
+        : `Beyond ${count(enough.count, 'pose')} the number of poses does not: what is left is noise and what the model cannot express.`],
       ['Which pose matters most', 'A study compares numbers of poses; a plan says what each pose is worth.'],
       ['Drift', document.simulated ? noDrift : 'Not looked at here: a calibration of all measurements shows it.'],
+      ...others.map((other) => [other.model.name, sentenceOf(other.points, what)]),
       ['Poses more for 20 % better', moreOf(points)],
     ],
   };
