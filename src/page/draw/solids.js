@@ -1,6 +1,6 @@
 import {
   BoxGeometry, BufferGeometry, CapsuleGeometry, CylinderGeometry, DoubleSide, EdgesGeometry, Float32BufferAttribute,
-  Group, LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshStandardMaterial, PlaneGeometry, Quaternion,
+  Group, LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshLambertMaterial, PlaneGeometry, Quaternion,
   SphereGeometry, Vector3,
 } from 'three';
 
@@ -17,7 +17,7 @@ export function place(object, rows) {
 
 /** Materials by what they are for; colours follow the theme. */
 export function makeMaterials() {
-  const solid = (options) => new MeshStandardMaterial({ roughness: 0.65, metalness: 0.05, ...options });
+  const solid = (options) => new MeshLambertMaterial(options);
   return {
     link: solid({}), joint: solid({}), instrument: solid({}), seen: solid({}), unseen: solid({}),
     obstacle: solid({ transparent: true, opacity: 0.55 }),
