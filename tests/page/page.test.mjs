@@ -1,10 +1,11 @@
 // What the page shows in a browser.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
+import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { join } from 'node:path';
 import { drawn, launch, open, output, write } from './browser.mjs';
-import { makeEstimate, makePlan, makeStudy, page } from './fixture.mjs';
+import { documentOf, makeEstimate, makePlan, makeStudy, page } from './fixture.mjs';
 
 let browser;
 before(async () => {
@@ -37,6 +38,28 @@ for (const kind of Object.keys(sections)) {
     await close();
   });
 }
+
+test('tables are the numbers of the document inside', async () => {
+  const path = write('numbers', page(makePlan(), makeEstimate(), makeStudy()));
+  const { tab, close } = await open(browser, path);
+  const [plan, estimate, study] = documentOf(readFileSync(path, 'utf8')).parts.map((part) => part.document);
+  const cells = (caption) => tab.evaluate((text) => {
+    const found = [...document.querySelectorAll('table')].find((one) => one.caption.textContent === text);
+    return [...found.tBodies[0].rows].map((row) => [...row.cells].map((cell) => cell.textContent));
+  }, caption);
+  const four = (value) => value.toFixed(4);
+  assert.deepEqual(await cells('Predicted position error by number of poses'), plan.other_counts.map(({ new_pose_count: count, is_planned: isPlanned, accuracy: a }) =>
+    [String(count), isPlanned ? 'planned' : 'chosen from the pool', four(a.rms_mm), four(a.p95_mm), four(a.total_rms_mm), `${four(a.total_lower_mm)}..${four(a.total_upper_mm)}`]));
+  const { nominal, fit, fit_means: means, held_out: held } = estimate.accuracy;
+  assert.deepEqual((await cells('Accuracy'))[0], ['distance RMS', ...[nominal, fit, means, held.samples, held.means].map((one) => four(one.distance_rms_mm))]);
+  assert.deepEqual((await cells('Error held out by number of poses')).map((row) => row.slice(0, 3)),
+    study.models[0].rows.map((row) => [String(row.pose_count), four(row.planned[0].held_out_rms_mm), four(row.planned[0].expected_rms_mm)]));
+  const poses = await cells('Poses, in the order to visit them');
+  assert.deepEqual(poses.map((row) => row[1]), plan.poses.map((pose) => ((pose.joints.q1_rad * 180) / Math.PI).toFixed(2)));
+  const [save] = await Promise.all([tab.waitForEvent('download'), tab.getByRole('button', { name: 'Save all numbers as JSON' }).click()]);
+  assert.deepEqual(JSON.parse(readFileSync(await save.path(), 'utf8')), documentOf(readFileSync(path, 'utf8')));
+  await close();
+});
 
 test('a plan of 1000 poses is drawn at once', async (t) => {
   const { tab, complaints, close } = await open(browser, write('thousand', page(makePlan(1000))));
@@ -110,6 +133,20 @@ test('without WebGL it says so, and the tables are there', async () => {
   await tab.getByRole('button', { name: 'Next pose' }).click();
   assert.match(await tab.locator('.status').textContent(), /^Pose p2/);
   assert.equal(await tab.locator('table', { hasText: 'Poses, in the order to visit them' }).locator('tbody tr').count(), 12);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('without the campaign there is no robot, and all else', async () => {
+  const part = makePlan();
+  delete part.scene;
+  const { tab, complaints, close } = await open(browser, write('without_scene', page(part)));
+  assert.deepEqual(await tab.locator('h2').allTextContents(), sections.plan);
+  assert.equal(await tab.locator('.stage').count(), 0);
+  const ranges = await tab.locator('table', { hasText: 'Joint ranges' }).locator('tbody tr').first().locator('td').allTextContents();
+  assert.deepEqual([ranges[0], ranges[1], ranges[4]], ['-', '-', '-']);
+  await tab.getByRole('button', { name: 'Next pose' }).click();
+  assert.match(await tab.locator('.status').textContent(), /^Pose p2/);
   assert.deepEqual(complaints, []);
   await close();
 });

@@ -45,7 +45,7 @@ export const columnTitle = (key) => {
   return `${name}/${unit}`;
 };
 
-export const cellOf = (key, value) => fixed(reading(key, value).value, 2);
+export const cellOf = (key, value) => (value === null ? '-' : fixed(reading(key, value).value, 2));
 
 /** How it gets there: "straight", "via 1.00 2.00", "BLOCKED". */
 export function wayOf(pose) {
