@@ -15,7 +15,8 @@ function positionsOf(groups, joints) {
  * A line through the means of the configurations in the order measured, each axis by itself, beside what
  * follows the joints' positions, so that poses which were measured in an order of theirs are not taken for
  * drift; with few configurations without that. `slopes` have `p` `corrected` for the number of axes, and what
- * would have been `seen` over all; `worst` is the most certain one.
+ * would have been `seen` over all, and by how much the first tenth is off the rest (`early`: a robot that warms
+ * up); `worst` is the most certain one.
  */
 export function driftOf(residuals, joints) {
   const groups = byConfiguration(residuals);
@@ -30,7 +31,9 @@ export function driftOf(residuals, joints) {
     if (!fit) return null;
     const corrected = Math.min(1, fit.p * residuals.axes.length);
     const seen = studentT(0.05 / residuals.axes.length, fit.freedom) * fit.error * length;
-    return { axis, unit: residuals.unit[k], ...fit, corrected, change: fit.slope * length, seen, ys };
+    const first = Math.ceil(ys.length / 10);
+    const early = mean(ys.slice(0, first)) - mean(ys.slice(first));
+    return { axis, unit: residuals.unit[k], ...fit, corrected, change: fit.slope * length, seen, early, ys };
   }).filter(Boolean);
   if (slopes.length === 0) return null;
   const worst = slopes.reduce((a, b) => (b.corrected < a.corrected || (b.corrected === a.corrected && b.p < a.p) ? b : a));

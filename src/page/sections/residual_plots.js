@@ -36,9 +36,9 @@ const dotSize = (count, size) => (count > 400 ? Math.ceil(size / 2) : size);
 function driftFigures(drift) {
   if (!drift) return null;
   const text = describeDrift(drift);
-  const rows = drift.slopes.map((one) => [one.axis, short(one.slope, 3), short(one.error, 3), mm(one.change), one.unit, short(one.p, 3), short(one.corrected, 3), mm(one.seen)]);
+  const rows = drift.slopes.map((one) => [one.axis, short(one.slope, 3), short(one.error, 3), mm(one.change), one.unit, short(one.p, 3), short(one.corrected, 3), mm(one.seen), mm(one.early)]);
   const numbers = table(`Straight lines through the means of configurations${drift.besideJoints ? ', beside sine and cosine of the joints' : ''}`,
-    ['axis', 'slope a configuration', 'std. error', 'over all', '', 'p', `p for ${drift.slopes.length} axes`, 'would have been seen'], rows);
+    ['axis', 'slope a configuration', 'std. error', 'over all', '', 'p', `p for ${drift.slopes.length} axes`, 'would have been seen', 'first tenth off the rest'], rows);
   const units = [...new Set(drift.slopes.map((one) => one.unit))];
   return units.map((unit, k) => {
     const slopes = drift.slopes.filter((one) => one.unit === unit);

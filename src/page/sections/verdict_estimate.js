@@ -19,7 +19,7 @@ export function describeDrift(drift) {
   const { worst } = drift;
   const size = `${worst.axis}: ${mm(worst.change)} ${worst.unit} from first to last configuration, p = ${short(worst.corrected, 2)} for ${drift.slopes.length} axes`;
   const beside = drift.besideJoints ? ', besides what follows the joints\u2019 positions' : '; poses that were measured in an order of theirs look alike';
-  if (drift.verdict === 'yes') return `Yes: residuals follow the order of the measurements (${size}${beside}).`;
+  if (drift.verdict === 'yes') return `Yes: residuals follow the order of the measurements (${size}${beside}). The first tenth is off the rest by ${mm(worst.early)} ${worst.unit}.`;
   if (drift.verdict === 'perhaps') return `Perhaps: ${size}${beside}.`;
   return `None seen (strongest in ${size}); ${mm(Math.max(...drift.slopes.filter((one) => one.unit === worst.unit).map((one) => one.seen)))} ${worst.unit} over the campaign would have been seen with 95 % confidence.`;
 }
