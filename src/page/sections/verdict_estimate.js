@@ -17,7 +17,7 @@ function errorOf({ accuracy }) {
 export function describeDrift(drift) {
   if (!drift) return 'Not known: too few configurations, or their residuals are not at hand.';
   const { worst } = drift;
-  const size = `${worst.axis}: ${mm(worst.change)} ${worst.unit} from first to last configuration, p = ${short(worst.corrected, 2)} for ${drift.slopes.length} axes`;
+  const size = `${worst.axis}: ${mm(worst.change)} ${worst.unit} from first to last configuration, p ${worst.corrected < 1e-4 ? '< 0.0001' : `= ${short(worst.corrected, 2)}`} for ${drift.slopes.length} axes`;
   const beside = drift.besideJoints ? ', besides what follows the joints\u2019 positions' : '; poses that were measured in an order of theirs look alike';
   if (drift.verdict === 'yes') return `Yes: residuals follow the order of the measurements (${size}${beside}). The first tenth is off the rest by ${mm(worst.early)} ${worst.unit}.`;
   if (drift.verdict === 'perhaps') return `Perhaps: ${size}${beside}.`;
