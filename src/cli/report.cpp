@@ -22,8 +22,8 @@ Example:
 Makes one HTML file to look at from what commands have written: plans and estimates (--out), stores
 of study, and what study --json, plan --json or select --json printed. It opens in any browser and
 needs no network. Several are shown side by side. The commands themselves write the same with
---report, and then also what they print; a plan file has less than plan --json prints (not what each
-pose is worth, nor what the error consists of).
+--report, and then also what they print, and of plans how many candidates there were and the accuracy
+of other numbers of poses.
 
 The robot, its cell and the errors over the workspace come from the campaign file that a plan or an
 estimate names, residuals from the measurements if they are still the same. What is not there any

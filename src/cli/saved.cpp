@@ -51,8 +51,8 @@ std::string find_file(const std::string& typed, const std::string& estimate) {
 
 // ---- Plans ----
 
-/// Everything but the document, from the files that the plan names.
-void show_again(const Plan& plan, io::PagePart& part) {
+/// From the files that the plan names.
+void show_again(const Plan& plan, const std::string& path, io::PagePart& part) {
     const PlanRequest& request = plan.request;
     std::optional<io::CampaignFile> campaign;
     if (plan.kind != CandidateKind::Blocks) {
@@ -62,19 +62,25 @@ void show_again(const Plan& plan, io::PagePart& part) {
     }
     if (plan.is_continuous()) {
         const PlanningOptions options = read_planning_inputs(request, *campaign);
+        std::string document = io::read_saved_plan(path, judge_again(plan, *campaign, options));
         part = show_plan(plan, *campaign, options);
-    } else {
-        part = show_choice(plan, read_choice_inputs(request, plan.kind, plan.candidate_count,
-                                                    std::move(campaign)));
+        part.document = std::move(document);
+        return;
     }
+    const ChoiceInputs inputs =
+        read_choice_inputs(request, plan.kind, plan.candidate_count, std::move(campaign));
+    part = show_choice(plan, inputs);
+    if (!inputs.campaign) return;
+    part.document = io::read_saved_plan(
+        path, judge_again(plan, *inputs.campaign, inputs.candidates, inputs.options));
 }
 
 ShownFile show_plan_file(const std::string& path) {
     const Plan plan = io::read_plan(path);
     ShownFile shown;
     io::PagePart& part = shown.parts.emplace_back();
-    try_to_show(path, "robot and errors are", [&] { show_again(plan, part); });
-    part.document = io::read_saved_document(path, io::SavedKind::Plan);
+    try_to_show(path, "robot and errors are", [&] { show_again(plan, path, part); });
+    if (part.document.empty()) part.document = io::read_saved_document(path, io::SavedKind::Plan);
     const PlanSources& sources = plan.request.sources;
     shown.read = {sources.campaign,   sources.estimate, sources.candidates, sources.augment,
                   sources.test_poses, sources.groups,   sources.workspace};

@@ -30,6 +30,9 @@ inline constexpr std::array plan_endings{Ending::Converged, Ending::Optimal, End
 /// in rad nor in m.
 std::optional<NamedNumber> readable_joint(const std::string& column, double value);
 
+/// What the file of a plan at that path holds.
+Json plan_to_json(const Plan& plan, const std::string& path);
+
 /// A plan's file as a document of format 2, but for what those of format 1 lack. Throws InputError
 /// for a newer one.
 Json read_plan_document(const std::string& path);

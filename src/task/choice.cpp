@@ -147,4 +147,13 @@ Plan choose(Blocks candidates, const ChoiceOptions& options) {
     return solve(problem, options);
 }
 
+Plan judge_again(const Plan& plan, const Campaign& campaign, Candidates candidates,
+                 const ChoiceOptions& options) {
+    const ChoiceProblem problem = detail::state_choice(campaign, std::move(candidates), options);
+    Plan judged = plan;
+    judged.predicted = predict(campaign, problem, plan.poses);
+    judged.value_rms = value_rms(campaign, problem, options.test_poses, plan.value);
+    return judged;
+}
+
 }  // namespace posewise

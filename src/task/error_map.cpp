@@ -46,9 +46,7 @@ ErrorMap map_information(const Campaign& campaign, const Parameters& parameters,
 }  // namespace
 
 ErrorMap map_errors(const Plan& plan, const Campaign& campaign, const PlanningOptions& options) {
-    PlanningOptions made = options;
-    static_cast<PlanRequest&>(made) = plan.request;
-    made.repaired.reset();  // its poses are among those of the plan
+    const PlanningOptions made = detail::options_of(plan, options);
     const detail::PlanningProblem problem = detail::state_planning(campaign, made);
     const MatrixXd M =
         held_information(problem) + information(detail::blocks_of(problem, plan.poses));

@@ -81,10 +81,7 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.searched_efficiency = planned.efficiency;
     plan.request.starts = planned.starts;
     plan.starts_at_best = planned.starts_at_best;
-    if (needs_test_poses(plan.request.criterion)) {
-        const auto positions = static_cast<double>(problem.errors.by_parameters[0].rows()) / 3;
-        plan.value_rms = 1 / std::sqrt(plan.value * positions);
-    }
+    plan.value_rms = value_rms_of(problem, plan.value);
     plan.standard_deviations = detail::standard_deviations(campaign, planned.information);
     plan.visiting_time = tour.time;
     plan.assumptions = assumptions_of(campaign);
@@ -92,6 +89,32 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
 }
 
 }  // namespace
+
+void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out_count) {
+    const Campaign& campaign = problem.campaign;
+    const std::vector<PlannedPose>& poses = planning.plan.poses;
+    const double repeats = planning.plan.request.repeats;
+    const Blocks& prediction = problem.errors.by_parameters;
+    const Blocks blocks = blocks_of(problem, poses);
+    MatrixXd left = planning.information;
+    planning.by_noise = information_by_noise(
+        campaign, campaign.nominal, configurations_of(poses, campaign.robot.joint_count()),
+        times_seen(seen_at(poses, campaign.sensor->target_count()), repeats));
+    planning.plan.predicted =
+        predict_accuracy(prediction, planning.information, campaign, planning.by_noise);
+    planning.budget =
+        make_budget(problem.errors, campaign, planning.information, planning.by_noise);
+    planning.without_each = drop_each(prediction, blocks, planning.information);
+    planning.drop_outs = drop_worst(prediction, blocks, drop_out_count, left);
+    planning.duration =
+        campaign.cell.dwell * repeats * static_cast<double>(poses.size()) + planning.tour.time;
+}
+
+std::optional<double> value_rms_of(const PlanningProblem& problem, double value) {
+    if (!needs_test_poses(problem.request.criterion)) return std::nullopt;
+    const auto positions = static_cast<double>(problem.errors.by_parameters[0].rows()) / 3;
+    return 1 / std::sqrt(value * positions);
+}
 
 PlanMaker::PlanMaker(PlanningProblem problem, const PlanningOptions& options)
     : problem_(std::move(problem)), options_(options) {
@@ -161,35 +184,20 @@ Planning PlanMaker::finish(PlanOptions search, const PlannedPoses& planned) cons
         plan_tour(problem_.constraints, all_poses(problem_, planned.configurations), tour_options);
     Plan plan = make_result(problem_, planned, pool_, tour);
     plan.ending = ending_of(planned);
-    const Blocks& prediction = problem_.errors.by_parameters;
-    const Blocks blocks = blocks_of(problem_, plan.poses);
-    const Campaign& campaign = problem_.campaign;
-    InformationByNoise by_noise = information_by_noise(
-        campaign, campaign.nominal, configurations_of(plan.poses, campaign.robot.joint_count()),
-        times_seen(seen_at(plan.poses, campaign.sensor->target_count()), plan.request.repeats));
-    plan.predicted = predict_accuracy(prediction, planned.information, campaign, by_noise);
-    const ErrorBudget budget =
-        make_budget(problem_.errors, campaign, planned.information, by_noise);
-    MatrixXd left = planned.information;
     search.progress = {};
     search.test_poses = nullptr;
     search.bound_iterations = problem_.search.bound_iterations;
-    const double samples = plan.request.repeats * static_cast<double>(plan.poses.size());
-    Planning planning{std::move(plan),
-                      pool_,
-                      std::move(tour),
-                      problem_.measured_count,
-                      problem_.workspace_count,
-                      campaign,
-                      problem_.errors,
-                      std::move(search),
-                      planned.information,
-                      std::move(by_noise),
-                      budget,
-                      drop_each(prediction, blocks, planned.information),
-                      drop_worst(prediction, blocks, options_.drop_out_count, left),
-                      campaign.cell.dwell * samples};
-    planning.duration += planning.tour.time;
+    Planning planning;
+    planning.plan = std::move(plan);
+    planning.pool = pool_;
+    planning.tour = std::move(tour);
+    planning.measured_count = problem_.measured_count;
+    planning.workspace_count = problem_.workspace_count;
+    planning.campaign = problem_.campaign;
+    planning.errors = problem_.errors;
+    planning.search = std::move(search);
+    planning.information = planned.information;
+    conclude(planning, problem_, options_.drop_out_count);
     return planning;
 }
 

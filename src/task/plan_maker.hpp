@@ -1,11 +1,19 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "../planner/design_space.hpp"
 #include "planning_problem.hpp"
 
 namespace posewise::detail {
+
+/// Fills in what follows from a planning's plan, information and tour: the budget, missing poses,
+/// how long it takes.
+void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out_count);
+
+/// Plan::value_rms of that value.
+std::optional<double> value_rms_of(const PlanningProblem& problem, double value);
 
 /// Makes plans of any number of poses in one cell; pool, workspace and what they tell are made
 /// once.

@@ -13,4 +13,26 @@ Planning make_plan(const Campaign& campaign, const PlanningOptions& options) {
     });
 }
 
+Planning judge_again(const Plan& plan, const Campaign& campaign, const PlanningOptions& options) {
+    const PlanningOptions made = detail::options_of(plan, options);
+    detail::PlanningProblem problem = detail::state_planning(campaign, made);
+    detail::draw_workspace(problem, made);
+    Planning judged;
+    judged.plan = plan;
+    judged.tour.time = plan.visiting_time;
+    for (const PlannedPose& pose : plan.poses) {
+        if (pose.is_blocked) ++judged.tour.blocked_count;
+        if (!pose.is_kept) ++judged.search.pose_count;
+    }
+    judged.measured_count = problem.measured_count;
+    judged.workspace_count = problem.workspace_count;
+    judged.campaign = problem.campaign;
+    judged.errors = problem.errors;
+    judged.information =
+        held_information(problem) + information(detail::blocks_of(problem, plan.poses));
+    judged.plan.value_rms = detail::value_rms_of(problem, plan.value);
+    detail::conclude(judged, problem, options.drop_out_count);
+    return judged;
+}
+
 }  // namespace posewise

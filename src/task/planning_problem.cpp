@@ -108,6 +108,13 @@ void hold_kept(PlanningProblem& problem, const Plan& repaired) {
 
 }  // namespace
 
+PlanningOptions options_of(const Plan& plan, const PlanningOptions& inputs) {
+    PlanningOptions made = inputs;
+    static_cast<PlanRequest&>(made) = plan.request;
+    made.repaired.reset();
+    return made;
+}
+
 PlanningProblem state_planning(const Campaign& given, const PlanningOptions& options) {
     check_torques_known(given);
     const Campaign campaign = with_base(given, options);

@@ -19,6 +19,9 @@ struct PlanningProblem {
     PlanOptions search;  ///< without test poses, which are errors.by_parameters for G and V
 };
 
+/// The options that a plan was made with, to state its problem again: all of its poses are its own.
+PlanningOptions options_of(const Plan& plan, const PlanningOptions& inputs);
+
 /// All but pool and workspace; poses of a repaired plan are kept. Throws InputError as make_plan().
 PlanningProblem state_planning(const Campaign& campaign, const PlanningOptions& options);
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "posewise/core/errors.hpp"
@@ -53,6 +54,31 @@ TEST_F(MakePlan, IsVerifiedWithoutAnyFile) {
     edited.poses[2].via->setZero();
     (*edited.poses[2].via)[1] = 1;  // the arm lies on the table
     EXPECT_EQ(verify(edited, campaign_, options_).wrong(), std::vector<std::string>{"poses"});
+}
+
+TEST_F(MakePlan, IsJudgedAgainFromWhatItsFileHolds) {
+    campaign_.cell.dwell = 2;
+    options_.drop_out_count = 2;
+    const Planning made = make_plan(campaign_, options_);
+    Plan kept = made.plan;
+    kept.predicted->worst_rms = 0;  // which no file has
+    kept.value_rms.reset();
+    const Planning judged = judge_again(kept, campaign_, options_);
+    const auto agree = [](double a, double b) { EXPECT_NEAR(a, b, 1e-9 * std::abs(b)); };
+    agree(judged.plan.predicted->worst_rms, made.plan.predicted->worst_rms);
+    agree(judged.plan.value_rms.value(), made.plan.value_rms.value());
+    agree(judged.budget.prior, made.budget.prior);
+    agree(judged.budget.model, made.budget.model);
+    agree(judged.budget.total, made.budget.total);
+    agree(judged.duration, made.duration);
+    ASSERT_EQ(judged.drop_outs.size(), 2U);
+    ASSERT_EQ(judged.without_each.size(), 4U);
+    for (std::size_t k = 0; k < 4; ++k) {
+        EXPECT_EQ(judged.without_each[k].pose, made.without_each[k].pose);
+        agree(judged.without_each[k].rms, made.without_each[k].rms);
+    }
+    EXPECT_EQ(judged.search.pose_count, 4);
+    EXPECT_EQ(judged.workspace_count, 20);
 }
 
 TEST_F(MakePlan, PredictsHalfAndTwiceAsManyPoses) {

@@ -5,6 +5,7 @@
 
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/io/estimate_file.hpp"
+#include "posewise/task/planning.hpp"
 
 /// Files that commands have written, read again for those who look at them.
 namespace posewise::io {
@@ -22,6 +23,11 @@ SavedKind kind_of_saved(const std::string& path);
 /// The document in the file of a plan, an estimate or a study; of a plan of format 1 one of format
 /// 2 with as much as there is. Throws InputError for another kind or a format that is not known.
 std::string read_saved_document(const std::string& path, SavedKind kind);
+
+/// The document of a plan with what judge_again() said of it, unless it holds that already.
+std::string read_saved_plan(const std::string& path, const Planning& judged);
+/// The same of a choice.
+std::string read_saved_plan(const std::string& path, const Plan& judged);
 
 /// What an estimate's file says of how it was made.
 struct EstimateRecord {

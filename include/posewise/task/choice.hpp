@@ -45,6 +45,11 @@ Plan choose(const Campaign& campaign, Candidates candidates, const ChoiceOptions
 /// The same of plain blocks, named 0, 1, ..., without a robot.
 Plan choose(Blocks candidates, const ChoiceOptions& options);
 
+/// A plan that choose() made from these and that was kept, with what it predicts. Throws InputError
+/// as choose().
+Plan judge_again(const Plan& plan, const Campaign& campaign, Candidates candidates,
+                 const ChoiceOptions& options);
+
 /// A candidate and how often it would be measured if that could be any number.
 struct WeightedCandidate {
     std::string id;

@@ -48,6 +48,11 @@ struct Planning {
 /// that cannot be measured, for fewer poses than identify the parameters, and as plan_poses().
 Planning make_plan(const Campaign& campaign, const PlanningOptions& options);
 
+/// A plan that make_plan() made with these options and that was kept: what it predicts, what the
+/// error consists of and what each pose is worth. Of the pool nothing is known, of the tour its
+/// time. Throws InputError as make_plan(), and where the poses do not identify the parameters.
+Planning judge_again(const Plan& plan, const Campaign& campaign, const PlanningOptions& options);
+
 /// Predicted accuracy of a number of new poses.
 struct CountAccuracy {
     Index pose_count = 0;
