@@ -8,8 +8,8 @@
 
 namespace posewise::detail {
 
-/// Fills in what follows from a planning's plan, information and tour: the budget, missing poses,
-/// how long it takes.
+/// Fills in what follows from a planning's plan, information and tour: prediction, budget, missing
+/// poses, how long it takes.
 void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out_count);
 
 /// Plan::value_rms of that value.
