@@ -134,7 +134,14 @@ Json scene_to_json(const PagePart& part) {
 /// In mm and mrad.
 Json residual_to_json(const VectorXd& residual) { return drawn(residual, mm_per_m); }
 
-Json residuals_to_json(const PageResiduals& residuals) {
+/// Without the torques that were measured with them.
+Json joints_to_json(const PagePart& part, const VectorXd& configuration) {
+    return drawn(part.scene ? configuration.head(part.scene->robot.joint_count()).eval()
+                            : configuration);
+}
+
+Json residuals_to_json(const PagePart& part) {
+    const PageResiduals& residuals = *part.residuals;
     const Measurements& measured = residuals.measurements;
     Json json = {{"axes", residuals.axes}, {"unit", Json::array()}, {"rows", Json::array()}};
     for (const bool is_angle : residuals.is_angle) {
@@ -148,7 +155,9 @@ Json residuals_to_json(const PageResiduals& residuals) {
         Json row = {{"configuration", id},
                     {"sample", sample.substr(id.size() + 1)},  // less "7:"
                     {"target", residuals.names[static_cast<std::size_t>(reading.target)]}};
-        if (k != last) row["joints"] = drawn(measured.configurations.row(k).transpose());
+        if (k != last) {
+            row["joints"] = joints_to_json(part, measured.configurations.row(k).transpose());
+        }
         last = k;
         row["residual"] = residual_to_json(reading.calibrated);
         row["nominal"] = residual_to_json(reading.nominal);
@@ -164,11 +173,11 @@ Json residuals_to_json(const PageResiduals& residuals) {
     return json;
 }
 
-Json error_map_to_json(const ErrorMap& map) {
+Json error_map_to_json(const PagePart& part) {
     Json points = Json::array();
-    for (const MappedError& error : map) {
+    for (const MappedError& error : *part.error_map) {
         Json point = {{"position", drawn(error.position)},
-                      {"joints", drawn(error.configuration)},
+                      {"joints", joints_to_json(part, error.configuration)},
                       {"predicted_mm", mm_per_m * error.predicted}};
         if (error.displacement) {
             point["displacement_mm"] = drawn(*error.displacement, mm_per_m);
@@ -197,8 +206,8 @@ Json part_to_json(const PagePart& part) {
         throw input_error_at({part.title}, "is not JSON; must be a document of posewise");
     }
     if (part.scene) json["scene"] = scene_to_json(part);
-    if (part.residuals) json["residuals"] = residuals_to_json(*part.residuals);
-    if (part.error_map) json["error_map"] = error_map_to_json(*part.error_map);
+    if (part.residuals) json["residuals"] = residuals_to_json(part);
+    if (part.error_map) json["error_map"] = error_map_to_json(part);
     return json;
 }
 
