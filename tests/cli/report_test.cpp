@@ -223,6 +223,8 @@ TEST_F(Report, RefusesWhatItCannotReadOrWrite) {
     expect_input_error(calibrate + "--report absent/r.html", "cannot be written");
     expect_input_error(calibrate + "--report .", "is a folder");
     expect_input_error("study " + fanuc_design + " -m s.csv --report s.csv", "is read and shall");
+    expect_input_error("study " + fanuc_design + " -m s.csv --store a --report ./a",
+                       "is read and shall be written");
     expect_input_error("select " + fanuc_design + " -m s.csv -k 8 --report s.csv", "is read and");
     expect_input_error("plan " + cell_design + " -k 8 --report " + cell_design, "is read and");
     const Outcome both = run(calibrate + "--json --report /dev/stdout");
