@@ -67,6 +67,36 @@ TEST_F(SimulatedStudies, VaryKeysOfTheCampaign) {
     expect_input_error(study_ + "5 --vary name.first=a", "nothing stands under 'first'");
 }
 
+TEST_F(SimulatedStudies, AreInTheOrderOfTheirVariationsInAStoreToo) {
+    const std::string varied = study_ + "3 --vary sensor.sigma_mm=0.2,0.05,0.1 --store s.sqlite";
+    const std::string text = run_well(varied);
+    EXPECT_EQ(run_well("study --from s.sqlite"), text);
+    const std::string kept = text_of("s.sqlite");
+    run_well("study --merge s.sqlite --store all.sqlite");
+    EXPECT_EQ(run_well("study --from all.sqlite"), text);
+    for (const char* const output : {"--csv", "--plot", "--report"}) {
+        const std::string to_store = std::string(output) + " ./s.svg";
+        run_line("cd '" + folder_.string() + "' && cp s.sqlite s.svg");
+        expect_input_error("study --from s.svg " + to_store, "is read and shall be written");
+        expect_input_error("study --from s.sqlite " + to_store, "is a store of trials");
+        EXPECT_EQ(text_of("s.svg"), kept);
+    }
+    const testing::Outcome outcome = run("study --from s.sqlite --poses 8");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_NE(outcome.err.find("--poses: is not looked at"), std::string::npos) << outcome.err;
+    expect_input_error("study --from absent.sqlite", "absent.sqlite: is not there");
+    write_text("text.txt", "no store");
+    expect_input_error("study --from text.txt", "text.txt: is no store of trials");
+}
+
+TEST_F(SimulatedStudies, RefuseVariationsThatAreNone) {
+    expect_input_error(study_ + "3 --vary criterion=v,d", "are the same study");
+    expect_input_error(study_ + "3 --vary sensor.sigma_mm=0.1 --vary sensor.sigma_mm=0.2",
+                       "is varied twice");
+    expect_input_error(study_ + "3 --vary sensor.sigma_mm=0.1..0.2", "--points");
+    expect_input_error(study_ + "3 --points 4", "no range is varied");
+}
+
 TEST_F(SimulatedStudies, KeepMeasuredOnesToo) {
     const std::string campaign =
         std::string("'") + POSEWISE_SOURCE_DIR + "/designs/fanuc_r2000ic_165f/campaign.yaml' ";
