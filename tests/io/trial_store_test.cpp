@@ -71,9 +71,8 @@ TEST(TrialStore, HoldsSeveralSeries) {
         expect_same(store.finished(all[k]), {{0, {static_cast<double>(k)}}});
     }
     EXPECT_TRUE(store.finished(simulated_series("x=2")).empty());
-    const std::vector<TrialSeries> found = series_in_store(path);
-    EXPECT_EQ(found.size(), all.size());
-    for (const TrialSeries& series : all) EXPECT_EQ(std::ranges::count(found, series), 1);
+    all.push_back(simulated_series("x=2"));  // asked for, and in its place from then on
+    EXPECT_EQ(series_in_store(path), all);
 }
 
 TEST(TrialStore, KeepsTheSameTrialTwiceButNoOther) {
