@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <functional>
 
@@ -14,6 +15,7 @@
 #include "plan_inputs.hpp"
 #include "plan_report.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/io/json_reports.hpp"
 #include "posewise/io/plan_file.hpp"
 #include "posewise/io/saved_file.hpp"
@@ -51,6 +53,19 @@ std::string find_file(const std::string& typed, const std::string& estimate) {
 
 // ---- Plans ----
 
+/// Throws InputError if the campaign predicts something else for the poses than the plan's did.
+void check_prediction(const Plan& stated, const Plan& judged, const std::string& campaign) {
+    constexpr double rounding = 1e-6;
+    if (!stated.predicted || !judged.predicted) return;
+    const double was = stated.predicted->rms;
+    const double is = judged.predicted->rms;
+    if (std::abs(is - was) <= rounding * was) return;
+    throw input_error_at(
+        {campaign}, fmt::format("predicts {:.6g} mm by the parameters for these poses, the plan "
+                                "says {:.6g} mm; must be as it was when the plan was made",
+                                mm_per_m * is, mm_per_m * was));
+}
+
 /// From the files that the plan names.
 void show_again(const Plan& plan, const std::string& path, io::PagePart& part) {
     const PlanRequest& request = plan.request;
@@ -62,7 +77,9 @@ void show_again(const Plan& plan, const std::string& path, io::PagePart& part) {
     }
     if (plan.is_continuous()) {
         const PlanningOptions options = read_planning_inputs(request, *campaign);
-        std::string document = io::read_saved_plan(path, judge_again(plan, *campaign, options));
+        const Planning judged = judge_again(plan, *campaign, options);
+        check_prediction(plan, judged.plan, campaign->path);
+        std::string document = io::read_saved_plan(path, judged);
         part = show_plan(plan, *campaign, options);
         part.document = std::move(document);
         return;

@@ -53,6 +53,29 @@ Loss read_loss(const JsonValue& root) {
     return loss;
 }
 
+/// What tables and curves of a study are made of.
+void check_study(const JsonValue& study) {
+    study["campaign"].text();
+    study["simulated"].boolean();
+    for (const JsonValue& model : study["models"].list()) {
+        model["name"].text();
+        for (const JsonValue& row : model["rows"].list()) {
+            row["pose_count"].count(1);
+            for (const JsonValue& planned : row["planned"].list()) {
+                planned["criterion"].text();
+                planned["held_out_rms_mm"].number_or(0);
+                planned["expected_rms_mm"].number_or(0);
+            }
+            const JsonValue random = row["random"];
+            for (const char* const quantile : {"p10", "p50", "p90"}) {
+                random[std::string("held_out_rms_") + quantile + "_mm"].number_or(0);
+            }
+            random["subsets"].count(0);
+            random["unidentified"].count(0);
+        }
+    }
+}
+
 }  // namespace
 
 SavedKind kind_of_saved(const std::string& path) {
@@ -80,8 +103,11 @@ std::string read_saved_document(const std::string& path, SavedKind kind) {
             return detail::json_text(detail::read_plan_document(path), path);
         case SavedKind::Estimate:
             return detail::json_text(detail::read_estimate_document(path), path);
-        case SavedKind::Study:
-            return detail::json_text(detail::read_document(path, "study"), path);
+        case SavedKind::Study: {
+            const Json document = detail::read_document(path, "study");
+            check_study(JsonValue(document, path));
+            return detail::json_text(document, path);
+        }
         case SavedKind::Trials:
             break;
     }

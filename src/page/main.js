@@ -20,16 +20,25 @@ const sections = [
   verdict, poses, accuracy, before, map, residuals, parameters, models, coverage, budget, optimality, readBack, measured, printed,
 ];
 
+/** What a document that was edited by hand breaks is said in its place; the rest of the page stands. */
+function renderOf(section, part, parts) {
+  try {
+    return section.isShown(part) ? section.render(part, parts) : null;
+  } catch (error) {
+    return el('p', { class: 'warning' }, `Cannot be shown: the document in this page is not as posewise writes it (${error.message}).`);
+  }
+}
+
 /** One section with all parts that have something to show, side by side where there are several. */
 function sectionOf(section, parts) {
-  const shown = parts.filter((part) => section.isShown(part));
+  const shown = parts.map((part) => [part, renderOf(section, part, parts)]).filter(([, content]) => content !== null);
   if (shown.length === 0) return null;
   const id = section.title.toLowerCase().replace(/[^a-z0-9]+/g, '-');
   const isAlone = parts.length === 1;
   return el('section', { id, 'aria-labelledby': `${id}-title` },
     el('h2', { id: `${id}-title` }, section.title),
-    el('div', { class: shown.length > 1 ? 'parts parts-beside' : 'parts' }, shown.map((part) =>
-      el('div', { class: 'part' }, isAlone ? null : el('h3', {}, part.name), section.render(part, parts)))));
+    el('div', { class: shown.length > 1 ? 'parts parts-beside' : 'parts' }, shown.map(([part, content]) =>
+      el('div', { class: 'part' }, isAlone ? null : el('h3', {}, part.name), content))));
 }
 
 /** Parts with names that differ. */

@@ -91,6 +91,24 @@ TEST_F(Report, OfAPlanHasWhatItPrintsAndWhatItsFileAndCampaignTell) {
     EXPECT_TRUE(again["command"].is_null() && again["printed"].is_null());
 }
 
+TEST_F(Report, LeavesOutWhatAChangedCampaignSaysOfAPlan) {
+    const std::string design =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    write_text("c.yaml", design);
+    run_well("plan c.yaml -k 9 --pool 40 --starts 1 --workspace-poses 10 --criterion d -o p.json");
+    run_well("report p.json -o r.html");
+    EXPECT_TRUE(part_in("r.html").contains("error_map"));
+    std::string longer = design;
+    const auto at = longer.find("Tz 1075");
+    ASSERT_NE(at, std::string::npos);
+    write_text("c.yaml", longer.replace(at, 7, "Tz 1175"));
+    const Outcome changed = run("report p.json -o r.html");
+    EXPECT_EQ(changed.code, 0);
+    EXPECT_NE(changed.err.find("must be as it was when the plan was made"), std::string::npos)
+        << changed.err;
+    EXPECT_FALSE(part_in("r.html").contains("error_map"));
+}
+
 TEST_F(Report, OfACalibrationIsTheSameFromItsFile) {
     simulate();
     const std::string text = run_well("calibrate " + fanuc_design +
@@ -212,6 +230,10 @@ TEST_F(Report, RefusesWhatItCannotReadOrWrite) {
     run_well("calibrate " + fanuc_design + " -m s.csv --folds 0 -o e.json");
     write_text("notes.txt", "a plan\n");
     expect_input_error("report absent.json -o r.html", "absent.json: cannot be read");
+    write_text("st.json",
+               R"({"kind": "posewise study", "format": 1, "campaign": "a", "simulated": true,
+                              "models": [{"name": "", "rows": [{"pose_count": 8, "planned": null}]}]})");
+    expect_input_error("report st.json -o r.html", "planned");
     expect_input_error("report notes.txt -o r.html", "must be a plan, estimate or study");
     expect_input_error("report e.json -o e.json", "is read and shall be written");
     expect_input_error("report e.json -o s.csv", "is read and shall be written");

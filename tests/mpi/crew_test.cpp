@@ -86,7 +86,6 @@ TEST_F(Crew, FailsOutsideOfTrials) {
     expect_failure(run_toy(3, "100 throw_early"), 3, ": no such file");
     expect_failure(run_toy(3, "100 throw_first"), 3, "posewise: no such campaign");
     expect_failure(run_toy(3, "100 accept 5"), 3, "posewise: disk is full");
-    expect_failure(run_toy(3, "100 again 50"), 3, "trials shall run after some that failed");
 }
 
 TEST_F(Crew, EndsWhenAProcessDies) {

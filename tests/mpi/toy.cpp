@@ -12,7 +12,6 @@
 //   twice          a second list follows, half as long
 //   stop           ends when AMOUNT trials are accepted, each of 1 ms
 //   late           ends after AMOUNT ms, each of 20 ms
-//   again          tries to go on after trial AMOUNT has thrown
 // Prints the sum of all values accepted, of how many trials, and how many processes found them.
 
 #include <fmt/format.h>
@@ -68,7 +67,6 @@ std::vector<double> compute(const Toy& toy, const TrialId& trial) {
     }
     if (toy.what == "throw" && is_the_one) throw std::runtime_error("trial fails\nin two lines");
     if (toy.what == "throw_memory" && is_the_one) throw std::bad_alloc();
-    if (toy.what == "again" && is_the_one) throw std::runtime_error("trial fails");
     if (toy.what == "kill" && rank() == toy.amount) ::kill(::getpid(), SIGKILL);
     const auto size = static_cast<std::size_t>(toy.what == "large" ? toy.amount : 2);
     std::vector<double> values(size, number);
@@ -104,12 +102,7 @@ void lead(const Toy& toy, const posewise::RunTrials& run) {
     stop.interrupted = toy.what == "stop" ? &is_enough : by_signal.get();
     if (toy.what == "late") stop.deadline = posewise::deadline_after(1e-3 * toy.amount);
     const auto begin = std::chrono::steady_clock::now();
-    try {
-        run(trials, accept, stop);
-    } catch (const std::exception&) {
-        if (toy.what != "again") throw;
-        run(trials, accept, stop);
-    }
+    run(trials, accept, stop);
     if (toy.what == "twice") {
         trials = list_trials(toy.count, toy.count + toy.count / 2);
         run(trials, accept, {});

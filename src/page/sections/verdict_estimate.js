@@ -35,13 +35,17 @@ function mostOf(part) {
   return `Configuration ${first.id}: predicted by ${alone} it is missed by ${mm(first.heldOut)} ${unit} RMS, with it by ${mm(first.fit)} ${unit}: the largest difference of all.`;
 }
 
-/** Poses more for 0.8 of the error, if they tell as much as those measured: of variances only that of the parameters falls. */
-function moreOf({ document }) {
+/** Poses more for 0.8 of the error, if they tell as much as those measured: of variances only that of the parameters falls.
+ * Over the workspace, where its map is there: at the poses measured parameters look better known than they are. */
+function moreOf(part) {
+  const { document } = part;
   const expected = document.accuracy.expected?.at_measured;
   if (!expected) return null;
   const unit = 'total_mm' in expected ? 'mm' : 'mrad';
-  const [all, parameters] = [expected[`total_${unit}`] ** 2, expected[`parameters_${unit}`] ** 2];
-  const rest = all - parameters;
+  const atMeasured = expected[`parameters_${unit}`] ** 2;
+  const rest = expected[`total_${unit}`] ** 2 - atMeasured;
+  const parameters = Math.max(atMeasured, unit === 'mm' ? (workspaceOf(part)?.rms ?? 0) ** 2 : 0);
+  const all = rest + parameters;
   const wanted = 0.64 * all - rest;
   const now = document.measured.configurations;
   if (!(wanted > 0)) return `More poses like these cannot do it: of the ${mm(Math.sqrt(all))} ${unit} RMS expected only ${mm(Math.sqrt(parameters))} ${unit} are by parameters not known better; without that ${mm(Math.sqrt(rest))} ${unit} would be left. A better model of the robot or a better instrument would help.`;
@@ -64,6 +68,14 @@ const doubtTexts = {
 function workspaceOf(part) {
   const points = part.error_map?.points ?? [];
   return points.length === 0 ? null : { rms: rms(points.map((one) => one.predicted_mm)), most: Math.max(...points.map((one) => one.predicted_mm)), count: points.length };
+}
+
+/** Parameters that these poses do not tell of far from them limit more than what the table of the budget says. */
+function limitOfEstimate(part) {
+  const left = part.document.accuracy.expected?.at_measured?.left_over_mm;
+  const workspace = workspaceOf(part);
+  if (!workspace || left === undefined || workspace.rms <= left) return limitOf(part);
+  return `Parameters are not known better: over the workspace ${mm(workspace.rms)} mm RMS by them, ${mm(left)} mm by what the model of the robot cannot express.`;
 }
 
 function doubtsOf(document) {
@@ -95,7 +107,7 @@ export function answerEstimate(part) {
       ['How sure', interval ? `RMS with 95 % confidence between ${mm(interval.lower)} and ${mm(interval.upper)} ${error.unit}, by how ${interval.count} configurations differ; ${document.degrees_of_freedom} degrees of freedom, variance factor ${short(document.variance_factor, 4)}.`
         : `${document.degrees_of_freedom} degrees of freedom, variance factor ${short(document.variance_factor, 4)}.`],
       ['Over the workspace', workspace ? `${mm(workspace.rms)} mm RMS, ${mm(workspace.most)} mm at worst, are expected by the parameters alone, at ${workspace.count} configurations within the limits: see the error map.` : null],
-      ['What limits it', limitOf(part)],
+      ['What limits it', limitOfEstimate(part)],
       ['Which pose matters most', mostOf(part)],
       ['Drift', describeDrift(part.residuals ? driftOf(part.residuals, part.scene?.joints) : null)],
       ['Poses more for 20 % better', moreOf(part)],

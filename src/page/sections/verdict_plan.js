@@ -69,7 +69,8 @@ function moreOf(document) {
   const floor = curve.floor === null ? '' : ` Were all parameters known, ${mm(curve.floor)} mm would be left.`;
   if (!found) return `Not known.${floor}`;
   if (found.more !== null) return `About ${count(found.more, 'pose')} more, interpolated on the curve below.${floor}`;
-  const rest = found.upTo > curve.current.count ? `No number tried is enough: ${count(found.upTo, 'new pose')} still leave ${fixed(100 * found.ratio, 0)} % of what ${curve.current.count} leave.` : 'Not known: no larger number of poses was tried.';
+  const how = chosen.length > 1 ? ' chosen from the pool' : '';
+  const rest = found.upTo > curve.current.count ? `No number tried is enough: ${count(found.upTo, 'new pose')}${how} still leave ${fixed(100 * found.ratio, 0)} % of what ${curve.current.count}${how} leave.` : 'Not known: no larger number of poses was tried.';
   return `${rest}${floor}`;
 }
 
