@@ -70,7 +70,7 @@ def read_manual():
                 key.split(".") for key in re.findall(r"`([^`]+)`", cell[1]))
     keys["page"] = []
     for key in re.findall(r"`([^`]+)`", "".join(re.findall(r"^\| (`.*?`) \|", PAGE_MANUAL, re.MULTILINE))):
-        of_part = key.startswith(("scene", "residuals", "error_map"))
+        of_part = key.startswith(("scene", "configurations", "residuals", "error_map"))
         keys["page"].append((["parts[]"] if of_part else []) + key.split("."))
     return keys
 

@@ -18,9 +18,10 @@ Example:
   posewise report estimate.json --out page.html
   posewise report plan_12.json plan_24.json --out plans.html
   posewise report results.sqlite --out study.html
+  posewise report estimate.json export.json --out page.html
 
 Makes one HTML file to look at from what commands have written: plans and estimates (--out), stores
-of study, and what study --json, plan --json or select --json printed. It opens in any browser and
+of study, and what study, plan, select or export --json printed. It opens in any browser and
 needs no network. Several are shown side by side. The commands themselves write the same with
 --report, and then also what they print, and of plans how many candidates there were and the accuracy
 of other numbers of poses.
@@ -65,11 +66,12 @@ void report_files(const ReportArguments& arguments, const CommonOptions& common)
 
 void add_report(CLI::App& program, const CommonOptions& common) {
     const auto arguments = std::make_shared<ReportArguments>();
-    CLI::App* command =
-        program.add_subcommand("report", "Show saved plans, estimates and studies as a page");
+    CLI::App* command = program.add_subcommand(
+        "report", "Show saved plans, estimates, studies and exports as a page");
     command
         ->add_option("FILE", arguments->files,
-                     "Plan, estimate, store of trials, or document that study --json printed")
+                     "Plan, estimate, store of trials, or document that study or export --json "
+                     "printed")
         ->required()
         ->check(file_name());
     command->add_option("-o,--out", arguments->out, "The page (HTML)")

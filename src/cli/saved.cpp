@@ -178,6 +178,7 @@ ShownFile show_study_file(const std::string& path, io::SavedKind kind) {
         shown.parts.emplace_back().document = io::read_saved_document(path, kind);
         return shown;
     }
+    shown.read = {path + "-wal", path + "-shm", path + "-journal"};
     for (const std::vector<Study>& studies : read_store_groups(path)) {
         io::PagePart& part = shown.parts.emplace_back();
         part.title = studies.front().campaign;
@@ -187,9 +188,17 @@ ShownFile show_study_file(const std::string& path, io::SavedKind kind) {
     return shown;
 }
 
+ShownFile show_export_file(const std::string& path) {
+    ShownFile shown;
+    shown.summary = "export";
+    shown.parts.emplace_back().document = io::read_saved_document(path, io::SavedKind::Export);
+    return shown;
+}
+
 ShownFile show_by_kind(const std::string& path) {
     const io::SavedKind kind = io::kind_of_saved(path);
     if (kind == io::SavedKind::Plan) return show_plan_file(path);
+    if (kind == io::SavedKind::Export) return show_export_file(path);
     if (kind == io::SavedKind::Estimate) return show_estimate_file(path);
     return show_study_file(path, kind);
 }

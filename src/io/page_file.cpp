@@ -1,6 +1,8 @@
 #include "posewise/io/page_file.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "atomic_file.hpp"
 #include "json.hpp"
@@ -15,13 +17,15 @@ using detail::Json;
 
 constexpr int page_format = 1;
 
-/// Numbers that are drawn need not be read back exactly: um and urad, nm of small errors, which are
-/// in mm, and less text.
-double rounded(double value) { return std::round(1e6 * value) / 1e6; }
+/// Numbers that are drawn need not be read back exactly, and less text loads faster.
+double rounded(double value, double per_unit) { return std::round(per_unit * value) / per_unit; }
 
-Json drawn(const Eigen::Ref<const VectorXd>& values, double factor = 1) {
+/// To um and urad; of mm to the nm.
+double to_micro(double value) { return rounded(value, 1e6); }
+
+Json drawn(const Eigen::Ref<const VectorXd>& values) {
     Json list = Json::array();
-    for (const double value : values) list.push_back(rounded(factor * value));
+    for (const double value : values) list.push_back(to_micro(value));
     return list;
 }
 
@@ -78,15 +82,10 @@ Json targets_to_json(const std::vector<SceneTarget>& targets) {
     return {{"names", std::move(names)}, {"positions", std::move(positions)}};
 }
 
-/// Of measured torques nothing is drawn.
-Json configurations_to_json(const PageConfigurations& configurations, Index joint_count) {
-    Json list = Json::array();
-    for (std::size_t i = 0; i < configurations.ids.size(); ++i) {
-        const VectorXd row = configurations.joints.row(static_cast<Index>(i)).transpose();
-        list.push_back({{"id", configurations.ids[i]},
-                        {"joints", detail::vector_to_json(row.head(joint_count))}});
-    }
-    return list;
+/// Without the torques that were measured with them.
+Json joints_to_json(const PagePart& part, const VectorXd& configuration) {
+    return drawn(part.scene ? configuration.head(part.scene->robot.joint_count()).eval()
+                            : configuration);
 }
 
 Json scene_to_json(const PagePart& part) {
@@ -119,72 +118,108 @@ Json scene_to_json(const PagePart& part) {
     }
     const RowMatrixXd& measured = part.configurations.joints;
     if (part.first_pose || measured.rows() > 0) {
-        const VectorXd first = part.first_pose ? *part.first_pose : measured.row(0).transpose();
+        VectorXd first = part.first_pose ? *part.first_pose : measured.row(0).transpose();
+        if (!part.first_pose) first = first.unaryExpr(&to_micro);  // as the page has it
         json["flange_of_first_pose"] = pose_to_json(world_from_flange(scene, first));
-    }
-    if (measured.rows() > 0) {
-        json["configurations"] =
-            configurations_to_json(part.configurations, scene.robot.joint_count());
     }
     return json;
 }
 
-// ---- Residuals and errors ----
+// ---- Configurations, residuals and errors ----
 
-/// In mm and mrad.
-Json residual_to_json(const VectorXd& residual) { return drawn(residual, mm_per_m); }
-
-/// Without the torques that were measured with them.
-Json joints_to_json(const PagePart& part, const VectorXd& configuration) {
-    return drawn(part.scene ? configuration.head(part.scene->robot.joint_count()).eval()
-                            : configuration);
+Json configurations_to_json(const PagePart& part) {
+    const PageConfigurations& measured = part.configurations;
+    Json joints = Json::array();
+    for (Index i = 0; i < measured.joints.rows(); ++i) {
+        joints.push_back(joints_to_json(part, measured.joints.row(i).transpose()));
+    }
+    return {{"id", measured.ids}, {"joints", std::move(joints)}};
 }
 
-Json residuals_to_json(const PagePart& part) {
-    const PageResiduals& residuals = *part.residuals;
+/// Something of each reading.
+Json column_of(const PageResiduals& residuals, auto value) {
+    Json column = Json::array();
+    for (const ReadingResidual& reading : residuals.readings) column.push_back(value(reading));
+    return column;
+}
+
+/// A column of each axis, null where `find` has no vector.
+Json columns_of(const PageResiduals& residuals, auto find, auto write) {
+    Json columns = Json::array();
+    for (Index axis = 0; axis < std::ssize(residuals.axes); ++axis) {
+        columns.push_back(column_of(residuals, [&](const ReadingResidual& reading) -> Json {
+            const VectorXd* const values = find(reading);
+            if (values == nullptr) return nullptr;
+            return write((*values)(axis));
+        }));
+    }
+    return columns;
+}
+
+/// Whole nm and nrad are shorter than numbers with a point.
+std::int64_t in_nm(double value) { return std::llround(1e9 * value); }
+double in_hundredths(double value) { return rounded(value, 1e2); }
+
+Json directions_to_json(const PageResiduals& residuals, double Direction::*part) {
+    return column_of(residuals, [&](const ReadingResidual& reading) -> Json {
+        if (!reading.direction) return nullptr;
+        return rounded((*reading.direction).*part, 1e5);
+    });
+}
+
+Json readings_to_json(const PageResiduals& residuals) {
+    using Reading = ReadingResidual;
     const Measurements& measured = residuals.measurements;
-    Json json = {{"axes", residuals.axes}, {"unit", Json::array()}, {"rows", Json::array()}};
+    Json json;
+    json["configuration"] =
+        column_of(residuals, [](const Reading& one) { return one.configuration; });
+    json["sample"] = column_of(residuals, [&](const Reading& one) {
+        const std::string& id = measured.ids[static_cast<std::size_t>(one.configuration)];
+        const std::string name = measured.sample_name(one.configuration, one.sample);
+        return name.substr(id.size() + 1);  // less "7:"
+    });
+    json["target"] = column_of(residuals, [](const Reading& one) { return one.target; });
+    json["residual"] = columns_of(
+        residuals, [](const Reading& one) { return &one.calibrated; }, in_nm);
+    json["nominal"] = columns_of(
+        residuals, [](const Reading& one) { return &one.nominal; }, in_nm);
+    const auto find_held_out = [](const Reading& one) {
+        return one.held_out ? &*one.held_out : nullptr;
+    };
+    const std::vector<Reading>& readings = residuals.readings;
+    if (std::any_of(readings.begin(), readings.end(), find_held_out)) {
+        json["held_out"] = columns_of(residuals, find_held_out, in_nm);
+    }
+    json["standardised"] = columns_of(
+        residuals, [](const Reading& one) { return &one.standardised; }, in_hundredths);
+    const auto has_direction = [](const Reading& one) { return one.direction.has_value(); };
+    if (std::any_of(readings.begin(), readings.end(), has_direction)) {
+        json["range"] = directions_to_json(residuals, &Direction::range);
+        json["azimuth"] = directions_to_json(residuals, &Direction::azimuth);
+        json["elevation"] = directions_to_json(residuals, &Direction::elevation);
+    }
+    return json;
+}
+
+Json residuals_to_json(const PageResiduals& residuals) {
+    Json json = {{"axes", residuals.axes}, {"unit", Json::array()}, {"targets", residuals.names}};
     for (const bool is_angle : residuals.is_angle) {
         json["unit"].push_back(units_of(is_angle).error);
     }
-    Index last = -1;
-    for (const ReadingResidual& reading : residuals.readings) {
-        const Index k = reading.configuration;
-        const std::string& id = measured.ids[static_cast<std::size_t>(k)];
-        const std::string sample = measured.sample_name(k, reading.sample);
-        Json row = {{"configuration", id},
-                    {"sample", sample.substr(id.size() + 1)},  // less "7:"
-                    {"target", residuals.names[static_cast<std::size_t>(reading.target)]}};
-        if (k != last) {
-            row["joints"] = joints_to_json(part, measured.configurations.row(k).transpose());
-        }
-        last = k;
-        row["residual"] = residual_to_json(reading.calibrated);
-        row["nominal"] = residual_to_json(reading.nominal);
-        if (reading.held_out) row["held_out"] = residual_to_json(*reading.held_out);
-        row["standardised"] = drawn(reading.standardised);
-        if (reading.direction) {
-            row["range"] = rounded(reading.direction->range);
-            row["azimuth"] = rounded(reading.direction->azimuth);
-            row["elevation"] = rounded(reading.direction->elevation);
-        }
-        json["rows"].push_back(std::move(row));
-    }
+    json["readings"] = readings_to_json(residuals);
     return json;
 }
 
-Json error_map_to_json(const PagePart& part) {
-    Json points = Json::array();
-    for (const MappedError& error : *part.error_map) {
-        Json point = {{"position", drawn(error.position)},
-                      {"joints", joints_to_json(part, error.configuration)},
-                      {"predicted_mm", mm_per_m * error.predicted}};
+Json error_map_to_json(const ErrorMap& map) {
+    Json json = {{"position", Json::array()}, {"predicted_mm", Json::array()}};
+    for (const MappedError& error : map) {
+        json["position"].push_back(drawn(error.position));
+        json["predicted_mm"].push_back(to_micro(mm_per_m * error.predicted));
         if (error.displacement) {
-            point["displacement_mm"] = drawn(*error.displacement, mm_per_m);
+            json["displacement_mm"].push_back(drawn(mm_per_m * *error.displacement));
         }
-        points.push_back(std::move(point));
     }
-    return {{"points", std::move(points)}};
+    return json;
 }
 
 // ---- The page ----
@@ -206,8 +241,9 @@ Json part_to_json(const PagePart& part) {
         throw input_error_at({part.title}, "is not JSON; must be a document of posewise");
     }
     if (part.scene) json["scene"] = scene_to_json(part);
-    if (part.residuals) json["residuals"] = residuals_to_json(part);
-    if (part.error_map) json["error_map"] = error_map_to_json(part);
+    if (!part.configurations.ids.empty()) json["configurations"] = configurations_to_json(part);
+    if (part.residuals) json["residuals"] = residuals_to_json(*part.residuals);
+    if (part.error_map) json["error_map"] = error_map_to_json(*part.error_map);
     return json;
 }
 

@@ -18,7 +18,7 @@ namespace {
 using detail::Json;
 using detail::JsonValue;
 
-constexpr const char* saved_kinds = "plan, estimate or study";
+constexpr const char* saved_kinds = "plan, estimate, study or export";
 
 std::string text_or_none(const JsonValue& object, const char* key) {
     return object.has(key) ? object[key].text() : "";
@@ -76,16 +76,33 @@ void check_study(const JsonValue& study) {
     }
 }
 
+/// How far files that were exported are from the robot.
+void check_export(const JsonValue& document) {
+    document["campaign"].text();
+    for (const auto& [geometry, unused] : document["lost"].json().items()) {
+        document["lost"][geometry]["rms_mm"].number();
+        document["lost"][geometry]["largest_mm"].number();
+    }
+    document["not_exported"].texts();
+    for (const JsonValue& file : document["read_back"].list()) {
+        file["path"].text();
+        file["configurations"].count(1);
+        file["position_m"].number();
+        file["orientation_rad"].number();
+    }
+}
+
 }  // namespace
 
 SavedKind kind_of_saved(const std::string& path) {
     if (is_trial_store(path)) return SavedKind::Trials;
     const Json document = detail::read_json(path, saved_kinds);
-    static const std::array<std::pair<std::string, SavedKind>, 4> kinds{
+    static const std::array<std::pair<std::string, SavedKind>, 5> kinds{
         {{"posewise plan", SavedKind::Plan},
          {"posewise pose plan", SavedKind::Plan},
          {"posewise estimate", SavedKind::Estimate},
-         {"posewise study", SavedKind::Study}}};
+         {"posewise study", SavedKind::Study},
+         {"posewise export", SavedKind::Export}}};
     const JsonValue root(document, path);
     const std::string stated = document.is_object() && root.has("kind") ? root["kind"].text() : "";
     for (const auto& [name, kind] : kinds) {
@@ -106,6 +123,11 @@ std::string read_saved_document(const std::string& path, SavedKind kind) {
         case SavedKind::Study: {
             const Json document = detail::read_document(path, "study");
             check_study(JsonValue(document, path));
+            return detail::json_text(document, path);
+        }
+        case SavedKind::Export: {
+            const Json document = detail::read_document(path, "export");
+            check_export(JsonValue(document, path));
             return detail::json_text(document, path);
         }
         case SavedKind::Trials:

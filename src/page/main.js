@@ -1,4 +1,5 @@
 import { el } from './core/dom.js';
+import { rowsOf } from './core/residuals.js';
 import { watchTheme } from './core/theme.js';
 import { footer, header } from './sections/frame.js';
 import * as accuracy from './sections/accuracy_by_count.js';
@@ -41,10 +42,19 @@ function sectionOf(section, parts) {
       el('div', { class: 'part' }, isAlone ? null : el('h3', {}, part.name), content))));
 }
 
+/** Residuals with their readings as `rows`; none if the document is not as posewise writes it. */
+function withRows(part) {
+  try {
+    return part.residuals && { ...part.residuals, rows: rowsOf(part) };
+  } catch {
+    return undefined;
+  }
+}
+
 /** Parts with names that differ. */
 function namedParts(document) {
   const parts = (document.parts ?? []).map((part) => ({
-    ...part, robot: part.document.campaign ?? part.title, title: part.title.replace(/^.*[/\\](?=.)/, ''), file: part.title === part.document.campaign ? null : part.title,
+    ...part, residuals: withRows(part), robot: part.document.campaign ?? part.title, title: part.title.replace(/^.*[/\\](?=.)/, ''), file: part.title === part.document.campaign ? null : part.title,
   }));
   const kindOf = (part) => part.document.kind.replace(/^posewise /, '');
   return parts.map((part, k) => {

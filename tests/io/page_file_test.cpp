@@ -103,8 +103,9 @@ TEST(ToPage, HasTheSceneAndWhatIsLeftOfReadings) {
     const json shown = json::parse(embedded(to_page({part})))["parts"][0];
 
     const json& scene = shown["scene"];
+    const auto joints = shown["configurations"]["joints"][0].get<std::vector<double>>();
     const Isometry3d flange = world_from_flange(found.campaign, found.estimate.parameters,
-                                                measured.configurations.row(0).transpose());
+                                                Eigen::Map<const VectorXd>(joints.data(), 6));
     for (std::size_t k = 0; k < 16; ++k) {
         const auto number = static_cast<Index>(k);
         EXPECT_NEAR(scene["flange_of_first_pose"][k].get<double>(),
@@ -114,32 +115,35 @@ TEST(ToPage, HasTheSceneAndWhatIsLeftOfReadings) {
     EXPECT_EQ(scene["capsules"][0]["kind"], "link");
     EXPECT_EQ(scene["boxes"][0]["kind"], "keep_out");
     EXPECT_EQ(scene["instrument"]["kind"], "tracker");
-    ASSERT_EQ(scene["configurations"].size(), 12U);
-    EXPECT_EQ(scene["configurations"][3]["id"], measured.ids[3]);
-    EXPECT_EQ(scene["configurations"][3]["joints"][2], measured.configurations(3, 2));
+    ASSERT_EQ(shown["configurations"]["joints"].size(), 12U);
+    EXPECT_EQ(shown["configurations"]["id"][3], measured.ids[3]);
+    EXPECT_NEAR(shown["configurations"]["joints"][3][2], measured.configurations(3, 2), 5.1e-7);
 
-    const json& rows = shown["residuals"]["rows"];
-    ASSERT_EQ(rows.size(), 72U);
+    const json& readings = shown["residuals"]["readings"];
     EXPECT_EQ(shown["residuals"]["unit"], json({"mm", "mm", "mm"}));
-    EXPECT_EQ(rows[4]["sample"], "2");
-    EXPECT_EQ(rows[4]["target"], "target2");
-    EXPECT_TRUE(rows[6].contains("joints"));
-    EXPECT_FALSE(rows[7].contains("joints")) << "as the row before has them";
+    EXPECT_EQ(readings["configuration"][6], 1);
+    EXPECT_EQ(readings["sample"][4], "2");
+    EXPECT_EQ(shown["residuals"]["targets"][readings["target"][4].get<std::size_t>()], "target2");
     double squares = 0;
-    for (const json& row : rows) {
-        for (const json& one : row["residual"]) squares += one.get<double>() * one.get<double>();
+    for (const json& axis : readings["residual"]) {
+        ASSERT_EQ(axis.size(), 72U);
+        for (const json& one : axis) squares += std::pow(1e-9 * one.get<double>(), 2);
     }
-    EXPECT_NEAR(std::sqrt(squares / 72), 1e3 * found.estimate.fit.distance_rms, 1e-6);
-    EXPECT_EQ(shown["error_map"]["points"][0]["predicted_mm"], 0.1);
-    EXPECT_EQ(shown["error_map"]["points"][0]["displacement_mm"], json({1.0, 0.0, 0.0}));
+    EXPECT_NEAR(std::sqrt(squares / 72), found.estimate.fit.distance_rms, 1e-9);
+    EXPECT_EQ(shown["error_map"]["predicted_mm"][0], 0.1);
+    EXPECT_EQ(shown["error_map"]["displacement_mm"][0], json({1.0, 0.0, 0.0}));
 
     // Torques that were measured with the joints are no joints.
     part.error_map->front().configuration.conservativeResize(8);
     part.residuals->readings[0].held_out.reset();
     const json again = json::parse(to_json(std::vector<PagePart>{part}))["parts"][0];
     EXPECT_EQ(again["error_map"], shown["error_map"]);
-    EXPECT_FALSE(again["residuals"]["rows"][0].contains("held_out"));
-    EXPECT_TRUE(again["residuals"]["rows"][1].contains("held_out"));
+    EXPECT_TRUE(again["residuals"]["readings"]["held_out"][2][0].is_null());
+    EXPECT_TRUE(again["residuals"]["readings"]["held_out"][2][1].is_number_integer());
+    EXPECT_EQ(again["residuals"]["readings"]["nominal"], readings["nominal"]);
+    for (ReadingResidual& reading : part.residuals->readings) reading.held_out.reset();
+    const json without = json::parse(to_json(std::vector<PagePart>{part}))["parts"][0];
+    EXPECT_FALSE(without["residuals"]["readings"].contains("held_out"));
 }
 
 TEST(WritePage, WritesAllOrNothing) {

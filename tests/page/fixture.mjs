@@ -20,7 +20,26 @@ export function documentOf(html) {
   return JSON.parse(html.slice(begin, html.indexOf('</script>', begin)));
 }
 
-export const page = (...parts) => ({ kind: 'posewise page', posewise_version: '0.1.0', format: 1, parts });
+const mapOf = (points) => ({
+  position: points.map((one) => one.position), predicted_mm: points.map((one) => one.predicted_mm),
+  ...(points[0].displacement_mm ? { displacement_mm: points.map((one) => one.displacement_mm) } : {}),
+});
+
+/** Residuals as the page has them. */
+function packed(part) {
+  if (!part.residuals) return part;
+  const { axes, unit, rows } = part.residuals;
+  const targets = [...new Set(rows.map((row) => row.target))];
+  const whole = (key, factor) => axes.map((unused, axis) => rows.map((row) => Math.round(row[key][axis] * factor)));
+  const readings = {
+    configuration: rows.map((row) => part.configurations.id.indexOf(row.configuration)), sample: rows.map((row) => row.sample), target: rows.map((row) => targets.indexOf(row.target)),
+    residual: whole('residual', 1e6), nominal: whole('nominal', 1e6), held_out: whole('held_out', 1e6),
+    standardised: axes.map((unused, axis) => rows.map((row) => row.standardised[axis])), ...Object.fromEntries(['range', 'azimuth', 'elevation'].map((key) => [key, rows.map((row) => row[key])])),
+  };
+  return { ...part, residuals: { axes, unit, targets, readings } };
+}
+
+export const page = (...parts) => ({ kind: 'posewise page', posewise_version: '0.1.0', format: 1, parts: parts.map(packed) });
 
 let state = 1;
 const random = () => {
@@ -91,7 +110,7 @@ export function makePlan(count = 12, name = 'cell', places = 200) {
     const joints = draw(scene);
     return { position: apply(flange(scene, joints), scene.targets.positions[0]), joints, predicted_mm: 0.1 + 0.1 * random() };
   });
-  return { title: name, command: 'posewise plan campaign.yaml', made_at: '2026-11-23T12:00:00Z', printed: 'pool:        246 of 2000\n', document, scene, error_map: { points } };
+  return { title: name, command: 'posewise plan campaign.yaml', made_at: '2026-11-23T12:00:00Z', printed: 'pool:        246 of 2000\n', document, scene, error_map: mapOf(points) };
 }
 
 /** Metrics with the keys of estimates. */
@@ -104,15 +123,15 @@ const metrics = (scale) => ({
 export function makeEstimate({ errors = 18, drift = 0, name = 'measured robot' } = {}) {
   const scene = makeScene();
   const rows = [];
-  scene.configurations = Array.from({ length: 30 }, (unused, c) => ({ id: `c${c}`, joints: draw(scene) }));
-  scene.flange_of_first_pose = flange(scene, scene.configurations[0].joints);
-  scene.configurations.forEach(({ id, joints }, c) => {
+  const configurations = { id: Array.from({ length: 30 }, (unused, c) => `c${c}`), joints: Array.from({ length: 30 }, () => draw(scene)) };
+  scene.flange_of_first_pose = flange(scene, configurations.joints[0]);
+  configurations.joints.forEach((joints, c) => {
     const off = [normal(), normal(), normal()].map((value) => 0.08 * value);
     off[2] += drift * (c / 29 - 0.5);
     for (const target of ['target1', 'target2']) {
       const residual = off.map((value) => value + 0.03 * normal());
       rows.push({
-        configuration: id, sample: '1', target, joints, residual, nominal: residual.map((value) => value + normal()), held_out: residual.map((value) => 1.1 * value),
+        configuration: configurations.id[c], sample: '1', target, joints, residual, nominal: residual.map((value) => value + normal()), held_out: residual.map((value) => 1.1 * value),
         standardised: residual.map((value) => value / 0.09), range: 2 + random(), azimuth: random(), elevation: random(),
       });
     }
@@ -140,7 +159,7 @@ export function makeEstimate({ errors = 18, drift = 0, name = 'measured robot' }
     const joints = draw(scene);
     return { position: apply(flange(scene, joints), [0.25, 0, 0.12]), joints, predicted_mm: 0.03 + 0.02 * random(), displacement_mm: [normal(), normal(), normal()] };
   });
-  return { title: name, command: null, made_at: '2026-11-23T12:00:00Z', printed: null, document, scene, residuals: { axes: ['x', 'y', 'z'], unit: ['mm', 'mm', 'mm'], rows }, error_map: { points } };
+  return { title: name, command: null, made_at: '2026-11-23T12:00:00Z', printed: null, document, scene, configurations, residuals: { axes: ['x', 'y', 'z'], unit: ['mm', 'mm', 'mm'], rows }, error_map: mapOf(points) };
 }
 
 /** A study of measured configurations. */

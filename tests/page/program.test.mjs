@@ -1,7 +1,7 @@
 // Pages of the program itself: what they say is what it prints.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -98,6 +98,20 @@ for (const [name, words] of Object.entries(commands)) {
     await close();
   });
 }
+
+test('exported files', { skip: program ? false : 'POSEWISE_PROGRAM is not set' }, async () => {
+  const path = join(output, 'program_export.html');
+  const [dh, saved] = [join(output, 'dh.yaml'), join(output, 'export.json')];
+  const printed = JSON.parse(run('export', fanuc[0], join(output, 'estimate.json'), '--dh', dh, '--json'));
+  writeFileSync(saved, JSON.stringify(printed));
+  run('report', saved, '--out', path);
+  const { tab, complaints, close } = await open(browser, path);
+  await drawn(tab);
+  assert.match(await tab.locator('.verdict').textContent(), /^1 file written and read back: the flange is where it shall be within \d/);
+  assert.deepEqual(await tab.locator('#exported-files-read-back tbody tr:last-child td:first-child, #exported-files-read-back tbody tr:last-child th').first().textContent(), dh);
+  assert.deepEqual(complaints, []);
+  await close();
+});
 
 test('saved files side by side', { skip: program ? false : 'POSEWISE_PROGRAM is not set' }, async () => {
   const path = join(output, 'program_report.html');

@@ -14,13 +14,14 @@ enum class SavedKind {
     Plan,      ///< a plan file, or what select --json or plan --json printed
     Estimate,  ///< from calibrate
     Study,     ///< what study --json printed
+    Export,    ///< what export --json printed
     Trials,    ///< a store, of study --store
 };
 
 /// What a file is, by its content. Throws InputError for one that is none of these.
 SavedKind kind_of_saved(const std::string& path);
 
-/// The document in the file of a plan, an estimate or a study; of a plan of format 1 one of format
+/// The document in the file of a plan, an estimate, a study or an export; of a plan of format 1 one of format
 /// 2 with as much as there is. Throws InputError for another kind or a format that is not known.
 std::string read_saved_document(const std::string& path, SavedKind kind);
 

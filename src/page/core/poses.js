@@ -31,8 +31,9 @@ export function posesOf(part) {
   }
   const keys = (scene?.joints ?? []).map((joint) =>
     `${joint.name}_${joint.kind === 'prismatic' ? 'm' : 'rad'}`);
-  return (scene?.configurations ?? []).map(({ id, joints }) => ({
-    id, keys, all: joints, joints: joints.slice(0, keys.length), via: null, targets: null, times: 1,
+  const measured = (scene && part.configurations) || { id: [], joints: [] };
+  return measured.joints.map((joints, k) => ({
+    id: measured.id[k], keys, all: joints, joints: joints.slice(0, keys.length), via: null, targets: null, times: 1,
   }));
 }
 

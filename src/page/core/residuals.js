@@ -1,5 +1,17 @@
 // What residuals of a calibration come to.
 
+/** Readings as rows, residuals in mm and mrad; `joints` are those of the configuration. */
+export function rowsOf({ residuals: { axes, targets, readings }, configurations }) {
+  const axesOf = (columns, k, factor) => axes.map((unused, axis) => (columns[axis][k] === null ? null : columns[axis][k] * factor));
+  return readings.configuration.map((c, k) => {
+    const [id, joints] = [configurations.id[c], configurations.joints[c]];
+    const row = { configuration: id, joints, sample: readings.sample[k], target: targets[readings.target[k]], standardised: axesOf(readings.standardised, k, 1) };
+    for (const key of ['residual', 'nominal', 'held_out']) if (typeof readings[key]?.[0][k] === 'number') row[key] = axesOf(readings[key], k, 1e-6);
+    for (const key of ['range', 'azimuth', 'elevation']) if (typeof readings[key]?.[k] === 'number') row[key] = readings[key][k];
+    return row;
+  });
+}
+
 /** Columns that are of one unit with the first: lengths, or else angles. */
 export function mainColumns({ axes, unit }) {
   return axes.map((unused, k) => k).filter((k) => unit[k] === unit[0]);

@@ -10,7 +10,7 @@ import { drawSlices, sliced } from '../draw/slices.js';
 
 export const title = 'Error map of the workspace';
 
-export const isShown = (part) => part.error_map?.points?.length > 0;
+export const isShown = (part) => part.error_map?.position?.length > 0;
 
 const slicesShown = 4;
 
@@ -19,7 +19,7 @@ function mapOf(name, points, unit) {
   const [low, high] = [quantile(values, 0.02), quantile(values, 0.98)];
   const paint = (value) => ramp(high > low ? (value - low) / (high - low) : 0.5);
   const description = `${name} over the workspace: from ${mm(Math.min(...values))} to ${mm(Math.max(...values))} ${unit}, half below ${mm(quantile(values, 0.5))} ${unit}`;
-  return el('div', {}, colourBar(`${name}/${unit}`, mm(low), mm(high)), drawSlices(description, sliced(points, slicesShown), paint));
+  return el('div', {}, colourBar(`${name}/${unit}`, `${Math.min(...values) < low ? '\u2264 ' : ''}${mm(low)}`, `${Math.max(...values) > high ? '\u2265 ' : ''}${mm(high)}`), drawSlices(description, sliced(points, slicesShown), paint));
 }
 
 function summaryTable(sets) {
@@ -28,7 +28,7 @@ function summaryTable(sets) {
 }
 
 function pointTable(points) {
-  const hasDisplacement = points.some((one) => one.displacement_mm);
+  const hasDisplacement = points.some((one) => one.displacement);
   return screenTable('Points of the map, in the robot\u2019s base frame', ['x/m', 'y/m', 'z/m', 'predicted/mm', ...(hasDisplacement ? ['dx/mm', 'dy/mm', 'dz/mm'] : [])],
     points.map((one) => [...one.at.map((value) => fixed(value, 3)), mm(one.predicted_mm), ...(hasDisplacement ? (one.displacement ?? [null, null, null]).map(mm) : [])]));
 }
@@ -38,8 +38,9 @@ const turned = (frame, vector) => applyInverse([...frame.slice(0, 3), 0, ...fram
 
 export function render(part) {
   const frame = part.scene?.world_from_base ?? [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
-  const points = part.error_map.points.map((one) => ({
-    ...one, at: applyInverse(frame, one.position), displacement: one.displacement_mm ? turned(frame, one.displacement_mm) : null,
+  const map = part.error_map;
+  const points = map.position.map((position, k) => ({
+    at: applyInverse(frame, position), predicted_mm: map.predicted_mm[k], displacement: map.displacement_mm ? turned(frame, map.displacement_mm[k]) : null,
   }));
   const predicted = points.map((one) => ({ at: one.at, value: one.predicted_mm }));
   const moved = points.filter((one) => one.displacement).map((one) => ({ at: one.at, value: Math.hypot(...one.displacement), vector: one.displacement }));

@@ -1,6 +1,6 @@
 import { el, saveFile } from '../core/dom.js';
 
-const kinds = { plan: 'Plan', estimate: 'Calibration', study: 'Study' };
+const kinds = { plan: 'Plan', estimate: 'Calibration', study: 'Study', export: 'Export' };
 
 export function header(parts, sections) {
   const names = [...new Set(parts.map((part) => part.robot))];

@@ -42,6 +42,8 @@ function describeNoise(assumes) {
   return text.join(', ');
 }
 
+const methods = { lm: 'Levenberg-Marquardt' };
+
 function ofEstimate(document) {
   const { measured, made_from: made } = document;
   return [
@@ -53,7 +55,7 @@ function ofEstimate(document) {
     ['Checksum of campaign', made?.campaign_checksum],
     ['Checksum of measurements', made?.measurements_checksum],
     ['Options', options(made?.options)],
-    ['Method', `${document.method}: ${document.ending} after ${count(document.iterations, 'iteration')}`],
+    ['Method', `${methods[document.method] ?? document.method}: ${document.ending} after ${count(document.iterations, 'iteration')}`],
     ['Degrees of freedom', document.degrees_of_freedom],
     ['Variance factor', short(document.variance_factor, 4)],
     ['Model error', `${short(1e3 * document.model_error_m, 4)} mm`],

@@ -66,8 +66,25 @@ const doubtTexts = {
 
 /** What the parameters alone leave over the workspace, where these poses may not have told enough. */
 function workspaceOf(part) {
-  const points = part.error_map?.points ?? [];
-  return points.length === 0 ? null : { rms: rms(points.map((one) => one.predicted_mm)), most: Math.max(...points.map((one) => one.predicted_mm)), count: points.length };
+  const errors = part.error_map?.predicted_mm ?? [];
+  return errors.length === 0 ? null : { rms: rms(errors), most: Math.max(...errors), count: errors.length };
+}
+
+/** What the calibration expected, where what was found contradicts it. */
+function surpriseOf({ accuracy }, unit, interval) {
+  const expected = accuracy.expected?.at_measured?.[`total_${unit}`];
+  if (!interval || expected === undefined || accuracy.validation || accuracy.left_out) return null;
+  const text = `The calibration itself expected ${mm(expected)} ${unit} RMS at these configurations`;
+  if (expected < interval.lower) return `${text}: less than was found. Outliers, drift, or errors that the model leaves out?`;
+  if (expected > interval.upper) return `${text}: more than was found. The sizes or the model error stated may be too large.`;
+  return null;
+}
+
+/** What is in the squares left over but not the robot's. */
+function besidesModel(part, drift) {
+  const outliers = part.document.outliers?.length ?? 0;
+  const causes = [drift?.verdict === 'yes' ? 'the drift below' : null, outliers > 0 ? count(outliers, 'outlier') : null].filter(Boolean);
+  return causes.length === 0 ? '' : ` ${causes.join(' and ')} may be in it.`.replace(/^ ./, (first) => first.toUpperCase());
 }
 
 /** Parameters that these poses do not tell of far from them limit more than what the table of the budget says. */
@@ -92,11 +109,14 @@ export function answerEstimate(part) {
   const nominal = accuracy.nominal?.[error.unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'];
   const sure = part.residuals && error.key ? factorOfRms(part.residuals, error.key) : null;
   const interval = sure && { lower: error.rms / sure.factor, upper: error.rms * sure.factor, count: sure.count };
-  const warnings = doubtsOf(document);
+  const surprise = surpriseOf(document, error.unit, interval);
+  const warnings = [...doubtsOf(document), surprise].filter(Boolean);
+  const drift = part.residuals ? driftOf(part.residuals, part.scene?.joints) : null;
   const workspace = workspaceOf(part);
   if (error.unit === 'mm' && workspace?.rms > 2 * error.rms) {
     warnings.push(`The poses measured cover the workspace badly: over ${workspace.count} of its configurations the parameters alone are expected to leave ${mm(workspace.rms)} mm RMS, ${mm(workspace.most)} mm at worst.`);
   }
+  const limit = limitOfEstimate(part);
   const within = interval ? ` (95 %: ${mm(interval.lower)} to ${mm(interval.upper)})` : '';
   const times = nominal > 0 ? `, ${short(nominal / error.rms, 3)} times less than the robot that is not calibrated (${mm(nominal)} ${error.unit})` : '';
   return {
@@ -107,9 +127,9 @@ export function answerEstimate(part) {
       ['How sure', interval ? `RMS with 95 % confidence between ${mm(interval.lower)} and ${mm(interval.upper)} ${error.unit}, by how ${interval.count} configurations differ; ${document.degrees_of_freedom} degrees of freedom, variance factor ${short(document.variance_factor, 4)}.`
         : `${document.degrees_of_freedom} degrees of freedom, variance factor ${short(document.variance_factor, 4)}.`],
       ['Over the workspace', workspace ? `${mm(workspace.rms)} mm RMS, ${mm(workspace.most)} mm at worst, are expected by the parameters alone, at ${workspace.count} configurations within the limits: see the error map.` : null],
-      ['What limits it', limitOfEstimate(part)],
+      ['What limits it', limit && limit + besidesModel(part, drift)],
       ['Which pose matters most', mostOf(part)],
-      ['Drift', describeDrift(part.residuals ? driftOf(part.residuals, part.scene?.joints) : null)],
+      ['Drift', describeDrift(drift)],
       ['Poses more for 20 % better', moreOf(part)],
     ],
   };

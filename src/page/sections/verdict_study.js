@@ -32,11 +32,11 @@ function verdictsOf(model, c) {
 }
 
 /** What one model or variation comes to. */
-function sentenceOf(points, what) {
+function sentenceOf(points, what, trials) {
   const enough = enoughOf(points);
   const random = enough.row.random?.held_out_rms_p50_mm;
   const more = enough === points.at(-1) ? 'more were not tried' : 'more gain less than 10 %';
-  return `${count(enough.count, 'pose')} chosen by ${enough.one.criterion} leave ${mm(enough.value)} mm RMS ${what}${random ? `, random ones ${mm(random)} mm (median)` : ''}; ${more}.`;
+  return `${count(enough.count, 'pose')} chosen by ${enough.one.criterion} leave ${mm(enough.value)} mm RMS ${what} (median of ${trials})${random ? `, random ones ${mm(random)} mm` : ''}; ${more}.`;
 }
 
 export function answerStudy(part) {
@@ -49,17 +49,18 @@ export function answerStudy(part) {
   const { criterion } = one;
   const what = document.simulated ? 'over the workspace' : 'on configurations held out';
   const ratio = one.against_random;
+  const trials = count(document.splits, document.simulated ? 'robot' : 'split');
   return {
-    sentence: `${model.name ? `${model.name}: ` : ''}${sentenceOf(points, what)}`,
+    sentence: `${model.name ? `${model.name}: ` : ''}${sentenceOf(points, what, trials)}`,
     rows: [
       ['How accurate', `${mm(enough.value)} mm RMS ${what} with ${count(enough.count, 'pose')}${model.name ? ` (${model.name})` : ''}; the calibrations themselves expect ${mm(one.expected_rms_mm)} mm.`],
-      ['How sure', ratio ? `Planned against random ${fixed(ratio.ratio, 2)}, with 95 % confidence ${fixed(ratio.lower, 2)} to ${fixed(ratio.upper, 2)}; medians over ${count(document.splits, document.simulated ? 'robot' : 'split')}, judged on ${count(document.judged_on, 'configuration')}.` : null],
+      ['How sure', ratio ? `Planned against random ${fixed(ratio.ratio, 2)}, with 95 % confidence ${fixed(ratio.lower, 2)} to ${fixed(ratio.upper, 2)}; medians over ${trials}, judged on ${count(document.judged_on, 'configuration')}.` : null],
       ['Does planning pay', `${criterion}, planned against random: ${verdictsOf(model, 0)}.`],
       ['What limits it', enough === points.at(-1) ? 'The number of poses: the error still falls at the most that were tried.'
         : `Beyond ${count(enough.count, 'pose')} the number of poses does not: what is left is noise and what the model cannot express.`],
       ['Which pose matters most', 'A study compares numbers of poses; a plan says what each pose is worth.'],
       ['Drift', document.simulated ? noDrift : 'Not looked at here: a calibration of all measurements shows it.'],
-      ...others.map((other) => [other.model.name, sentenceOf(other.points, what)]),
+      ...others.map((other) => [other.model.name, sentenceOf(other.points, what, trials)]),
       ['Poses more for 20 % better', moreOf(points)],
     ],
   };
