@@ -107,6 +107,18 @@ ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
         point_errors(campaign, estimate, measured.configurations, times_seen(measured), is_angle));
 }
 
+ExpectedError expected_sample_error(const Campaign& campaign, const Estimate& estimate,
+                                    const Measurements& measured) {
+    RowMatrixXd configurations(measured.observations.rows(), measured.configurations.cols());
+    for (Index i = 0; i < measured.configuration_count(); ++i) {
+        const Index first = measured.first_sample[static_cast<std::size_t>(i)];
+        configurations.middleRows(first, measured.sample_count(i)).rowwise() =
+            measured.configurations.row(i);
+    }
+    return average(point_errors(campaign, estimate, configurations,
+                                measured.is_seen.cast<double>(), !campaign.sensor->has_lengths()));
+}
+
 std::vector<ErrorPrediction> predict_errors(const Campaign& campaign, const Estimate& estimate,
                                             const RowMatrixXd& configurations) {
     const Sensor& sensor = *campaign.sensor;

@@ -290,7 +290,7 @@ Moved measure_moved(const Campaign& campaign, const Parameters& before, const Pa
 std::optional<Moved> find_moved(const Work& work, const Campaign& campaign, const Estimate& before,
                                 const Measurements& others) {
     constexpr double plain = 5;
-    const double expected = expected_error(campaign, before, others).total();
+    const double expected = expected_sample_error(campaign, before, others).total();
     const double off = judge(campaign, before.parameters, others).rms();
     if (off <= plain * expected) return std::nullopt;
     for (const std::vector<std::string>& parts : movable_parts(campaign)) {
@@ -337,7 +337,7 @@ void validate(const Work& work, Calibration& result) {
                                                     options.validation->configurations);
     // What else was identified there the estimate's covariance does not tell.
     if (options.validation_campaign != nullptr) return;
-    result.expected_validation = expected_error(campaign, estimate, *options.validation);
+    result.expected_validation = expected_sample_error(campaign, estimate, *options.validation);
     if (options.refitted.empty()) {
         result.moved = find_moved(work, campaign, estimate, *options.validation);
     }
@@ -377,7 +377,8 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
     if (!options.used.empty() && !left_out.empty()) {
         const Measurements others = take(measurements, left_out);
         result.left_out = judge(campaign, result.estimate.parameters, others);
-        result.expected_left_out = expected_error(result.campaign, result.estimate, others);
+        result.expected_left_out =
+            expected_sample_error(result.campaign, result.estimate, others);
     }
     try {
         validate(work, result);

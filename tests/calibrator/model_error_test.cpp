@@ -57,6 +57,14 @@ TEST(ModelError, TellsWhatToExpectAtPosesNotMeasured) {
     EXPECT_NEAR(expected.model, std::sqrt(3.0) * estimate.model_error, 1e-15);
     EXPECT_GT(expected.parameters, 0);
     EXPECT_NEAR(expected.noise, std::sqrt(3.0) * 5e-5, 1e-4);
+
+    EXPECT_DOUBLE_EQ(expected_sample_error(truth, estimate, judged).total(), expected.total());
+    const Measurements repeated = simulate(truth, {30, 4, 5, 6}).measurements;
+    const ExpectedError mean = expected_error(truth, estimate, repeated);
+    const ExpectedError sample = expected_sample_error(truth, estimate, repeated);
+    EXPECT_NEAR(sample.noise, 2 * mean.noise, 1e-12);
+    EXPECT_NEAR(sample.parameters, mean.parameters, 1e-12);
+    EXPECT_NEAR(sample.model, mean.model, 1e-12);
 }
 
 }  // namespace

@@ -123,6 +123,9 @@ ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
                              const Measurements& measured);
 ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
                              const Measurements& measured, bool is_angle);
+/// The same of each sample by itself, as residuals() are.
+ExpectedError expected_sample_error(const Campaign& campaign, const Estimate& estimate,
+                                    const Measurements& measured);
 
 /// The same, and what 95 % of the points are off by less than.
 struct PredictedError : ExpectedError {

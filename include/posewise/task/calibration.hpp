@@ -108,7 +108,8 @@ struct Calibration {
     RowMatrixXd nominal_residuals;               ///< of these, as residuals() has them
     std::optional<Repeatability> repeatability;  ///< nothing: no configuration was repeated
     std::optional<CrossValidation> held_out;
-    /// At poses like those measured, at the configurations not used, and at the validation's.
+    /// Of means at poses like those measured; of samples at the configurations not used, and at the
+    /// validation's.
     ExpectedError expected;
     std::optional<ExpectedError> expected_left_out;
     std::optional<ExpectedError> expected_validation;

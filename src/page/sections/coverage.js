@@ -14,8 +14,8 @@ function pairsOf({ accuracy }) {
   const expected = accuracy?.expected ?? {};
   const of = (metrics) => metrics?.distance_rms_mm;
   return [
-    ['calibrated, at the poses measured', expected.at_measured?.total_mm, of(accuracy?.fit)],
-    ['held out', expected.at_measured?.total_mm, of(accuracy?.held_out?.samples)],
+    ['calibrated, at the poses measured', expected.at_measured?.total_mm, of(accuracy?.fit_means ?? accuracy?.fit)],
+    ['held out', expected.at_measured?.total_mm, of(accuracy?.held_out?.means ?? accuracy?.held_out?.samples)],
     ['not in plan', expected.at_left_out?.total_mm, of(accuracy?.left_out)],
     ['validation', expected.at_validation?.total_mm, of(accuracy?.validation)],
   ].filter(([, predicted, found]) => isNumber(predicted) && isNumber(found)).map(([name, predicted, found]) => ({ name, predicted, found }));
@@ -54,7 +54,7 @@ function ofPlan({ document }) {
 function ofEstimate(part) {
   const pairs = pairsOf(part.document);
   const rows = pairs.map((one) => [one.name, mm(one.predicted), mm(one.found), fixed(one.found / one.predicted, 2)]);
-  return el('div', {}, lead('What the calibration expects of itself, and what was found.'),
+  return el('div', {}, lead('What the calibration expects of itself, and what was found: at the poses measured of the means of repeats, elsewhere of each reading.'),
     figure('Open circles: predicted; dots: found.', dotRows(`Predicted and found: ${rows.map((row) => row.slice(0, 3).join(' ')).join(', ')}`, 'distance RMS/mm', pairs.map((one) => ({ name: one.name, at: one.found, other: one.predicted }))),
       [table('Distance RMS, predicted and found', ['where', 'predicted/mm', 'found/mm', 'found/predicted'], rows)]));
 }

@@ -70,13 +70,14 @@ function workspaceOf(part) {
   return errors.length === 0 ? null : { rms: rms(errors), most: Math.max(...errors), count: errors.length };
 }
 
-/** What the calibration expected, where what was found contradicts it. */
-function surpriseOf({ accuracy }, unit, interval) {
+/** What the calibration expected of the mean of the samples, where what was held out contradicts it. */
+function surpriseOf({ accuracy }, { key, unit }, sure) {
   const expected = accuracy.expected?.at_measured?.[`total_${unit}`];
-  if (!interval || expected === undefined || accuracy.validation || accuracy.left_out) return null;
-  const text = `The calibration itself expected ${mm(expected)} ${unit} RMS at these configurations`;
-  if (expected < interval.lower) return `${text}: less than was found. Outliers, drift, or errors that the model leaves out?`;
-  if (expected > interval.upper) return `${text}: more than was found. The sizes or the model error stated may be too large.`;
+  if (!sure || key !== 'held_out' || expected === undefined) return null;
+  const found = (accuracy.held_out.means ?? accuracy.held_out.samples)[unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'];
+  const text = `The calibration itself expected ${mm(expected)} ${unit} RMS at these configurations, held out they are missed by ${mm(found)} ${unit}`;
+  if (expected * sure.factor < found) return `${text}: more. Outliers, drift, or errors that the model leaves out?`;
+  if (expected > found * sure.factor) return `${text}: less. The sizes or the model error stated may be too large.`;
   return null;
 }
 
@@ -109,7 +110,7 @@ export function answerEstimate(part) {
   const nominal = accuracy.nominal?.[error.unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'];
   const sure = part.residuals && error.key ? factorOfRms(part.residuals, error.key) : null;
   const interval = sure && { lower: error.rms / sure.factor, upper: error.rms * sure.factor, count: sure.count };
-  const surprise = surpriseOf(document, error.unit, interval);
+  const surprise = surpriseOf(document, error, sure);
   const warnings = [...doubtsOf(document), surprise].filter(Boolean);
   const drift = part.residuals ? driftOf(part.residuals, part.scene?.joints) : null;
   const workspace = workspaceOf(part);
