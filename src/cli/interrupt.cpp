@@ -26,7 +26,7 @@ void say(std::string_view text) {
     [[maybe_unused]] const auto said = ::write(STDERR_FILENO, text.data(), text.size());
 }
 
-void note_interrupt(int /*signal*/) {
+void note_interrupt(int signal) {
     using std::chrono::steady_clock;
     const steady_clock::rep now = steady_clock::now().time_since_epoch().count();
     steady_clock::rep first = 0;
@@ -36,9 +36,15 @@ void note_interrupt(int /*signal*/) {
         say("posewise: ");
         say(words);
         say("\n");
-        std::signal(SIGINT, SIG_DFL);
-        std::raise(SIGINT);
+        std::signal(signal, SIG_DFL);
+        std::raise(signal);
     }
+}
+
+/// SIGTERM stays ignored where it is: in the ranks that follow one that is told.
+void handle_signals(void (*handler)(int)) {
+    std::signal(SIGINT, handler);
+    if (std::signal(SIGTERM, handler) == SIG_IGN) std::signal(SIGTERM, SIG_IGN);
 }
 
 }  // namespace
@@ -47,10 +53,10 @@ InterruptFlag::InterruptFlag(std::string_view last_words) {
     words = last_words;
     is_interrupted = false;
     first_at = 0;
-    std::signal(SIGINT, note_interrupt);
+    handle_signals(note_interrupt);
 }
 
-InterruptFlag::~InterruptFlag() { std::signal(SIGINT, SIG_DFL); }
+InterruptFlag::~InterruptFlag() { handle_signals(SIG_DFL); }
 
 const std::atomic<bool>* InterruptFlag::get() const { return &is_interrupted; }
 

@@ -62,9 +62,9 @@ the 90 % interval is then as narrow as that knows the model error, and sizes tha
 --only base,targets for finding them again after the instrument or the tool was moved.
 --augment counts what was measured already. --plan with --drop keeps the other poses of a plan as
 they are and finds new ones, at least 5 deg in some joint from those that could not be reached.
-Ctrl-C or --time end the search with the best plan so far, marked as interrupted; exit code 0.
-Before there is one, while it looks for what is identifiable, they end it with an error. What a
-limit that was not kept went to is said.
+Ctrl-C, SIGTERM or --time end the search with the best plan so far, marked as interrupted; exit
+code 0. Before there is one, while it looks for what is identifiable, they end it with an error.
+What a limit that was not kept went to is said.
 The same seed gives the same plan, on any number of threads, unless time ended it.)";
 
 struct PlanArguments : RequestArguments {

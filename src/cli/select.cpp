@@ -50,8 +50,8 @@ matrix), each --rows of them one candidate, named 0, 1, ... One of --groups: col
 --relax chooses nothing: it weights the candidates (an approximate design), 0 to --repeat-limit each and
 -k in sum, by what an experiment that could be split at will would take of each, and proves the bound.
 
-Ctrl-C or --time end the search with the best plan so far, written with its bound; exit code 0.
-Before there is one, while it looks for what is identifiable, they end it with an error.
+Ctrl-C, SIGTERM or --time end the search with the best plan so far, written with its bound; exit
+code 0. Before there is one, while it looks for what is identifiable, they end it with an error.
 The same seed gives the same plan, on any number of threads, unless time ended it.)";
 
 CandidateKind kind_of(const SelectArguments& arguments) {

@@ -219,7 +219,10 @@ void read_motion(const YamlMap& map, const Chain& robot, Cell& cell) {
     }
     if (const auto dwell = map.find("dwell_s")) {
         cell.dwell = dwell->number();
-        if (cell.dwell < 0) throw dwell->error("is " + dwell->text() + "; must not be negative");
+        constexpr double day = 86400;
+        if (cell.dwell < 0 || cell.dwell > day) {
+            throw dwell->error("is " + dwell->text() + "; must be from 0 to 86400");
+        }
     }
 }
 

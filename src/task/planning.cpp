@@ -1,6 +1,9 @@
 #include "posewise/task/planning.hpp"
 
+#include <fmt/format.h>
+
 #include "plan_maker.hpp"
+#include "posewise/core/errors.hpp"
 
 namespace posewise {
 
@@ -8,6 +11,11 @@ Planning make_plan(const Campaign& campaign, const PlanningOptions& options) {
     detail::PlanningProblem problem = detail::state_planning(campaign, options);
     detail::count_new_poses(problem, options.stop);
     const Index count = problem.search.pose_count;
+    const Index all = problem.request.pose_count;
+    if (options.drop_out_count > 1 && options.drop_out_count >= all) {
+        throw InputError(fmt::format("{} poses that may be missing leave none of {}; must be fewer",
+                                     options.drop_out_count, all));
+    }
     return detail::PlanMaker(std::move(problem), options).make(count, [](const Planning&) {
         return true;
     });

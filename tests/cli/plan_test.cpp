@@ -190,6 +190,11 @@ TEST_F(PlanCommand, AnInterruptedPlanIsWrittenAndMarked) {
     EXPECT_EQ(json_of("p.json").at("search").at("stop_reason"), "time limit");
 }
 
+TEST_F(PlanCommand, RefusesDropOutsOfAllPoses) {
+    expect_input_error("plan " + fanuc_design + " -k 8 --robust-to 8" + quick,
+                       "8 poses that may be missing leave none of 8");
+}
+
 TEST_F(PlanCommand, RefusesContradictoryLimits) {
     write_changed("range_mm: [1500, 8000]", "range_mm: [8000, 1500]");
     expect_input_error("plan changed.yaml -k 12" + quick, "range");

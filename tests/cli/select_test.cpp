@@ -188,7 +188,7 @@ TEST_F(Select, ReturnsTheBestSoFarWhenTimeIsUpOrCtrlCComes) {
     const std::string text = run_well(much + "--time 1 -o t.json");
     EXPECT_NE(text.find("time limit"), std::string::npos) << text;
     run_well("verify t.json");
-    const Outcome outcome = run(much + "-o c.json", "timeout -s INT 3");
+    const Outcome outcome = run(much + "-o c.json", "timeout -s TERM 3");
     EXPECT_NE(outcome.out.find("interrupted"), std::string::npos) << outcome.out;
     EXPECT_EQ(outcome.err, "posewise: interrupted; the plan is the best so far\n");
     EXPECT_EQ(plan("c.json").at("search").at("stop_reason"), "interrupted");

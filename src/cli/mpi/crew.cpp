@@ -90,13 +90,10 @@ void be_silent() {
 }
 
 /// mpirun passes the wish to end on as SIGTERM, to all; the leader ends the others.
-void take_signals() {
-    if (leads_crew()) {
-        std::signal(SIGTERM, [](int /*signal*/) { std::raise(SIGINT); });
-    } else {
-        std::signal(SIGTERM, SIG_IGN);
-        std::signal(SIGINT, SIG_IGN);
-    }
+void leave_signals_to_leader() {
+    if (leads_crew()) return;
+    std::signal(SIGTERM, SIG_IGN);
+    std::signal(SIGINT, SIG_IGN);
 }
 
 }  // namespace
@@ -106,7 +103,7 @@ int run_in_crew(int argc, char** argv, const std::function<ProgramEnd()>& progra
     MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
     if (process_count() > 1) {
         set_thread_count(1);  // unless the program says otherwise
-        take_signals();
+        leave_signals_to_leader();
     }
     int code = 0;
     if (leads_crew()) {

@@ -1,0 +1,59 @@
+// What a simulated study adds to its calibrations (24 poses, 33 parameters, one core): drawing the
+// robot, its measurements, judging at 200 configurations (target: at most 15 %).
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/measurement/simulation.hpp"
+#include "posewise/task/simulated_study.hpp"
+#include "support/campaigns.hpp"
+
+namespace posewise {
+namespace {
+
+Campaign fanuc_campaign() {
+    Campaign campaign = testing::tracked_campaign(testing::fanuc());
+    campaign.model_error = 1e-4;
+    return campaign;
+}
+
+/// Robots drawn one after the other, so that no two calibrations are of the same.
+void BM_calibration_alone(benchmark::State& state) {
+    const Campaign campaign = fanuc_campaign();
+    std::vector<Measurements> campaigns;
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
+        campaigns.push_back(simulate(campaign, {.pose_count = 24, .seed = seed}).measurements);
+    }
+    std::size_t next = 0;
+    for (auto _ : state) {
+        const Measurements& measured = campaigns[next++ % campaigns.size()];
+        const Parameters start = register_base_and_targets(campaign, measured).parameters;
+        benchmark::DoNotOptimize(identify(campaign, measured, start));
+    }
+}
+BENCHMARK(BM_calibration_alone)->Unit(benchmark::kMillisecond);
+
+double seconds_of(const Campaign& campaign, Index trials) {
+    SimulatedStudyOptions options;
+    options.pose_counts = {24};
+    options.trials = trials;
+    const auto begin = std::chrono::steady_clock::now();
+    benchmark::DoNotOptimize(simulate_study({{"", campaign}}, options));
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// A planned and a random one of each robot, without what is done once.
+void BM_calibration_in_a_study(benchmark::State& state) {
+    const Campaign campaign = fanuc_campaign();
+    constexpr Index trials = 1000;
+    for (auto _ : state) {
+        const double once = seconds_of(campaign, 1);
+        state.SetIterationTime((seconds_of(campaign, 1 + trials) - once) / (2 * trials));
+    }
+}
+BENCHMARK(BM_calibration_in_a_study)->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(5);
+
+}  // namespace
+}  // namespace posewise
