@@ -83,7 +83,7 @@ TEST_F(PlanTarget, DwellIsTimeAtEachPose) {
     const std::string text = run_well("plan c.yaml -k 8 --repeats 2" + quick);
     EXPECT_NE(text.find("min with 4 s for each sample"), std::string::npos) << text;
     write_text("c.yaml", campaign + "cell: {dwell_s: -4}\n");
-    expect_input_error("plan c.yaml -k 8" + quick, "dwell_s is -4; must not be negative");
+    expect_input_error("plan c.yaml -k 8" + quick, "dwell_s is -4; must be from 0 to 86400");
 }
 
 }  // namespace

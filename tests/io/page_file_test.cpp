@@ -170,16 +170,18 @@ TEST(KindOfSaved, IsFoundFromTheContent) {
     EXPECT_EQ(kind_of(R"({"kind": "posewise pose plan"})"), SavedKind::Plan);
     EXPECT_EQ(kind_of(R"({"kind": "posewise estimate"})"), SavedKind::Estimate);
     EXPECT_EQ(kind_of(R"({"kind": "posewise study"})"), SavedKind::Study);
+    EXPECT_EQ(kind_of(R"({"kind": "posewise export"})"), SavedKind::Export);
     const auto error_of = [&](const std::string& text) {
         return input_error_of([&] { kind_of(text); });
     };
-    EXPECT_EQ(error_of(R"({"kind": "posewise export"})"),
-              "f: kind: is 'posewise export'; must be that of a plan, estimate or study, as "
-              "posewise writes them, or the file a store of study");
+    EXPECT_EQ(error_of(R"({"kind": "posewise indices"})"),
+              "f: kind: is 'posewise indices'; must be that of a plan, estimate, study or export, "
+              "as posewise writes them, or the file a store of study");
     EXPECT_EQ(error_of("[1]").find("f: kind: is ''; must be"), 0U);
     EXPECT_EQ(error_of(R"({"kind": 3})"), "f: kind: is of type number; must be text");
     EXPECT_EQ(error_of("name: a"),
-              "f:1:2: is not JSON here; must be a plan, estimate or study as posewise writes it");
+              "f:1:2: is not JSON here; must be a plan, estimate, study or export as posewise "
+              "writes it");
 }
 
 TEST(ReadEstimateRecord, SaysWhatTheEstimateWasMadeFrom) {
