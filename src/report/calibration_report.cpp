@@ -187,8 +187,8 @@ std::string judge_validation(const Calibration& calibration) {
 /// Base and targets that the validation was judged with.
 std::string format_refitted(const Calibration& calibration) {
     if (!calibration.refitted) return "";
-    const Campaign& campaign = calibration.campaign;
-    detail::Table values = detail::value_table(campaign, *calibration.refitted);
+    const Campaign& campaign = *calibration.refitted;
+    detail::Table values = detail::value_table(campaign, campaign.nominal);
     const auto begin = values.rows.begin() + base_parameter_count(campaign);
     values.rows.erase(begin, begin + campaign.robot.parameter_count());
     return format_section(

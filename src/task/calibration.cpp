@@ -330,7 +330,8 @@ void validate(const Work& work, Calibration& result) {
     }
     if (!options.refitted.empty()) {
         estimate = refit(work, result, campaign);
-        result.refitted = estimate.parameters;
+        result.refitted = campaign;
+        result.refitted->nominal = estimate.parameters;
     }
     result.validation = judge(campaign, estimate.parameters, *options.validation);
     result.validation_beyond = find_beyond_measured(campaign, work.used.configurations,

@@ -357,6 +357,11 @@ TEST_F(From, OtherTargetsAfterAMove) {
         run_well(validate + "--validate-campaign one.yaml --refit base,targets --json");
     EXPECT_NEAR(Json::parse(judged)["accuracy"]["validation"]["distance_rms_mm"].get<double>(),
                 found["accuracy"]["fit"]["distance_rms_mm"].get<double>(), 1e-6);
+    const std::string text =
+        run_well(validate + "--validate-campaign one.yaml --refit base,targets");
+    const std::string refitted = text.substr(text.find("Refitted to the validation"));
+    EXPECT_NEAR(number_behind(refitted, "target1.x"), 300, 5);
+    EXPECT_GT(refitted.find("target2.x"), refitted.find("Parameters")) << "it has one target";
     expect_input_error(validate + "--validate-campaign one.yaml --refit base",
                        "both base and targets");
     EXPECT_EQ(run(validate + "--validate-campaign one.yaml").code, 2);
