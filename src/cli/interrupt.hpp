@@ -6,8 +6,8 @@
 namespace posewise::cli {
 
 /// While it lives, the first Ctrl-C (SIGINT) or SIGTERM (kill, timeout, Slurm) only sets the flag;
-/// another, half a second later or more, ends the program with the last words: by default that nothing was written, and then it
-/// must not outlive that.
+/// another, half a second later or more, ends the program with the last words: by default that
+/// nothing was written, and then it must not outlive that.
 class InterruptFlag {
   public:
     /// The words must live for ever.

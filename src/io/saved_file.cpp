@@ -92,6 +92,13 @@ void check_export(const JsonValue& document) {
     }
 }
 
+std::string read_checked(const std::string& path, const char* kind,
+                         void (*check)(const JsonValue&)) {
+    const Json document = detail::read_document(path, kind);
+    check(JsonValue(document, path));
+    return detail::json_text(document, path);
+}
+
 }  // namespace
 
 SavedKind kind_of_saved(const std::string& path) {
@@ -120,16 +127,10 @@ std::string read_saved_document(const std::string& path, SavedKind kind) {
             return detail::json_text(detail::read_plan_document(path), path);
         case SavedKind::Estimate:
             return detail::json_text(detail::read_estimate_document(path), path);
-        case SavedKind::Study: {
-            const Json document = detail::read_document(path, "study");
-            check_study(JsonValue(document, path));
-            return detail::json_text(document, path);
-        }
-        case SavedKind::Export: {
-            const Json document = detail::read_document(path, "export");
-            check_export(JsonValue(document, path));
-            return detail::json_text(document, path);
-        }
+        case SavedKind::Study:
+            return read_checked(path, "study", check_study);
+        case SavedKind::Export:
+            return read_checked(path, "export", check_export);
         case SavedKind::Trials:
             break;
     }

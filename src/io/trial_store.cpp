@@ -99,7 +99,7 @@ class StoreFile {
     std::vector<TrialSeries> series() const;
     std::vector<Trial> finished(const TrialSeries& series) const;
     /// So that series are in the order in which a study has them, whichever trial is ready first.
-    void state(const TrialSeries& series);
+    const KeptSeries& state(const TrialSeries& series);
     void keep(const TrialSeries& series, const Trial& trial);
     void merge(const std::vector<std::string>& from);
 
@@ -181,8 +181,9 @@ void StoreFile::check_kind() const {
     for (const std::string& table : {series_table, trials_table}) {
         if (!tables.step() || tables.text(0) != table) throw database_.damaged();
     }
-    if (tables.step() || database_.text("PRAGMA integrity_check(1)") != "ok")
+    if (tables.step() || database_.text("PRAGMA integrity_check(1)") != "ok") {
         throw database_.damaged();
+    }
 }
 
 void StoreFile::read_series() {
@@ -237,12 +238,14 @@ std::vector<Trial> StoreFile::finished(const TrialSeries& series) const {
     return trials;
 }
 
-void StoreFile::state(const TrialSeries& series) {
-    if (std::ranges::find(series_, series, &KeptSeries::series) != series_.end()) return;
+const KeptSeries& StoreFile::state(const TrialSeries& series) {
+    const auto kept = std::ranges::find(series_, series, &KeptSeries::series);
+    if (kept != series_.end()) return *kept;
     Transaction transaction(database_);
     KeptSeries added = add(series);
     transaction.commit();
     series_.push_back(std::move(added));
+    return series_.back();
 }
 
 void StoreFile::keep(const TrialSeries& series, const Trial& trial) {
@@ -259,14 +262,7 @@ void StoreFile::keep(const TrialSeries& series, const Trial& trial) {
 }
 
 bool StoreFile::put(const TrialSeries& series, const Trial& trial) {
-    const auto kept = std::ranges::find(series_, series, &KeptSeries::series);
-    if (kept != series_.end()) return put(*kept, trial);
-    Transaction transaction(database_);
-    KeptSeries added = add(series);
-    put(added, trial);
-    transaction.commit();
-    series_.push_back(std::move(added));
-    return true;
+    return put(state(series), trial);
 }
 
 bool StoreFile::put(const KeptSeries& series, const Trial& trial) {

@@ -21,8 +21,9 @@ enum class SavedKind {
 /// What a file is, by its content. Throws InputError for one that is none of these.
 SavedKind kind_of_saved(const std::string& path);
 
-/// The document in the file of a plan, an estimate, a study or an export; of a plan of format 1 one of format
-/// 2 with as much as there is. Throws InputError for another kind or a format that is not known.
+/// The document in the file of a plan, an estimate, a study or an export; of a plan of format 1 one
+/// of format 2 with as much as there is. Throws InputError for another kind or a format that is not
+/// known.
 std::string read_saved_document(const std::string& path, SavedKind kind);
 
 /// The document of a plan with what judge_again() said of it, unless it holds that already.

@@ -120,8 +120,8 @@ struct Calibration {
     /// Where poses of the validation, or those to predict, are unlike those calibrated with.
     std::optional<BeyondMeasured> validation_beyond;
     std::optional<BeyondMeasured> predicted_beyond;
-    /// With CalibrationOptions::refitted: the validation's campaign, which may have other targets, at
-    /// the parameters that it was judged with.
+    /// With CalibrationOptions::refitted: the validation's campaign, which may have other targets,
+    /// at the parameters that it was judged with.
     std::optional<Campaign> refitted;
     /// By how much base and targets have moved up to the validation, where that is plain.
     std::optional<Moved> moved;

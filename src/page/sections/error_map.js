@@ -17,9 +17,10 @@ const slicesShown = 4;
 function mapOf(name, points, unit) {
   const values = points.map((one) => one.value);
   const [low, high] = [quantile(values, 0.02), quantile(values, 0.98)];
+  const [least, most] = [Math.min(...values), Math.max(...values)];
   const paint = (value) => ramp(high > low ? (value - low) / (high - low) : 0.5);
-  const description = `${name} over the workspace: from ${mm(Math.min(...values))} to ${mm(Math.max(...values))} ${unit}, half below ${mm(quantile(values, 0.5))} ${unit}`;
-  return el('div', {}, colourBar(`${name}/${unit}`, `${Math.min(...values) < low ? '\u2264 ' : ''}${mm(low)}`, `${Math.max(...values) > high ? '\u2265 ' : ''}${mm(high)}`), drawSlices(description, sliced(points, slicesShown), paint));
+  const description = `${name} over the workspace: from ${mm(least)} to ${mm(most)} ${unit}, half below ${mm(quantile(values, 0.5))} ${unit}`;
+  return el('div', {}, colourBar(`${name}/${unit}`, `${least < low ? '\u2264 ' : ''}${mm(low)}`, `${most > high ? '\u2265 ' : ''}${mm(high)}`), drawSlices(description, sliced(points, slicesShown), paint));
 }
 
 function summaryTable(sets) {

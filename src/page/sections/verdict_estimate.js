@@ -84,8 +84,8 @@ function surpriseOf({ accuracy }, { key, unit }, sure) {
 /** What is in the squares left over but not the robot's. */
 function besidesModel(part, drift) {
   const outliers = part.document.outliers?.length ?? 0;
-  const causes = [drift?.verdict === 'yes' ? 'the drift below' : null, outliers > 0 ? count(outliers, 'outlier') : null].filter(Boolean);
-  return causes.length === 0 ? '' : ` ${causes.join(' and ')} may be in it.`.replace(/^ ./, (first) => first.toUpperCase());
+  const causes = [drift?.verdict === 'yes' ? 'The drift below' : null, outliers > 0 ? count(outliers, 'outlier') : null].filter(Boolean);
+  return causes.length === 0 ? '' : ` ${causes.join(' and ')} may be in it.`;
 }
 
 /** Parameters that these poses do not tell of far from them limit more than what the table of the budget says. */
