@@ -140,8 +140,31 @@ class Relaxer {
         const VectorXd d = sensitivities(candidates_, log_gradient(objective_, search.M));
         const std::vector<Index> joining =
             best_outside(d, is_inside_, search.threshold, std::max<Index>(200, set_.size() / 4));
-        if (!joining.empty()) join(joining);
-        return !joining.empty();
+        if (joining.empty()) return false;
+        drop_idle(d);
+        join(joining);
+        return true;
+    }
+
+    /// Drops members without weight; as many as have some are spared, the most sensitive ones.
+    void drop_idle(const VectorXd& sensitivity) {
+        std::vector<Index> kept;
+        std::vector<Index> idle;
+        for (Index k = 0; k < set_.size(); ++k) (weights_[k] > 0 ? kept : idle).push_back(k);
+        const auto member = [&](Index k) { return set_.members()[static_cast<std::size_t>(k)]; };
+        std::stable_sort(idle.begin(), idle.end(), [&](Index a, Index b) {
+            return sensitivity[member(a)] > sensitivity[member(b)];
+        });
+        const std::size_t spared = std::min(kept.size(), idle.size());
+        for (std::size_t i = 0; i < idle.size(); ++i) {
+            if (i < spared) {
+                kept.push_back(idle[i]);
+            } else {
+                is_inside_[static_cast<std::size_t>(member(idle[i]))] = 0;
+            }
+        }
+        weights_ = VectorXd(weights_(kept));
+        set_ = WorkingSet(set_, kept);
     }
 
     bool sharpen() {
