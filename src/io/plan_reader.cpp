@@ -145,6 +145,7 @@ void read_problem(const JsonValue& problem, const std::string& path, Plan& plan)
 Certificate read_certificate(const JsonValue& json) {
     Certificate certificate;
     certificate.sharpness = json["sharpness"].number_or(infinity);
+    if (!(certificate.sharpness > 0)) throw json["sharpness"].error("must be positive");
     const auto rows = json["M_lower"].list();
     const auto size = static_cast<Index>(rows.size());
     certificate.M.resize(size, size);

@@ -171,13 +171,18 @@ double prove_again(const Plan& plan, const ChoiceProblem& problem, const std::ve
     return plan.bound;
 }
 
+bool has_certificate(const Plan& plan, const ChoiceProblem& problem) {
+    return plan.certificate.M.rows() == problem.blocks.parameter_count() &&
+           plan.certificate.sharpness > 0;
+}
+
 /// The bound that the certificate proves.
 double prove_bound(const Plan& plan, const ChoiceProblem& problem, Findings& findings) {
-    const Index L = problem.blocks.parameter_count();
-    const Index size = plan.certificate.M.rows();
-    if (size == L && plan.certificate.sharpness > 0) {
+    if (has_certificate(plan, problem)) {
         return detail::upper_bound(problem.blocks, problem.options, plan.certificate);
     }
+    const Index L = problem.blocks.parameter_count();
+    const Index size = plan.certificate.M.rows();
     findings.note("certificate", size == 0,
                   size == 0 ? "none, so nothing is proven"
                             : fmt::format("is {} x {}, must be {} x {}", size, size, L, L));
@@ -192,7 +197,7 @@ void check_numbers(const Plan& plan, const ChoiceProblem& problem, const std::ve
 
     double bound = std::max(value, prove_bound(plan, problem, findings));
     const bool claims_more = plan.bound < bound && !agree(criterion, plan.bound, bound);
-    if (claims_more && agree(criterion, plan.value, value)) {
+    if (claims_more && has_certificate(plan, problem) && agree(criterion, plan.value, value)) {
         bound = std::max(value, prove_again(plan, problem, poses, findings));
     }
     findings.compare("bound", plan.bound, bound, agree(criterion, plan.bound, bound));

@@ -127,7 +127,7 @@ TEST_F(PlanCommand, SaysThatThePoolIsTooSmall) {
 
 TEST_F(PlanCommand, TimeCoversThePool) {
     const std::string text = run("plan " + cell_design +
-                                 " -k 12 --prior --pool 10000000 --workspace-poses 50 --time 1 "
+                                 " -k 12 --prior --pool 10000000 --workspace-poses 50 --time 4 "
                                  "-o p.json")
                                  .out;
     EXPECT_LT(json_of("p.json").at("candidates").at("drawn"), 10000000);

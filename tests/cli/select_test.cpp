@@ -185,7 +185,7 @@ TEST_F(Select, PredictsTestPosesWithGAndV) {
 
 TEST_F(Select, ReturnsTheBestSoFarWhenTimeIsUpOrCtrlCComes) {
     const std::string much = "select " + fanuc_design + " --random 1000 -k 20 --starts 1000000 ";
-    const std::string text = run_well(much + "--time 1 -o t.json");
+    const std::string text = run(much + "--time 1 -o t.json").out;  // slow builds say they took 2 s
     EXPECT_NE(text.find("time limit"), std::string::npos) << text;
     run_well("verify t.json");
     const Outcome outcome = run(much + "-o c.json", "timeout -s TERM 3");

@@ -82,6 +82,8 @@ TEST_F(Verify, SaysWhichNumberWasEdited) {
                  "bound");
     expect_found([](Json& plan) { plan["certificate"]["M_lower"] = Json::parse("[[1]]"); },
                  "certificate: is 1 x 1, must be 33 x 33", "certificate");
+    expect_found([](Json& plan) { plan["certificate"]["M_lower"] = Json::array(); },
+                 "certificate: none, so nothing is proven", "bound");
     expect_found([](Json& plan) { plan["criterion"] = "a"; }, "value:      stated", "value");
     expect_found([](Json& plan) { plan["value"] = nullptr; }, "value:      stated -inf", "value");
     expect_found([](Json& plan) { plan["bound"] = nullptr; }, "bound:      stated inf", "bound");
