@@ -28,7 +28,9 @@ Finds base and targets (or tool; of sockets ball and sockets: they need a column
 readings) from nothing, then identifies all parameters together, and prints
   - the error left, in mm: nominal (only base and targets fitted), calibrated (all samples), means
     (of each configuration's samples), held out (each configuration predicted by a calibration
-    without it: what to expect at poses that were not measured);
+    without it: with few poses more than others will be missed by);
+  - what to expect of poses like those measured, and over the workspace (within the limits and the
+    cell), by the parameters, by what the model leaves over and by the instrument;
   - the noise floor, from the repeats: no calibration gets below it;
   - every parameter with its standard deviation, the base as position and rotation vector;
   - the strongest correlations: what these poses can hardly tell apart.

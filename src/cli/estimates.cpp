@@ -169,6 +169,15 @@ std::string describe_earlier(const std::string& path, const EarlierUse& use) {
     return text + '\n';
 }
 
+std::string describe_earlier(const PlanRequest& request) {
+    std::string text = describe_earlier(request.sources.estimate, request.earlier);
+    if (!request.earlier.only.empty()) {
+        text +=
+            "            the rest counts as exact: its errors come on top of what is predicted\n";
+    }
+    return text;
+}
+
 io::Provenance provenance_of(const CLI::App& command, const io::CampaignFile& file,
                              const std::string& path, const Measurements& measured) {
     io::Provenance made_from{path, io::checksum_of(measured), file.path, file.checksum, {}};

@@ -75,9 +75,7 @@ void warn_of_counting_twice(const std::string& estimate, bool is_prior, const st
 
 /// A line: which estimate, and how it is used; nothing without one.
 std::string describe_earlier(const std::string& path, const EarlierUse& use);
-inline std::string describe_earlier(const PlanRequest& request) {
-    return describe_earlier(request.sources.estimate, request.earlier);
-}
+std::string describe_earlier(const PlanRequest& request);
 inline std::string describe_earlier(const EarlierArguments& arguments) {
     return describe_earlier(arguments.from, arguments.use());
 }

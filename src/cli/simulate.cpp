@@ -22,7 +22,8 @@ Example:
   posewise simulate campaign.yaml --configurations poses.csv --out simulated.csv
 
 Draws a robot with errors of the campaign's spread (by the seed --truth), sends it to random
-configurations within the joint limits, or to those of a file, and measures with the sensor's noise.
+configurations within the joint limits, or to those of a file, and measures with the sensor's noise,
+and with the model error and repeatability that the campaign expects.
 In the column visible_targets that file may list which targets each configuration shows ("1 3"), as
 plan --csv writes it; the cells of the others stay empty. With sockets it has a column socket, and
 joints are those with which the ball sits in it. The file written starts with comment lines

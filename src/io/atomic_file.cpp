@@ -100,6 +100,9 @@ std::string follow_link(const std::string& path) {
 class PendingFile {
   public:
     PendingFile(const FileContent& file) : path_(file.path), target_(follow_link(file.path)) {
+        if (path_ == "-") {
+            throw InputError("-: is no name of a file; /dev/stdout is standard output");
+        }
         open();
         if (file_->write(file.content) && file_->take_permissions(target_) && file_->sync()) return;
         const InputError problem = failure(path_, "cannot be written");

@@ -112,6 +112,7 @@ Json expected_to_json(const Calibration& calibration) {
                     {"total" + unit, mm * error.total()}};
     };
     Json json = {{"at_measured", one(calibration.expected)}};
+    if (const auto& error = calibration.expected_workspace) json["over_workspace"] = one(*error);
     if (const auto& error = calibration.expected_left_out) json["at_left_out"] = one(*error);
     if (const auto& error = calibration.expected_validation) json["at_validation"] = one(*error);
     return json;

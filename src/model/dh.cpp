@@ -1,6 +1,8 @@
 #include "posewise/model/dh.hpp"
 
 #include <cmath>
+#include <numbers>
+#include <optional>
 
 #include "driven_axes.hpp"
 
@@ -78,6 +80,41 @@ DhRow row_to(const Isometry3d& frame, const detail::Line& line) {
     return row;
 }
 
+/// As the elements from a driven one to the next (or the end) state it, where they are a row of the
+/// standard convention.
+std::optional<DhRow> stated_row(const Element* driven, const Element* next) {
+    constexpr double largest_error = 0.1;  // rad or m, of what no row has
+    DhRow row;
+    if (driven->axis != Axis::Z) return std::nullopt;
+    (driven->motion == Motion::Rotation ? row.theta : row.d) = driven->value;
+    for (const Element* element = driven + 1; element != next; ++element) {
+        const bool turns = element->motion == Motion::Rotation;
+        if (element->axis == Axis::Y) {
+            if (std::abs(element->value) > largest_error) return std::nullopt;
+        } else if (element->axis == Axis::Z) {
+            (turns ? row.theta : row.d) += element->value;
+        } else {
+            (turns ? row.alpha : row.a) += element->value;
+        }
+    }
+    return row;
+}
+
+double distance(const DhRow& row, const DhRow& stated) {
+    const auto turn = [](double angle) {
+        return std::abs(std::remainder(angle, 2 * std::numbers::pi));
+    };
+    return turn(row.theta - stated.theta) + turn(row.alpha - stated.alpha) +
+           std::abs(row.a - stated.a);
+}
+
+/// The row with its x axis, and that of the frame after it, turned about z by half a turn.
+DhRow turned(DhRow row) {
+    row.theta = std::remainder(row.theta + std::numbers::pi, 2 * std::numbers::pi);
+    for (double* const value : {&row.a, &row.alpha, &row.beta}) *value = 0 - *value;
+    return row;
+}
+
 bool is_idle(const DhRow& row) {
     return row.a == 0 && row.alpha == 0 && row.d == 0 && row.theta == 0 && row.beta == 0;
 }
@@ -99,6 +136,11 @@ std::vector<DhRow> dh_rows(const Chain& chain, const VectorXd& parameters) {
                                       ? axes[k + 1].line()
                                       : detail::Line{flange.translation(), flange.linear().col(2)};
         DhRow row = row_to(frame, next);
+        const Element* const end = k + 1 < axes.size()
+                                       ? axes[k + 1].element
+                                       : chain.elements().data() + chain.elements().size();
+        const auto stated = stated_row(axes[k].element, end);
+        if (stated && distance(turned(row), *stated) < distance(row, *stated)) row = turned(row);
         row.motion = axes[k].element->motion;
         row.joints = axes[k].element->joints;
         add(std::move(row));

@@ -175,7 +175,8 @@ std::string judge_validation(const Calibration& calibration) {
         return fmt::format(
             "the validation is off by {} times what is expected, beyond chance (up to {}): {}\n",
             times, detail::format_short(chance, 3),
-            calibration.validation_beyond
+            calibration.moved ? "it was measured with another set-up (--refit)"
+            : calibration.validation_beyond
                 ? "calibrate with poses like those, too"
                 : "the robot has changed, or its errors there are unlike those calibrated with");
     }
@@ -220,6 +221,9 @@ std::string describe(const ExpectedError& expected, const std::string& where, bo
 std::string describe_expected(const Calibration& calibration) {
     const bool is_angle = !calibration.campaign.sensor->has_lengths();
     std::string text = describe(calibration.expected, "at poses like these", is_angle) + '\n';
+    if (calibration.expected_workspace) {
+        text += describe(*calibration.expected_workspace, "over the workspace", is_angle) + '\n';
+    }
     if (calibration.expected_left_out) {
         text += describe(*calibration.expected_left_out, "not in plan", is_angle) + '\n';
     }
@@ -238,6 +242,11 @@ std::string describe_expected(const Calibration& calibration) {
     return text + describe(calibration.predicted_beyond, "to predict");
 }
 
+/// Whether parameters are so little known that leaving a pose out makes a difference.
+bool is_by_few_poses(const ExpectedError& expected) {
+    return std::sqrt(2) * expected.parameters > std::hypot(expected.model, expected.noise);
+}
+
 std::string format_accuracy(const Calibration& calibration) {
     std::vector<std::pair<std::string, Metrics>> columns{{"nominal", calibration.nominal},
                                                          {"calibrated", calibration.estimate.fit},
@@ -250,8 +259,13 @@ std::string format_accuracy(const Calibration& calibration) {
     if (calibration.validation) columns.emplace_back("validation", *calibration.validation);
     std::string text = format_section("Accuracy", detail::metrics_table(columns)) + '\n';
     if (calibration.held_out) {
-        text += fmt::format("held out: {} folds, {} of them not identifiable\n",
-                            calibration.held_out->folds, calibration.held_out->failures.size());
+        text += fmt::format(
+            "held out: {} folds, {} of them not identifiable{}\n", calibration.held_out->folds,
+            calibration.held_out->failures.size(),
+            is_by_few_poses(calibration.expected)
+                ? "; each tells much that the others do not, so that they are missed by more than "
+                  "other poses will be"
+                : "");
     }
     return text + describe_noise_floor(calibration) + describe_expected(calibration);
 }

@@ -70,15 +70,21 @@ Table curve_table(const TargetPlanning& found) {
 std::string describe_remedy(const TargetPlanning& found) {
     const bool is_model = found.left_over >= found.repeatability;
     std::string text =
-        fmt::format("the largest part is {} mm by {}; ",
-                    format_mm(is_model ? found.left_over : found.repeatability),
-                    is_model ? "the model error"
-                             : "the repeatability of the joints, which no calibration mends");
-    if (!is_model) return text + "halving it needs a robot that returns twice as well";
-    text += found.has_error_terms
-                ? "halving it needs a robot of which the model leaves half as much (model_error_mm)"
-                : "halving it needs a model that has more of the robot's errors (errors: full), of "
-                  "which half as much is left (model_error_mm)";
+        is_model ? fmt::format(
+                       "the largest part is the model error, {} mm expected, of which the "
+                       "floor is the {} end; ",
+                       format_mm(found.left_over), percent(found.target.assurance))
+                 : fmt::format(
+                       "the largest part is {} mm by the repeatability of the joints, "
+                       "which no calibration mends; ",
+                       format_mm(found.repeatability));
+    if (!is_model) return text + "half the floor needs a robot that returns twice as well";
+    text +=
+        found.has_error_terms
+            ? "half the floor needs a robot of which the model leaves half as much "
+              "(model_error_mm)"
+            : "half the floor needs a model that has more of the robot's errors (errors: full), "
+              "of which half as much is left (model_error_mm)";
     if (found.floor_of_known_model_error < found.floor.assured) {
         text += fmt::format(
             "; were it known, as a first calibration with priors (calibrate --prior) tells plan "
@@ -162,7 +168,9 @@ std::string format(const TargetPlanning& found) {
             text += fmt::format(" ({}: {} mm)", next->pose_count,
                                 next->error ? format_mm(next->error->assured) : "-");
         }
-        text += fmt::format("; floor {} mm\n", format_mm(found.floor.assured));
+        text += fmt::format(
+            "; floor {} mm{}\n", format_mm(found.floor.assured),
+            planning.plan.ending == Ending::Converged ? "" : "; stopped early: fewer may do");
     }
     if (found.target.duration) {
         text += fmt::format("time:        {} of {} min for {}", minutes(planning.duration),

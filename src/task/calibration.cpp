@@ -12,6 +12,7 @@
 #include "nominal_residuals.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
+#include "workspace.hpp"
 
 namespace posewise {
 namespace {
@@ -204,6 +205,7 @@ void calibrate_with(Work& work, Calibration& result) {
     result.held_out = hold_out(work, result);
     result.without_outliers = judge_without_outliers(work, result);
     result.doubts = find_doubts(work.campaign, work.used, registered, result.nominal);
+    if (work.options.earlier) result.doubts.places.clear();  // by moved_since, where it matters
     result.faults =
         find_faults(work.campaign, result.estimate,
                     result.method == CalibrationMethod::Global ? ValueCheck::None
@@ -221,6 +223,7 @@ void calibrate_with(Work& work, Calibration& result) {
         result.campaign = with_model_error(work.whole, result.estimate);
     }
     result.expected = expected_error(result.campaign, result.estimate, work.used);
+    result.expected_workspace = detail::expected_workspace_error(result.campaign, result.estimate);
 }
 
 /// The estimate with these parts of it identified anew by others' measurements.
@@ -378,8 +381,7 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
     if (!options.used.empty() && !left_out.empty()) {
         const Measurements others = take(measurements, left_out);
         result.left_out = judge(campaign, result.estimate.parameters, others);
-        result.expected_left_out =
-            expected_sample_error(result.campaign, result.estimate, others);
+        result.expected_left_out = expected_sample_error(result.campaign, result.estimate, others);
     }
     try {
         validate(work, result);

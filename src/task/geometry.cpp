@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "../core/decompositions.hpp"
-#include "../model/sampling.hpp"
 #include "nominal_fit.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
@@ -29,15 +28,7 @@ RowMatrixXd draw_workspace(const Campaign& campaign, const Parameters& found,
         }
         return options.workspace;
     }
-    const Index count = options.configuration_count;
-    if (!campaign.robot.torques().empty()) {  // which no cell knows
-        return random_configurations(campaign.robot, count, options.seed);
-    }
-    Campaign placed = campaign;
-    placed.nominal = found;
-    placed.nominal.robot.setZero();
-    placed.has_nominal_base = placed.has_nominal_targets = true;
-    return workspace_configurations(placed, std::nullopt, count, options.seed);
+    return workspace_configurations(campaign, found, options.configuration_count, options.seed);
 }
 
 std::vector<Vector3d> target_positions(const Campaign& campaign, const Parameters& parameters) {

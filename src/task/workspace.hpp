@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "posewise/calibrator/estimate.hpp"
 #include "posewise/measurement/campaign.hpp"
 
 namespace posewise::detail {
@@ -12,5 +13,15 @@ namespace posewise::detail {
 /// base frame), if there is one. Throws InputError if there is none.
 RowMatrixXd workspace_configurations(const Campaign& campaign, const std::optional<Box>& target_box,
                                      Index count, std::uint64_t seed);
+
+/// The same of a robot whose base and targets were found; random ones where torques are measured,
+/// which no cell knows.
+RowMatrixXd workspace_configurations(const Campaign& campaign, const Parameters& found, Index count,
+                                     std::uint64_t seed);
+
+/// What one reading there is expected to be off by; nothing where no configurations can be drawn,
+/// or readings are made at contacts only.
+std::optional<ExpectedError> expected_workspace_error(const Campaign& campaign,
+                                                      const Estimate& estimate);
 
 }  // namespace posewise::detail

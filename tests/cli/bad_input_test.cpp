@@ -255,6 +255,10 @@ TEST_F(BadInput, AFileBeyondTheLimitOfSizeIsAnErrorAndLeavesNothing) {
     EXPECT_EQ(file_count(), files);
 }
 
+TEST_F(BadInput, AMinusIsNoNameOfAFile) {
+    expect_input_error("simulate c.yaml -k 10 -o -", "-: is no name of a file; /dev/stdout is");
+}
+
 TEST_F(BadInput, HelpThatCannotBePrintedIsAnError) {
     if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "needs the device /dev/full";
     for (const std::string arguments : {"--help", "--version", "study --help"}) {

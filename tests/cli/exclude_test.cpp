@@ -173,6 +173,9 @@ TEST_F(Exclude, AValidationWithAnotherSetUpIsNamed) {
         << outcome.err;
     const Json accuracy = Json::parse(outcome.out).at("accuracy");
     EXPECT_NEAR(accuracy.at("moved_before_validation").at("base_mm").get<double>(), 200, 1);
+    const std::string text = run("calibrate c.yaml -m s.csv --folds 0 --validate v.csv").out;
+    EXPECT_NE(text.find(": it was measured with another set-up (--refit)\n"), std::string::npos)
+        << text;
     run_well("calibrate c.yaml -m s.csv --folds 0 --validate v.csv --refit base,targets");
     run_well("simulate c.yaml --seed 9 --poses 20 -o same.csv");
     run_well("calibrate c.yaml -m s.csv --folds 0 --validate same.csv");

@@ -61,7 +61,7 @@ TEST_F(Ur10, IsExportedWithLinksAsLongAsTheyAre) {
     const std::string frames = text_of("k.yaml");
     EXPECT_NE(frames.find("  upper_arm:\n    x: 0.000"), std::string::npos) << frames;
     EXPECT_NE(frames.find("  forearm:\n    x: -0.6132"), std::string::npos) << frames;
-    EXPECT_NE(text_of("d.yaml").find("joint: q3, a_mm: 572.1"), std::string::npos);
+    EXPECT_NE(text_of("d.yaml").find("joint: q3, a_mm: -572.1"), std::string::npos);
 }
 
 }  // namespace

@@ -162,6 +162,33 @@ TEST(DhRows, OfAxesThatAreNearlyParallelHaveNoFarOffsets) {
     }
 }
 
+/// The table of a Motoman MA1400: a row that turns x the other way moves the flange the same.
+TEST(DhRows, TurnTheirXAxesAsTheElementsDo) {
+    constexpr double right = std::numbers::pi / 2;
+    const std::vector<DhRow> table{{0.15, -right, 1.4159, 0, Motion::Rotation, {{0, 1.0}}},
+                                   {0.614, 2 * right, 0, -right, Motion::Rotation, {{1, 1.0}}},
+                                   {0.2, -right, 0, 0, Motion::Rotation, {{2, 1.0}}},
+                                   {0, right, -0.64, 0, Motion::Rotation, {{3, 1.0}}},
+                                   {0.03, right, 0, -right, Motion::Rotation, {{4, 1.0}}},
+                                   {0, 0, 0.2, 0, Motion::Rotation, {{5, 1.0}}}};
+    std::vector<Element> elements;
+    for (const DhRow& row : table) {
+        for (Element& element : dh_elements(row)) elements.push_back(std::move(element));
+    }
+    std::vector<Joint> joints;
+    for (int j = 1; j <= 6; ++j) joints.push_back({"q" + std::to_string(j), -2, 2});
+    const Chain chain = complete_model(Chain(joints, elements));
+    RandomStream stream(79);
+    const VectorXd errors = random_vector(stream, chain.parameter_count(), 1e-4);
+    const auto rows = dh_rows(chain, errors);
+    for (std::size_t k = 0; k < 5; ++k) {
+        EXPECT_NEAR(rows[k].a, table[k].a, 1e-2) << k;
+        EXPECT_NEAR(std::remainder(rows[k].alpha - table[k].alpha, 4 * right), 0, 1e-2) << k;
+        EXPECT_NEAR(std::remainder(rows[k].theta - table[k].theta, 4 * right), 0, 0.1) << k;
+    }
+    expect_same_flange(chain, errors, rows, stream, 1e-13);
+}
+
 TEST(DhRows, OfATextbookRobotAreItsTable) {
     std::vector<Element> elements;
     const std::vector<DhRow> table{

@@ -140,6 +140,20 @@ TEST(Calibrate, PredictsWhatASingleReadingElsewhereWouldFind) {
     EXPECT_THROW(calibrate(example.campaign, example.measurements, options), InputError);
 }
 
+TEST(Calibrate, ExpectsMoreOverTheWorkspaceThanAtPosesOfASmallPartOfIt) {
+    const Example example(24);
+    const auto ratio = [&](const Measurements& measurements) {
+        CalibrationOptions options;
+        options.folds = 0;
+        const Calibration result = calibrate(example.campaign, measurements, options);
+        return result.expected_workspace.value().parameters / result.expected.parameters;
+    };
+    EXPECT_GT(ratio(example.measurements), 0.5);
+    EXPECT_LT(ratio(example.measurements), 2);
+    RowMatrixXd near = 0.3 * example.measurements.configurations;
+    EXPECT_GT(ratio(simulate(example.campaign, near, Seen::Ones(24, 3), {}).measurements), 3);
+}
+
 TEST(Calibrate, PredictsLengthsAndAnglesOfFullPoses) {
     for (const auto& [name, campaign] : testing::campaigns_of_every_sensor(testing::ur_type())) {
         SCOPED_TRACE(name);

@@ -35,7 +35,8 @@ std::vector<Element> mdh_elements(const DhRow& row);
 /// if it does nothing). Each row follows the common normal to the next axis; of parallel axes
 /// (within 1e-12 rad) the one through its own origin. Where the next axis is nearly parallel
 /// (within 0.1 rad) the row leads to where that meets the plane through its own origin across its
-/// own axis, by theta, a, alpha and beta. `parameters` are the chain's error parameters (rad or m);
+/// own axis, by theta, a, alpha and beta. Of the two rows that turn x either way the one nearer to
+/// what the chain's elements state, where these are such rows. `parameters` are the chain's error parameters (rad or m);
 /// those of error terms, which no row can express, count as zero.
 std::vector<DhRow> dh_rows(const Chain& chain, const VectorXd& parameters);
 

@@ -108,9 +108,11 @@ struct Calibration {
     RowMatrixXd nominal_residuals;               ///< of these, as residuals() has them
     std::optional<Repeatability> repeatability;  ///< nothing: no configuration was repeated
     std::optional<CrossValidation> held_out;
-    /// Of means at poses like those measured; of samples at the configurations not used, and at the
-    /// validation's.
+    /// Of means at poses like those measured; of samples over the workspace as estimated_geometry()
+    /// draws it (nothing where it cannot, and for contacts), at the configurations not used, and at
+    /// the validation's.
     ExpectedError expected;
+    std::optional<ExpectedError> expected_workspace;
     std::optional<ExpectedError> expected_left_out;
     std::optional<ExpectedError> expected_validation;
     /// At CalibrationOptions::predicted: of distances, of angles.

@@ -56,7 +56,7 @@ export function answerStudy(part) {
       ['How accurate', `${mm(enough.value)} mm RMS ${what} with ${count(enough.count, 'pose')}${model.name ? ` (${model.name})` : ''}; the calibrations themselves expect ${mm(one.expected_rms_mm)} mm.`],
       ['How sure', ratio ? `Planned against random ${fixed(ratio.ratio, 2)}, with 95 % confidence ${fixed(ratio.lower, 2)} to ${fixed(ratio.upper, 2)}; medians over ${trials}, judged on ${count(document.judged_on, 'configuration')}.` : null],
       ['Does planning pay', `${criterion}, planned against random: ${verdictsOf(model, 0)}.`],
-      ['What limits it', enough === points.at(-1) ? 'The number of poses: the error still falls at the most that were tried.'
+      ['What limits it', points.length === 1 ? 'One number of poses does not tell.' : enough === points.at(-1) ? 'The number of poses: the error still falls at the most that were tried.'
         : `Beyond ${count(enough.count, 'pose')} the number of poses does not: what is left is noise and what the model cannot express.`],
       ['Which pose matters most', 'A study compares numbers of poses; a plan says what each pose is worth.'],
       ['Drift', document.simulated ? noDrift : 'Not looked at here: a calibration of all measurements shows it.'],
