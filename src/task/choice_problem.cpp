@@ -152,6 +152,9 @@ void state_limits(ChoiceProblem& problem, const std::vector<Index>& groups) {
     options.test_poses = problem.test_poses.get();
     options.repeat_limit = request.repeat_limit;
     options.least_distance = request.least_distance;
+    if (options.least_distance > 0 && options.positions.rows() == 0) {
+        throw InputError("candidates without joints have no least distance; must be 0");
+    }
     options.group_limit = request.group_limit;
     options.groups = groups;
     if (problem.kind == CandidateKind::Random && groups.size() > problem.ids.size()) {

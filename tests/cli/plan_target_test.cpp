@@ -35,9 +35,10 @@ TEST_F(PlanTarget, SaysHowManyPosesAndWhatTheErrorConsistsOf) {
 TEST_F(PlanTarget, SaysWhatIsLeftAtBestAndWhatWouldLowerIt) {
     expect_input_error(plan("--target-mm 0.3"),
                        "--target-mm: 0.3 mm RMS with 95 %: unattainable: floor 0.78");
-    expect_input_error(plan("--target-mm 0.3"),
-                       "the largest part is the model error, 0.1732 mm expected, of which the floor "
-                       "is the 95 % end; half the floor needs");
+    expect_input_error(
+        plan("--target-mm 0.3"),
+        "the largest part is the model error, 0.1732 mm expected, of which the floor "
+        "is the 95 % end; half the floor needs");
     expect_input_error(plan("--target-mm 0.79 --poses-at-most 9"),
                        "not reached: 9 new poses reach");
     expect_input_error(plan("--target-mm 0.9 --minutes 0.4"), "not reached in 0.4 min, in which");

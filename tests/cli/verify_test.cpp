@@ -227,6 +227,19 @@ TEST_F(Verify, RefusesFilesThePlanHasNoneOf) {
         << plain.err;
 }
 
+TEST_F(Verify, OfPlainBlocksTakesNoLeastDistance) {
+    write_text("b.csv", "1,0\n0,1\n1,1\n1,-1\n2,1\n1,2\n");
+    run_well("select --blocks b.csv --rows 1 -k 3 -o b.json");
+    Json plan = Json::parse(text_of("b.json"));
+    plan["problem"]["least_distance_rad"] = 0.1;
+    write_text("b.json", plan.dump());
+    const Outcome outcome = run("verify b.json");
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("candidates without joints have no least distance"),
+              std::string::npos)
+        << outcome.err;
+}
+
 TEST_F(Verify, FindsAnOptimumAgain) {
     run_well("simulate " + fanuc_design + " --truth 7 --seed 3 --poses 16 -o few.csv");
     run_well("select " + fanuc_design + " -m few.csv -k 8 --starts 3 --exclude 0,1 -o o.json");
