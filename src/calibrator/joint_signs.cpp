@@ -11,8 +11,6 @@
 namespace posewise::detail {
 namespace {
 
-constexpr Index most_joints = 12;
-
 /// So many patterns, the best of the quick registration, are registered properly.
 constexpr std::size_t polished_count = 64;
 
@@ -66,15 +64,19 @@ std::vector<SignPattern> all_patterns(Index joints) {
     return patterns;
 }
 
+Index reversed_count(const SignPattern& pattern) {
+    return std::ranges::count(pattern.is_reversed, true);
+}
+
 }  // namespace
 
 JointSigns fit_joint_signs(const Campaign& campaign, const Measurements& measurements,
                            Index most_configurations) {
     const Index joints = campaign.robot.joint_count();
-    if (joints > most_joints) {
+    if (joints > most_signed_joints) {
         throw InputError("the robot has " + std::to_string(joints) +
                          " joints; joint directions can be tried for at most " +
-                         std::to_string(most_joints));
+                         std::to_string(most_signed_joints));
     }
     const Measurements thinned = thin_out(campaign, measurements, most_configurations);
     // What is wrong with the measurements themselves is said once, of the robot as stated.
@@ -86,6 +88,35 @@ JointSigns fit_joint_signs(const Campaign& campaign, const Measurements& measure
     fit(patterns, std::min(polished_count, patterns.size()), campaign, thinned,
         register_base_and_targets);
     return signs;
+}
+
+Index alike_count(const std::vector<SignPattern>& patterns) {
+    // A symmetric robot's patterns differ by rounding only.
+    const double limit = 1.001 * patterns.front().distance_rms;
+    const auto differs = [&](const auto& other) { return other.distance_rms > limit; };
+    return std::ranges::find_if(patterns, differs) - patterns.begin();
+}
+
+const SignPattern& simplest_best(const std::vector<SignPattern>& patterns) {
+    return *std::min_element(
+        patterns.begin(), patterns.begin() + alike_count(patterns),
+        [](const auto& a, const auto& b) { return reversed_count(a) < reversed_count(b); });
+}
+
+const SignPattern& as_stated(const std::vector<SignPattern>& patterns) {
+    return *std::ranges::find(patterns, 0, reversed_count);
+}
+
+bool is_clearly_better(const SignPattern& best, const SignPattern& stated) {
+    return best.distance_rms < 0.5 * stated.distance_rms;
+}
+
+std::vector<std::string> reversed_joints(const Chain& robot, const SignPattern& pattern) {
+    std::vector<std::string> names;
+    for (std::size_t j = 0; j < pattern.is_reversed.size(); ++j) {
+        if (pattern.is_reversed[j]) names.push_back(robot.joints()[j].name);
+    }
+    return names;
 }
 
 }  // namespace posewise::detail

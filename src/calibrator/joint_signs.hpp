@@ -7,6 +7,9 @@
 
 namespace posewise::detail {
 
+/// Of more joints the choices are too many to try.
+inline constexpr Index most_signed_joints = 12;
+
 /// Some joints taken as reversed, and how well the nominal robot then fits.
 struct SignPattern {
     std::vector<bool> is_reversed;  ///< joint by joint, against the campaign
@@ -28,5 +31,20 @@ struct JointSigns {
 /// does.
 JointSigns fit_joint_signs(const Campaign& campaign, const Measurements& measurements,
                            Index most_configurations = 60);
+
+/// Of the patterns that fit as the best does, the one that reverses the fewest joints.
+const SignPattern& simplest_best(const std::vector<SignPattern>& patterns);
+
+/// So many of the first patterns fit alike.
+Index alike_count(const std::vector<SignPattern>& patterns);
+
+/// The one that reverses none.
+const SignPattern& as_stated(const std::vector<SignPattern>& patterns);
+
+/// Whether a pattern fits so much better than what is stated that joints must be reversed.
+bool is_clearly_better(const SignPattern& best, const SignPattern& stated);
+
+/// The joints that a pattern reverses.
+std::vector<std::string> reversed_joints(const Chain& robot, const SignPattern& pattern);
 
 }  // namespace posewise::detail

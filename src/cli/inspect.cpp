@@ -58,11 +58,8 @@ struct InspectArguments {
 std::vector<io::JointDirections> name_directions(const Chain& robot,
                                                  const std::vector<detail::SignPattern>& patterns) {
     std::vector<io::JointDirections> directions;
-    for (const auto& [is_reversed, distance_rms] : patterns) {
-        directions.push_back({{}, distance_rms});
-        for (std::size_t j = 0; j < is_reversed.size(); ++j) {
-            if (is_reversed[j]) directions.back().reversed.push_back(robot.joints()[j].name);
-        }
+    for (const detail::SignPattern& pattern : patterns) {
+        directions.push_back({detail::reversed_joints(robot, pattern), pattern.distance_rms});
     }
     return directions;
 }

@@ -53,9 +53,10 @@ random and planned subsets leave, planned against random of that model, and of t
 model error (as surely as that is known), measures each at the configurations chosen for the nominal
 robot and at random ones that its cell allows, calibrates, and judges how far targets are then from
 where the calibrated model has them, over configurations of the workspace, model error included. The
-columns are the same, one split a robot; --truth draws from another campaign, with errors that the
-fitted model lacks; --vary repeats the study with other values of keys of the campaign, on the same
-robots draw by draw:
+columns are the same, one split a robot. With --from the robots are such as the one calibrated, with
+--as-prior they are that one, as surely as it is known. --truth draws from another campaign, with
+errors that the fitted model lacks; --vary repeats the study with other values of keys of the campaign,
+on the same robots draw by draw:
   posewise study campaign.yaml --simulate --vary sensor.sigma_mm=0.01,0.05 --vary robot.errors=geometric,full
 
 --store keeps each trial as it ends: a study that was stopped, or killed, goes on where it was, and
@@ -106,7 +107,7 @@ void print_store(const std::string& path, const StudyArguments& arguments,
 
 /// A store says all that the trials in it depend on.
 void check_printing_only(const CLI::App& command) {
-    const std::vector<std::string> used{"--from", "--csv",         "--plot", "--report",
+    const std::vector<std::string> used{"--from", "--csv",      "--plot", "--report",
                                         "--json", "--progress", "--help"};
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
@@ -118,7 +119,7 @@ void check_printing_only(const CLI::App& command) {
 }
 
 void check_study_usage(const CLI::App& command, const StudyArguments& arguments, bool reads_store) {
-    for (const char* option : {"--from", "--exclude", "--splits", "--holdout", "--models"}) {
+    for (const char* option : {"--exclude", "--splits", "--holdout", "--models"}) {
         if (!arguments.is_simulated || command.count(option) == 0) continue;
         throw CLI::ValidationError(option,
                                    "is of measured configurations; leave it out, or --simulate");

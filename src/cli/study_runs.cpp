@@ -92,6 +92,12 @@ std::vector<SimulatedCampaign> list_variations(const StudyArguments& arguments,
             return io::parse_campaign(variation.content, path);
         });
         io::set_prior(varied, arguments.prior.value_or(varied.spread.is_prior));
+        if (!arguments.earlier.from.empty()) {  // what is to be warned of has been
+            static_cast<Campaign&>(varied) = compute_from("--vary " + variation.name, [&] {
+                const EarlierUse use = arguments.earlier.use();
+                return with_earlier(varied, io::read_earlier(arguments.earlier.from, varied, use));
+            });
+        }
         campaigns.push_back({variation.name, varied, truth});
     }
     return campaigns;
@@ -158,14 +164,15 @@ std::vector<Study> study_measured(const StudyArguments& arguments, const CommonO
 std::vector<Study> study_simulated(const StudyArguments& arguments, const CommonOptions& common,
                                    const StopSignal& stop, StudyExtras& extras) {
     io::CampaignFile file = read_with_prior(arguments.paths.campaign, arguments.prior, stop);
-    check_study_outputs(arguments, {&file}, {arguments.truth}, common);
+    expect_earlier(file, arguments.earlier);
+    check_study_outputs(arguments, {&file}, {arguments.truth, arguments.earlier.from}, common);
     SimulatedStudyOptions options = arguments.options;
     options.random_subsets = arguments.random_subsets.value_or(options.random_subsets);
     constexpr Index most_trials = 100000;  // where a precision says when it ends
     options.trials =
         arguments.trials.value_or(options.precision > 0 ? most_trials : options.trials);
     complete_options(options, arguments, file, stop);
-    extras.notes = describe_unused_planning(file);
+    extras.notes = describe_earlier(arguments.earlier) + describe_unused_planning(file);
     extras.page.scene = make_scene(file);
     ProgressLine line("simulating", arguments.progress);
     const RateNote note;

@@ -64,7 +64,8 @@ void add_simulation_options(CLI::App& command, StudyArguments& arguments) {
     only_simulated(command.add_option("--truth", arguments.truth,
                                       "Campaign file of the robots drawn, with errors that the "
                                       "fitted model lacks (default: the campaign fitted)"))
-        ->check(file_name());
+        ->check(file_name())
+        ->excludes("--from");
     only_simulated(
         command.add_option("--vary", arguments.varied,
                            "A key of the campaign file and values that it takes in turn, "

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "../core/checksum.hpp"
 #include "atomic_file.hpp"
 #include "csv_reader.hpp"
@@ -163,6 +165,25 @@ Json accuracy_to_json(const Calibration& calibration) {
     return accuracy;
 }
 
+/// Base and targets that the validation was judged with.
+Json refitted_to_json(const Calibration& calibration) {
+    const Campaign& campaign = *calibration.refitted;
+    Json json = detail::parameters_to_json(campaign, campaign.nominal);
+    json.erase("robot");
+    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const std::vector<std::string> errors = campaign.robot.parameter_names();
+    std::size_t k = 0;
+    for (const std::string& name : parameter_names(campaign)) {
+        const std::string suffix = detail::si_suffix(is_angle[k++]);
+        const auto sigma = calibration.refitted_sigmas.find(name);
+        if (sigma == calibration.refitted_sigmas.end() || std::ranges::count(errors, name) > 0) {
+            continue;
+        }
+        json["sigma"][name + suffix] = sigma->second;
+    }
+    return json;
+}
+
 Json measured_to_json(const MeasuredCount& measured) {
     return {{"configurations", measured.configurations},
             {"samples", measured.samples},
@@ -280,6 +301,7 @@ Json estimate_to_json(const Calibration& calibration, const Provenance& made_fro
                             {"width_standard_deviations", estimate.loss.width}};
         document["outliers"] = outliers_to_json(*campaign.sensor, estimate);
     }
+    if (calibration.refitted) document["refitted"] = refitted_to_json(calibration);
     if (calibration.selection)
         document["model_selection"] = selection_to_json(*calibration.selection);
     if (calibration.stated_spread) document["learned_sizes"] = sizes_to_json(calibration);

@@ -188,13 +188,9 @@ std::string judge_validation(const Calibration& calibration) {
 /// Base and targets that the validation was judged with.
 std::string format_refitted(const Calibration& calibration) {
     if (!calibration.refitted) return "";
-    const Campaign& campaign = *calibration.refitted;
-    detail::Table values = detail::value_table(campaign, campaign.nominal);
-    const auto begin = values.rows.begin() + base_parameter_count(campaign);
-    values.rows.erase(begin, begin + campaign.robot.parameter_count());
-    return format_section(
-        fmt::format("Refitted to the validation (base, {})", campaign.sensor->words().unknowns),
-        values);
+    const std::string unknowns = calibration.refitted->sensor->words().unknowns;
+    return format_section(fmt::format("Refitted to the validation (base, {})", unknowns),
+                          detail::refitted_table(calibration));
 }
 
 std::string describe_noise_floor(const Calibration& calibration) {

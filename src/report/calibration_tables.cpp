@@ -52,6 +52,13 @@ VectorXd flatten(const Campaign& campaign, const Parameters& parameters) {
     return values;
 }
 
+const std::initializer_list<std::string> deviation_header{"std. dev.", ""};
+
+void add_deviation(std::vector<std::string>& row, double deviation, bool is_angle) {
+    row.push_back(format_fixed(mm_per_m * deviation, 4));
+    row.emplace_back(units_of(is_angle).error);
+}
+
 }  // namespace
 
 Table metrics_table(const std::vector<std::pair<std::string, Metrics>>& columns) {
@@ -89,12 +96,26 @@ Table parameter_table(const Campaign& campaign, const Estimate& estimate) {
     const VectorXd deviations = standard_deviations(estimate);
     const auto is_angle = parameter_is_angle(campaign);
     Table table = value_table(campaign, estimate.parameters);
-    table.header.insert(table.header.end(), {"std. dev.", ""});
+    table.header.insert(table.header.end(), deviation_header);
     for (std::size_t k = 0; k < table.rows.size(); ++k) {
-        const double deviation = deviations[static_cast<Index>(k)];
-        table.rows[k].push_back(format_fixed(mm_per_m * deviation, 4));
-        table.rows[k].emplace_back(units_of(is_angle[k]).error);
+        add_deviation(table.rows[k], deviations[static_cast<Index>(k)], is_angle[k]);
     }
+    return table;
+}
+
+Table refitted_table(const Calibration& calibration) {
+    if (!calibration.refitted) return {};
+    const Campaign& campaign = *calibration.refitted;
+    const auto is_angle = parameter_is_angle(campaign);
+    Table table = value_table(campaign, campaign.nominal);
+    table.header.insert(table.header.end(), deviation_header);
+    for (std::size_t k = 0; k < table.rows.size(); ++k) {
+        const auto sigma = calibration.refitted_sigmas.find(table.rows[k].front());
+        if (sigma == calibration.refitted_sigmas.end()) continue;  // the robot's
+        add_deviation(table.rows[k], sigma->second, is_angle[k]);
+    }
+    const auto begin = table.rows.begin() + base_parameter_count(campaign);
+    table.rows.erase(begin, begin + campaign.robot.parameter_count());
     return table;
 }
 

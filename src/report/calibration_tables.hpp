@@ -19,6 +19,9 @@ Table value_table(const Campaign& campaign, const Parameters& parameters);
 /// The same of an estimate, with standard deviations.
 Table parameter_table(const Campaign& campaign, const Estimate& estimate);
 
+/// Base and targets that the validation was judged with, refitted to it. No rows if nothing was.
+Table refitted_table(const Calibration& calibration);
+
 /// Beside the standard deviations those without the uncertainty of what is held, as `plan --only`
 /// counts; "-" for what is held. Nothing where nothing is.
 void add_sigmas_beside_held(const Calibration& calibration, Table& parameters);

@@ -335,6 +335,7 @@ void validate(const Work& work, Calibration& result) {
         estimate = refit(work, result, campaign);
         result.refitted = campaign;
         result.refitted->nominal = estimate.parameters;
+        result.refitted_sigmas = sigmas_by_name(estimate);
     }
     result.validation = judge(campaign, estimate.parameters, *options.validation);
     result.validation_beyond = find_beyond_measured(campaign, work.used.configurations,

@@ -1,11 +1,13 @@
 #include "posewise/task/doubts.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "../calibrator/joint_signs.hpp"
 #include "../calibrator/missing_errors.hpp"
 #include "../core/format.hpp"
 #include "../core/statistics.hpp"
@@ -91,6 +93,14 @@ const char* ask_about(UnitDoubt unit) {
             return "; are points in m where the file says mm?";
     }
     return "";
+}
+
+std::string ask_about_directions(const std::vector<std::string>& reversed) {
+    if (reversed.empty()) return "";
+    return fmt::format(
+        "; do joints turn the other way than stated? They fit clearly better with {} reversed, "
+        "see inspect --measurements",
+        fmt::join(reversed, ", "));
 }
 
 std::string describe(const Plane& plane) {
@@ -206,6 +216,17 @@ std::optional<double> find_missing_errors(const Campaign& campaign, const Measur
     return share;
 }
 
+/// Those that fit clearly better the other way round; none where there are too many joints to try.
+std::vector<std::string> find_reversed_joints(const Campaign& campaign,
+                                              const Measurements& measured) {
+    if (campaign.robot.joint_count() > detail::most_signed_joints) return {};
+    const detail::JointSigns signs = detail::fit_joint_signs(campaign, measured);
+    if (signs.patterns.empty()) return {};
+    const detail::SignPattern& best = detail::simplest_best(signs.patterns);
+    if (!detail::is_clearly_better(best, detail::as_stated(signs.patterns))) return {};
+    return detail::reversed_joints(campaign.robot, best);
+}
+
 std::vector<Index> find_negative_compliances(const Campaign& campaign, const Estimate& estimate) {
     constexpr double significant = 3;  // standard deviations
     const VectorXd sigmas = standard_deviations(estimate);
@@ -264,6 +285,9 @@ std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& 
     if (misfit.distance <= credible_errors * misfit.expected) return std::nullopt;
     misfit.unit = find_unit_doubt(campaign, measured);
     misfit.planes = find_plane_doubts(campaign, measured);
+    if (misfit.unit == UnitDoubt::None && misfit.planes.empty()) {
+        misfit.reversed = find_reversed_joints(campaign, measured);
+    }
     return misfit;
 }
 
@@ -291,10 +315,11 @@ std::string describe_planes(const std::vector<PlaneDoubt>& planes) {
 std::string describe_misfit(const Campaign& campaign, const Misfit& misfit) {
     return fmt::format(
         "are these of another robot? The nominal robot misses half of them by over {} mm; must be "
-        "about {} mm, as the spread of {} says{}{}{}",
+        "about {} mm, as the spread of {} says{}{}{}{}",
         detail::format_short(mm_per_m * misfit.distance, 3),
         detail::format_short(mm_per_m * misfit.expected, 3), campaign.name, ask_about(misfit.unit),
-        misfit.planes.empty() ? "" : "; ", describe_planes(misfit.planes));
+        misfit.planes.empty() ? "" : "; ", describe_planes(misfit.planes),
+        ask_about_directions(misfit.reversed));
 }
 
 std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& estimate,

@@ -105,6 +105,7 @@ std::string checksum_of(const SimulationSetting& setting, const SimulatedStudyOp
                                  campaign->known_within.error_size,
                                  campaign->known_within.model_error, campaign->spread.is_prior));
         checksum.add(RowMatrixXd(campaign->joint_repeatability.transpose()));
+        if (campaign->prior) checksum.add(RowMatrixXd(campaign->prior->covariance));
     }
     checksum.add(fmt::format("{} {} {} {}", options.repeats, options.starts, options.least_distance,
                              options.is_refined));

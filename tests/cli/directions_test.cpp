@@ -1,3 +1,5 @@
+#include <nlohmann/json.hpp>
+
 #include "program.hpp"
 
 /// inspect --measurements: which joints the campaign file has reversed.
@@ -37,6 +39,25 @@ TEST_F(Directions, ThatAreReversedAreNamed) {
               std::string::npos)
         << text;
     EXPECT_GT(number_behind(text, "as stated:"), 10 * number_behind(text, "q2, q6"));
+}
+
+TEST_F(Directions, ThatAreReversedAreNamedWhereNothingElseExplainsTheMisfit) {
+    run_well("simulate " + fanuc_design + " --poses 80 --truth 3 -o m.csv");
+    replace("Ry q2", "Ry -q2");
+    write_text("c.yaml", design_);
+    const std::string words = "They fit clearly better with q2 reversed, see inspect";
+    const Outcome calibrated = run("calibrate c.yaml -m m.csv -o e.json");
+    EXPECT_EQ(calibrated.code, 3);
+    EXPECT_NE(calibrated.err.find(words), std::string::npos) << calibrated.err;
+    expect_input_error("select c.yaml -m m.csv -k 20", words);
+    const auto json = nlohmann::json::parse(run("calibrate c.yaml -m m.csv --force --json").out);
+    EXPECT_EQ(json["doubts"]["misfit"]["reversed"], nlohmann::json::array({"q2"}));
+    replace("Tx 1280 mm", "Tx 200 mm");
+    replace("Ry -q2", "Ry q2 + 70 deg");
+    write_text("c.yaml", design_);
+    const Outcome wrong = run("calibrate c.yaml -m m.csv");
+    EXPECT_NE(wrong.err.find("another robot?"), std::string::npos) << wrong.err;
+    EXPECT_EQ(wrong.err.find("reversed"), std::string::npos) << wrong.err;
 }
 
 TEST_F(Directions, OfAWrongRobotAreNotGuessed) {

@@ -54,6 +54,32 @@ TEST_F(SimulatedStudies, GoOnAfterTheyWereKilled) {
     EXPECT_EQ(text_of("again.csv"), text_of("whole.csv"));
 }
 
+TEST_F(SimulatedStudies, AreOfTheRobotThatAnEarlierCalibrationFound) {
+    run_well("simulate " + fanuc_design + " --poses 60 --truth 3 -o m.csv");
+    run_well("calibrate " + fanuc_design + " -m m.csv -o e.json --folds 0");
+    const auto planned_rms = [this](const std::string& options) {
+        const auto json =
+            nlohmann::json::parse(run_well(study_ + "20 --store s.sqlite --json " + options));
+        return json["models"][0]["rows"][0]["planned"][0]["held_out_rms_mm"].get<double>();
+    };
+    const double population = planned_rms("");
+    const double same_kind = planned_rms("--from e.json");
+    const double same_robot = planned_rms("--from e.json --as-prior");
+    const double only_base = planned_rms("--from e.json --only base,targets --moved base");
+    EXPECT_NE(same_kind, population);
+    EXPECT_LT(same_robot, 0.8 * same_kind);
+    EXPECT_LT(only_base, same_robot);
+    // Studies of different knowledge are different studies of the store.
+    EXPECT_EQ(planned_rms("--from e.json --as-prior"), same_robot);
+    const std::string varied =
+        run_well(study_ + "3 --from e.json --as-prior --vary sensor.sigma_mm=0.01,0.2");
+    EXPECT_NE(varied.find("e.json"), std::string::npos) << varied;
+    expect_input_error(study_ + "3 --from e.json --vary robot.errors=geometric",
+                       "--vary robot.errors=geometric: e.json");
+    expect_input_error(study_ + "3 --from absent.json", "absent.json");
+    EXPECT_EQ(run(study_ + "3 --from e.json --truth " + fanuc_design).code, 2);
+}
+
 TEST_F(SimulatedStudies, VaryKeysOfTheCampaign) {
     const std::string text =
         run_well(study_ + "5 --vary sensor.sigma_mm=0.01,0.2 --vary seed=1 --csv r.csv");

@@ -125,6 +125,9 @@ struct Calibration {
     /// With CalibrationOptions::refitted: the validation's campaign, which may have other targets,
     /// at the parameters that it was judged with.
     std::optional<Campaign> refitted;
+    /// Standard deviations of them, m and rad; those of another campaign's count the robot's errors
+    /// as exact.
+    std::map<std::string, double> refitted_sigmas;
     /// By how much base and targets have moved up to the validation, where that is plain.
     std::optional<Moved> moved;
     /// The same since the earlier estimate, if that tells of both.

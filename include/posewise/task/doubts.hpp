@@ -81,6 +81,7 @@ struct Misfit {
     double expected = 0;  ///< as the spread says, m
     UnitDoubt unit = UnitDoubt::None;
     std::vector<PlaneDoubt> planes;
+    std::vector<std::string> reversed;  ///< joints that fit clearly better the other way round
 };
 
 /// Nothing if the nominal robot explains the measurements. `registered`: base and targets, by
