@@ -361,6 +361,15 @@ TEST_F(From, OtherTargetsAfterAMove) {
         run_well(validate + "--validate-campaign one.yaml --refit base,targets");
     const std::string refitted = text.substr(text.find("Refitted to the validation"));
     EXPECT_NEAR(number_behind(refitted, "target1.x"), 300, 5);
+    const double sigma = number_behind(refitted, "target1.x", 2);  // behind mm
+    EXPECT_GT(sigma, 0.01);
+    EXPECT_LT(sigma, 1);
+    const Json there = Json::parse(judged)["refitted"];
+    EXPECT_NEAR(1e3 * there["sigma"]["target1.x_m"].get<double>(), sigma, 1e-4);
+    EXPECT_NEAR(1e3 * there["targets"]["target1"]["position_m"][0].get<double>(),
+                number_behind(refitted, "target1.x"), 1e-4);
+    EXPECT_TRUE(there["sigma"].contains("base.rx_rad")) << there;
+    EXPECT_FALSE(there.contains("robot"));
     EXPECT_GT(refitted.find("target2.x"), refitted.find("Parameters")) << "it has one target";
     expect_input_error(validate + "--validate-campaign one.yaml --refit base",
                        "both base and targets");
