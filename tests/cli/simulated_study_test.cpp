@@ -156,7 +156,7 @@ TEST_F(SimulatedStudies, RefuseWhatIsNoStudy) {
     for (const std::string precision : {"0", "100%", "-1", "%", "x"}) {
         usage(study_ + "5 --precision " + precision, "must be a part such as 2% or 0.02");
     }
-    usage(study_ + "5 --from estimate.json", "--from: is of measured configurations");
+    usage(study_ + "5 --exclude 3", "--exclude: is of measured configurations");
     usage(study_ + "5 --splits 3", "--splits: is of measured configurations");
     usage(study_ + "0", "--trials");
     write_text("text.sqlite", "no database");
