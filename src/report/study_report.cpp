@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
+#include <span>
 
 #include "../core/format.hpp"
 #include "../core/text.hpp"
@@ -41,21 +43,32 @@ std::string csv_line(const StudyRow& row, const StudyCase& study_case, std::stri
                        study_case.identified ? "yes" : "no", found, quote(poses));
 }
 
+/// "12 robots"; of studies with unlike numbers, since they were stopped, "12, 7, 0 robots".
+std::string count_splits(std::span<const Study> studies, const char* what) {
+    std::set<Index> counts;
+    std::string list;
+    for (const Study& study : studies) {
+        counts.insert(study.splits);
+        list += (list.empty() ? "" : ", ") + std::to_string(study.splits);
+    }
+    return counts.size() == 1 ? detail::count_of(*counts.begin(), what)
+                              : fmt::format("{} {}s", list, what);
+}
+
 /// On what all were judged.
-std::string describe_judgement(const Study& study) {
+std::string describe_judgement(std::span<const Study> studies) {
+    const Study& study = studies.front();
     if (study.is_simulated) {
         return fmt::format(
             "\nJudged at {} of the workspace, model error included; {} drawn, the same for planned "
             "and random.\nPlanned and random: medians; their ratio: the geometric mean over the "
             "robots.\n",
-            detail::count_of(study.test_count, "configuration"),
-            detail::count_of(study.splits, "robot"));
+            detail::count_of(study.test_count, "configuration"), count_splits(studies, "robot"));
     }
     return fmt::format(
         "\nJudged on {} held out, the same ones for all subsets of a split; {}.\nPlanned and "
         "random: medians; their ratio: the geometric mean over the splits.\n",
-        detail::count_of(study.test_count, "configuration"),
-        detail::count_of(study.splits, "split"));
+        detail::count_of(study.test_count, "configuration"), count_splits(studies, "split"));
 }
 
 /// Whether to plan was worth it, a line for each criterion: "v, planned against random: better at
@@ -76,6 +89,7 @@ std::string describe_verdicts(const Study& study) {
             if (!counts.contains(verdict)) continue;
             line += fmt::format("{}{} at {}", line.empty() ? "" : "; ", verdict, counts[verdict]);
         }
+        if (line.empty()) line = "not known, nothing of it is complete";
         text +=
             fmt::format("{}{}{}, planned against random: {}\n", study.model,
                         study.model.empty() ? "" : ", ", criterion_name(study.criteria[c]), line);
@@ -114,8 +128,8 @@ constexpr const char* csv_header =
 std::string format(const Study& study) {
     if (study.ending == Ending::NotIdentifiable) return study.undetermined + '\n';
     std::string text = format_table(detail::study_table(study));
-    if (compares_with_random(study)) text += describe_judgement(study) + describe_verdicts(study);
-    return text;
+    if (!compares_with_random(study)) return text;
+    return text + describe_judgement({&study, 1}) + describe_verdicts(study);
 }
 
 std::string format(const std::vector<Study>& studies) {
@@ -125,10 +139,7 @@ std::string format(const std::vector<Study>& studies) {
     }
     std::string text = format_table(detail::models_table(studies));
     if (!compares_with_random(studies.front())) return text;
-    const bool are_alike = std::all_of(studies.begin(), studies.end(), [&](const Study& study) {
-        return study.splits == studies.front().splits;
-    });
-    if (are_alike) text += describe_judgement(studies.front());
+    text += describe_judgement(studies);
     for (const Study& study : studies) text += describe_verdicts(study);
     return text;
 }

@@ -128,6 +128,20 @@ TEST(FormatStudy, CallsWithinChanceWhatMayBeChanceInEitherDirection) {
         << format(study);
 }
 
+TEST(FormatStudy, SaysHowManyRobotsOfEachVariationThereWereTimeFor) {
+    std::vector<Study> studies = two_models();
+    for (Study& study : studies) study.is_simulated = true;
+    EXPECT_NE(format(studies).find("; 1 robot drawn, the same"), std::string::npos);
+    studies[0].splits = 7;
+    studies[1].splits = 0;
+    studies[1].rows.clear();
+    const std::string text = format(studies);
+    EXPECT_NE(text.find("; 7, 0 robots drawn, the same"), std::string::npos) << text;
+    EXPECT_NE(text.find("full, d, planned against random: not known, nothing of it is complete\n"),
+              std::string::npos)
+        << text;
+}
+
 TEST(ModelsCsv, BeginsWithTheModel) {
     EXPECT_EQ(study_csv(two_models()),
               "model,poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,"
