@@ -43,7 +43,7 @@ std::string csv_line(const StudyRow& row, const StudyCase& study_case, std::stri
                        study_case.identified ? "yes" : "no", found, quote(poses));
 }
 
-/// "12 robots"; of studies with unlike numbers, since they were stopped, "12, 7, 0 robots".
+/// "12 robots"; of studies with unlike numbers "12, 7 robots".
 std::string count_splits(std::span<const Study> studies, const char* what) {
     std::set<Index> counts;
     std::string list;
@@ -89,7 +89,6 @@ std::string describe_verdicts(const Study& study) {
             if (!counts.contains(verdict)) continue;
             line += fmt::format("{}{} at {}", line.empty() ? "" : "; ", verdict, counts[verdict]);
         }
-        if (line.empty()) line = "not known, nothing of it is complete";
         text +=
             fmt::format("{}{}{}, planned against random: {}\n", study.model,
                         study.model.empty() ? "" : ", ", criterion_name(study.criteria[c]), line);

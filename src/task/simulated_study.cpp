@@ -166,6 +166,8 @@ std::vector<Study> simulate_study(const std::vector<SimulatedCampaign>& campaign
             studies.push_back(study_of_trials(series[s], runs.release(s)));
             studies.back().ending = options.stop.ending_or(Ending::Converged);
         }
+        const auto is_empty = [](const Study& study) { return study.rows.empty(); };
+        if (!std::ranges::all_of(studies, is_empty)) std::erase_if(studies, is_empty);
     });
     return studies;
 }

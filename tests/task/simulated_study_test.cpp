@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <atomic>
 #include <cmath>
 #include <map>
 
@@ -203,6 +204,26 @@ TEST(SimulatedStudy, DrawsTheSameRobotsForEveryVariation) {
         EXPECT_NEAR(a, b, 1e-4 * a);
     }
     EXPECT_EQ(studies[1].model, "b");
+}
+
+TEST(SimulatedStudy, LeavesOutWhatWasStoppedBeforeItsFirstRobot) {
+    SimulatedStudyOptions options = few_trials();
+    options.trials = 40;
+    Campaign noisy = tracked_fanuc();
+    noisy.model_error = 1e-3;
+    std::atomic<bool> interrupted = false;
+    options.stop.interrupted = &interrupted;
+    options.progress = [&](const Progress& progress) {
+        if (progress.done >= 4) interrupted = true;
+    };
+    const auto studies = simulate_study({{"a", tracked_fanuc(), {}}, {"b", noisy, {}}}, options);
+    ASSERT_EQ(studies.size(), 1u);
+    EXPECT_EQ(studies[0].model, "a");
+    EXPECT_EQ(studies[0].rows.size(), 2u);
+    EXPECT_GE(studies[0].splits, 4);
+    EXPECT_LT(studies[0].splits, 40);
+    interrupted = true;
+    EXPECT_EQ(simulate_study({{"a", noisy, {}}, {"b", tracked_fanuc(), {}}}, options).size(), 2u);
 }
 
 TEST(SimulatedStudy, EndsWhenItIsAsPreciseAsAskedFor) {

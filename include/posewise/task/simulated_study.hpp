@@ -43,8 +43,9 @@ struct SimulatedStudyOptions : StudyOptions {
 /// visit, against the calibrated model's. The poses to choose from are those that the cell allows.
 ///
 /// One study for each campaign, in their order, with a split for each robot; robots are as alike as
-/// the campaigns are, draw by draw. Empty in a process of a crew that does not lead. The same
-/// result for any crew, shards and order. Throws InputError for options out of range, for a
+/// the campaigns are, draw by draw. Those that were stopped before their first robot are left out,
+/// unless all were. Empty in a process of a crew that does not lead. The same result for any crew,
+/// shards and order. Throws InputError for options out of range, for a
 /// campaign that make_plan() would refuse or whose sensor has contacts, for one that another robot
 /// is the truth of, and if the nominal poses do not identify the model for any pose count.
 std::vector<Study> simulate_study(const std::vector<SimulatedCampaign>& campaigns,
