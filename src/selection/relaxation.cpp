@@ -123,7 +123,8 @@ class Relaxer {
         if (result_.certificate.M.size() > 0 && !(bound < result_.bound)) return;
         result_.certificate = {M, objective_.sharpness};
         result_.bound = bound;
-        best_weights_ = weights_;
+        result_.weights = VectorXd::Zero(candidates_.count());
+        result_.weights(set_.members()) = weights_;
     }
 
     bool is_closed(const MatrixXd& M) const {
@@ -174,10 +175,6 @@ class Relaxer {
     }
 
     Relaxation finish() {
-        result_.weights = VectorXd::Zero(candidates_.count());
-        for (Index k = 0; k < best_weights_.size(); ++k) {
-            result_.weights[set_.members()[static_cast<std::size_t>(k)]] = best_weights_[k];
-        }
         objective_.sharpness = result_.certificate.sharpness;
         result_.sensitivity =
             sensitivities(candidates_, log_gradient(objective_, result_.certificate.M));
@@ -192,7 +189,6 @@ class Relaxer {
     std::vector<char> is_inside_;  // or excluded
     VectorXd weights_;             // of the set's members
     VectorXd upper_;
-    VectorXd best_weights_;
     Relaxation result_;
 };
 
