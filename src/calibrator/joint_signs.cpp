@@ -85,8 +85,14 @@ JointSigns fit_joint_signs(const Campaign& campaign, const Measurements& measure
     std::vector<SignPattern>& patterns = signs.patterns;
     patterns = all_patterns(joints);
     fit(patterns, patterns.size(), campaign, thinned, register_roughly);
-    fit(patterns, std::min(polished_count, patterns.size()), campaign, thinned,
-        register_base_and_targets);
+    const std::size_t polished = std::min(polished_count, patterns.size());
+    const auto stated = std::ranges::find(patterns, 0, reversed_count);
+    const auto last = patterns.begin() + static_cast<std::ptrdiff_t>(polished) - 1;
+    if (stated > last) std::iter_swap(stated, last);
+    fit(patterns, polished, campaign, thinned, register_base_and_targets);
+    std::stable_sort(
+        patterns.begin(), patterns.begin() + alike_count(patterns),
+        [](const auto& a, const auto& b) { return reversed_count(a) < reversed_count(b); });
     return signs;
 }
 
@@ -97,18 +103,18 @@ Index alike_count(const std::vector<SignPattern>& patterns) {
     return std::ranges::find_if(patterns, differs) - patterns.begin();
 }
 
-const SignPattern& simplest_best(const std::vector<SignPattern>& patterns) {
-    return *std::min_element(
-        patterns.begin(), patterns.begin() + alike_count(patterns),
-        [](const auto& a, const auto& b) { return reversed_count(a) < reversed_count(b); });
-}
-
 const SignPattern& as_stated(const std::vector<SignPattern>& patterns) {
     return *std::ranges::find(patterns, 0, reversed_count);
 }
 
-bool is_clearly_better(const SignPattern& best, const SignPattern& stated) {
-    return best.distance_rms < 0.5 * stated.distance_rms;
+bool has_clear_reversal(const std::vector<SignPattern>& patterns) {
+    constexpr double far = 0.5;
+    constexpr double clearly = 1 / 1.5;
+    const double best = patterns.front().distance_rms;
+    if (!(best < far * as_stated(patterns).distance_rms)) return false;
+    const Index alike = alike_count(patterns);
+    return alike == std::ssize(patterns) ||
+           best < clearly * patterns[static_cast<std::size_t>(alike)].distance_rms;
 }
 
 std::vector<std::string> reversed_joints(const Chain& robot, const SignPattern& pattern) {

@@ -18,22 +18,21 @@ struct SignPattern {
 
 /// How each choice of reversed joints fits.
 struct JointSigns {
-    std::vector<SignPattern> patterns;  ///< the best fitting first
+    /// The best fitting first, of those that fit alike the one that reverses the fewest joints.
+    std::vector<SignPattern> patterns;
     /// Why the measurements cannot be registered at all, as Registration has it; then there are no
     /// patterns.
     std::string undetermined;
 };
 
 /// All 2^joints patterns of joint directions. Patterns of a symmetric robot
-/// fit exactly alike. Each is registered from nothing, the best 64 with polish, with at most
+/// fit exactly alike. Each is registered from nothing, the best 64 and
+/// what is stated with polish, with at most
 /// `most_configurations` configurations evenly taken from the measurements (all if those do not
 /// show every target). Throws InputError for more than 12 joints, or as register_base_and_targets()
 /// does.
 JointSigns fit_joint_signs(const Campaign& campaign, const Measurements& measurements,
                            Index most_configurations = 60);
-
-/// Of the patterns that fit as the best does, the one that reverses the fewest joints.
-const SignPattern& simplest_best(const std::vector<SignPattern>& patterns);
 
 /// So many of the first patterns fit alike.
 Index alike_count(const std::vector<SignPattern>& patterns);
@@ -41,8 +40,9 @@ Index alike_count(const std::vector<SignPattern>& patterns);
 /// The one that reverses none.
 const SignPattern& as_stated(const std::vector<SignPattern>& patterns);
 
-/// Whether a pattern fits so much better than what is stated that joints must be reversed.
-bool is_clearly_better(const SignPattern& best, const SignPattern& stated);
+/// Whether joints must be reversed: the best pattern, or any that fits alike, fits far better than
+/// what is stated, and clearly better than all others.
+bool has_clear_reversal(const std::vector<SignPattern>& patterns);
 
 /// The joints that a pattern reverses.
 std::vector<std::string> reversed_joints(const Chain& robot, const SignPattern& pattern);

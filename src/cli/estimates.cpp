@@ -170,12 +170,13 @@ std::string describe_earlier(const std::string& path, const EarlierUse& use) {
 }
 
 std::string describe_earlier(const PlanRequest& request) {
-    std::string text = describe_earlier(request.sources.estimate, request.earlier);
-    if (!request.earlier.only.empty()) {
-        text +=
-            "            the rest counts as exact: its errors come on top of what is predicted\n";
-    }
-    return text;
+    return describe_earlier(request.sources.estimate, request.earlier) +
+           describe_exact(request.earlier);
+}
+
+std::string describe_exact(const EarlierUse& use) {
+    if (use.only.empty()) return "";
+    return "            the rest counts as exact: its errors come on top of what is predicted\n";
 }
 
 io::Provenance provenance_of(const CLI::App& command, const io::CampaignFile& file,

@@ -76,6 +76,8 @@ void warn_of_counting_twice(const std::string& estimate, bool is_prior, const st
 /// A line: which estimate, and how it is used; nothing without one.
 std::string describe_earlier(const std::string& path, const EarlierUse& use);
 std::string describe_earlier(const PlanRequest& request);
+/// That what is not to be identified is taken as exact.
+std::string describe_exact(const EarlierUse& use);
 inline std::string describe_earlier(const EarlierArguments& arguments) {
     return describe_earlier(arguments.from, arguments.use());
 }

@@ -172,7 +172,8 @@ std::vector<Study> study_simulated(const StudyArguments& arguments, const Common
     options.trials =
         arguments.trials.value_or(options.precision > 0 ? most_trials : options.trials);
     complete_options(options, arguments, file, stop);
-    extras.notes = describe_earlier(arguments.earlier) + describe_unused_planning(file);
+    extras.notes = describe_earlier(arguments.earlier) + describe_exact(arguments.earlier.use()) +
+                   describe_unused_planning(file);
     extras.page.scene = make_scene(file);
     ProgressLine line("simulating", arguments.progress);
     const RateNote note;

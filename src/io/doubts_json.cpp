@@ -99,7 +99,8 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
                           {"expected_mm", mm_per_m * misfit->expected},
                           {"unit", unit_name(misfit->unit)},
                           {"planes", planes_to_json(misfit->planes)},
-                          {"reversed", misfit->reversed}};
+                          {"reversed", misfit->reversed},
+                          {"other_choices", misfit->other_choices}};
     }
     if (!doubts.planes.empty()) json["planes"] = planes_to_json(doubts.planes);
     if (!doubts.places.empty()) json["places"] = places_to_json(doubts.places);

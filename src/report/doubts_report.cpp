@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "../core/format.hpp"
@@ -64,12 +65,17 @@ std::string list_size_keys(const Campaign& campaign, const std::vector<SizeDoubt
 /// A prior holds values back.
 std::string describe_sizes(const Campaign& campaign, const std::vector<SizeDoubt>& sizes) {
     const bool has_prior = campaign.spread.is_prior;
+    constexpr std::size_t shown = 5;
+    std::vector<SizeDoubt> largest = sizes;
+    std::ranges::stable_sort(largest, std::greater{}, &SizeDoubt::times);
+    largest.resize(std::min(shown, largest.size()));
     std::string words;
-    for (const SizeDoubt& size : sizes) {
+    for (const SizeDoubt& size : largest) {
         words += (words.empty() ? "" : ", ") + size.parameter + " (";
         if (has_prior) words += detail::format_error(size.value, size.is_angle) + ", ";
         words += detail::format_short(size.times, 3) + " times)";
     }
+    if (sizes.size() > shown) words += fmt::format(" and {} more", sizes.size() - shown);
     const bool are_terms = std::ranges::all_of(sizes, &SizeDoubt::is_term);
     const std::string question = are_terms
                                      ? "does the robot give way that much"

@@ -25,7 +25,7 @@ std::string describe_joint_directions(const Campaign& campaign,
     constexpr std::size_t shown = 5;
     const Chain& robot = campaign.robot;
     const Index alike = alike_count(patterns);
-    const SignPattern& best = simplest_best(patterns);
+    const SignPattern& best = patterns.front();
     const SignPattern& stated = as_stated(patterns);
     const std::string others =
         alike == 1 ? "" : fmt::format(" ({} choices fit alike, by the robot's symmetry)", alike);
@@ -48,10 +48,10 @@ std::string describe_joint_directions(const Campaign& campaign,
     }
     return format_section("Joint directions that fit best", table) +
            fmt::format("as stated: {} mm\n", format_mm(stated.distance_rms)) +
-           (is_clearly_better(best, stated)
+           (has_clear_reversal(patterns)
                 ? fmt::format("joint directions: reversed are {}{}; {}\n",
                               name_reversed(robot, best), others, advice)
-                : "joint directions: none fits clearly better than those stated; is the "
+                : "joint directions: none fits clearly better than all others; is the "
                   "nominal robot right (zero positions, lengths, units)?\n");
 }
 

@@ -1,29 +1,22 @@
 #include "posewise/task/doubts.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "../calibrator/joint_signs.hpp"
 #include "../calibrator/missing_errors.hpp"
 #include "../core/format.hpp"
 #include "../core/statistics.hpp"
 #include "../model/joint_limits.hpp"
 #include "absurd_values.hpp"
 #include "other_senses.hpp"
-#include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/planner/prediction.hpp"
 
 namespace posewise {
 namespace {
-
-/// Another robot's measurements are off by more than so many expected errors.
-constexpr double credible_errors = 10;
 
 /// A robot's maker is rarely wrong by 10 cm, nor by 5 deg.
 constexpr double gross_distance = 0.1;  // m
@@ -38,84 +31,6 @@ constexpr double doubtful_under_prior = 3;
 /// What no robot has, in expected sizes, and no measurement, in standard deviations as stated.
 constexpr double incredible_size = 100;
 constexpr double incredible_residuals = 300;
-
-/// How much farther the measured points of a target spread than the flange, by the joints, does.
-double measured_extent(const Campaign& campaign, const Measurements& measured) {
-    const VectorXd no_errors = VectorXd::Zero(campaign.robot.parameter_count());
-    RowMatrixXd flange(measured.configuration_count(), 3);
-    for (Index i = 0; i < flange.rows(); ++i) {
-        const VectorXd q = measured.configurations.row(i).transpose();
-        flange.row(i) =
-            campaign.robot.base_from_links(q, no_errors).back().translation().transpose();
-    }
-    RowMatrixXd seen(measured.is_seen.rows(), 3);
-    Index count = 0;
-    for (Index sample = 0; sample < seen.rows(); ++sample) {
-        if (!measured.is_seen(sample, 0)) continue;
-        seen.row(count++) = measured.observation(sample, 0);
-    }
-    return count > 0 ? detail::rms_spread(seen.topRows(count)) / detail::rms_spread(flange) : 1;
-}
-
-/// Of residuals as mean_residuals() gives them, the median: some may be grossly wrong.
-double median_distance(const RowMatrixXd& residuals) {
-    const auto coordinates = residuals.leftCols(std::min<Index>(3, residuals.cols()));
-    return quantile(coordinates.rowwise().norm(), 0.5, detail::QuantileRule::Upper);
-}
-
-UnitDoubt find_unit_doubt(const Campaign& campaign, const Measurements& measured) {
-    double largest = 0;
-    for (Index j = 0; j < measured.configurations.cols(); ++j) {
-        if (campaign.robot.joint(j).motion != Motion::Rotation) continue;
-        largest = std::max(largest, measured.configurations.col(j).cwiseAbs().maxCoeff());
-    }
-    constexpr double turn = 2 * std::numbers::pi;
-    if (largest > 2 * turn) return UnitDoubt::JointsInDegrees;
-    if (largest > 0 && largest < turn / 50) return UnitDoubt::JointsInRadians;
-    if (measured.observations.cols() != 3 * measured.is_seen.cols()) return UnitDoubt::None;
-    const double ratio = measured_extent(campaign, measured);
-    if (ratio > 200 && ratio < 5000) return UnitDoubt::PointsInMillimetres;
-    if (ratio > 1.0 / 5000 && ratio < 1.0 / 200) return UnitDoubt::PointsInMetres;
-    return UnitDoubt::None;
-}
-
-const char* ask_about(UnitDoubt unit) {
-    switch (unit) {
-        case UnitDoubt::None:
-            break;
-        case UnitDoubt::JointsInDegrees:
-            return "; are joint values in degrees where the file says rad?";
-        case UnitDoubt::JointsInRadians:
-            return "; are joint values in rad where the file says degrees?";
-        case UnitDoubt::PointsInMillimetres:
-            return "; are points in mm where the file says m?";
-        case UnitDoubt::PointsInMetres:
-            return "; are points in m where the file says mm?";
-    }
-    return "";
-}
-
-std::string ask_about_directions(const std::vector<std::string>& reversed) {
-    if (reversed.empty()) return "";
-    return fmt::format(
-        "; do joints turn the other way than stated? They fit clearly better with {} reversed, "
-        "see inspect --measurements",
-        fmt::join(reversed, ", "));
-}
-
-std::string describe(const Plane& plane) {
-    return fmt::format(
-        "normal [{}, {}, {}] and offset {} mm", detail::format_fixed(plane.normal.x(), 3),
-        detail::format_fixed(plane.normal.y(), 3), detail::format_fixed(plane.normal.z(), 3),
-        detail::format_mm(plane.offset, 1));
-}
-
-/// "reversed", but where the normal points neither there nor where it is stated.
-std::string describe_turn(const Vector3d& stated, const Vector3d& measured) {
-    if (!detail::is_turned(stated, measured)) return "reversed";
-    return fmt::format("turned by {} deg",
-                       detail::format_short(to_degrees(std::acos(stated.dot(measured))), 2));
-}
 
 std::optional<double> clear_ratio(const ResidualVariance& variance, LossKind loss) {
     constexpr double tolerated = 1.2;  // intervals of 95 % would hold 90 %
@@ -216,15 +131,21 @@ std::optional<double> find_missing_errors(const Campaign& campaign, const Measur
     return share;
 }
 
-/// Those that fit clearly better the other way round; none where there are too many joints to try.
-std::vector<std::string> find_reversed_joints(const Campaign& campaign,
-                                              const Measurements& measured) {
-    if (campaign.robot.joint_count() > detail::most_signed_joints) return {};
-    const detail::JointSigns signs = detail::fit_joint_signs(campaign, measured);
-    if (signs.patterns.empty()) return {};
-    const detail::SignPattern& best = detail::simplest_best(signs.patterns);
-    if (!detail::is_clearly_better(best, detail::as_stated(signs.patterns))) return {};
-    return detail::reversed_joints(campaign.robot, best);
+/// Residuals in units of those stated, the model error that was found counted as stated, too.
+double times_stated(const Campaign& stated, const Estimate& estimate) {
+    const auto times = [&](bool is_angle, double found, double expected) {
+        const double growth = expected > 0 ? std::max(1.0, found / expected) : 1;
+        return growth * std::sqrt(estimate.variance_of(is_angle).factor);
+    };
+    double largest = std::sqrt(estimate.variance_factor);
+    if (stated.sensor->has_lengths()) {
+        largest = std::max(largest, times(false, estimate.model_error, stated.model_error));
+    }
+    if (stated.sensor->has_angles()) {
+        largest = std::max(
+            largest, times(true, estimate.model_error_orientation, stated.model_error_orientation));
+    }
+    return largest;
 }
 
 std::vector<Index> find_negative_compliances(const Campaign& campaign, const Estimate& estimate) {
@@ -267,68 +188,13 @@ std::vector<Index> find_still_joints(const Campaign& campaign, const RowMatrixXd
     return joints;
 }
 
-std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& measured,
-                                  const Parameters& registered) {
-    if (!campaign.sensor->has_lengths()) return std::nullopt;  // of angles it is not known
-    Misfit misfit;
-    misfit.distance = median_distance(mean_residuals(campaign, registered, measured));
-    // At nominal targets: fitted to another robot's points they may be anywhere.
-    const Blocks blocks =
-        make_prediction_blocks(campaign, campaign.nominal, measured.configurations);
-    const auto points = static_cast<double>(blocks.matrix.rows()) / 3;
-    misfit.expected =
-        std::sqrt(blocks.matrix
-                      .middleCols(base_parameter_count(campaign), campaign.robot.parameter_count())
-                      .squaredNorm() /
-                  points) +
-        campaign.model_error;
-    if (misfit.distance <= credible_errors * misfit.expected) return std::nullopt;
-    misfit.unit = find_unit_doubt(campaign, measured);
-    misfit.planes = find_plane_doubts(campaign, measured);
-    if (misfit.unit == UnitDoubt::None && misfit.planes.empty()) {
-        misfit.reversed = find_reversed_joints(campaign, measured);
-    }
-    return misfit;
-}
-
-void check_is_of_robot(const Campaign& campaign, const Measurements& measured,
-                       const Registration& registration) {
-    if (!registration.is_determined()) return;
-    const auto misfit = find_misfit(campaign, measured, registration.parameters);
-    if (misfit) throw InputError(describe_misfit(campaign, *misfit));
-    std::vector<PlaceDoubt> places = find_place_doubts(campaign, registration.parameters);
-    std::erase_if(places, [](const auto& doubt) { return doubt.unit == PlaceDoubt::Unit::AsRead; });
-    if (!places.empty()) throw InputError(describe_places(places));
-}
-
-std::string describe_planes(const std::vector<PlaneDoubt>& planes) {
-    std::string text;
-    for (const PlaneDoubt& doubt : planes) {
-        text += fmt::format("{}plane {} looks {}: stated with {}, measured at about {}",
-                            text.empty() ? "" : "; ", doubt.plane + 1,
-                            describe_turn(doubt.stated.normal, doubt.measured.normal),
-                            describe(doubt.stated), describe(doubt.measured));
-    }
-    return text;
-}
-
-std::string describe_misfit(const Campaign& campaign, const Misfit& misfit) {
-    return fmt::format(
-        "are these of another robot? The nominal robot misses half of them by over {} mm; must be "
-        "about {} mm, as the spread of {} says{}{}{}{}",
-        detail::format_short(mm_per_m * misfit.distance, 3),
-        detail::format_short(mm_per_m * misfit.expected, 3), campaign.name, ask_about(misfit.unit),
-        misfit.planes.empty() ? "" : "; ", describe_planes(misfit.planes),
-        ask_about_directions(misfit.reversed));
-}
-
 std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& estimate,
                                      ValueCheck values) {
     std::vector<std::string> faults;
     if (estimate.ending != Ending::Converged && estimate.ending != Ending::RoundoffLimited) {
         faults.push_back(fmt::format("it did not converge ({})", ending_name(estimate.ending)));
     }
-    const double ratio = std::sqrt(estimate.variance_factor);
+    const double ratio = times_stated(campaign, estimate);
     if (!(ratio <= incredible_residuals)) {
         faults.push_back(fmt::format("its residuals are {} times what sigma and model error say",
                                      detail::format_short(ratio, 2)));

@@ -12,13 +12,13 @@ namespace posewise {
 namespace {
 
 /// The robot as it is drawn, and how many of its elements are left of the first k.
-struct DrawnRobot {
+struct SceneRobot {
     Chain robot;
     std::vector<Index> count_of;
 };
 
 /// Constant errors in the elements; others left out.
-DrawnRobot drawn_robot(const Chain& robot, const VectorXd& errors) {
+SceneRobot drawn_robot(const Chain& robot, const VectorXd& errors) {
     std::vector<Element> elements;
     std::vector<Index> count_of{0};
     Index k = 0;
@@ -110,7 +110,7 @@ const PointNoise* noise_of(const Sensor& sensor) {
 }  // namespace
 
 Scene make_scene(const Campaign& campaign, const Parameters& parameters) {
-    DrawnRobot drawn = drawn_robot(campaign.robot, parameters.robot);
+    SceneRobot drawn = drawn_robot(campaign.robot, parameters.robot);
     Scene scene;
     scene.robot = std::move(drawn.robot);
     scene.world_from_base = parameters.world_from_base;

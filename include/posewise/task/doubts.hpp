@@ -82,6 +82,7 @@ struct Misfit {
     UnitDoubt unit = UnitDoubt::None;
     std::vector<PlaneDoubt> planes;
     std::vector<std::string> reversed;  ///< joints that fit clearly better the other way round
+    Index other_choices = 0;            ///< of joints that fit alike, by the robot's symmetry
 };
 
 /// Nothing if the nominal robot explains the measurements. `registered`: base and targets, by
