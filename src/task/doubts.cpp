@@ -131,19 +131,21 @@ std::optional<double> find_missing_errors(const Campaign& campaign, const Measur
     return share;
 }
 
-/// Residuals in units of those stated, the model error that was found counted as stated, too.
+/// Residuals in units of those stated; where they are beyond the model error that was found, too,
+/// that counts.
 double times_stated(const Campaign& stated, const Estimate& estimate) {
-    const auto times = [&](bool is_angle, double found, double expected) {
-        const double growth = expected > 0 ? std::max(1.0, found / expected) : 1;
-        return growth * std::sqrt(estimate.variance_of(is_angle).factor);
-    };
+    constexpr double beyond = 2;
     double largest = std::sqrt(estimate.variance_factor);
-    if (stated.sensor->has_lengths()) {
-        largest = std::max(largest, times(false, estimate.model_error, stated.model_error));
-    }
-    if (stated.sensor->has_angles()) {
-        largest = std::max(
-            largest, times(true, estimate.model_error_orientation, stated.model_error_orientation));
+    const auto add = [&](bool is_angle, double found, double expected) {
+        const double ratio = std::sqrt(estimate.variance_of(is_angle).factor);
+        if (ratio > beyond && found > expected && expected > 0) {
+            largest = std::max(largest, found / expected * ratio);
+        }
+    };
+    const Sensor& sensor = *stated.sensor;
+    if (sensor.has_lengths()) add(false, estimate.model_error, stated.model_error);
+    if (sensor.has_angles()) {
+        add(true, estimate.model_error_orientation, stated.model_error_orientation);
     }
     return largest;
 }

@@ -53,6 +53,9 @@ TEST(JointSigns, AreFoundForRobotsWithErrors) {
                 patterns.begin(), end,
                 [&](const SignPattern& pattern) { return pattern.is_reversed == is_reversed; }))
                 << robot.joint_count() << ' ' << item;
+            const bool is_stated = &as_stated(patterns) < &*end;
+            EXPECT_EQ(has_clear_reversal(patterns), !is_stated);
+            EXPECT_EQ(alike_count(patterns), static_cast<Index>(symmetries));
             EXPECT_LT(patterns[0].distance_rms, 0.01);
             EXPECT_GT(patterns[alike].distance_rms, 5 * patterns[0].distance_rms);
         }
@@ -68,10 +71,24 @@ TEST(JointSigns, ThatMeasurementsCannotTellApartFitAlike) {
     const Campaign campaign = tracked_campaign(without_parameters(Chain(joints, elements)));
     const Simulation simulation = simulate(campaign, {.pose_count = 40});
     const auto patterns = fit_joint_signs(campaign, simulation.measurements).patterns;
-    EXPECT_EQ(patterns[0].is_reversed[0], patterns[0].is_reversed[1]);
+    EXPECT_EQ(patterns[0].is_reversed, std::vector<bool>(3, false));  // the simplest is first
+    EXPECT_EQ(patterns[1].is_reversed[0], patterns[1].is_reversed[1]);
     EXPECT_NE(patterns[1].is_reversed, patterns[0].is_reversed);
     EXPECT_NEAR(patterns[1].distance_rms, patterns[0].distance_rms, 1e-6);
     EXPECT_GT(patterns[2].distance_rms, 10 * patterns[1].distance_rms);
+}
+
+TEST(JointSigns, OfMeasurementsThatNoChoiceFitsAreNotClear) {
+    const Campaign campaign = tracked_campaign(testing::seven_joint_arm());
+    Measurements measurements = simulate(campaign, {.pose_count = 30}).measurements;
+    const RowMatrixXd observed = measurements.observations;
+    for (Index i = 0; i < 30; ++i) measurements.observations.row(i) = observed.row((i + 1) % 30);
+    const auto patterns = fit_joint_signs(campaign, measurements).patterns;
+    EXPECT_FALSE(has_clear_reversal(patterns));
+    const Registration registered = register_base_and_targets(campaign, measurements);
+    const double rms =
+        make_metrics(residuals(campaign, registered.parameters, measurements)).distance_rms;
+    EXPECT_NEAR(as_stated(patterns).distance_rms, rms, 1e-6 * rms);
 }
 
 TEST(JointSigns, TakeAllConfigurationsWhereSomeHideATarget) {

@@ -60,6 +60,22 @@ TEST_F(Directions, ThatAreReversedAreNamedWhereNothingElseExplainsTheMisfit) {
     EXPECT_EQ(wrong.err.find("reversed"), std::string::npos) << wrong.err;
 }
 
+TEST_F(Directions, OfAWristAreNamedThoughItIsLittleOff) {
+    std::string robot =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/abb_irb120/planning.yaml");
+    write_text("c.yaml", robot);
+    run_well("simulate c.yaml --poses 40 --truth 3 -o m.csv");
+    EXPECT_EQ(run("calibrate c.yaml -m m.csv --folds 0").code, 0);
+    robot.replace(robot.find("Rx q6"), 5, "Rx -q6");
+    write_text("r.yaml", robot);
+    const std::string words = "They fit clearly better with q6 reversed, see inspect";
+    const Outcome outcome = run("calibrate r.yaml -m m.csv --folds 0 -o e.json");
+    EXPECT_EQ(outcome.code, 3) << "even with the model error found";
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("times what sigma and model error say"), std::string::npos);
+    expect_input_error("select r.yaml -m m.csv -k 10", words);
+}
+
 TEST_F(Directions, OfAWrongRobotAreNotGuessed) {
     run_well("simulate " + fanuc_design + " --poses 80 --truth 3 -o m.csv");
     replace("Tx 1280 mm", "Tx 200 mm");

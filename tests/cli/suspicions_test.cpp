@@ -114,6 +114,31 @@ TEST_F(Suspicions, AKnownPlaneThatIsReversedIsNamedWhereTheMeasurementsAreRefuse
     EXPECT_EQ(warnings_of("k.yaml -m s.csv"), "");
 }
 
+TEST_F(Suspicions, AJointThatTurnsTheOtherWayIsNoReversedPlane) {
+    std::string known = planes;
+    known.replace(known.find("known_planes: false"), 19, "known_planes: true");
+    write_text("c.yaml", known);
+    run_well("simulate c.yaml --poses 40 -o s.csv");
+    write_with("r.yaml", known, "Rz q1", "Rz -q1");
+    expect_input_error("select r.yaml -m s.csv -k 30", "They fit clearly better with q1 reversed");
+    EXPECT_EQ(run("select r.yaml -m s.csv -k 30").err.find("looks reversed"), std::string::npos);
+}
+
+TEST_F(Suspicions, PosesInAnotherUnitAreAskedFor) {
+    write_text("c.yaml", poses);
+    run_well("simulate c.yaml --poses 20 -o s.csv");
+    std::string text = text_of("s.csv");
+    for (const std::string axis : {"x", "y", "z"}) {
+        const std::string column = "p1_" + axis + "_mm";
+        ASSERT_NE(text.find(column), std::string::npos) << text;
+        text.replace(text.find(column), column.size(), "p1_" + axis + "_m");
+    }
+    write_text("m.csv", text);
+    const std::string warnings = warnings_of("c.yaml -m m.csv");
+    EXPECT_NE(warnings.find("are points in mm where the file says m?"), std::string::npos)
+        << warnings;
+}
+
 TEST_F(Suspicions, QuaternionsInAnotherSenseAreNamed) {
     write_text("c.yaml", poses);
     run_well("simulate c.yaml --poses 20 -o s.csv");

@@ -148,6 +148,15 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
             "far above the expected size: dq2 (40 times), Tx1 (25.5 times); are sign, unit and "
             "nominal value in the campaign right, and do the poses tell them apart? If so, state "
             "a larger size in spread.angle_mrad (1 now) and spread.length_mm (1 now)"}));
+    for (int k = 1; k <= 5; ++k) {
+        calibration.doubts.sizes.push_back({"a" + std::to_string(k), 20.0 + k, 0, true, false});
+    }
+    EXPECT_NE(
+        describe_doubts(calibration)
+            .back()
+            .find("dq2 (40 times), Tx1 (25.5 times), a5 (25 times), a4 (24 times), a3 (23 times) "
+                  "and 2 more; are sign"),
+        std::string::npos);
     calibration.doubts = {};
     calibration.doubts.sizes = {{"dq2", 3.5, 0.07, true, true}};
     calibration.campaign.spread.by_name["dq2"] = 0.02;

@@ -211,6 +211,23 @@ class FindFaults : public ::testing::Test {
     const Estimate estimate_;
 };
 
+TEST_F(FindFaults, CountsTheModelErrorFoundWhereResidualsAreBeyondItToo) {
+    const double stated = campaign_.model_error;
+    ASSERT_GT(stated, 0);
+    const auto fault_of = [&](double times, double ratio) {
+        return fault_after([&](Estimate& e) {
+            e.model_error = times * stated;
+            e.variance_factor = ratio * ratio;
+            e.variance_by_kind.clear();
+        });
+    };
+    EXPECT_EQ(fault_of(40, 9), "its residuals are 3.6e+02 times what sigma and model error say");
+    EXPECT_EQ(fault_of(40, 7), "");
+    EXPECT_EQ(fault_of(1000, 1.5), "");
+    EXPECT_EQ(fault_of(1, 290), "");
+    EXPECT_EQ(fault_of(1, 310), "its residuals are 3.1e+02 times what sigma and model error say");
+}
+
 TEST_F(FindFaults, NamesWhatNoCellHas) {
     EXPECT_EQ(fault_after([](Estimate&) {}), "");
     EXPECT_EQ(fault_after([](Estimate& e) { e.model_error = 0.5; }),
