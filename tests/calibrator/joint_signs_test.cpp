@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "../../src/model/sampling.hpp"
+#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/simulation.hpp"

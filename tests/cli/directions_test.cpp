@@ -63,6 +63,9 @@ TEST_F(Directions, ThatAreReversedAreNamedWhereNothingElseExplainsTheMisfit) {
 TEST_F(Directions, OfAWristAreNamedThoughItIsLittleOff) {
     std::string robot =
         read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/abb_irb120/planning.yaml");
+    robot.replace(robot.find("{count: 3}"), 10,
+                  "{position_mm: [[80, 0, 30], [20, 70, 10], [20, -60, -50]]}\n"
+                  "base: {position_mm: [2000, 300, -400], rpy_deg: [0, 0, 90]}");
     write_text("c.yaml", robot);
     run_well("simulate c.yaml --poses 40 --truth 3 -o m.csv");
     EXPECT_EQ(run("calibrate c.yaml -m m.csv --folds 0").code, 0);
