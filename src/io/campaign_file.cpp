@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "../core/checksum.hpp"
 #include "../model/complete_model.hpp"
@@ -69,12 +68,6 @@ void place_within_reach(const std::vector<Index>& reached, Campaign& campaign) {
     }
 }
 
-/// The largest size that errors may be expected to have.
-double largest_error(Quantity quantity) {
-    constexpr double longest = 10;  // m
-    return quantity == Quantity::Angle ? std::numbers::pi : longest;
-}
-
 /// `has_stated_errors`: the campaign has no other error parameters than the file says.
 ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
                             bool has_stated_errors) {
@@ -83,7 +76,8 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
     ParameterSpread spread = campaign.spread;
     const auto read = [&map](std::string_view key, double& size) {
         const auto measure = map.find_measure(key);
-        if (measure) size = read_positive(*measure, false, largest_error(measure->unit->quantity));
+        if (measure)
+            size = read_positive(*measure, false, detail::largest_error(measure->unit->quantity));
     };
     read("length", spread.length);
     read("angle", spread.angle);
@@ -105,8 +99,8 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
         }
         const auto index = static_cast<std::size_t>(found - names.begin());
         const auto quantity = is_angle[index] ? Quantity::Angle : Quantity::Length;
-        spread.by_name[entry.key] =
-            read_amount(entry.value, quantity, detail::Sign::Positive, largest_error(quantity));
+        spread.by_name[entry.key] = read_amount(entry.value, quantity, detail::Sign::Positive,
+                                                detail::largest_error(quantity));
     }
     return spread;
 }

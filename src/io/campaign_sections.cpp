@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "posewise/model/transforms.hpp"
 #include "text.hpp"
@@ -12,15 +13,19 @@ namespace {
 
 constexpr double least_amount = 1e-12;  // m or rad
 
+}  // namespace
+
+double largest_error(Quantity quantity) {
+    constexpr double longest = 10;  // m
+    return quantity == Quantity::Angle ? std::numbers::pi : longest;
+}
+
 bool is_plausible_amount(double si, double largest) { return si >= least_amount && si <= largest; }
 
-/// That rule in words and in this unit, "from 1e-09 to 1e+06 mm".
 std::string plausible_amount(const Unit& unit, double largest) {
     return fmt::format("from {:g} to {:g} {}", unit.from_si(least_amount), unit.from_si(largest),
                        unit.name);
 }
-
-}  // namespace
 
 Isometry3d read_frame(const YamlMap& map) {
     Isometry3d frame = Isometry3d::Identity();

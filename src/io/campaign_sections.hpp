@@ -48,6 +48,13 @@ Isometry3d read_frame(const YamlMap& map);
 std::vector<bool> read_known(const YamlValue& known, const std::vector<std::string>& names);
 
 inline constexpr double largest_amount = 1e3;  // m or rad
+/// The largest size that errors may be expected to have, m or rad.
+double largest_error(Quantity quantity);
+
+/// Whether a positive amount, m or rad, is at most so large, and large enough to be meant.
+bool is_plausible_amount(double si, double largest);
+/// That rule in words and in this unit, "from 1e-09 to 1e+06 mm".
+std::string plausible_amount(const Unit& unit, double largest);
 
 /// A measure that must be positive, or with `zero_allowed` not negative, and at most so large; m or
 /// rad.

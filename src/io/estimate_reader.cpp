@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "../core/text.hpp"
+#include "campaign_sections.hpp"
 #include "estimate_format.hpp"
 #include "json.hpp"
 #include "json_reader.hpp"
@@ -287,7 +288,13 @@ ParameterSpread read_learned_sizes(const JsonValue& sizes, const Campaign& campa
         if (!sizes.has(key)) continue;
         const JsonValue learned = sizes[key]["learned"];
         const double size = learned.number();
-        if (!(size > 0)) throw learned.error(fmt::format("is {:g}; must be above 0", size));
+        const double largest =
+            detail::largest_error(shared.is_angle ? Quantity::Angle : Quantity::Length);
+        if (!detail::is_plausible_amount(size, largest)) {
+            const detail::Unit& unit = *detail::find_unit(shared.is_angle ? "rad" : "m");
+            throw learned.error(
+                fmt::format("is {:g}; must be {}", size, detail::plausible_amount(unit, largest)));
+        }
         size_of(spread, campaign.robot, shared.members.front()) = size;
     }
     return spread;

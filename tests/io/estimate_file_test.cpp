@@ -196,10 +196,19 @@ TEST_F(EstimateFile, IsReadAsAnEarlierOneWithTheSizesLearned) {
     EXPECT_TRUE(earlier.changes.empty()) << earlier.changes.front();
 
     document["assumes"]["sigma_m"] = 1.0;
-    document["learned_sizes"]["length_m"]["learned"] = 0.0;
-    folder_.write("estimate.json", document.dump());
-    EXPECT_EQ(testing::input_error_of([&] { read_earlier(path_, stated, {}); }),
-              "estimate.json: learned_sizes.length_m.learned: is 0; must be above 0");
+    const auto error_with = [&](const std::string& key, double size) {
+        Json changed = document;
+        changed["learned_sizes"][key]["learned"] = size;
+        folder_.write("estimate.json", changed.dump());
+        return testing::input_error_of([&] { read_earlier(path_, stated, {}); });
+    };
+    const std::string of = "estimate.json: learned_sizes.";
+    EXPECT_EQ(error_with("length_m", 0), of + "length_m.learned: is 0; must be from 1e-12 to 10 m");
+    EXPECT_EQ(error_with("length_m", 10), "no error");
+    EXPECT_EQ(error_with("length_m", 1e5),
+              of + "length_m.learned: is 100000; must be from 1e-12 to 10 m");
+    EXPECT_EQ(error_with("angle_rad", 3.2),
+              of + "angle_rad.learned: is 3.2; must be from 1e-12 to 3.14159 rad");
     document.erase("learned_sizes");
     folder_.write("estimate.json", document.dump());
     EXPECT_EQ(read_earlier(path_, stated, {}).changes.front().substr(0, 15), "sigma_m was 1, ");
