@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "../core/text.hpp"
+#include "../task/earlier_estimate.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "measured.hpp"
@@ -20,6 +21,36 @@ namespace {
 
 bool contains(const std::vector<std::string>& names, const char* name) {
     return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Throws InputError for one that has faults and is not forced; warns of what has changed since.
+void check_usable(const std::string& path, const Campaign& campaign, const io::EarlierFile& earlier,
+                  bool is_forced) {
+    if (!earlier.changes.empty()) {
+        print_warning(path + ": the campaign file said otherwise when it was made: " +
+                      join_some(earlier.changes));
+    }
+    Campaign judged = campaign;
+    if (earlier.spread) judged.spread = *earlier.spread;
+    std::vector<std::string> faults = find_faults(judged, earlier.estimate);
+    for (const std::string& stated : earlier.faults) {
+        if (!contains(faults, stated.c_str())) faults.push_back(stated);
+    }
+    if (faults.empty()) return;
+    const std::string words = "is no calibration to use: " + join_some(faults);
+    if (!is_forced) throw input_error_at({path}, words + "; --force takes it all the same");
+    print_warning(path + ": " + words);
+}
+
+/// With drift it may be one even where the estimate's covariance alone is none.
+void check_prior(const std::string& path, const Campaign& expected) {
+    try {
+        prior_information(expected);
+    } catch (const InputError&) {
+        throw input_error_at({path},
+                             "covariance.rows_si: is not positive definite, even with drift; must "
+                             "be, to be a prior");
+    }
 }
 
 }  // namespace
@@ -44,7 +75,9 @@ CLI::Option* add_parts_option(CLI::App& command, const std::string& name,
 }
 
 Estimate read_usable_estimate(const std::string& path, const Campaign& campaign, bool is_forced) {
-    return read_usable_earlier(path, campaign, {}, is_forced).estimate;
+    const io::EarlierFile earlier = io::read_earlier(path, campaign, {});
+    check_usable(path, campaign, earlier, is_forced);
+    return earlier.estimate;
 }
 
 EarlierUse EarlierArguments::use() const {
@@ -105,22 +138,11 @@ void add_earlier_options(CLI::App& command, EarlierArguments& arguments) {
 
 Earlier read_usable_earlier(const std::string& path, const Campaign& campaign,
                             const EarlierUse& use, bool is_forced) {
-    io::EarlierFile earlier = io::read_earlier(path, campaign, use);
-    if (!earlier.changes.empty()) {
-        print_warning(path + ": the campaign file said otherwise when it was made: " +
-                      join_some(earlier.changes));
-    }
+    const io::EarlierFile earlier = io::read_earlier(path, campaign, use);
+    compute_from(path, [&] { detail::check_known_base(campaign, earlier); });
     if (!use.only.empty()) compute_from("--only", [&] { with_earlier(campaign, earlier); });
-    Campaign judged = campaign;
-    if (earlier.spread) judged.spread = *earlier.spread;
-    std::vector<std::string> faults = find_faults(judged, earlier.estimate);
-    for (const std::string& stated : earlier.faults) {
-        if (!contains(faults, stated.c_str())) faults.push_back(stated);
-    }
-    if (faults.empty()) return earlier;
-    const std::string words = "is no calibration to use: " + join_some(faults);
-    if (!is_forced) throw input_error_at({path}, words + "; --force takes it all the same");
-    print_warning(path + ": " + words);
+    check_usable(path, campaign, earlier, is_forced);
+    if (use.is_prior) check_prior(path, with_earlier(campaign, earlier));
     return earlier;
 }
 

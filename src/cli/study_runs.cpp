@@ -95,7 +95,9 @@ std::vector<SimulatedCampaign> list_variations(const StudyArguments& arguments,
         if (!arguments.earlier.from.empty()) {  // what is to be warned of has been
             static_cast<Campaign&>(varied) = compute_from("--vary " + variation.name, [&] {
                 const EarlierUse use = arguments.earlier.use();
-                return with_earlier(varied, io::read_earlier(arguments.earlier.from, varied, use));
+                const std::string& from = arguments.earlier.from;
+                const Earlier earlier = io::read_earlier(from, varied, use);
+                return compute_from(from, [&] { return with_earlier(varied, earlier); });
             });
         }
         campaigns.push_back({variation.name, varied, truth});

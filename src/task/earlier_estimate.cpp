@@ -1,5 +1,7 @@
 #include "earlier_estimate.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -8,8 +10,10 @@
 #include "../core/text.hpp"
 #include "../measurement/known_sensor.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "posewise/model/transforms.hpp"
 
 namespace posewise {
 namespace {
@@ -101,9 +105,38 @@ MatrixXd follow(const Campaign& campaign, const Parameters& at, const Measuremen
     return scale(of_found).asDiagonal() * d * scale(of_known).cwiseInverse().asDiagonal();
 }
 
+std::string describe(const Isometry3d& base, bool is_turned) {
+    const Vector3d p = mm_per_m * base.translation();
+    const std::string place = fmt::format("({:.9g}, {:.9g}, {:.9g}) mm", p.x(), p.y(), p.z());
+    if (!is_turned) return place;
+    const Vector3d rpy = rpy_from_rotation(base.linear());
+    return fmt::format("{}, rpy ({:.9g}, {:.9g}, {:.9g}) deg", place, to_degrees(rpy.x()),
+                       to_degrees(rpy.y()), to_degrees(rpy.z()));
+}
+
 }  // namespace
 
 namespace detail {
+
+void check_known_base(const Campaign& campaign, const Earlier& earlier) {
+    if (earlier.use.has_new_base) return;
+    constexpr double alike = 1e-6;  // m or rad
+    const auto& known = campaign.base_is_known;
+    const Isometry3d& stated = campaign.nominal.world_from_base;
+    const Isometry3d& found = earlier.estimate.parameters.world_from_base;
+    bool is_elsewhere = false;
+    for (Index axis = 0; axis < 3; ++axis) {
+        const double apart = std::abs(found.translation()[axis] - stated.translation()[axis]);
+        is_elsewhere |= known[static_cast<std::size_t>(axis)] && apart > alike;
+    }
+    const Eigen::AngleAxisd turn(found.linear() * stated.linear().transpose());
+    const bool is_turned = known[3] && known[4] && known[5] && std::abs(turn.angle()) > alike;
+    if (!is_elsewhere && !is_turned) return;
+    throw InputError(fmt::format(
+        "the base is at {}, the campaign states one at {} as known; must be stated as when the "
+        "estimate was made, unless '--moved base' says that it is another",
+        describe(found, is_turned), describe(stated, is_turned)));
+}
 
 KnownParameters known_parameters(const Campaign& campaign, const std::vector<std::string>& only) {
     const std::vector<std::string> names = campaign.robot.parameter_names();
@@ -187,8 +220,10 @@ Campaign with_earlier(const Campaign& campaign, const Earlier& earlier) {
         throw InputError("the earlier estimate is of other parameters than those of " +
                          campaign.name);
     }
+    detail::check_known_base(campaign, earlier);
     const KnownParameters known = detail::known_parameters(campaign, use.only);
-    if ((known.base && use.has_new_base) || (known.targets && use.has_new_targets)) {
+    const bool holds_base = known.base && base_parameter_count(campaign) > 0;
+    if ((holds_base && use.has_new_base) || (known.targets && use.has_new_targets)) {
         throw InputError("base and targets that were moved must be identified, too");
     }
     Campaign expected = campaign;
@@ -208,7 +243,9 @@ Campaign with_earlier(const Campaign& campaign, const Earlier& earlier) {
         expected.nominal.sensor = estimate.parameters.sensor;
         expected.has_nominal_targets = true;
     }
-    Campaign changed = detail::with_known(expected, known, estimate.parameters);
+    Parameters held = estimate.parameters;
+    held.world_from_base = expected.nominal.world_from_base;
+    Campaign changed = detail::with_known(expected, known, held);
     if (!use.is_prior) return changed;
     changed.spread.is_prior = true;
     changed.prior = make_prior(campaign, changed, earlier, known);

@@ -16,6 +16,10 @@ struct KnownParameters {
 /// Throws InputError for a name that is none, and where nothing would be left to identify.
 KnownParameters known_parameters(const Campaign& campaign, const std::vector<std::string>& only);
 
+/// Throws InputError where the campaign states a base as known and the estimate has another, unless
+/// it was moved since.
+void check_known_base(const Campaign& campaign, const Earlier& earlier);
+
 /// The campaign with these values of what is known, less what is.
 Campaign with_known(const Campaign& campaign, const KnownParameters& known,
                     const Parameters& values);

@@ -101,5 +101,41 @@ TEST_F(Faults, AnEstimateOfAnotherRobotIsNamedByWhatDiffers) {
     }
 }
 
+/// The FANUC campaign with a base at this x (mm) that is known, or is not.
+std::string with_base(const std::string& x, bool is_known) {
+    std::string text =
+        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    text.erase(text.find("measurements:"));  // of MATLAB files
+    const std::string turn = "0.35]}";
+    if (is_known) text.replace(text.find(turn), turn.size(), "0.35], known: true}");
+    return text.replace(text.find("-557.6"), 6, x);
+}
+
+TEST_F(Faults, OfABaseThatIsKnownElsewhere) {
+    write_text("c.yaml", with_base("-557.6", true));
+    write_text("other.yaml", with_base("-357.6", true));
+    std::string turned = with_base("-557.6", true);
+    write_text("turned.yaml", turned.replace(turned.find("0.35]"), 5, "0.45]"));
+    run_well("simulate c.yaml --truth 7 --seed 3 --poses 20 -o m.csv");
+    run_well("calibrate c.yaml -m m.csv --folds 0 -o e.json");
+    run_well("calibrate c.yaml -m m.csv --folds 0 --from e.json");
+    const std::string words =
+        "posewise: e.json: the base is at (-557.6, -563.2, 561.4) mm, the campaign states one at "
+        "(-357.6, -563.2, 561.4) mm as known; must be stated as when the estimate was made, unless "
+        "'--moved base' says that it is another\n";
+    expect_input_error("calibrate other.yaml -m m.csv --folds 0 --from e.json", words);
+    expect_input_error("select other.yaml --random 50 -k 9 --from e.json", words);
+    expect_input_error("plan other.yaml -k 9 --pool 50 --from e.json", words);
+    expect_input_error("study other.yaml -m m.csv -k 9 --from e.json", words);
+    expect_input_error("indices other.yaml -m m.csv --from e.json --only targets", words);
+    expect_input_error("inspect other.yaml --from e.json", words);
+    run_well("indices other.yaml -m m.csv --from e.json --moved base");
+    expect_input_error("inspect turned.yaml --from e.json",
+                       "mm, rpy (-0.28, 0.37, 0.35) deg, the campaign states one at");
+    // Their base frame may be another one.
+    write_text("p.csv", "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n1,0,0,0,0,30,0\n");
+    run_well("correct other.yaml e.json --poses p.csv -o c.csv");
+}
+
 }  // namespace
 }  // namespace posewise::testing
