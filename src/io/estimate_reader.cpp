@@ -5,6 +5,7 @@
 
 #include "../core/text.hpp"
 #include "campaign_sections.hpp"
+#include "estimate_covariance.hpp"
 #include "estimate_format.hpp"
 #include "json.hpp"
 #include "json_reader.hpp"
@@ -22,17 +23,7 @@ namespace {
 using detail::Json;
 using detail::JsonValue;
 using detail::Quantity;
-
-std::vector<double> read_numbers(const JsonValue& value, std::size_t count) {
-    const std::vector<JsonValue> items = value.list();
-    if (items.size() != count) {
-        throw value.error("has " + std::to_string(items.size()) + " values; must have " +
-                          std::to_string(count));
-    }
-    std::vector<double> numbers;
-    for (const JsonValue& item : items) numbers.push_back(item.number());
-    return numbers;
-}
+using detail::read_numbers;
 
 /// m or rad, of a size that occurs.
 double check_size(double si, Quantity quantity, const JsonValue& value) {
@@ -114,18 +105,13 @@ VectorXd read_targets(const JsonValue& targets, const Sensor& sensor) {
     return unknowns;
 }
 
-/// What to do where the estimate has more or fewer unknowns than the campaign.
-constexpr const char* as_then =
-    "; what is known of base and sensor must be stated as when the estimate was made, unless "
-    "'calibrate --moved' says that they are others";
-
 VectorXd read_unknowns(const JsonValue& values, const Sensor& sensor) {
     const std::vector<std::string> names = sensor.unknown_names();
     const std::vector<bool> is_angle = sensor.unknown_is_angle();
     VectorXd unknowns(static_cast<Index>(names.size()));
     for (std::size_t k = 0; k < names.size(); ++k) {
         const std::string key = names[k] + detail::si_suffix(is_angle[k]);
-        if (!values.has(key)) throw values.error("has no " + key + as_then);
+        if (!values.has(key)) throw values.error("has no " + key + detail::as_then);
         const JsonValue value = values[key];
         unknowns[static_cast<Index>(k)] =
             check_size(value.number(), is_angle[k] ? Quantity::Angle : Quantity::Length, value);
@@ -133,11 +119,12 @@ VectorXd read_unknowns(const JsonValue& values, const Sensor& sensor) {
     return unknowns;
 }
 
-Parameters read_parameters(const JsonValue& root, const Campaign& campaign, bool has_same_targets) {
+Parameters read_parameters(const JsonValue& root, const Campaign& campaign, const EarlierUse& use) {
     Parameters parameters;
-    parameters.world_from_base = read_base(root["base"]);
+    parameters.world_from_base =
+        use.has_new_base ? campaign.nominal.world_from_base : read_base(root["base"]);
     parameters.robot = read_robot(root["robot"], campaign);
-    if (!has_same_targets) {
+    if (use.has_new_targets) {
         parameters.sensor = campaign.nominal.sensor;
     } else if (campaign.sensor->observes_targets()) {
         parameters.sensor = read_targets(root["targets"], *campaign.sensor);
@@ -145,42 +132,6 @@ Parameters read_parameters(const JsonValue& root, const Campaign& campaign, bool
         parameters.sensor = read_unknowns(root["sensor"], *campaign.sensor);
     }
     return parameters;
-}
-
-/// A row up to the diagonal, of a matrix of which the rows before are there.
-void read_covariance_row(const JsonValue& value, Index i, MatrixXd& matrix) {
-    const std::vector<double> row = read_numbers(value, static_cast<std::size_t>(i) + 1);
-    matrix.row(i).head(i + 1) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), i + 1);
-    matrix.col(i).head(i + 1) = matrix.row(i).head(i + 1).transpose();
-    constexpr double rounding = 1 + 1e-9;
-    for (Index j = 0; j <= i; ++j) {
-        if (matrix(i, j) * matrix(i, j) <= rounding * matrix(i, i) * matrix(j, j) &&
-            matrix(i, i) >= 0) {
-            continue;
-        }
-        throw value.error("is no row of a covariance; a correlation is beyond 1");
-    }
-}
-
-/// Of `names`, which may be followed by others; of those only if `is_all` is false.
-MatrixXd read_covariance(const JsonValue& covariance, const std::vector<std::string>& names,
-                         bool is_all) {
-    const std::vector<JsonValue> listed = covariance["parameters"].list();
-    const std::vector<JsonValue> rows = covariance["rows_si"].list();
-    const bool is_short = listed.size() < names.size() || rows.size() < names.size();
-    if (is_short || (is_all && (listed.size() > names.size() || rows.size() > names.size()))) {
-        throw covariance.error(fmt::format("has {} parameters in {} rows, the campaign {}{}",
-                                           listed.size(), rows.size(), names.size(), as_then));
-    }
-    MatrixXd matrix(std::ssize(names), std::ssize(names));
-    for (std::size_t k = 0; k < names.size(); ++k) {
-        if (listed[k].text() != names[k]) {
-            throw listed[k].error("is " + detail::quote(listed[k].text()) + "; must be " +
-                                  detail::quote(names[k]));
-        }
-        read_covariance_row(rows[k], static_cast<Index>(k), matrix);
-    }
-    return matrix;
 }
 
 Ending read_ending(const JsonValue& value) {
@@ -198,40 +149,6 @@ double read_size(const JsonValue& value) {
 
 double read_model_error(const JsonValue& value, Quantity quantity) {
     return check_size(read_size(value), quantity, value);
-}
-
-/// Standard deviations are stated beside the covariance.
-void check_sigmas(const JsonValue& root, const Campaign& campaign,
-                  const std::vector<std::string>& names, const MatrixXd& covariance) {
-    constexpr double rounding = 1e-9;
-    const std::vector<bool> is_angle = parameter_is_angle(campaign);
-    const Index robot_begin = base_parameter_count(campaign);
-    const Index robot_end = robot_begin + campaign.robot.parameter_count();
-    for (Index k = 0; k < std::ssize(names); ++k) {
-        const auto i = static_cast<std::size_t>(k);
-        const std::string unit = detail::si_suffix(is_angle[i]);
-        const JsonValue sigma = k >= robot_begin && k < robot_end
-                                    ? root["robot"][names[i]]["sigma" + unit]
-                                    : root["sigma"][names[i] + unit];
-        const double expected = std::sqrt(covariance(k, k));
-        if (std::abs(sigma.number() - expected) <= rounding * expected) continue;
-        throw sigma.error(fmt::format("is {:g}, the covariance says {:g}; must agree with it",
-                                      sigma.number(), expected));
-    }
-}
-
-/// Of base and robot alone where the targets are others.
-MatrixXd read_covariance_of(const JsonValue& root, const Campaign& campaign,
-                            bool has_same_targets) {
-    std::vector<std::string> names = parameter_names(campaign);
-    const Index size = std::ssize(names);
-    if (!has_same_targets) names.resize(names.size() - campaign.sensor->unknown_names().size());
-    MatrixXd covariance = MatrixXd::Zero(size, size);
-    const Index told = std::ssize(names);
-    covariance.topLeftCorner(told, told) =
-        read_covariance(root["covariance"], names, has_same_targets);
-    check_sigmas(root, campaign, names, covariance);
-    return covariance;
 }
 
 void check_readings(const JsonValue& value, const Sensor& sensor) {
@@ -262,13 +179,13 @@ std::vector<ResidualVariance> read_variance_by_kind(const JsonValue& root) {
     return variances;
 }
 
-Estimate read_estimate_of(const JsonValue& root, const Campaign& campaign, bool has_same_targets) {
-    if (has_same_targets) check_readings(root["readings"], *campaign.sensor);
+Estimate read_estimate_of(const JsonValue& root, const Campaign& campaign, const EarlierUse& use) {
+    if (!use.has_new_targets) check_readings(root["readings"], *campaign.sensor);
     detail::check_is_of_robot(root["chain"], campaign.robot);
     Estimate estimate;
-    estimate.parameters = read_parameters(root, campaign, has_same_targets);
+    estimate.parameters = read_parameters(root, campaign, use);
     estimate.names = parameter_names(campaign);
-    estimate.covariance = read_covariance_of(root, campaign, has_same_targets);
+    estimate.covariance = detail::read_covariance(root, campaign, use);
     estimate.ending = read_ending(root["ending"]);
     estimate.iterations = root["iterations"].count(0);
     estimate.degrees_of_freedom = root["degrees_of_freedom"].count(0);
@@ -322,14 +239,15 @@ std::vector<std::string> find_changes(const JsonValue& assumes, const Campaign& 
 
 Estimate read_estimate(const std::string& path, const Campaign& campaign) {
     const detail::Json document = detail::read_estimate_document(path);
-    return read_estimate_of(JsonValue(document, path), campaign, true);
+    return read_estimate_of(JsonValue(document, path), campaign, {});
 }
 
 EarlierFile read_earlier(const std::string& path, const Campaign& campaign, const EarlierUse& use) {
     const detail::Json document = detail::read_estimate_document(path);
     const JsonValue root(document, path);
     EarlierFile earlier;
-    earlier.estimate = read_estimate_of(root, campaign, !use.has_new_targets);
+    earlier.estimate = read_estimate_of(root, campaign, use);
+    if (use.is_prior) detail::check_definite(root, earlier.estimate.covariance);
     earlier.use = use;
     if (root.has("faults")) earlier.faults = root["faults"].texts();
     const bool has_learned = root.has("learned_sizes");

@@ -51,14 +51,18 @@ void add_targets(const Targets& targets, const VectorXd& unknowns,
     }
 }
 
-/// Of parameters; 0 of the sensor's unknowns, if all are 0, is that of those that were moved.
+/// Of parameters; 0 of the base or of the sensor's unknowns, if all are 0, is that of what was
+/// moved.
 void add_variances(const Campaign& campaign, const Estimate& estimate,
                    std::vector<std::string>& faults) {
     const VectorXd variances = estimate.covariance.diagonal();
     const Index of_sensor = estimate.parameters.sensor.size();
+    const Index of_base = base_parameter_count(campaign);
     const bool has_moved = variances.tail(of_sensor).isZero(0);
+    const bool has_moved_base = variances.head(of_base).isZero(0);
     const std::vector<bool> is_angle = parameter_is_angle(campaign);
-    for (Index k = 0; k < variances.size() - (has_moved ? of_sensor : 0); ++k) {
+    const Index end = variances.size() - (has_moved ? of_sensor : 0);
+    for (Index k = has_moved_base ? of_base : 0; k < end; ++k) {
         if (variances[k] >= least_variance) continue;
         const auto i = static_cast<std::size_t>(k);
         faults.push_back(fmt::format(

@@ -137,5 +137,52 @@ TEST_F(Faults, OfABaseThatIsKnownElsewhere) {
     run_well("correct other.yaml e.json --poses p.csv -o c.csv");
 }
 
+TEST_F(Faults, NoneIsABaseThatWasMovedAndIsKnownNow) {
+    write_text("open.yaml", with_base("-557.6", false));
+    write_text("known.yaml", with_base("-557.6", true));
+    for (const std::string seed : {"3", "4"}) {
+        run_well("simulate known.yaml --truth 7 --poses 20 -o m" + seed + ".csv --seed " + seed);
+    }
+    for (const std::string from : {"open", "known"}) {
+        const std::string to = from == "open" ? "known" : "open";
+        run_well("calibrate " + from + ".yaml -m m3.csv --folds 0 -o e.json");
+        const std::string again = "calibrate " + to + ".yaml -m m4.csv --folds 0 --from e.json";
+        const std::string words = "must be stated as when the estimate was made, unless '--moved'";
+        expect_input_error(again, words);
+        expect_input_error(again + " --as-prior --moved targets", words);
+        run_well(again + " --moved base");
+        run_well(again + " --moved base --as-prior");
+        run_well(again + " --moved base,targets --as-prior");
+        run_well(again + " --moved base --only base,targets");
+        run_well("plan " + to +
+                 ".yaml -k 5 --pool 50 --starts 1 --workspace-poses 20 --moved base --as-prior "
+                 "--from e.json " +
+                 "-o p.json");
+        run_well("verify p.json");
+        if (from == "open") run_well(again + " --moved base --only targets");
+    }
+}
+
+TEST_F(Faults, OfAPriorNameItsFile) {
+    run_well(calibrate_ + "-o e.json");
+    nlohmann::ordered_json document = nlohmann::ordered_json::parse(text_of("e.json"));
+    auto& rows = document["covariance"]["rows_si"];
+    rows[2][0] = rows[2][1] = 0;  // base.z is as sure as can be
+    for (std::size_t k = 2; k < rows.size(); ++k) rows[k][2] = 0;
+    document["sigma"]["base.z_m"] = 0;
+    write_text("sure.json", document.dump());
+    const std::string plan = "plan " + fanuc_design + " -k 4 --pool 50 --as-prior --from sure.json";
+    expect_input_error(plan, "sure.json: is no calibration to use");
+    const std::string words =
+        "posewise: sure.json: covariance.rows_si: is not positive definite, even with drift";
+    for (const std::string& command :
+         {plan, calibrate_ + "--as-prior --from sure.json",
+          "study " + fanuc_design + " -m s.csv -k 9 --as-prior --from sure.json"}) {
+        const Outcome outcome = run(command + " --force");
+        EXPECT_EQ(outcome.code, 1) << command;
+        EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+    }
+}
+
 }  // namespace
 }  // namespace posewise::testing

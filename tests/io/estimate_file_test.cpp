@@ -230,6 +230,40 @@ TEST_F(EstimateFile, TellsNothingOfTargetsThatWereMoved) {
     EXPECT_TRUE(estimate.covariance.bottomRows(6).isZero(0));
 }
 
+TEST_F(EstimateFile, TellsNothingOfABaseThatWasMoved) {
+    written();
+    Campaign known = campaign_;
+    known.base_is_known.fill(true);
+    known.nominal.world_from_base.translation().x() += 1;
+    EXPECT_THROW(read_earlier(path_, known, {}), InputError);
+    const MatrixXd whole = calibration_.estimate.covariance;
+    const Index told = parameter_count(known);
+    const Estimate estimate = read_earlier(path_, known, {.has_new_base = true}).estimate;
+    EXPECT_EQ(estimate.names, parameter_names(known));
+    EXPECT_EQ(estimate.parameters.sensor, calibration_.estimate.parameters.sensor);
+    EXPECT_TRUE(estimate.parameters.world_from_base.isApprox(known.nominal.world_from_base, 0));
+    EXPECT_EQ(estimate.covariance, whole.bottomRightCorner(told, told));
+
+    std::swap(campaign_, known);
+    calibration_.estimate.names = parameter_names(campaign_);
+    calibration_.estimate.covariance = whole.bottomRightCorner(told, told);
+    written();
+    const MatrixXd back = read_earlier(path_, known, {.has_new_base = true}).estimate.covariance;
+    EXPECT_EQ(back.bottomRightCorner(told, told), whole.bottomRightCorner(told, told));
+    EXPECT_TRUE(back.topRows(6).isZero(0));
+}
+
+TEST_F(EstimateFile, IsNoPriorWhereItsCovarianceIsNotPositiveDefinite) {
+    Json document = written();
+    document["covariance"]["rows_si"][2] = {-0.9e-8, -0.9e-8, 1e-8};
+    folder_.write("estimate.json", document.dump());
+    EXPECT_EQ(
+        testing::input_error_of([&] { read_earlier(path_, campaign_, {.is_prior = true}); }),
+        "estimate.json: covariance.rows_si: is not positive definite, its correlations have the "
+        "eigenvalue -0.8; must be, to be a prior");
+    EXPECT_NO_THROW(read_earlier(path_, campaign_, {}));
+}
+
 TEST_F(EstimateFile, OfAnotherCampaignIsRefused) {
     written();
     const std::string good = read_file(path_);
@@ -309,8 +343,8 @@ TEST_F(EstimateFile, HoldsTheWholeCovarianceAndHowTheIdentificationEnded) {
               "beyond 1");
     EXPECT_EQ(error_with("/covariance/rows_si/3", {1, 2}),
               "estimate.json: covariance.rows_si[3]: has 2 values; must have 4");
-    EXPECT_EQ(error_with("/covariance/parameters/2", "x"),
-              "estimate.json: covariance.parameters[2]: is 'x'; must be 'base.z'");
+    EXPECT_EQ(error_with("/covariance/parameters/7", "x"),
+              "estimate.json: covariance.parameters[7]: is 'x'; must be 'Tx1'");
     EXPECT_EQ(error_with("/model_error_within", 0.5),
               "estimate.json: model_error_within: is 0.5; must be from 1 to 2.5");
     EXPECT_EQ(error_with("/variance_factor", -1),
