@@ -112,6 +112,7 @@ Json target_to_json(const TargetPlanning& found) {
                  {"assurance", target.assurance},
                  {"quantity", quantity_name(target.quantity)},
                  {"robust_to", target.robust_to},
+                 {"is_settled", found.is_settled},
                  {"error", range_to_json(*found.error)},
                  {"floor", range_to_json(found.floor)},
                  {"curve", Json::array()}};

@@ -168,9 +168,8 @@ std::string format(const TargetPlanning& found) {
             text += fmt::format(" ({}: {} mm)", next->pose_count,
                                 next->error ? format_mm(next->error->assured) : "-");
         }
-        text += fmt::format(
-            "; floor {} mm{}\n", format_mm(found.floor.assured),
-            planning.plan.ending == Ending::Converged ? "" : "; stopped early: fewer may do");
+        text += fmt::format("; floor {} mm{}\n", format_mm(found.floor.assured),
+                            found.is_settled ? "" : "; stopped early: fewer may do");
     }
     if (found.target.duration) {
         text += fmt::format("time:        {} of {} min for {}", minutes(planning.duration),
@@ -178,7 +177,9 @@ std::string format(const TargetPlanning& found) {
         if (!found.target.limit && next != nullptr) {
             text += fmt::format(" ({}: {})", next->pose_count, minutes(next->duration));
         }
-        text += found.target.limit ? ": both are kept\n" : "\n";
+        if (found.target.limit) text += ": both are kept";
+        if (!found.target.limit && !found.is_settled) text += "; stopped early: more may fit";
+        text += '\n';
     }
     return text;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "../planner/tour.hpp"
 #include "plan_maker.hpp"
@@ -159,13 +160,22 @@ class Search {
                            [&](Index count) { return is_crossed_by_choice(count); });
     }
 
+    /// What does not keep what was asked for, made after the stop, says nothing of its number.
     void plan(Index count) {
         // What is not kept needs no bound.
         result_.planning = maker_.make(count, [&](const Planning& planning) {
             result_.error = judge(planning);
-            return has_crossed(result_.error, planning.duration) == has_limit();
+            return is_kept(planning);
         });
-        planned_[count] = {count, true, result_.error, result_.planning->duration};
+        const Planning& made = *result_.planning;
+        const bool is_cut = options_.stop.is_set();
+        if (!is_cut && !made.plan.is_stopped_early()) finished_.insert(count);
+        if (is_cut && !is_kept(made)) return;
+        planned_[count] = {count, true, result_.error, made.duration};
+    }
+    /// Of the plan that result_.error is of.
+    bool is_kept(const Planning& planning) const {
+        return has_crossed(result_.error, planning.duration) == has_limit();
     }
 
     /// Full plans on both sides of where it is crossed; the one that keeps what was asked for
@@ -173,38 +183,45 @@ class Search {
     void settle(Index count) {
         count = std::clamp(has_limit() ? count : count - 1, least_, most_);
         plan(count);
-        const bool is_first_crossed = has_crossed(result_.error, result_.planning->duration);
-        const Index step = is_first_crossed ? -1 : 1;
-        bool is_crossed = is_first_crossed;
+        const bool is_first_kept = is_kept(*result_.planning);
+        const Index step = is_first_kept == has_limit() ? -1 : 1;
+        bool is_one_kept = is_first_kept;
         for (count += step; count >= least_ && count <= most_ && !options_.stop.is_set();
              count += step) {
             const auto [error, planning] = std::pair(result_.error, result_.planning);
             plan(count);
-            is_crossed = has_crossed(result_.error, result_.planning->duration);
-            if (is_crossed == is_first_crossed) continue;
-            if (is_crossed != has_limit()) {
-                is_crossed = is_first_crossed;
+            if (is_kept(*result_.planning) == is_first_kept) continue;
+            if (is_first_kept) {
                 result_.error = error;
                 result_.planning = planning;
             }
+            is_one_kept = true;
             break;
         }
-        conclude(is_crossed);
+        if (is_one_kept) mark_stop();
+        conclude(is_one_kept);
     }
 
-    void conclude(bool is_crossed) {
-        if (!has_limit() && is_crossed) {
+    /// Whether a plan of one pose less, or without a limit one more, was searched to its end.
+    void mark_stop() {
+        const Index next = result_.planning->search.pose_count + (has_limit() ? -1 : 1);
+        result_.is_settled = next < least_ || next > most_ || finished_.contains(next);
+        Plan& plan = result_.planning->plan;
+        if (!result_.is_settled) plan.ending = options_.stop.ending_or(plan.ending);
+    }
+
+    void conclude(bool is_one_kept) {
+        if (!is_one_kept) check_stop();
+        if (!has_limit() && !is_one_kept) {
             throw InputError(fmt::format(
                 "{:g} min are too short: {}, the least number of poses, take {:.2g} min",
                 *target_.duration / 60, least_, result_.planning->duration / 60));
         }
         result_.ending = TargetEnding::Reached;
-        if (has_limit() && !is_crossed) {
-            check_stop();
-            result_.ending = TargetEnding::TooManyPoses;
-        }
-        if (has_limit() && is_crossed && target_.duration &&
+        if (!is_one_kept) result_.ending = TargetEnding::TooManyPoses;
+        if (has_limit() && is_one_kept && target_.duration &&
             result_.planning->duration > *target_.duration) {
+            if (!result_.is_settled) check_stop();
             result_.ending = TargetEnding::TooLong;
             const Index most = std::min(most_, choices_.candidate_count());
             least_count(least_, least_, most,
@@ -249,6 +266,7 @@ class Search {
     Index most_;
     std::map<Index, CountPrediction> chosen_;
     std::map<Index, CountPrediction> planned_;
+    std::set<Index> finished_;  ///< planned, not stopped early
 };
 
 void find_floor(const PlanningProblem& problem, const PlanningOptions& options,

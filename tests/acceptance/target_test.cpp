@@ -1,9 +1,13 @@
 // How many poses a target needs, on the designs that are shipped.
 #include "posewise/task/target.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <vector>
 
 #include "../../src/core/elementary.hpp"
 #include "../../src/core/statistics.hpp"
@@ -13,8 +17,10 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/io/campaign_file.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/report/reports.hpp"
 #include "posewise/task/verification.hpp"
 #include "support/campaigns.hpp"
 
@@ -198,6 +204,44 @@ TEST_F(Target, AsManyPosesAsFitInTheTime) {
     const TargetPlanning long_one = find();
     EXPECT_EQ(long_one.ending, TargetEnding::TooLong);
     EXPECT_FALSE(long_one.planning.has_value());
+}
+
+/// A plan cut short does not tell that its number of poses is not enough.
+TEST_F(Target, StoppedEarlyHasNoEvidenceThatFewerPosesDoNot) {
+    std::atomic<bool> is_interrupted = false;
+    Index calls = 0;
+    Index last_call = 0;
+    Index done = 0;
+    std::vector<Index> begins;  // of full plans
+    options_.stop.interrupted = &is_interrupted;
+    options_.progress = [&](const Progress& state) {
+        if (++calls == last_call) is_interrupted = true;
+        if (calls == 1 || state.done < done) begins.push_back(calls);
+        done = state.done;
+    };
+    const TargetPlanning whole = find();
+    const Index count = whole.planning.value().search.pose_count;
+    EXPECT_TRUE(whole.is_settled);
+    EXPECT_EQ(whole.planning->plan.ending, Ending::Converged);
+    EXPECT_EQ(format(whole).find("stopped early"), std::string::npos);
+    const auto is_less = [&](const CountPrediction& one) {
+        return one.is_planned && one.pose_count == count - 1;
+    };
+    EXPECT_TRUE(std::any_of(whole.curve.begin(), whole.curve.end(), is_less));
+
+    // The last plan is that of a pose less.
+    last_call = begins.back();
+    calls = 0;
+    const TargetPlanning found = find();
+    EXPECT_EQ(found.planning.value().search.pose_count, count);
+    EXPECT_EQ(found.error->assured, whole.error->assured);
+    EXPECT_FALSE(found.is_settled);
+    EXPECT_EQ(found.planning->plan.ending, Ending::Interrupted);
+    EXPECT_FALSE(std::any_of(found.curve.begin(), found.curve.end(), is_less));
+    const std::string text = format(found);
+    EXPECT_EQ(text.find(fmt::format(" ({}: ", count - 1)), std::string::npos) << text;
+    EXPECT_NE(text.find("; stopped early: fewer may do"), std::string::npos) << text;
+    EXPECT_NE(io::to_json(found, "p.json").find("\"is_settled\": false"), std::string::npos);
 }
 
 TEST_F(Target, RefusesWhatNoNumberOfPosesCanMeet) {

@@ -40,8 +40,11 @@ enum class TargetEnding {
 struct TargetPlanning {
     TargetOptions target;
     TargetEnding ending = TargetEnding::NotRun;
-    std::optional<Planning> planning;       ///< if it is Reached
-    std::optional<ErrorRange> error;        ///< of that plan
+    std::optional<Planning> planning;  ///< if it is Reached
+    std::optional<ErrorRange> error;   ///< of that plan
+    /// There is no plan of one pose less that keeps the limit, or without a limit of one more that
+    /// fits, as far as a search to its end found; false: stopped early, there may be one.
+    bool is_settled = false;
     std::vector<CountPrediction> curve;     ///< by count, as far as it was looked at
     ErrorRange floor;                       ///< left where the parameters are known exactly
     double floor_of_known_model_error = 0;  ///< m: the same if the model error were as expected
@@ -53,10 +56,10 @@ struct TargetPlanning {
 /// The least number of poses whose plan keeps the limit, and that plan: found by choices from a
 /// part of the pool, then by quick plans, in the end by plans as make_plan() makes them. Without a
 /// limit: as many poses as fit in the duration. options.pose_count is not looked at; a stop ends
-/// the search with the plan at hand. Throws InputError for options that cannot be met by any number
-/// (a limit, assurance or duration out of range, none of them, a plan to repair, a duration too
-/// short for the least number of poses), if it is stopped before there is a plan, and as
-/// make_plan().
+/// the search with the last plan that keeps what was asked for, marked as stopped early. Throws
+/// InputError for options that cannot be met by any number (a limit, assurance or duration out of
+/// range, none of them, a plan to repair, a duration too short for the least number of poses), if
+/// it is stopped before there is a plan, and as make_plan().
 TargetPlanning plan_for_target(const Campaign& campaign, const PlanningOptions& options,
                                const TargetOptions& target);
 
