@@ -1,6 +1,7 @@
 #include "posewise/io/correction_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <iterator>
 
@@ -13,8 +14,8 @@ namespace posewise::io {
 void write_corrections_csv(const std::string& path, const Campaign& campaign,
                            const std::vector<std::string>& ids,
                            const std::vector<Correction>& corrections) {
-    std::string text = "config" + detail::joint_header(campaign) +
-                       ",residual_mm,residual_mrad,uncorrected_mm,uncorrected_mrad,note\n";
+    std::string text = fmt::format("config{},{}\n", detail::joint_header(campaign),
+                                   fmt::join(detail::correction_columns, ","));
     for (std::size_t i = 0; i < corrections.size(); ++i) {
         const Correction& correction = corrections[i];
         fmt::format_to(std::back_inserter(text), "{}{},{:.6f},{:.6f},{:.6f},{:.6f},{}\n",

@@ -18,6 +18,10 @@ inline constexpr std::string_view visible_targets = "visible_targets";
 /// has_contacts(); it stands for the columns observed, and for visible_targets.
 inline constexpr std::string_view contact = "socket";
 
+/// What correct writes beside the joints, and configurations may hold: it is not read.
+inline constexpr std::array<std::string_view, 5> correction_columns{
+    "residual_mm", "residual_mrad", "uncorrected_mm", "uncorrected_mrad", "note"};
+
 enum class Role {
     Configuration,
     Sample,
@@ -26,7 +30,7 @@ enum class Role {
     Joint,  ///< or a measured torque: a number of the configuration
     Observation,
     Orientation,
-    Unused,  ///< torque that the campaign makes no use of
+    Unused,  ///< torque that the campaign makes no use of, or one of correction_columns
 };
 
 /// Other columns for an orientation than its rotation vector: a quaternion without units, or turns

@@ -97,9 +97,10 @@ class HeaderReader {
             if (const auto column = find_orientation(field, with_unit)) return *column;
         }
         if (found == wanted_.end()) {
-            const auto joint = find_unused_torque(with_unit);
-            if (!joint) throw unknown(field);
-            return {Role::Unused, *joint, with_unit.unit};
+            auto unused = find_unused_torque(with_unit);
+            if (!unused) unused = find_correction(name);
+            if (!unused) throw unknown(field);
+            return {Role::Unused, *unused, with_unit.unit};
         }
         if (with_unit.unit == nullptr || found->stem == name) {
             throw error(field, "has no unit; must be like " + found->example());
@@ -117,6 +118,14 @@ class HeaderReader {
             return torque_stem(joint) == name.stem;
         });
         return found == joints_.end() ? std::nullopt : std::optional(found - joints_.begin());
+    }
+
+    /// The number of what correct writes beside the joints, counted behind these.
+    std::optional<Index> find_correction(std::string_view name) const {
+        if (content_ == Content::JointsAndObservations) return std::nullopt;
+        const auto found = std::find(correction_columns.begin(), correction_columns.end(), name);
+        if (found == correction_columns.end()) return std::nullopt;
+        return std::ssize(joints_) + (found - correction_columns.begin());
     }
 
     /// A column of another form of an orientation.

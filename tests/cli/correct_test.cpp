@@ -57,6 +57,25 @@ TEST_F(Correct, TakesAProgramThatComesBackToItsPoses) {
     EXPECT_EQ(rows[1].substr(4), rows[4].substr(3));
 }
 
+TEST_F(Correct, WritesWhatIsReadAsConfigurations) {
+    write_text("p.csv",
+               "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n"
+               "a,10,20,30,40,50,60\nstretched,10,20,30,40,0.01,60\n\"b,c\",-80,-20,0,-40,-70,0\n");
+    run_well(correct_ + "p.csv -o c.csv");
+    EXPECT_NE(text_of("c.csv").find("at the largest change"), std::string::npos);
+    run_well("simulate " + fanuc_design + " --configurations c.csv -o s.csv");
+    EXPECT_NE(text_of("s.csv").find("\n\"b,c\",0,-"), std::string::npos) << text_of("s.csv");
+    run_well("calibrate " + fanuc_design + " -m m.csv --folds 0 --predict c.csv");
+    run_well(correct_ + "c.csv");
+    // Measurements have no such columns; nor is one there twice.
+    expect_input_error("calibrate " + fanuc_design + " -m c.csv",
+                       "column 'residual_mm' is unknown");
+    std::string twice = text_of("c.csv");
+    write_text("twice.csv", twice.replace(twice.find("residual_mrad"), 13, "residual_mm"));
+    expect_input_error("simulate " + fanuc_design + " --configurations twice.csv -o s2.csv",
+                       "column 'residual_mm' occurs twice; keep one");
+}
+
 TEST_F(Correct, NamesTheJointThatIsHeld) {
     write_text("p.csv",
                "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n"
