@@ -75,7 +75,8 @@ io::ExportedRobot make_robot(const ExportArguments& arguments, const io::Campaig
                              const Parameters& found) {
     io::ExportedRobot robot = make_geometries(arguments, file, found);
     robot.is_nearest = robot.nearest && arguments.geometry == "nearest";
-    const auto& [chain, errors, base, targets, lost] = robot.written();
+    const Chain& chain = robot.written().robot;
+    const VectorXd& errors = robot.written().errors;
     const ExportPaths& paths = arguments.paths;
     if (!paths.urdf.empty()) robot.urdf = io::make_calibrated_urdf(*file.urdf, chain, errors);
     if (!paths.dh.empty()) robot.dh = dh_rows(chain, errors);
@@ -88,7 +89,8 @@ io::ExportedRobot make_robot(const ExportArguments& arguments, const io::Campaig
 }
 
 void write_files(const ExportPaths& paths, const io::CampaignFile& file, io::ExportedRobot& robot) {
-    const auto& [chain, errors, base, targets, lost] = robot.written();
+    const Chain& chain = robot.written().robot;
+    const VectorXd& errors = robot.written().errors;
     const std::string title = file.name + ", calibrated";
     const auto add = [&](const std::string& path, const FlangeDifference& difference) {
         robot.read_back.push_back({path, difference});

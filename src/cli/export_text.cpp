@@ -19,13 +19,12 @@ std::string describe_position(const Vector3d& p) {
                        detail::format_mm(p.z()));
 }
 
-std::string describe_base(const Isometry3d& world_from_base) {
-    const Vector3d rpy = rpy_from_rotation(world_from_base.linear());
-    return fmt::format("position {} mm, roll pitch yaw {} {} {} deg",
-                       describe_position(world_from_base.translation()),
-                       detail::format_fixed(to_degrees(rpy.x()), 5),
-                       detail::format_fixed(to_degrees(rpy.y()), 5),
-                       detail::format_fixed(to_degrees(rpy.z()), 5));
+std::string describe_frame(const Isometry3d& frame) {
+    const Vector3d rpy = rpy_from_rotation(frame.linear());
+    return fmt::format(
+        "position {} mm, roll pitch yaw {} {} {} deg", describe_position(frame.translation()),
+        detail::format_fixed(to_degrees(rpy.x()), 5), detail::format_fixed(to_degrees(rpy.y()), 5),
+        detail::format_fixed(to_degrees(rpy.z()), 5));
 }
 
 /// What no geometry can have, and what is lost with it.
@@ -51,8 +50,10 @@ void print_loss(const io::ExportedRobot& robot) {
 }
 
 void print_places(const Geometry& geometry, const std::string& base) {
-    print(fmt::format("\nnot part of the robot: {} ({}), and the targets in the flange frame", base,
-                      describe_base(geometry.world_from_base)));
+    print(fmt::format("\nnot part of the robot: {} ({}), and the {} in the flange frame", base,
+                      describe_frame(geometry.world_from_base),
+                      geometry.tool ? "tool" : "targets"));
+    if (geometry.tool) return print(fmt::format(": {}\n", describe_frame(*geometry.tool)));
     const char* separator = ": ";
     for (const Vector3d& target : geometry.targets) {
         print(separator + describe_position(target));

@@ -340,6 +340,7 @@ std::string to_json(const ExportedRobot& robot, const Campaign& campaign) {
     document["base"] = detail::base_to_json(written.world_from_base);
     document["targets_m"] = make_list(
         written.targets, [](const Vector3d& target) { return detail::vector_to_json(target); });
+    if (written.tool) document["tool"] = detail::base_to_json(*written.tool);
     if (robot.urdf) document["urdf"] = urdf_to_json(*robot.urdf);
     if (!robot.dh.empty()) {
         document["dh"] = make_list(

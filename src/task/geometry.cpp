@@ -9,6 +9,7 @@
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "posewise/model/transforms.hpp"
 #include "workspace.hpp"
 
 namespace posewise {
@@ -38,6 +39,16 @@ std::vector<Vector3d> target_positions(const Campaign& campaign, const Parameter
         positions.push_back(targets.position(target, parameters.sensor));
     }
     return positions;
+}
+
+/// The tool in the flange frame, of sensors that measure its pose.
+std::optional<Isometry3d> tool_of(const Campaign& campaign, const Parameters& parameters) {
+    if (!campaign.sensor->has_orientation()) return std::nullopt;
+    const VectorXd pose = campaign.sensor->predict(Isometry3d::Identity(), parameters.sensor);
+    Isometry3d tool = Isometry3d::Identity();
+    tool.translation() = pose.head<3>();
+    tool.linear() = rotation_from_vector(pose.tail<3>());
+    return tool;
 }
 
 /// Of points on the flange, in the world: 3 coordinates of each at each configuration.
@@ -93,9 +104,10 @@ std::vector<std::array<bool, 3>> known_axes(const Campaign& campaign) {
     return known;
 }
 
+constexpr double lever = 0.1;  // m
+
 /// What is fitted: the targets, with points beside them if they are few.
 FlangePoints fitted_points(const Campaign& campaign, const Parameters& found) {
-    constexpr double lever = 0.1;  // m
     const Targets& targets = campaign.sensor->targets();
     FlangePoints points{target_positions(campaign, found), known_axes(campaign)};
     if (targets.count() < 3) {
@@ -105,6 +117,20 @@ FlangePoints fitted_points(const Campaign& campaign, const Parameters& found) {
         }
     }
     return points;
+}
+
+/// The tool, turned as the points beside the first target were in the fit.
+std::optional<Isometry3d> turned_tool(const std::optional<Isometry3d>& tool,
+                                      const std::vector<Vector3d>& fitted) {
+    if (!tool) return std::nullopt;
+    Matrix3d axes;
+    for (Index axis = 0; axis < 3; ++axis) {
+        axes.col(axis) = (fitted[static_cast<std::size_t>(axis) + 1] - fitted.front()) / lever;
+    }
+    Isometry3d turned = *tool;
+    turned.translation() = fitted.front();
+    turned.linear() = nearest_rotation(axes) * tool->linear();
+    return turned;
 }
 
 /// The robot with the constant errors found as parts of its elements, but for those behind the last
@@ -191,11 +217,9 @@ Geometry estimated_geometry(const Campaign& campaign, const Parameters& found,
     for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
         if (campaign.robot.parameter_term(k) == nullptr) constants.push_back(k);
     }
-    Geometry geometry{without_terms(campaign.robot),
-                      found.robot(constants),
-                      found.world_from_base,
-                      target_positions(campaign, found),
-                      {}};
+    Geometry geometry{without_terms(campaign.robot), found.robot(constants),
+                      found.world_from_base,         target_positions(campaign, found),
+                      tool_of(campaign, found),      {}};
     const RowMatrixXd configurations = draw_workspace(campaign, found, options);
     const Parameters constant{found.world_from_base, geometry.errors, found.sensor};
     geometry.lost = loss_of(predict_positions(with_robot(campaign, geometry.robot), constant,
@@ -218,7 +242,9 @@ Geometry nearest_geometry(const Campaign& campaign, const Parameters& found,
                       nearest.robot,
                       nearest.world_from_base,
                       target_positions(geometric, nearest),
+                      {},
                       {}};
+    geometry.tool = turned_tool(tool_of(campaign, found), geometry.targets);
     const std::vector<Vector3d> targets = target_positions(campaign, found);
     geometry.targets.resize(targets.size());
     geometry.lost =

@@ -1,3 +1,7 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
 #include "program.hpp"
 
 /// What export warns of and refuses; urdf_test, irb120_test and ur10_test have what it writes.
@@ -36,6 +40,22 @@ sensor:
     expect_input_error("export c.yaml e.json --dh d.yaml --ur-kinematics k.yaml",
                        "c.yaml: frames of a UR are those of six joints that turn");
     expect_input_error("export c.yaml e.json --dh /dev/null", "cannot be read back");
+}
+
+TEST_F(Export, HasTheOrientationOfAToolOfMeasuredPoses) {
+    calibrate("name: arm\nrobot:\n" + six_joints + measured_poses);
+    const std::string text = run_well("export c.yaml e.json --dh d.yaml");
+    EXPECT_NE(text.find(", and the tool in the flange frame: position "), std::string::npos)
+        << text;
+    const auto json = nlohmann::json::parse(run_well("export c.yaml e.json --dh d.yaml --json"));
+    const auto& tool = json.at("tool");
+    EXPECT_EQ(tool.at("position_m"), json.at("targets_m").at(0));
+    const std::vector<double> rpy = tool.at("rpy_deg");
+    const std::vector<double> quaternion = tool.at("quaternion_wxyz");
+    const std::vector<double> stated{10, 0, 90};
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(rpy[k], stated[k], 2);
+    EXPECT_NEAR(quaternion[0], std::sqrt(0.5), 0.02);
+    EXPECT_NEAR(quaternion[3], std::sqrt(0.5), 0.02);
 }
 
 TEST_F(Export, WarnsOfAURThatBeginsAtTheWrongLink) {

@@ -8,6 +8,7 @@
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "posewise/model/transforms.hpp"
 #include "posewise/task/calibration.hpp"
 #include "support/campaigns.hpp"
 #include "support/temporary_folder.hpp"
@@ -116,6 +117,29 @@ TEST(NearestGeometry, OfARobotWithoutTermsLosesNothing) {
     EXPECT_EQ(estimated_geometry(campaign, truth).errors, truth.robot);
 }
 
+/// Errors behind the last joint go into the tool, its orientation too.
+TEST(NearestGeometry, HasTheToolWhereItIs) {
+    Campaign campaign = exact_campaign(irb120());
+    campaign.sensor = std::make_shared<PoseSensor>(std::nullopt, IsotropicNoise{1e-5}, 1e-5);
+    campaign.nominal.sensor = (VectorXd(6) << 0.05, 0.02, 0.1, 0.3, -0.2, 1).finished();
+    campaign = with_robot(campaign, detail::complete_model(irb120()));
+    const Parameters truth = draw_truth(campaign, 3);
+    const VectorXd q = VectorXd::LinSpaced(6, -0.4, 0.6);
+    const VectorXd pose = campaign.sensor->predict(
+        truth.world_from_base * campaign.robot.base_from_flange(q, truth.robot), truth.sensor);
+    for (const Geometry& geometry :
+         {nearest_geometry(campaign, truth), estimated_geometry(campaign, truth)}) {
+        const Isometry3d tool = geometry.world_from_base *
+                                geometry.robot.base_from_flange(q, geometry.errors) *
+                                geometry.tool.value();
+        EXPECT_LT((tool.translation() - pose.head<3>()).norm(), 1e-8);
+        EXPECT_TRUE(tool.linear().isApprox(rotation_from_vector(pose.tail<3>()), 1e-7));
+        EXPECT_EQ(geometry.targets.front(), geometry.tool->translation());
+    }
+    EXPECT_FALSE(estimated_geometry(campaign_with_gravity(), draw_truth(campaign_with_gravity(), 4))
+                     .tool.has_value());
+}
+
 /// A tool and a base that are known stay where they are; one target says nothing of orientations,
 /// points beside it do.
 TEST(NearestGeometry, KeepsWhatIsKnown) {
@@ -128,6 +152,7 @@ TEST(NearestGeometry, KeepsWhatIsKnown) {
     const Geometry nearest = nearest_geometry(campaign, truth);
     ASSERT_EQ(nearest.targets.size(), 1U);
     EXPECT_EQ(nearest.targets.front(), tool.translation());
+    EXPECT_TRUE(nearest.tool.value().isApprox(tool, 1e-12));
     EXPECT_TRUE(nearest.world_from_base.isApprox(truth.world_from_base, 0));
     EXPECT_LT(nearest.lost.rms, estimated_geometry(campaign, truth).lost.rms);
     VectorXd q = VectorXd::Constant(6, 0.3);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "posewise/measurement/campaign.hpp"
@@ -20,6 +21,8 @@ struct Geometry {
     VectorXd errors;  ///< error parameters of `robot`, m and rad
     Isometry3d world_from_base = Isometry3d::Identity();
     std::vector<Vector3d> targets;  ///< in the flange frame, m
+    /// Of sensors that measure poses: the tool in the flange frame, at the only target.
+    std::optional<Isometry3d> tool;
     /// Against the robot with all its errors, at the targets over the workspace.
     PositionLoss lost;
 };
