@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "../core/decompositions.hpp"
 #include "../core/text.hpp"
 
 namespace posewise::detail {
@@ -130,9 +130,7 @@ void check_definite(const JsonValue& root, const MatrixXd& covariance) {
     const MatrixXd correlations =
         inverse.asDiagonal() * covariance(uncertain, uncertain) * inverse.asDiagonal();
     const double least =
-        Eigen::SelfAdjointEigenSolver<MatrixXd>(correlations, Eigen::EigenvaluesOnly)
-            .eigenvalues()
-            .minCoeff();
+        eigen_decomposition(correlations, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
     if (least >= -1e-9) return;
     throw root["covariance"]["rows_si"].error(
         fmt::format("is not positive definite, its correlations have the eigenvalue {:.3g}; must "
