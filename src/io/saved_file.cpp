@@ -53,18 +53,31 @@ Loss read_loss(const JsonValue& root) {
     return loss;
 }
 
+/// Returns the criterion of each.
+std::vector<std::string> check_planned(const JsonValue& list) {
+    std::vector<std::string> criteria;
+    for (const JsonValue& planned : list.list()) {
+        criteria.push_back(planned["criterion"].text());
+        planned["held_out_rms_mm"].number_or(0);
+        planned["expected_rms_mm"].number_or(0);
+    }
+    if (criteria.empty()) throw list.error("is empty; must hold what each criterion chose");
+    return criteria;
+}
+
 /// What tables and curves of a study are made of.
 void check_study(const JsonValue& study) {
     study["campaign"].text();
     study["simulated"].boolean();
     for (const JsonValue& model : study["models"].list()) {
         model["name"].text();
+        std::vector<std::string> criteria;
         for (const JsonValue& row : model["rows"].list()) {
             row["pose_count"].count(1);
-            for (const JsonValue& planned : row["planned"].list()) {
-                planned["criterion"].text();
-                planned["held_out_rms_mm"].number_or(0);
-                planned["expected_rms_mm"].number_or(0);
+            const std::vector<std::string> found = check_planned(row["planned"]);
+            if (criteria.empty()) criteria = found;
+            if (found != criteria) {
+                throw row["planned"].error("is not by the criteria of the first row");
             }
             const JsonValue random = row["random"];
             for (const char* const quantile : {"p10", "p50", "p90"}) {
@@ -79,17 +92,20 @@ void check_study(const JsonValue& study) {
 /// How far files that were exported are from the robot.
 void check_export(const JsonValue& document) {
     document["campaign"].text();
-    for (const auto& [geometry, unused] : document["lost"].json().items()) {
-        document["lost"][geometry]["rms_mm"].number();
-        document["lost"][geometry]["largest_mm"].number();
+    const JsonValue lost = document["lost"];
+    for (const std::string& geometry : {std::string("nominal"), document["geometry"].text()}) {
+        lost[geometry]["rms_mm"].number();
+        lost[geometry]["largest_mm"].number();
     }
     document["not_exported"].texts();
-    for (const JsonValue& file : document["read_back"].list()) {
+    const JsonValue files = document["read_back"];
+    for (const JsonValue& file : files.list()) {
         file["path"].text();
         file["configurations"].count(1);
         file["position_m"].number();
         file["orientation_rad"].number();
     }
+    if (files.list().empty()) throw files.error("is empty; must name the files written");
 }
 
 std::string read_checked(const std::string& path, const char* kind,

@@ -243,7 +243,8 @@ TEST_F(Report, RefusesWhatItCannotReadOrWrite) {
                R"({"kind": "posewise study", "format": 1, "campaign": "a", "simulated": true,
                               "models": [{"name": "", "rows": [{"pose_count": 8, "planned": null}]}]})");
     expect_input_error("report st.json -o r.html", "planned");
-    write_text("x.json", R"({"kind": "posewise export", "format": 1, "campaign": "a",
+    write_text("x.json",
+               R"({"kind": "posewise export", "format": 1, "campaign": "a", "geometry": "estimate",
                              "lost": {"nominal": {"rms_mm": "1"}}})");
     expect_input_error("report x.json -o r.html", "lost.nominal.rms_mm");
     expect_input_error("report notes.txt -o r.html", "must be a plan, estimate, study or export");

@@ -184,6 +184,50 @@ TEST(KindOfSaved, IsFoundFromTheContent) {
               "writes it");
 }
 
+TEST(ReadSavedDocument, NeedsWhatIsShownOfAStudy) {
+    const TemporaryFolder folder;
+    const auto error_of = [&](const std::string& first, const std::string& second) {
+        const auto row = [](const std::string& planned) {
+            return R"({"pose_count": 8, "planned": [)" + planned +
+                   R"(], "random": {"held_out_rms_p10_mm": 1, "held_out_rms_p50_mm": 1,)"
+                   R"("held_out_rms_p90_mm": 1, "subsets": 3, "unidentified": 0}})";
+        };
+        folder.write("s", R"({"kind": "posewise study", "format": 1, "campaign": "c",)"
+                          R"("simulated": false, "models": [{"name": "full", "rows": [)" +
+                              row(first) + ", " + row(second) + "]}]}");
+        return input_error_of([&] { read_saved_document(folder.path("s"), SavedKind::Study); });
+    };
+    const auto chosen = [](const std::string& criterion) {
+        return R"({"criterion": ")" + criterion +
+               R"(", "held_out_rms_mm": 0.2, "expected_rms_mm": null})";
+    };
+    EXPECT_EQ(error_of(chosen("v"), chosen("v")), "no error");
+    EXPECT_EQ(error_of(chosen("v"), ""),
+              "s: models[0].rows[1].planned: is empty; must hold what each criterion chose");
+    EXPECT_EQ(error_of(chosen("v"), chosen("d")),
+              "s: models[0].rows[1].planned: is not by the criteria of the first row");
+}
+
+TEST(ReadSavedDocument, NeedsWhatIsShownOfAnExport) {
+    const TemporaryFolder folder;
+    const auto error_of = [&](const std::string& geometry, const std::string& files) {
+        folder.write("x", R"({"kind": "posewise export", "format": 1, "campaign": "c",)"
+                          R"("geometry": ")" +
+                              geometry +
+                              R"(", "lost": {"nominal":)"
+                              R"({"rms_mm": 2, "largest_mm": 3}, "estimate": {"rms_mm": 0,)"
+                              R"("largest_mm": 0}}, "not_exported": [], "read_back": [)" +
+                              files + "]}");
+        return input_error_of([&] { read_saved_document(folder.path("x"), SavedKind::Export); });
+    };
+    const std::string file =
+        R"({"path": "a", "configurations": 9, "position_m": 0, "orientation_rad": 0})";
+    EXPECT_EQ(error_of("estimate", file), "no error");
+    EXPECT_EQ(error_of("estimate", ""), "x: read_back: is empty; must name the files written");
+    EXPECT_EQ(error_of("nearest", file),
+              "x: lost.nearest: is missing; must be there as posewise writes it");
+}
+
 TEST(ReadEstimateRecord, SaysWhatTheEstimateWasMadeFrom) {
     const TemporaryFolder folder;
     const Campaign campaign = testing::cell_campaign();
