@@ -55,7 +55,7 @@ Isometry3d read_base(const JsonValue& base) {
         angles[k] = to_radians(read_numbers(rpy, 3)[static_cast<std::size_t>(k)]);
     }
     const Matrix3d stated = rotation_from_rpy(angles);
-    if ((stated - world_from_base.linear()).cwiseAbs().maxCoeff() > 1e-6) {
+    if (!((stated - world_from_base.linear()).array().abs() <= 1e-6).all()) {
         throw rpy.error("is not the rotation of quaternion_wxyz; must agree with it");
     }
     world_from_base.translation() = read_position(base["position_m"]);

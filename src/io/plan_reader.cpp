@@ -180,6 +180,8 @@ void read_bounds(const JsonValue& document, Plan& plan) {
     const JsonValue searched = document["bounds"]["continuous"];
     plan.searched_bound = searched["bound"].number_or(infinity);
     plan.searched_efficiency = read_efficiency(searched["efficiency"]);
+    const JsonValue proof = searched["is_proven"];
+    if (proof.boolean()) throw proof.error("is true; a bound that a search found is never proven");
 }
 
 void read_search(const JsonValue& search, Plan& plan) {

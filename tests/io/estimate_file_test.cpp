@@ -370,12 +370,14 @@ TEST_F(EstimateFile, WithAQuaternionThatIsNoRotationIsRefused) {
     folder_.write("estimate.json", document.dump());
     EXPECT_EQ(testing::input_error_of([&] { read_estimate(path_, campaign_); }),
               "estimate.json: base.quaternion_wxyz: has length 2; must be 1");
-    document = written();
-    document["base"]["rpy_deg"][2] = document["base"]["rpy_deg"][2].get<double>() + 1e-3;
-    folder_.write("estimate.json", document.dump());
-    EXPECT_EQ(testing::input_error_of([&] { read_estimate(path_, campaign_); }),
-              "estimate.json: base.rpy_deg: is not the rotation of quaternion_wxyz; must agree "
-              "with it");
+    for (const double change : {1e-3, 1e300}) {
+        document = written();
+        document["base"]["rpy_deg"][2] = document["base"]["rpy_deg"][2].get<double>() + change;
+        folder_.write("estimate.json", document.dump());
+        EXPECT_EQ(testing::input_error_of([&] { read_estimate(path_, campaign_); }),
+                  "estimate.json: base.rpy_deg: is not the rotation of quaternion_wxyz; must agree "
+                  "with it");
+    }
 }
 
 TEST_F(EstimateFile, OfASizeThatDoesNotOccurIsRefused) {

@@ -230,6 +230,9 @@ TEST_F(PlanFileTest, RefusesAContinuousPlanThatContradictsItself) {
               "p.json: visiting_time_s: must not be negative");
     EXPECT_EQ(error_with("\"efficiency\": 0.0", "\"efficiency\": -7"),
               "p.json: bounds.pool.efficiency: must be from 0 to 1");
+    EXPECT_EQ(error_with("\"is_proven\": false", "\"is_proven\": true"),
+              "p.json: bounds.continuous.is_proven: is true; a bound that a search found is never "
+              "proven");
     EXPECT_EQ(error_with("\"stop_reason\": \"time limit\"", "\"stop_reason\": \"optimal\""),
               "p.json: search.stop_reason: is 'optimal', which of continuous poses nothing proves");
     EXPECT_EQ(error_with("\"via\": null", "\"via\": {}"),
