@@ -25,7 +25,6 @@
 
 namespace posewise::cli {
 namespace {
-
 namespace fs = std::filesystem;
 
 void warn_of_missing(const std::string& path, const char* what, const std::string& reason) {

@@ -1,5 +1,7 @@
 #include "posewise/measurement/simulation.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 
@@ -44,6 +46,24 @@ void check_contacts(const Campaign& campaign, const Seen& is_seen, Index repeats
     }
     if ((is_seen.rowwise().count() == 1).all()) return;
     throw InputError("each configuration must show one contact and no other");
+}
+
+/// What the campaign leaves open of where base and targets are, with its keys.
+std::string missing_places(const Campaign& campaign) {
+    const Sensor& sensor = *campaign.sensor;
+    if (sensor.has_contacts()) {
+        return "where the ball and all sockets are (position_mm of 'sensor.targets' and of each of "
+               "'sensor.sockets')";
+    }
+    const bool is_pose = sensor.has_orientation();
+    const std::string key = is_pose ? "sensor.tool" : "sensor.targets.position_mm";
+    if (campaign.has_nominal_base) {
+        return fmt::format("where the {}, too (key '{}')", is_pose ? "tool is" : "targets are",
+                           key);
+    }
+    if (campaign.has_nominal_targets) return "where the base is, too (key 'base')";
+    return fmt::format("where base and {} are (keys 'base' and '{}')", is_pose ? "tool" : "targets",
+                       key);
 }
 
 /// Parameters as an earlier calibration tells, give or take so many times its covariance's
@@ -166,17 +186,7 @@ Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
         throw InputError("repeats must be at least 1, are " + std::to_string(options.repeats));
     }
     if (!campaign.has_nominal_base || !campaign.has_nominal_targets) {
-        throw InputError(
-            campaign.sensor->has_contacts()
-                ? "to simulate, the campaign must state where the ball and all sockets are "
-                  "(position_mm of 'sensor.targets' and of each of 'sensor.sockets')"
-            : campaign.has_nominal_base
-                ? "to simulate, the campaign must state where the targets are, too (keys "
-                  "'sensor.targets.position_mm' or 'sensor.tool')"
-            : campaign.has_nominal_targets
-                ? "to simulate, the campaign must state where the base is, too (key 'base')"
-                : "to simulate, the campaign must state where base and targets are (keys 'base' "
-                  "and 'sensor.targets.position_mm' or 'sensor.tool')");
+        throw InputError("to simulate, the campaign must state " + missing_places(campaign));
     }
     if (is_seen.rows() != configurations.rows() ||
         is_seen.cols() != campaign.sensor->target_count()) {

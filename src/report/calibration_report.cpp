@@ -219,6 +219,9 @@ std::string describe_expected(const Calibration& calibration) {
     std::string text = describe(calibration.expected, "at poses like these", is_angle) + '\n';
     if (calibration.expected_workspace) {
         text += describe(*calibration.expected_workspace, "over the workspace", is_angle) + '\n';
+    } else if (!calibration.campaign.sensor->has_contacts()) {
+        text +=
+            "expected over the workspace: not known; the joint limits or the cell leave no poses\n";
     }
     if (calibration.expected_left_out) {
         text += describe(*calibration.expected_left_out, "not in plan", is_angle) + '\n';

@@ -5,7 +5,9 @@
 #include "../../src/measurement/noise.hpp"
 #include "../../src/model/sampling.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "support/campaigns.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace posewise {
 namespace {
@@ -150,6 +152,25 @@ TEST(Simulate, RefusesWhatItCannotSimulate) {
     EXPECT_THROW(simulate(campaign, {.pose_count = 3, .repeats = 0}), InputError);
     campaign.has_nominal_targets = false;
     EXPECT_THROW(simulate(campaign, {.pose_count = 3}), InputError);
+}
+
+TEST(Simulate, NamesTheKeysThatAreMissing) {
+    Campaign campaign = tracked_campaign(fanuc());
+    const auto error = [&] {
+        return input_error_of([&] { simulate(campaign, {.pose_count = 3}); });
+    };
+    campaign.has_nominal_targets = false;
+    EXPECT_EQ(error(),
+              "to simulate, the campaign must state where the targets are, too (key "
+              "'sensor.targets.position_mm')");
+    campaign.has_nominal_base = false;
+    EXPECT_EQ(error(),
+              "to simulate, the campaign must state where base and targets are (keys "
+              "'base' and 'sensor.targets.position_mm')");
+    campaign.sensor = std::make_shared<PoseSensor>(std::nullopt, IsotropicNoise{5e-5}, 5e-5);
+    EXPECT_EQ(error(),
+              "to simulate, the campaign must state where base and tool are (keys 'base' "
+              "and 'sensor.tool')");
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ struct Earlier {
 /// the model error and the sizes of errors are as found; what shall not be identified is no
 /// parameter any more. Where the estimate is a prior, so it is. To select and plan for, to study
 /// and to identify with. Throws InputError for names in EarlierUse::only that are none, where they
-/// leave nothing to identify, and for an estimate of other parameters.
+/// leave nothing to identify, for an estimate of other parameters, and where it has a base that the
+/// campaign states as known elsewhere, unless that was moved.
 Campaign with_earlier(const Campaign& campaign, const Earlier& earlier);
 
 /// The values of a robot's errors for the same robot with other loads: what gives way under a
