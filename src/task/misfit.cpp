@@ -49,7 +49,7 @@ double median_distance(const RowMatrixXd& residuals) {
 
 UnitDoubt find_unit_doubt(const Campaign& campaign, const Measurements& measured) {
     double largest = 0;
-    for (Index j = 0; j < measured.configurations.cols(); ++j) {
+    for (Index j = 0; j < campaign.robot.joint_count(); ++j) {  // torques follow
         if (campaign.robot.joint(j).motion != Motion::Rotation) continue;
         largest = std::max(largest, measured.configurations.col(j).cwiseAbs().maxCoeff());
     }

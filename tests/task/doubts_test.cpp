@@ -53,6 +53,15 @@ TEST(FindMisfit, NamesTheUnitThatIsWrong) {
                  InputError);
 }
 
+TEST(FindMisfit, TakesNoTorqueForAJoint) {
+    const Campaign campaign = testing::tracked_campaign(
+        with_measured_compliance(testing::fanuc(), {{1, 300}, {2, 200}}));
+    Measurements wrong = measure(campaign);
+    ASSERT_GT(wrong.configurations.rightCols(2).cwiseAbs().maxCoeff(), 100);
+    wrong.observations *= 1000;
+    EXPECT_EQ(misfit_of(campaign, wrong)->unit, UnitDoubt::PointsInMillimetres);
+}
+
 TEST(CheckIsOfRobot, CannotTellWithTooFewMeasurements) {
     const Campaign campaign = tracked_fanuc();
     Measurements one = take(measure(campaign), {0});
