@@ -72,9 +72,12 @@ void print_studies(const std::vector<Study>& studies, const StudyArguments& argu
     if (needs_document(common, arguments.page)) printed.document = io::to_json(studies);
     print(printed, common);
     if (!arguments.csv.empty()) {
-        const bool compares = studies.size() > 1 || !studies.front().model.empty();
-        detail::write_file(arguments.csv,
-                           compares ? study_csv(studies) : study_csv(studies.front()));
+        detail::write_files({{arguments.csv, "", {}, [&](const WriteText& write) {
+                                  const bool compares =
+                                      studies.size() > 1 || !studies.front().model.empty();
+                                  if (compares) return write_study_csv(studies, write);
+                                  write_study_csv(studies.front(), write);
+                              }}});
     }
     extras.page.title = studies.front().campaign;
     write_page(arguments.page, std::move(extras.page), printed, common);

@@ -191,7 +191,7 @@ std::vector<Study> read_store(const std::string& path) {
     std::vector<Study> studies;
     for (const TrialSeries& one : series) {
         studies.push_back(
-            compute_from(path, [&] { return study_of_trials(one, store.finished(one)); }));
+            compute_from(path, [&] { return study_of_trials(one, store); }));
     }
     return studies;
 }

@@ -1,6 +1,7 @@
 #include "statistics.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
@@ -9,8 +10,44 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace posewise::detail {
+
+namespace {
+
+double between(double number, double next, double part) {
+    return std::isinf(next) ? next : number + part * (next - number);
+}
+
+/// In the order of the numbers.
+std::uint64_t key_of(double x) {
+    constexpr std::uint64_t sign = std::uint64_t{1} << 63;
+    const auto bits = std::bit_cast<std::uint64_t>(x + 0.0);  // -0 is 0
+    return (bits & sign) != 0 ? ~bits : bits | sign;
+}
+
+/// Keys that are alike but for their last bits.
+struct KeyRange {
+    static constexpr int part_bits = 16;
+    static constexpr std::size_t parts = std::size_t{1} << part_bits;
+
+    std::uint64_t first = 0;
+    int open_bits = 64;
+
+    bool has(std::uint64_t key) const {
+        return open_bits == 64 || (key >> open_bits) == (first >> open_bits);
+    }
+    std::size_t part_of(std::uint64_t key) const {
+        return (key >> (open_bits - part_bits)) % parts;
+    }
+    void narrow(std::size_t part) {
+        open_bits -= part_bits;
+        first |= static_cast<std::uint64_t>(part) << open_bits;
+    }
+};
+
+}  // namespace
 
 double quantile(VectorXd values, double p, QuantileRule rule) {
     assert(values.size() > 0 && p >= 0 && p <= 1);
@@ -24,8 +61,53 @@ double quantile(VectorXd values, double p, QuantileRule rule) {
     std::nth_element(values.begin(), nth, values.end());
     const double part = rule == QuantileRule::Linear ? position - static_cast<double>(index) : 0;
     if (!(part > 0)) return *nth;
-    const double next = *std::min_element(nth + 1, values.end());
-    return std::isinf(next) ? next : *nth + part * (next - *nth);
+    return between(*nth, *std::min_element(nth + 1, values.end()), part);
+}
+
+std::optional<double> quantile_of_many(const VisitNumbers& visit, double p, std::size_t in_memory) {
+    std::vector<double> values;
+    std::size_t count = 0;
+    visit([&](double x) {
+        if (++count <= in_memory) values.push_back(x);
+    });
+    if (count == 0) return std::nullopt;
+    if (count <= in_memory) {
+        return quantile(Eigen::Map<const VectorXd>(values.data(), std::ssize(values)), p,
+                        QuantileRule::Linear);
+    }
+    const double position = p * static_cast<double>(count - 1);
+    // From the first digits of the key on, those numbers that share theirs with the one looked for.
+    KeyRange range;
+    auto rank = static_cast<std::size_t>(position);
+    for (std::size_t left = count; left > in_memory && range.open_bits > 0;) {
+        std::vector<std::size_t> counts(KeyRange::parts);
+        visit([&](double x) {
+            if (range.has(key_of(x))) ++counts[range.part_of(key_of(x))];
+        });
+        std::size_t part = 0;
+        for (; counts[part] <= rank; ++part) rank -= counts[part];
+        left = counts[part];
+        range.narrow(part);
+    }
+    values.clear();
+    std::size_t same = 0;  // in a range of a single number
+    double above = std::numeric_limits<double>::infinity();
+    visit([&](double x) {
+        if (!range.has(key_of(x))) {
+            if (key_of(x) > range.first) above = std::min(above, x);
+        } else if (range.open_bits > 0 || values.empty()) {
+            values.push_back(x);
+        } else {
+            ++same;
+        }
+    });
+    std::sort(values.begin(), values.end());
+    const auto at = [&](std::size_t k) {
+        if (k < values.size()) return values[k];
+        return k < values.size() + same ? values.back() : above;
+    };
+    const double part = position - std::floor(position);
+    return part > 0 ? between(at(rank), at(rank + 1), part) : at(rank);
 }
 
 double rms_spread(const RowMatrixXd& points) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "posewise/core/types.hpp"
@@ -15,6 +17,14 @@ enum class QuantileRule {
 
 /// The p-quantile (p from 0 to 1) of at least one number, in any order; infinite ones are allowed.
 double quantile(VectorXd values, double p, QuantileRule rule);
+
+/// Calls the visitor with each of some numbers; the same ones, in any order, each time.
+using VisitNumbers = std::function<void(const std::function<void(double)>& visitor)>;
+
+/// quantile() by QuantileRule::Linear of so many numbers that they should not all be in memory but
+/// at most `in_memory` of them at a time; no number must be a NaN. Nothing if there are none.
+std::optional<double> quantile_of_many(const VisitNumbers& visit, double p,
+                                       std::size_t in_memory = std::size_t{1} << 16);
 
 /// RMS distance of points (n x 3) from their mean.
 double rms_spread(const RowMatrixXd& points);

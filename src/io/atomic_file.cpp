@@ -36,7 +36,7 @@ class FileDescriptor {
 
     bool is_open() const { return fd_ >= 0; }
 
-    bool write(const std::string& content) const {
+    bool write(std::string_view content) const {
         std::size_t done = 0;
         while (done < content.size()) {
             const ssize_t count = ::write(fd_, content.data() + done, content.size() - done);
@@ -44,6 +44,15 @@ class FileDescriptor {
             if (count > 0) done += static_cast<std::size_t>(count);
         }
         return true;
+    }
+
+    /// Throws InputError about the file of that name if it cannot.
+    void write(const FileContent& file) const {
+        const auto write_part = [&](std::string_view part) {
+            if (!write(part)) throw failure(file.path, "cannot be written");
+        };
+        write_part(file.content);
+        if (file.more) file.more(write_part);
     }
 
     bool sync() const { return ::fsync(fd_) == 0; }
@@ -104,10 +113,15 @@ class PendingFile {
             throw InputError("-: is no name of a file; /dev/stdout is standard output");
         }
         open();
-        if (file_->write(file.content) && file_->take_permissions(target_) && file_->sync()) return;
-        const InputError problem = failure(path_, "cannot be written");
-        ::unlink(temporary_.c_str());
-        throw problem;
+        try {
+            file_->write(file);
+            if (!file_->take_permissions(target_) || !file_->sync()) {
+                throw failure(path_, "cannot be written");
+            }
+        } catch (...) {
+            ::unlink(temporary_.c_str());
+            throw;
+        }
     }
     ~PendingFile() {
         if (!is_placed_) ::unlink(temporary_.c_str());
@@ -198,9 +212,8 @@ void write_files(const std::vector<FileContent>& files) {
     // Here a signal ends the program at once: a pipe may have no reader for ever.
     for (const FileContent* const file : special) {
         const FileDescriptor descriptor(follow_link(file->path), O_WRONLY | O_CLOEXEC);
-        if (!descriptor.is_open() || !descriptor.write(file->content)) {
-            throw failure(file->path, "cannot be written");
-        }
+        if (!descriptor.is_open()) throw failure(file->path, "cannot be written");
+        descriptor.write(*file);
     }
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace posewise::detail {
@@ -10,10 +11,14 @@ namespace posewise::detail {
 /// Looks at a temporary, whole and at this path, and throws unless it may take its place.
 using FileCheck = std::function<void(const std::string& temporary)>;
 
+/// Hands over a text that should not all be in memory, part by part.
+using TextParts = std::function<void(const std::function<void(std::string_view)>& write)>;
+
 struct FileContent {
     std::string path;
     std::string content;
     FileCheck check = {};
+    TextParts more = {};  ///< after the content; if it throws, the file is not written
 };
 
 /// Writes whole files, all or none: each to a temporary beside it, then all are renamed. A link is

@@ -97,7 +97,7 @@ class StoreFile {
     StoreFile& operator=(const StoreFile&) = delete;
 
     std::vector<TrialSeries> series() const;
-    std::vector<Trial> finished(const TrialSeries& series) const;
+    void finished(const TrialSeries& series, const VisitTrial& visitor) const;
     /// So that series are in the order in which a study has them, whichever trial is ready first.
     const KeptSeries& state(const TrialSeries& series);
     void keep(const TrialSeries& series, const Trial& trial);
@@ -109,7 +109,7 @@ class StoreFile {
     void read_series();
     void check_version() const;
     /// By increasing number.
-    void visit(const KeptSeries& series, const std::function<void(Trial)>& visitor) const;
+    void visit(const KeptSeries& series, const VisitTrial& visitor) const;
     void take_all_of(const StoreFile& other);
     /// Whether a trial is kept now; not if it is kept with other values.
     bool put(const TrialSeries& series, const Trial& trial);
@@ -213,29 +213,25 @@ std::vector<TrialSeries> StoreFile::series() const {
     return all;
 }
 
-void StoreFile::visit(const KeptSeries& series, const std::function<void(Trial)>& visitor) const {
+void StoreFile::visit(const KeptSeries& series, const VisitTrial& visitor) const {
     Statement rows(database_,
                    "SELECT number, \"values\", checksum FROM trials WHERE series = ? "
                    "ORDER BY number");
     rows.bind(series.id);
     Index least = 0;
     while (rows.step()) {
-        Trial trial{rows.number(0), values_of(rows.text(1))};
+        const Trial trial{rows.number(0), values_of(rows.text(1))};
         if (trial.number < least || rows.text(2) != checksum_of_trial(series, trial)) {
             throw database_.damaged();
         }
         least = trial.number + 1;
-        visitor(std::move(trial));
+        visitor(trial);
     }
 }
 
-std::vector<Trial> StoreFile::finished(const TrialSeries& series) const {
-    std::vector<Trial> trials;
+void StoreFile::finished(const TrialSeries& series, const VisitTrial& visitor) const {
     const auto kept = std::ranges::find(series_, series, &KeptSeries::series);
-    if (kept != series_.end()) {
-        visit(*kept, [&](Trial trial) { trials.push_back(std::move(trial)); });
-    }
-    return trials;
+    if (kept != series_.end()) visit(*kept, visitor);
 }
 
 const KeptSeries& StoreFile::state(const TrialSeries& series) {
@@ -307,16 +303,18 @@ void StoreFile::take_all_of(const StoreFile& other) {
 
 TrialStore open_trial_store(const std::string& path) {
     const auto file = std::make_shared<StoreFile>(path, Access::Write);
-    return {[file](const TrialSeries& series) {
+    return {[file](const TrialSeries& series, const VisitTrial& visitor) {
                 file->state(series);
-                return file->finished(series);
+                file->finished(series, visitor);
             },
             [file](const TrialSeries& series, const Trial& trial) { file->keep(series, trial); }};
 }
 
 TrialStore read_trial_store(const std::string& path) {
     const auto file = std::make_shared<StoreFile>(path, Access::Read);
-    return {[file](const TrialSeries& series) { return file->finished(series); },
+    return {[file](const TrialSeries& series, const VisitTrial& visitor) {
+                file->finished(series, visitor);
+            },
             [path](const TrialSeries&, const Trial&) {
                 throw input_error_at({path}, "is only read; must be opened to keep trials");
             }};

@@ -101,21 +101,25 @@ bool compares_with_random(const Study& study) {
 }
 
 /// A line for each case, each begins with `prefix`.
-std::string csv_lines(const Study& study, const std::string& prefix) {
-    std::string text;
+void write_csv_lines(const Study& study, const std::string& prefix, const WriteText& write) {
+    constexpr std::size_t many = std::size_t{1} << 16;
+    std::string lines;
     for (const StudyRow& row : study.rows) {
-        for (std::size_t c = 0; c < study.criteria.size(); ++c) {
-            const auto planned = planned_cases(row, c, study.criteria.size());
-            for (std::size_t i = 0; i < planned.size(); ++i) {
-                text += prefix +
-                        csv_line(row, planned[i], criterion_name(study.criteria[c]), i, study.ids);
+        const auto write_cases = [&](const StudyCases& cases, std::string_view chosen_by) {
+            for (std::size_t i = 0; i < cases.size(); ++i) {
+                lines += prefix + csv_line(row, cases[i], chosen_by, i, study.ids);
+                if (lines.size() < many) continue;
+                write(lines);
+                lines.clear();
             }
+        };
+        for (std::size_t c = 0; c < study.criteria.size(); ++c) {
+            write_cases(planned_cases(row, c, study.criteria.size()),
+                        criterion_name(study.criteria[c]));
         }
-        for (std::size_t i = 0; i < row.random.size(); ++i) {
-            text += prefix + csv_line(row, row.random[i], "random", i, study.ids);
-        }
+        write_cases(row.random, "random");
     }
-    return text;
+    write(lines);
 }
 
 constexpr const char* csv_header =
@@ -143,13 +147,15 @@ std::string format(const std::vector<Study>& studies) {
     return text;
 }
 
-std::string study_csv(const Study& study) { return csv_header + csv_lines(study, ""); }
+void write_study_csv(const Study& study, const WriteText& write) {
+    write(csv_header);
+    write_csv_lines(study, "", write);
+}
 
-std::string study_csv(const std::vector<Study>& studies) {
-    std::string text = studies.front().is_simulated ? "variation," : "model,";
-    text += csv_header;
-    for (const Study& study : studies) text += csv_lines(study, quote(study.model) + ',');
-    return text;
+void write_study_csv(const std::vector<Study>& studies, const WriteText& write) {
+    write(studies.front().is_simulated ? "variation," : "model,");
+    write(csv_header);
+    for (const Study& study : studies) write_csv_lines(study, quote(study.model) + ',', write);
 }
 
 }  // namespace posewise

@@ -7,7 +7,7 @@ namespace {
 
 std::string cell(const std::optional<double>& metres) { return metres ? format_mm(*metres) : "-"; }
 
-std::string unidentified_cell(const std::vector<StudyCase>& cases) {
+std::string unidentified_cell(const StudyCases& cases) {
     return cases.empty() ? "-" : std::to_string(count_unidentified(cases));
 }
 

@@ -91,13 +91,14 @@ double relative_half_width(const Study& study, const StudyRow& row, std::size_t 
         if (!advantage || row.optimal.size() <= study.criteria.size()) return unknown;
         return half_width(*advantage);
     }
-    std::vector<double> logarithms;
-    for (const StudyCase& found : planned_cases(row, criterion, study.criteria.size())) {
-        if (!found.identified) return unknown;
-        logarithms.push_back(std::log(found.held_out.distance_rms));
-    }
-    if (logarithms.size() < 2) return unknown;
-    return half_width(detail::geometric_mean(logarithms));
+    const StudyCases planned = planned_cases(row, criterion, study.criteria.size());
+    const auto mean = detail::geometric_mean([&](const std::function<void(double)>& visitor) {
+        for (const StudyCase& found : planned) {
+            visitor(found.identified ? std::log(found.held_out.distance_rms)
+                                     : std::numeric_limits<double>::quiet_NaN());
+        }
+    });
+    return mean && planned.size() > 1 ? half_width(*mean) : unknown;
 }
 
 bool is_precise(const Study& study, double precision) {
@@ -134,8 +135,8 @@ void run_trials(const std::vector<TrialSeries>& series, const SimulatedStudyOpti
         is_open = false;
         for (std::size_t s = 0; s < series.size(); ++s) {
             if (counts[s] == options.trials) continue;
-            const auto trials = runs.list(s, counts[s]);  // a store may have more
-            if (is_precise(study_of_trials(series[s], trials), options.precision)) continue;
+            // A store may have more.
+            if (is_precise(runs.study_of_first(s, counts[s]), options.precision)) continue;
             counts[s] = std::min(options.trials, counts[s] + std::max<Index>(first, counts[s] / 2));
             is_open = true;
         }
@@ -163,7 +164,7 @@ std::vector<Study> simulate_study(const std::vector<SimulatedCampaign>& campaign
         detail::TrialRuns runs(series, options);
         run_trials(series, options, run, runs);
         for (std::size_t s = 0; s < series.size(); ++s) {
-            studies.push_back(study_of_trials(series[s], runs.release(s)));
+            studies.push_back(runs.study_of_all(s));
             studies.back().ending = options.stop.ending_or(Ending::Converged);
         }
         const auto is_empty = [](const Study& study) { return study.rows.empty(); };

@@ -284,7 +284,7 @@ std::vector<Study> compare_models(const std::vector<RobotModel>& models,
         detail::TrialRuns runs(series, options);
         runs.run(run_trials, counts);
         for (std::size_t s = 0; s < series.size(); ++s) {
-            Study& study = studies.emplace_back(study_of_trials(series[s], runs.release(s)));
+            Study& study = studies.emplace_back(runs.study_of_all(s));
             study.undetermined = prepared[s].undetermined;
             study.ending = study.undetermined.empty() ? options.stop.ending_or(Ending::Converged)
                                                       : Ending::NotIdentifiable;

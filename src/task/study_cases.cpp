@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "../core/progress_counter.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -87,62 +86,68 @@ std::vector<MeasuredCase> list_cases(const TrialSeries& series) {
 }
 
 TrialRuns::TrialRuns(const std::vector<TrialSeries>& series, const StudyOptions& options)
-    : series_(series), options_(options), finished_(series.size()) {
+    : series_(series), options_(options) {
     const Shard& shard = options.shard;
     if (shard.count < 1 || shard.number < 1 || shard.number > shard.count) {
         throw InputError("shard " + std::to_string(shard.number) + " of " +
                          std::to_string(shard.count) + ": must be from 1 to as many as there are");
     }
-    if (!options.store.finished) return;
-    for (std::size_t s = 0; s < series.size(); ++s) {
-        for (Trial& trial : options.store.finished(series[s])) {
-            finished_[s][trial.number] = std::move(trial.values);
-        }
+    const auto file = std::make_shared<ScratchFile>();
+    for (const TrialSeries& one : series) {
+        const auto table = std::make_shared<TrialTable>(file, trial_width(one));
+        finished_.push_back(table);
+        if (!options.store.finished) continue;
+        options.store.finished(one, [&](const Trial& trial) { put_trial(one, trial, *table); });
     }
 }
 
 void TrialRuns::run(const RunTrials& run_trials, const std::vector<Index>& counts) {
-    std::vector<TrialId> open;
-    Index asked = 0;
-    for (std::size_t s = 0; s < series_.size(); ++s) {
-        for (Index i = 0; i < counts[s]; ++i) {
-            if (!options_.shard.has(i)) continue;
-            ++asked;
-            if (!finished_[s].contains(i)) open.push_back({static_cast<Index>(s), i});
+    // Trials that are run at a time: of millions not even the numbers should be in memory.
+    constexpr std::size_t most = std::size_t{1} << 16;
+    const auto visit_open = [&](const std::function<void(const TrialId&)>& visitor) {
+        Index asked = 0;
+        for (std::size_t s = 0; s < series_.size(); ++s) {
+            for (Index i = options_.shard.number - 1; i < counts[s]; i += options_.shard.count) {
+                ++asked;
+                if (!finished_[s]->has(i)) visitor({static_cast<Index>(s), i});
+            }
         }
-    }
-    if (open.empty()) return;
-    Progress begin{.total = asked};
-    begin.done = asked - static_cast<Index>(open.size());
+        return asked;
+    };
+    Index open_count = 0;
+    Progress begin{.total = visit_open([&](const TrialId&) { ++open_count; })};
+    begin.done = begin.total - open_count;
     ProgressCounter counter(options_.progress, begin);
+    std::vector<TrialId> open;
+    visit_open([&](const TrialId& id) {
+        open.push_back(id);
+        if (open.size() < most) return;
+        run_some(run_trials, open, counter);
+        open.clear();
+    });
+    run_some(run_trials, open, counter);
+}
+
+void TrialRuns::run_some(const RunTrials& run_trials, const std::vector<TrialId>& open,
+                         ProgressCounter& counter) {
+    if (open.empty() || options_.stop.is_set()) return;
     const auto accept = [&](std::size_t position, std::vector<double> values) {
-        const TrialId& id = open[position];
-        const auto s = static_cast<std::size_t>(id.series);
-        Trial trial{id.number, std::move(values)};
+        const auto s = static_cast<std::size_t>(open[position].series);
+        const Trial trial{open[position].number, std::move(values)};
         if (options_.store.keep) options_.store.keep(series_[s], trial);
-        finished_[s][id.number] = std::move(trial.values);
+        finished_[s]->put(trial);
         counter.count();
     };
     run_trials(open, accept, options_.stop);
 }
 
-std::vector<Trial> TrialRuns::list(std::size_t series, Index count) const {
-    std::vector<Trial> trials;
-    for (const auto& [number, values] : finished_[series]) {
-        if (number < count) trials.push_back({number, values});
-    }
-    return trials;
+Study TrialRuns::study_of_first(std::size_t series, Index count) const {
+    return study_of_table(series_[series], finished_[series], count);
 }
 
-std::vector<Trial> TrialRuns::release(std::size_t series) {
-    auto& finished = finished_[series];
-    std::vector<Trial> trials;
-    trials.reserve(finished.size());
-    while (!finished.empty()) {
-        auto first = finished.extract(finished.begin());
-        trials.push_back({first.key(), std::move(first.mapped())});
-    }
-    return trials;
+Study TrialRuns::study_of_all(std::size_t series) const {
+    if (series_[series].is_simulated) finished_[series]->close_ranks();
+    return study_of_table(series_[series], finished_[series], finished_[series]->count());
 }
 
 }  // namespace posewise::detail

@@ -1,11 +1,14 @@
 #pragma once
 
-#include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "../core/progress_counter.hpp"
+#include "../core/statistics.hpp"
 #include "posewise/selection/exchange.hpp"
 #include "posewise/task/study.hpp"
+#include "trial_table.hpp"
 
 /// What studies of measured and of simulated configurations share.
 namespace posewise::detail {
@@ -20,8 +23,8 @@ SelectOptions study_selection(const StudyOptions& options, const Campaign& campa
 /// Calibrated from registration on; nothing if the measurements do not identify the model.
 std::optional<Estimate> calibrate_subset(const Campaign& campaign, const Measurements& chosen);
 
-/// Of at least one ratio, whose logarithms are given.
-Advantage geometric_mean(const std::vector<double>& logarithms);
+/// Of ratios whose logarithms are visited; nothing if there are none or one is a NaN.
+std::optional<Advantage> geometric_mean(const VisitNumbers& logarithms);
 
 /// A case as numbers to keep: case_width of them and its poses.
 inline constexpr std::size_t case_width = 6;
@@ -39,6 +42,17 @@ struct MeasuredCase {
 /// In the order of their trials.
 std::vector<MeasuredCase> list_cases(const TrialSeries& series);
 
+/// How many numbers a trial of the series has, at most. Of simulated ones all have as many.
+std::size_t trial_width(const TrialSeries& series);
+
+/// Puts it into the table of the series. Throws InputError if it is none of it.
+void put_trial(const TrialSeries& series, const Trial& trial, TrialTable& table);
+
+/// The study that they make, of simulated ones that of the first `count` trials, all of which must
+/// be there: numbers 0, 1, ...
+Study study_of_table(const TrialSeries& series, std::shared_ptr<const TrialTable> table,
+                     Index count);
+
 /// Trials of some series: those that a store has, and those that are run.
 class TrialRuns {
   public:
@@ -49,15 +63,18 @@ class TrialRuns {
     /// shard.
     void run(const RunTrials& run_trials, const std::vector<Index>& counts);
 
-    /// The finished ones of the first `count` trials of a series, by number.
-    std::vector<Trial> list(std::size_t series, Index count) const;
-    /// All that are finished; they are here no more: there may be millions.
-    std::vector<Trial> release(std::size_t series);
+    /// Of the first `count` trials of a simulated series, all of which must be finished.
+    Study study_of_first(std::size_t series, Index count) const;
+    /// Of all that are finished, in the end: nothing can be run any more.
+    Study study_of_all(std::size_t series) const;
 
   private:
+    void run_some(const RunTrials& run_trials, const std::vector<TrialId>& open,
+                  ProgressCounter& counter);
+
     const std::vector<TrialSeries>& series_;
     const StudyOptions& options_;
-    std::vector<std::map<Index, std::vector<double>>> finished_;
+    std::vector<std::shared_ptr<TrialTable>> finished_;
 };
 
 }  // namespace posewise::detail

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
-#include <set>
+#include <algorithm>
+#include <array>
+#include <memory>
 
 #include "posewise/core/errors.hpp"
 #include "posewise/task/study.hpp"
@@ -11,93 +13,124 @@ namespace {
 
 using detail::case_width;
 using detail::MeasuredCase;
+using detail::TrialTable;
 
 InputError wrong_trial(const TrialSeries& series, const Trial& trial, const std::string& fault) {
     return InputError(fmt::format("trial {} of {} {}", trial.number, series.campaign, fault));
 }
 
-/// A case of each trial of a subset, `splits` trials.
-std::vector<StudyRow> empty_rows(const TrialSeries& series, std::size_t random,
-                                 std::size_t splits) {
-    std::vector<StudyRow> rows;
-    for (const Index count : series.pose_counts) {
-        StudyRow& row = rows.emplace_back();
-        row.pose_count = count;
-        row.optimal.resize(series.criteria.size() * splits);
-        row.random.resize(random);
-    }
-    return rows;
-}
-
-std::vector<StudyRow> measured_rows(const TrialSeries& series, const std::vector<Trial>& trials) {
+std::vector<StudyRow> measured_rows(const TrialSeries& series, const TrialTable& table) {
     const std::vector<MeasuredCase> cases = detail::list_cases(series);
     const auto splits = static_cast<std::size_t>(std::max<Index>(1, series.splits));
-    auto rows = empty_rows(series, static_cast<std::size_t>(series.random_subsets), splits);
-    std::vector<std::size_t> open(rows.size(),
-                                  cases.size() / std::max<std::size_t>(1, rows.size()));
-    for (const Trial& trial : trials) {
-        const auto number = static_cast<std::size_t>(trial.number);
-        if (trial.number < 0 || number >= cases.size() || trial.values.size() < case_width) {
-            throw wrong_trial(series, trial, "is none of it");
-        }
-        const MeasuredCase& one = cases[number];
-        StudyRow& row = rows[one.row];
+    struct Row {
+        std::vector<StudyCase> optimal, random;
+        std::size_t open = 0;
+    };
+    std::vector<Row> rows(series.pose_counts.size());
+    for (Row& row : rows) {
+        row.optimal.resize(series.criteria.size() * splits);
+        row.random.resize(static_cast<std::size_t>(series.random_subsets));
+        row.open = row.optimal.size() + row.random.size();
+    }
+    table.for_each([&](const Trial& trial) {
+        const MeasuredCase& one = cases[static_cast<std::size_t>(trial.number)];
+        Row& row = rows[one.row];
         StudyCase& result =
             one.is_random ? row.random[one.number]
                           : row.optimal[one.number * splits + static_cast<std::size_t>(one.split)];
         result = detail::read_case(trial.values.data(), trial.values.size());
         result.split = one.split;
-        --open[one.row];
-    }
+        --row.open;
+    });
     std::vector<StudyRow> complete;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (open[i] == 0) complete.push_back(std::move(rows[i]));
+        if (rows[i].open > 0) continue;
+        complete.push_back(
+            {series.pose_counts[i], std::move(rows[i].optimal), std::move(rows[i].random)});
     }
     return complete;
 }
 
 /// A split a trial.
-std::vector<StudyRow> simulated_rows(const TrialSeries& series, const std::vector<Trial>& trials) {
+std::vector<StudyRow> simulated_rows(const TrialSeries& series,
+                                     const std::shared_ptr<const TrialTable>& table, Index count) {
+    if (count == 0) return {};
+    const auto trials = static_cast<std::size_t>(count);
+    // A trial has its cases one after the other; of each row those of one criterion, or random ones
+    // of one number, are together.
+    const auto cases_from = [&](std::size_t first, std::size_t kinds) {
+        return StudyCases(kinds * trials, [=](std::size_t number) {
+            std::array<double, case_width> values{};
+            const auto trial = static_cast<Index>(number % trials);
+            table->read(trial, (first + number / trials) * case_width, values);
+            StudyCase study_case = detail::read_case(values.data(), case_width);
+            study_case.split = trial;
+            return study_case;
+        });
+    };
     const std::size_t planned = series.criteria.size();
     const auto random = static_cast<std::size_t>(series.random_subsets);
-    const std::size_t width = series.pose_counts.size() * (planned + random) * case_width;
-    auto rows = empty_rows(series, random * trials.size(), trials.size());
-    for (std::size_t t = 0; t < trials.size(); ++t) {
-        if (trials[t].values.size() != width) {
-            throw wrong_trial(
-                series, trials[t],
-                fmt::format("has {} numbers, must have {}", trials[t].values.size(), width));
-        }
-        const double* values = trials[t].values.data();
-        const auto read_next = [&](StudyCase& study_case) {
-            study_case = detail::read_case(values, case_width);
-            study_case.split = static_cast<Index>(t);
-            values += case_width;
-        };
-        for (StudyRow& row : rows) {
-            for (std::size_t c = 0; c < planned; ++c) read_next(row.optimal[c * trials.size() + t]);
-            for (std::size_t r = 0; r < random; ++r) read_next(row.random[r * trials.size() + t]);
-        }
+    std::vector<StudyRow> rows;
+    std::size_t first = 0;
+    for (const Index pose_count : series.pose_counts) {
+        rows.push_back(
+            {pose_count, cases_from(first, planned), cases_from(first + planned, random)});
+        first += planned + random;
     }
-    if (trials.empty()) rows.clear();
     return rows;
 }
 
 }  // namespace
 
-Study study_of_trials(const TrialSeries& series, const std::vector<Trial>& trials) {
+std::size_t detail::trial_width(const TrialSeries& series) {
+    const std::size_t counts = series.pose_counts.size();
+    if (counts == 0) return 0;
+    if (!series.is_simulated) {
+        return case_width + static_cast<std::size_t>(std::ranges::max(series.pose_counts));
+    }
+    return counts * (series.criteria.size() + static_cast<std::size_t>(series.random_subsets)) *
+           case_width;
+}
+
+void detail::put_trial(const TrialSeries& series, const Trial& trial, TrialTable& table) {
+    const std::size_t size = trial.values.size();
+    const std::size_t width = trial_width(series);
+    if (series.is_simulated && size != width) {
+        throw wrong_trial(series, trial, fmt::format("has {} numbers, must have {}", size, width));
+    }
+    const Index of_count =
+        static_cast<Index>(series.criteria.size()) * std::max<Index>(1, series.splits) +
+        series.random_subsets;
+    const Index cases = std::ssize(series.pose_counts) * of_count;
+    const bool is_measured_case = trial.number < cases && size >= case_width && size <= width;
+    if (trial.number < 0 || !(series.is_simulated || is_measured_case)) {
+        throw wrong_trial(series, trial, "is none of it");
+    }
+    table.put(trial);
+}
+
+Study detail::study_of_table(const TrialSeries& series, std::shared_ptr<const TrialTable> table,
+                             Index count) {
     Study study;
     study.campaign = series.campaign;
     study.model = series.variation;
     study.ids = series.ids;
     study.criteria = series.criteria;
     study.is_simulated = series.is_simulated;
-    study.splits = series.is_simulated ? static_cast<Index>(trials.size()) : series.splits;
+    study.splits = series.is_simulated ? count : series.splits;
     study.test_count = series.test_count;
     study.ending = Ending::Converged;
     study.rows =
-        series.is_simulated ? simulated_rows(series, trials) : measured_rows(series, trials);
+        series.is_simulated ? simulated_rows(series, table, count) : measured_rows(series, *table);
     return study;
+}
+
+Study study_of_trials(const TrialSeries& series, const TrialStore& store) {
+    const auto table = std::make_shared<TrialTable>(std::make_shared<detail::ScratchFile>(),
+                                                    detail::trial_width(series));
+    store.finished(series, [&](const Trial& trial) { detail::put_trial(series, trial, *table); });
+    if (series.is_simulated) table->close_ranks();
+    return detail::study_of_table(series, table, table->count());
 }
 
 }  // namespace posewise

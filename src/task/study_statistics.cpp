@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "../core/statistics.hpp"
 #include "posewise/task/study.hpp"
@@ -8,23 +9,31 @@
 
 namespace posewise {
 
-Advantage detail::geometric_mean(const std::vector<double>& logarithms) {
-    const Eigen::Map<const VectorXd> values(logarithms.data(),
-                                            static_cast<Index>(logarithms.size()));
-    const double mean = values.mean();
-    const double freedom = static_cast<double>(values.size()) - 1;
+std::optional<Advantage> detail::geometric_mean(const VisitNumbers& logarithms) {
+    double count = 0, sum = 0, squares = 0;
+    logarithms([&](double x) {
+        ++count;
+        sum += x;
+    });
+    const double mean = sum / count;
+    if (std::isnan(mean)) return std::nullopt;
+    const double freedom = count - 1;
     if (freedom < 1) return Advantage{std::exp(mean), std::exp(mean), std::exp(mean)};
-    const double deviation = std::sqrt((values.array() - mean).square().sum() / freedom /
-                                       static_cast<double>(values.size()));
-    const double width = student_quantile(0.975, freedom) * deviation;
+    logarithms([&](double x) { squares += (x - mean) * (x - mean); });
+    const double width = student_quantile(0.975, freedom) * std::sqrt(squares / freedom / count);
     return Advantage{std::exp(mean), std::exp(mean - width), std::exp(mean + width)};
 }
 
-std::vector<StudyCase> planned_cases(const StudyRow& row, std::size_t criterion,
-                                     std::size_t criterion_count) {
-    const auto each = static_cast<std::ptrdiff_t>(row.optimal.size() / criterion_count);
-    const auto begin = row.optimal.begin() + each * static_cast<std::ptrdiff_t>(criterion);
-    return {begin, begin + each};
+StudyCases::StudyCases(std::vector<StudyCase> cases) : size_(cases.size()) {
+    const auto shared = std::make_shared<const std::vector<StudyCase>>(std::move(cases));
+    read_ = [shared](std::size_t number) { return (*shared)[number]; };
+}
+
+StudyCases planned_cases(const StudyRow& row, std::size_t criterion, std::size_t criterion_count) {
+    const std::size_t each = row.optimal.size() / criterion_count;
+    return {each, [all = row.optimal, first = criterion * each](std::size_t number) {
+                return all[first + number];
+            }};
 }
 
 std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
@@ -35,18 +44,21 @@ std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& r
 std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
                                            std::size_t criterion, const StudyRow& other_row) {
     if (study.splits == 0) return std::nullopt;
-    std::vector<std::vector<StudyCase>> random(static_cast<std::size_t>(study.splits));
-    for (const StudyCase& other : other_row.random) {
-        random[static_cast<std::size_t>(other.split)].push_back(other);
-    }
-    std::vector<double> logarithms;
-    for (const StudyCase& planned : planned_cases(row, criterion, study.criteria.size())) {
-        const auto median = held_out_quantile(random[static_cast<std::size_t>(planned.split)], 0.5);
-        const auto found = held_out_quantile({planned}, 0.5);
-        if (!median || !found) return std::nullopt;
-        logarithms.push_back(std::log(*found / *median));
-    }
-    return detail::geometric_mean(logarithms);
+    const StudyCases planned = planned_cases(row, criterion, study.criteria.size());
+    // Each split has as many planned subsets, and every so many-th random one.
+    const std::size_t others = other_row.optimal.size() / study.criteria.size();
+    return detail::geometric_mean([&](const std::function<void(double)>& visitor) {
+        for (std::size_t split = 0; split < std::min(planned.size(), others); ++split) {
+            std::vector<StudyCase> random;
+            for (std::size_t i = split; i < other_row.random.size(); i += others) {
+                random.push_back(other_row.random[i]);
+            }
+            const auto median = held_out_quantile(std::move(random), 0.5);
+            const auto found = held_out_quantile({planned[split]}, 0.5);
+            visitor(median && found ? std::log(*found / *median)
+                                    : std::numeric_limits<double>::quiet_NaN());
+        }
+    });
 }
 
 Verdict verdict_of(const Advantage& advantage) {
@@ -66,35 +78,33 @@ std::string_view verdict_name(Verdict verdict) {
     return "within chance";
 }
 
-std::optional<double> held_out_quantile(const std::vector<StudyCase>& cases, double p) {
+std::optional<double> held_out_quantile(const StudyCases& cases, double p) {
     constexpr double worst = std::numeric_limits<double>::infinity();
-    std::vector<double> errors;
-    for (const StudyCase& study_case : cases) {
-        if (!study_case.identified) {
-            errors.push_back(worst);
-        } else if (study_case.held_out.point_count > 0) {
-            errors.push_back(study_case.held_out.distance_rms);
-        }
-    }
-    if (errors.empty()) return std::nullopt;
-    const double error =
-        quantile(Eigen::Map<const VectorXd>(errors.data(), static_cast<Index>(errors.size())),
-                 std::clamp(p, 0.0, 1.0), detail::QuantileRule::Linear);
-    if (error == worst) return std::nullopt;
-    return error;
+    const auto error = detail::quantile_of_many(
+        [&](const std::function<void(double)>& visitor) {
+            for (const StudyCase& study_case : cases) {
+                if (!study_case.identified) {
+                    visitor(worst);
+                } else if (study_case.held_out.point_count > 0) {
+                    visitor(study_case.held_out.distance_rms);
+                }
+            }
+        },
+        std::clamp(p, 0.0, 1.0));
+    return error == worst ? std::nullopt : error;
 }
 
-std::optional<double> median_expected(const std::vector<StudyCase>& cases) {
-    std::vector<double> expected;
-    for (const StudyCase& study_case : cases) {
-        if (study_case.identified) expected.push_back(study_case.expected);
-    }
-    if (expected.empty()) return std::nullopt;
-    const Eigen::Map<const VectorXd> values(expected.data(), static_cast<Index>(expected.size()));
-    return quantile(values, 0.5, detail::QuantileRule::Linear);
+std::optional<double> median_expected(const StudyCases& cases) {
+    return detail::quantile_of_many(
+        [&](const std::function<void(double)>& visitor) {
+            for (const StudyCase& study_case : cases) {
+                if (study_case.identified) visitor(study_case.expected);
+            }
+        },
+        0.5);
 }
 
-Index count_unidentified(const std::vector<StudyCase>& cases) {
+Index count_unidentified(const StudyCases& cases) {
     return std::count_if(cases.begin(), cases.end(),
                          [](const StudyCase& study_case) { return !study_case.identified; });
 }

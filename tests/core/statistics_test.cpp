@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "posewise/core/random.hpp"
+
 namespace posewise {
 namespace {
 
@@ -47,6 +49,38 @@ TEST(Quantile, TakesInfiniteNumbersAsTheLargest) {
     EXPECT_EQ(quantile(four, 2.0 / 3, Linear), 3);
     EXPECT_EQ(quantile(four, 0.7, Linear), infinity);
     EXPECT_EQ(quantile(numbers({infinity, infinity}), 0.5, Linear), infinity);
+}
+
+/// By quantile(), and by quantile_of_many() with at most seven in memory.
+void expect_same_quantiles(const VectorXd& all) {
+    const VisitNumbers visit = [&](const std::function<void(double)>& visitor) {
+        for (const double x : all) visitor(x);
+    };
+    for (const double p : {0.0, 0.1, 0.25, 0.5, 0.777, 0.95, 1.0}) {
+        const double expected = quantile(all, p, Linear);
+        EXPECT_EQ(quantile_of_many(visit, p, 7), expected) << all.size() << " numbers, " << p;
+        EXPECT_EQ(quantile_of_many(visit, p), expected);
+    }
+}
+
+TEST(QuantileOfMany, IsTheSameWithFewInMemory) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    RandomStream stream(3);
+    for (const Index count : {1, 7, 8, 9, 100, 3001}) {
+        expect_same_quantiles(stream.normals(count));                           // of both signs
+        expect_same_quantiles((1e-4 + 1e-12 * stream.normals(count).array()));  // close together
+        expect_same_quantiles(stream.normals(count).array().round());           // with ties
+        VectorXd all = stream.normals(count).array().abs().exp();
+        for (Index i = 0; i < count; i += 3) all[i] = infinity;
+        expect_same_quantiles(all);
+        expect_same_quantiles(VectorXd::Constant(count, 0.3));
+        expect_same_quantiles(VectorXd::Constant(count, infinity));
+    }
+    expect_same_quantiles(numbers({0, -0.0, 0, -0.0, 1, -1, -0.0, 0, 0, -2}));
+}
+
+TEST(QuantileOfMany, IsNothingOfNone) {
+    EXPECT_FALSE(quantile_of_many([](const std::function<void(double)>&) {}, 0.5));
 }
 
 TEST(DistributionQuantile, IsThatOfTables) {

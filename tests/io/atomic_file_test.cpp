@@ -66,6 +66,25 @@ TEST(WriteFiles, WritesAllOrNone) {
     EXPECT_EQ(folder.file_count(), 2U);
 }
 
+TEST(WriteFiles, TakesALongTextInParts) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("a.txt", "old");
+    int count = 0;
+    const auto write_parts = [&](const std::function<void(std::string_view)>& write) {
+        for (int k = 0; k < count; ++k) write("part " + std::to_string(k) + '\n');
+        if (count > 2) throw InputError("no more");
+    };
+    write_files({{path, "begin\n", {}, write_parts}});
+    EXPECT_EQ(read_file(path), "begin\n");
+    count = 2;
+    write_files({{path, "begin\n", {}, write_parts}});
+    EXPECT_EQ(read_file(path), "begin\npart 0\npart 1\n");
+    count = 3;
+    EXPECT_EQ(input_error_of([&] { write_files({{path, "", {}, write_parts}}); }), "no more");
+    EXPECT_EQ(read_file(path), "begin\npart 0\npart 1\n");
+    EXPECT_EQ(folder.file_count(), 1U);
+}
+
 TEST(ReadFile, EndsADeviceThatDoesNot) {
     EXPECT_EQ(input_error_of([&] { read_file("/dev/zero"); }),
               "/dev/zero: is larger than 1 MiB; must be smaller");

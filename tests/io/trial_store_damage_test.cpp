@@ -31,7 +31,7 @@ TEST(TrialStore, TakesNoDamageForNumbers) {
         folder.write("damaged.sqlite", damage(content, k));
         const std::string error = input_error_of([&] {
             const TrialStore store = k % 2 == 0 ? open_trial_store(path) : read_trial_store(path);
-            expect_same(store.finished(simulated_series()), trials);  // all of them, or none
+            expect_same(finished(store, simulated_series()), trials);  // all of them, or none
         });
         EXPECT_TRUE(error == "no error" || error.starts_with("damaged.sqlite: ")) << error;
         EXPECT_EQ(error.find('\n'), std::string::npos) << error;
@@ -62,7 +62,7 @@ TEST(TrialStore, TakesNoDamageOfItsLogForNumbers) {
         }
         const std::string error = input_error_of([&] {
             const TrialStore store = k % 3 == 0 ? open_trial_store(path) : read_trial_store(path);
-            const std::vector<Trial> even = store.finished(simulated_series("even"));
+            const std::vector<Trial> even = finished(store, simulated_series("even"));
             for (const Trial& trial : even) {
                 EXPECT_TRUE(is_same(trial, drawn_trial(trial.number)));
             }

@@ -21,7 +21,7 @@ TEST(TrialStore, LosesNothingThatWasKeptWhenItsProcessIsKilled) {
         std::size_t count = 0;
         for (const Index parity : {0, 1}) {
             for (const Trial& trial :
-                 store.finished(simulated_series(parity == 0 ? "even" : "odd"))) {
+                 finished(store, simulated_series(parity == 0 ? "even" : "odd"))) {
                 EXPECT_EQ(trial.number % 2, parity);
                 EXPECT_TRUE(is_same(trial, drawn_trial(trial.number)));
                 ++count;
@@ -46,7 +46,7 @@ TEST(TrialStore, IsWrittenByOneAndReadByMany) {
     EXPECT_NE(opening_error(folder.path("link")).find("is being written"), std::string::npos);
     for (int k = 0; k < 20; ++k) {
         ASSERT_TRUE(writer.wait());
-        const auto even = read_trial_store(path).finished(simulated_series("even"));
+        const auto even = finished(read_trial_store(path), simulated_series("even"));
         ASSERT_GE(std::ssize(even), writer.last() / 2 + 1);
         expect_same({even.back()}, {drawn_trial(even.back().number)});
     }
@@ -101,7 +101,7 @@ TEST(TrialStore, IsReadButNotWrittenInAReadOnlyFolder) {
         EXPECT_EQ(opening_error(path), "a.sqlite: cannot be written: Permission denied");
         EXPECT_EQ(opening_error(folder.path("new.sqlite")),
                   "new.sqlite: cannot be written: Permission denied");
-        EXPECT_EQ(read_trial_store(path).finished(simulated_series()).size(), 3U);
+        EXPECT_EQ(finished(read_trial_store(path), simulated_series()).size(), 3U);
     }
     std::filesystem::permissions(whole.parent_path(), perms::all);
     std::filesystem::permissions(whole, writing, std::filesystem::perm_options::remove);
@@ -145,9 +145,9 @@ TEST(TrialStore, KeepsWhatItHasOnAFullDisk) {
         EXPECT_TRUE(error.starts_with("a.sqlite: cannot be read or written: ")) << error;
         --kept;
         EXPECT_GT(kept, 10);
-        EXPECT_EQ(std::ssize(store.finished(simulated_series())), kept);
+        EXPECT_EQ(std::ssize(finished(store, simulated_series())), kept);
     }
-    EXPECT_EQ(std::ssize(read_trial_store(path).finished(simulated_series())), kept);
+    EXPECT_EQ(std::ssize(finished(read_trial_store(path), simulated_series())), kept);
     {
         const SmallDisk small(1000);
         EXPECT_TRUE(opening_error(folder.path("new.sqlite"))

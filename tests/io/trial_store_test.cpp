@@ -50,11 +50,11 @@ TEST(TrialStore, GivesBackEveryBit) {
     {
         const TrialStore store = open_trial_store(path);
         for (const std::size_t k : {2U, 0U, 3U, 1U}) store.keep(simulated_series(), trials[k]);
-        expect_same(store.finished(simulated_series()), trials);
+        expect_same(finished(store, simulated_series()), trials);
     }
     EXPECT_EQ(folder.file_count(), 1U);  // no log, no lock
-    expect_same(open_trial_store(path).finished(simulated_series()), trials);
-    expect_same(read_trial_store(path).finished(simulated_series()), trials);
+    expect_same(finished(open_trial_store(path), simulated_series()), trials);
+    expect_same(finished(read_trial_store(path), simulated_series()), trials);
 }
 
 TEST(TrialStore, HoldsSeveralSeries) {
@@ -68,9 +68,9 @@ TEST(TrialStore, HoldsSeveralSeries) {
     }
     const TrialStore store = open_trial_store(path);
     for (std::size_t k = 0; k < all.size(); ++k) {
-        expect_same(store.finished(all[k]), {{0, {static_cast<double>(k)}}});
+        expect_same(finished(store, all[k]), {{0, {static_cast<double>(k)}}});
     }
-    EXPECT_TRUE(store.finished(simulated_series("x=2")).empty());
+    EXPECT_TRUE(finished(store, simulated_series("x=2")).empty());
     all.push_back(simulated_series("x=2"));  // asked for, and in its place from then on
     EXPECT_EQ(series_in_store(path), all);
 }
@@ -88,7 +88,7 @@ TEST(TrialStore, KeepsTheSameTrialTwiceButNoOther) {
                   "a.sqlite: trial 17 of campaign 'arm \"7\"', 'x=1', was found with other values "
                   "before, by another machine or program; must be kept in another file");
     }
-    expect_same(store.finished(simulated_series("x=1")), {{17, {1, nan}}});
+    expect_same(finished(store, simulated_series("x=1")), {{17, {1, nan}}});
 }
 
 TEST(TrialStore, LeavesNoFileWithoutTrials) {
@@ -99,7 +99,7 @@ TEST(TrialStore, LeavesNoFileWithoutTrials) {
     EXPECT_EQ(input_error_of([&] { read_trial_store(empty); }),
               "empty.sqlite: is empty; must be a store of trials");
     store_of(folder, "empty.sqlite", 0, 1);
-    EXPECT_EQ(read_trial_store(empty).finished(simulated_series()).size(), 1U);
+    EXPECT_EQ(finished(read_trial_store(empty), simulated_series()).size(), 1U);
 }
 
 TEST(TrialStore, RefusesTextThatNoOneCouldRead) {
@@ -109,7 +109,7 @@ TEST(TrialStore, RefusesTextThatNoOneCouldRead) {
     EXPECT_NE(input_error_of([&] { store.keep(series, drawn_trial(0)); }).find("UTF-8"),
               std::string::npos);
     store.keep(simulated_series(), drawn_trial(0));
-    EXPECT_EQ(store.finished(simulated_series()).size(), 1U);
+    EXPECT_EQ(finished(store, simulated_series()).size(), 1U);
 }
 
 TEST(MergeTrialStores, GivesTheSameInAnyOrder) {
@@ -124,10 +124,10 @@ TEST(MergeTrialStores, GivesTheSameInAnyOrder) {
     EXPECT_EQ(series.size(), 3U);
     EXPECT_EQ(series, series_in_store(folder.path("new.sqlite")));
     for (const TrialSeries& one : series) {
-        expect_same(read_trial_store(into).finished(one),
-                    read_trial_store(folder.path("new.sqlite")).finished(one));
+        expect_same(finished(read_trial_store(into), one),
+                    finished(read_trial_store(folder.path("new.sqlite")), one));
     }
-    EXPECT_EQ(read_trial_store(into).finished(simulated_series()).size(), 70U);
+    EXPECT_EQ(finished(read_trial_store(into), simulated_series()).size(), 70U);
     EXPECT_EQ(folder.file_count(), 5U);
 }
 
@@ -145,7 +145,7 @@ TEST(MergeTrialStores, TakesAllOrNothing) {
     const std::string into = store_of(folder, "into.sqlite", 50, 51);
     for (const std::string& last : {b, folder.path("none.sqlite"), folder.write("text", "text")}) {
         EXPECT_THROW(merge_trial_stores({a, last}, into), InputError);
-        expect_same(read_trial_store(into).finished(simulated_series()), {drawn_trial(50)});
+        expect_same(finished(read_trial_store(into), simulated_series()), {drawn_trial(50)});
     }
     EXPECT_EQ(input_error_of([&] { merge_trial_stores({folder.path("none.sqlite")}, into); }),
               "none.sqlite: cannot be read: No such file or directory");
@@ -216,7 +216,7 @@ TEST(TrialStore, OfAnotherVersionIsOnlyRead) {
                                        std::string(version) +
                                        ", which may find other numbers; must be another file");
     EXPECT_EQ(series_in_store(path), std::vector{simulated_series()});
-    expect_same(read_trial_store(path).finished(simulated_series()), {drawn_trial(0)});
+    expect_same(finished(read_trial_store(path), simulated_series()), {drawn_trial(0)});
     EXPECT_THROW(merge_trial_stores({path}, folder.path("b.sqlite")), InputError);
     EXPECT_EQ(folder.file_count(), 1U);
 }

@@ -39,6 +39,12 @@ inline Trial drawn_trial(Index number, Index count = 30) {
     return trial;
 }
 
+inline std::vector<Trial> finished(const TrialStore& store, const TrialSeries& series) {
+    std::vector<Trial> trials;
+    store.finished(series, [&](const Trial& trial) { trials.push_back(trial); });
+    return trials;
+}
+
 inline bool is_same(const Trial& a, const Trial& b) {
     const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
     return a.number == b.number && std::ranges::equal(a.values, b.values, {}, bits, bits);

@@ -63,8 +63,15 @@ TEST(StudyTable, ShowsADashWhereNothingWasIdentified) {
     EXPECT_EQ(table.rows[0], (std::vector<std::string>{"2", "-", "-", "-", "-", "0", "-"}));
 }
 
+template <class Studies>
+std::string csv_of(const Studies& studies) {
+    std::string text;
+    write_study_csv(studies, [&](std::string_view part) { text += part; });
+    return text;
+}
+
 TEST(StudyCsv, HoldsEveryCase) {
-    EXPECT_EQ(study_csv(example_study()),
+    EXPECT_EQ(csv_of(example_study()),
               "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,held_out_p95_mm,"
               "expected_rms_mm,configurations\n"
               "2,d,0,yes,0.3,0.9,0.45,0.15,\"a b,c\"\n"
@@ -106,13 +113,13 @@ TEST(ModelsTable, ShowsEachModelAgainstItsRandomSubsetsAndThoseOfTheFirst) {
 
 /// Two splits in which the planned subset is off by so many times the random one.
 StudyRow row_with_ratios(Index pose_count, double first, double second) {
-    StudyRow row{pose_count, {}, {}};
+    std::vector<StudyCase> optimal, random;
     for (const Index split : {0, 1}) {
-        row.optimal.push_back(identified({0, 1}, (split == 0 ? first : second) * 1e-3, 2e-3));
-        row.random.push_back(identified({1, 2}, 1e-3, 2e-3));
-        row.optimal.back().split = row.random.back().split = split;
+        optimal.push_back(identified({0, 1}, (split == 0 ? first : second) * 1e-3, 2e-3));
+        random.push_back(identified({1, 2}, 1e-3, 2e-3));
+        optimal.back().split = random.back().split = split;
     }
-    return row;
+    return {pose_count, optimal, random};
 }
 
 TEST(FormatStudy, CallsWithinChanceWhatMayBeChanceInEitherDirection) {
@@ -138,7 +145,7 @@ TEST(FormatStudy, SaysHowManyRobotsOfEachVariationThereWereTimeFor) {
 }
 
 TEST(ModelsCsv, BeginsWithTheModel) {
-    EXPECT_EQ(study_csv(two_models()),
+    EXPECT_EQ(csv_of(two_models()),
               "model,poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,"
               "held_out_p95_mm,expected_rms_mm,configurations\n"
               "geometric,2,d,0,yes,0.3,0.9,0.45,0.15,\"a b,c\"\n"

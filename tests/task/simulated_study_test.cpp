@@ -55,12 +55,10 @@ struct Memory {
     Index run_count = 0;
 
     TrialStore store() {
-        return {[this](const TrialSeries& series) {
-                    std::vector<Trial> trials;
+        return {[this](const TrialSeries& series, const VisitTrial& visitor) {
                     for (const auto& [number, values] : kept[series.variation + series.checksum]) {
-                        trials.push_back({number, values});
+                        visitor({number, values});
                     }
-                    return trials;
                 },
                 [this](const TrialSeries& series, const Trial& trial) {
                     kept[series.variation + series.checksum][trial.number] = trial.values;
@@ -166,7 +164,7 @@ TEST(SimulatedStudy, FindsTheModelErrorWhereNothingElseIsWrong) {
 }
 
 /// Root of the mean of found^2 against that of expected^2.
-double found_by_expected(const std::vector<StudyCase>& cases) {
+double found_by_expected(const StudyCases& cases) {
     double found = 0, expected = 0;
     for (const StudyCase& one : cases) {
         found += one.held_out.distance_rms * one.held_out.distance_rms;
@@ -241,6 +239,10 @@ TEST(SimulatedStudy, EndsWhenItIsAsPreciseAsAskedFor) {
     EXPECT_LT(simulate_study(campaigns, options).front().splits, study.splits);
 }
 
+TrialStore store_with(const Trial& trial) {
+    return {[trial](const TrialSeries&, const VisitTrial& visitor) { visitor(trial); }, {}};
+}
+
 TEST(SimulatedStudy, RefusesWhatItCannotDo) {
     const auto refuses = [](const SimulatedCampaign& campaign, const SimulatedStudyOptions& options,
                             const std::string& words) {
@@ -275,9 +277,12 @@ TEST(SimulatedStudy, RefusesWhatItCannotDo) {
     series.is_simulated = true;
     series.criteria = {Criterion::V};
     series.pose_counts = {8};
-    EXPECT_THROW(study_of_trials(series, {{0, {1, 2, 3}}}), InputError);
+    EXPECT_THROW(study_of_trials(series, store_with({0, {1, 2, 3}})), InputError);
+    EXPECT_THROW(study_of_trials(series, store_with({-1, std::vector<double>(6)})), InputError);
     series.is_simulated = false;
-    EXPECT_THROW(study_of_trials(series, {{7, std::vector<double>(6)}}), InputError);
+    EXPECT_THROW(study_of_trials(series, store_with({7, std::vector<double>(6)})), InputError);
+    EXPECT_THROW(study_of_trials(series, store_with({0, std::vector<double>(5)})), InputError);
+    EXPECT_THROW(study_of_trials(series, store_with({0, std::vector<double>(15)})), InputError);
 }
 
 TEST(DrawnRobots, AreAsLargeAsSurelyAsTheCampaignSays) {

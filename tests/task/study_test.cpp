@@ -219,7 +219,7 @@ TEST(StudyPoseCounts, JudgesAllSubsetsOfASplitOnTheSameConfigurations) {
     ASSERT_EQ(result.rows.size(), 1u);
     const StudyRow& row = result.rows.front();
     ASSERT_EQ(row.optimal.size(), 6u);  // two criteria, three splits
-    std::vector<StudyCase> all = row.random;
+    std::vector<StudyCase> all(row.random.begin(), row.random.end());
     all.insert(all.end(), row.optimal.begin(), row.optimal.end());
     std::vector<std::set<Index>> taken(3);
     for (const StudyCase& subset : all) {
@@ -338,11 +338,8 @@ TEST(PlannedAdvantage, IsTheGeometricMeanOverSplits) {
     Study study;
     study.criteria = {Criterion::V};
     study.splits = 2;
-    StudyRow row;
-    for (const double rms : {1.0, 4.0}) row.optimal.push_back(case_with_error(rms));
-    row.optimal[1].split = 1;
-    for (const double rms : {2.0, 2.0}) row.random.push_back(case_with_error(rms));
-    row.random[1].split = 1;
+    StudyRow row{
+        8, {case_with_error(1), case_with_error(4)}, {case_with_error(2), case_with_error(2)}};
     const auto advantage = planned_advantage(study, row, 0);
     ASSERT_TRUE(advantage);
     EXPECT_NEAR(advantage->ratio, 1, 1e-15);
@@ -350,9 +347,16 @@ TEST(PlannedAdvantage, IsTheGeometricMeanOverSplits) {
     EXPECT_NEAR(std::log(advantage->upper), 12.7062047 * std::log(2.0), 1e-6);
     EXPECT_NEAR(std::log(advantage->lower), -std::log(advantage->upper), 1e-12);
     StudyRow other = row;  // of another model, half as accurate
-    for (StudyCase& random : other.random) random.held_out.distance_rms = 4;
+    other.random = {case_with_error(4), case_with_error(4)};
     EXPECT_NEAR(planned_advantage(study, row, 0, other)->ratio, 0.5, 1e-15);
-    row.random[1].identified = false;
+    // Of more robots, or fewer: those that both have.
+    other = {8,
+             {case_with_error(1), case_with_error(1), case_with_error(1)},
+             {case_with_error(4), case_with_error(1), case_with_error(9)}};
+    EXPECT_NEAR(planned_advantage(study, row, 0, other)->ratio, 1, 1e-15);
+    other = {8, {case_with_error(1)}, {case_with_error(4), case_with_error(9), case_with_error(3)}};
+    EXPECT_NEAR(planned_advantage(study, row, 0, other)->ratio, 0.25, 1e-15);
+    row.random = {case_with_error(2), StudyCase{}};
     EXPECT_FALSE(planned_advantage(study, row, 0));
     study.splits = 0;
     EXPECT_FALSE(planned_advantage(study, row, 0));

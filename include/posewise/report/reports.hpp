@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "posewise/task/calibration.hpp"
@@ -95,11 +97,15 @@ std::string format(const Study& study);
 /// be studied.
 std::string format(const std::vector<Study>& studies);
 
-/// Every case of a study as CSV text: pose count, who chose (criterion or "random"), number of the
-/// subset (planned: of its split), whether it identified the model, held-out distance RMS and
-/// maximum in mm (9 digits), and the configurations by id, separated by blanks.
-std::string study_csv(const Study& study);
+/// Takes a part of a text.
+using WriteText = std::function<void(std::string_view)>;
+
+/// Every case of a study as CSV text, some lines at a time: pose count, who chose (criterion or
+/// "random"), number of the subset (planned: of its split), whether it identified the model,
+/// held-out distance RMS and maximum in mm (9 digits), and the configurations by id, separated by
+/// blanks.
+void write_study_csv(const Study& study, const WriteText& write);
 /// The same of several error models, with the model as first column.
-std::string study_csv(const std::vector<Study>& studies);
+void write_study_csv(const std::vector<Study>& studies, const WriteText& write);
 
 }  // namespace posewise

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "posewise/calibrator/identification.hpp"
@@ -33,11 +37,56 @@ struct StudyCase {
     Index split = 0;
 };
 
+/// Cases in order. Those of simulated studies, of which there may be millions, are not in memory:
+/// each is read when it is asked for.
+class StudyCases {
+  public:
+    using Read = std::function<StudyCase(std::size_t)>;  ///< the case of that number
+
+    StudyCases() = default;
+    StudyCases(std::vector<StudyCase> cases);
+    StudyCases(std::initializer_list<StudyCase> cases) : StudyCases(std::vector(cases)) {}
+    StudyCases(std::size_t size, Read read) : size_(size), read_(std::move(read)) {}
+
+    std::size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    StudyCase operator[](std::size_t number) const { return read_(number); }
+
+    class Iterator {
+      public:
+        using iterator_category = std::input_iterator_tag;
+        using value_type = StudyCase;
+        using difference_type = std::ptrdiff_t;
+        using pointer = const StudyCase*;
+        using reference = StudyCase;
+
+        Iterator() = default;
+        Iterator(const StudyCases& cases, std::size_t number) : cases_(&cases), number_(number) {}
+        StudyCase operator*() const { return (*cases_)[number_]; }
+        Iterator& operator++() {
+            ++number_;
+            return *this;
+        }
+        Iterator operator++(int) { return std::exchange(*this, Iterator(*cases_, number_ + 1)); }
+        bool operator==(const Iterator&) const = default;
+
+      private:
+        const StudyCases* cases_ = nullptr;
+        std::size_t number_ = 0;
+    };
+    Iterator begin() const { return {*this, 0}; }
+    Iterator end() const { return {*this, size_}; }
+
+  private:
+    std::size_t size_ = 0;
+    Read read_;
+};
+
 /// All subsets of one size.
 struct StudyRow {
     Index pose_count = 0;
-    std::vector<StudyCase> optimal;  ///< of each asked criterion one for each split
-    std::vector<StudyCase> random;   ///< in turn of each split
+    StudyCases optimal;  ///< of each asked criterion one for each split
+    StudyCases random;   ///< in turn of each split
 };
 
 struct StudyOptions {
@@ -86,10 +135,10 @@ struct Study {
 Study study(const Campaign& campaign, const Measurements& measurements,
             const StudyOptions& options = {});
 
-/// The study that finished trials of a series make, of which there may be fewer than it has. Pose
-/// counts of measured configurations that are not complete are left out. Throws InputError for
-/// trials that are none of it.
-Study study_of_trials(const TrialSeries& series, const std::vector<Trial>& trials);
+/// The study that the finished trials of a series make which a store has; they may be fewer than
+/// the series has. Pose counts of measured configurations that are not complete are left out.
+/// Throws InputError for trials that are none of it.
+Study study_of_trials(const TrialSeries& series, const TrialStore& store);
 
 /// A robot with one of the error models to compare.
 struct RobotModel {
@@ -115,7 +164,8 @@ struct Advantage {
 std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
                                            std::size_t criterion);
 
-/// The same against the random subsets of another row: that of another error model.
+/// The same against the random subsets of another row, that of another error model, over the splits
+/// that both have.
 std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
                                            std::size_t criterion, const StudyRow& other_row);
 
@@ -126,18 +176,17 @@ Verdict verdict_of(const Advantage& advantage);
 std::string_view verdict_name(Verdict verdict);
 
 /// The planned cases of one of so many criteria in a row.
-std::vector<StudyCase> planned_cases(const StudyRow& row, std::size_t criterion,
-                                     std::size_t criterion_count);
+StudyCases planned_cases(const StudyRow& row, std::size_t criterion, std::size_t criterion_count);
 
 /// The p-quantile (0..1, linear between order statistics) of the held-out distance RMS. Cases that
 /// are not identified count as worse than any other, so that dropping them cannot flatter the rest;
 /// nothing if the quantile falls among them or nothing was left out.
-std::optional<double> held_out_quantile(const std::vector<StudyCase>& cases, double p);
+std::optional<double> held_out_quantile(const StudyCases& cases, double p);
 
 /// The median of StudyCase::expected over those that are identified, m; nothing if none is.
-std::optional<double> median_expected(const std::vector<StudyCase>& cases);
+std::optional<double> median_expected(const StudyCases& cases);
 
 /// How many cases are not identified.
-Index count_unidentified(const std::vector<StudyCase>& cases);
+Index count_unidentified(const StudyCases& cases);
 
 }  // namespace posewise

@@ -36,11 +36,13 @@ struct Trial {
     std::vector<double> values;
 };
 
+using VisitTrial = std::function<void(const Trial&)>;
+
 /// Where finished trials are kept, so that they never run again. All functions throw if they
 /// cannot; they are called by one thread at a time.
 struct TrialStore {
-    /// All trials of the series that are finished, by number.
-    std::function<std::vector<Trial>(const TrialSeries&)> finished;
+    /// Visits all trials of the series that are finished, in the order of their numbers.
+    std::function<void(const TrialSeries&, const VisitTrial&)> finished;
     /// Once this returns the trial is kept, whatever happens to the process.
     std::function<void(const TrialSeries&, const Trial&)> keep;
 };
