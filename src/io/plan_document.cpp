@@ -115,7 +115,16 @@ Json target_to_json(const TargetPlanning& found) {
                  {"is_settled", found.is_settled},
                  {"error", range_to_json(*found.error)},
                  {"floor", range_to_json(found.floor)},
+                 {"counts", nullptr},
                  {"curve", Json::array()}};
+    if (found.counts) {
+        const auto number = [](const std::optional<Index>& count) {
+            return count ? Json(*count) : Json(nullptr);
+        };
+        json["counts"] = {{"lower", number(found.counts->lower)},
+                          {"upper", number(found.counts->upper)},
+                          {"most", found.counts->most}};
+    }
     for (const CountPrediction& one : found.curve) {
         json["curve"].push_back({{"new_pose_count", one.pose_count},
                                  {"is_planned", one.is_planned},

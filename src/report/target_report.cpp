@@ -14,6 +14,7 @@
 namespace posewise {
 namespace {
 
+using detail::count_of;
 using detail::format_mm;
 using detail::format_short;
 using detail::name_of;
@@ -32,7 +33,7 @@ std::string describe_limit(const TargetOptions& target) {
     std::string text = fmt::format("{} mm {} with {}", format_short(mm_per_m * *target.limit),
                                    name_of(target.quantity), percent(target.assurance));
     if (target.robust_to > 0) {
-        text += fmt::format(", the worst {} missing", detail::count_of(target.robust_to, "pose"));
+        text += fmt::format(", the worst {} missing", count_of(target.robust_to, "pose"));
     }
     return text;
 }
@@ -100,8 +101,23 @@ std::string describe_best(const TargetPlanning& found, double longest) {
         if (one.error && one.duration <= longest) best = &one;
     }
     if (best == nullptr) return "none are expected to do";
-    return fmt::format("{} reach {} mm", detail::count_of(best->pose_count, "new pose"),
+    return fmt::format("{} reach {} mm", count_of(best->pose_count, "new pose"),
                        format_mm(best->error->assured));
+}
+
+/// "9 poses with 5 % probability, more than 60 with 95 %".
+std::string describe_counts(const CountRange& counts, double floor, double limit) {
+    std::string text = counts.lower ? count_of(*counts.lower, "new pose")
+                                    : fmt::format("more than {}", counts.most);
+    text += " with 5 % probability, ";
+    if (floor > limit) {
+        text += fmt::format("no number with 95 % (floor {} mm)", format_mm(floor));
+    } else if (counts.upper) {
+        text += fmt::format("{} with 95 %", *counts.upper);
+    } else {
+        text += fmt::format("more than {} with 95 %", counts.most);
+    }
+    return text;
 }
 
 }  // namespace
@@ -160,7 +176,7 @@ std::string format(const TargetPlanning& found) {
     std::string text;
     const Planning& planning = *found.planning;
     const CountPrediction* const next = next_count(found);
-    const std::string count = detail::count_of(planning.search.pose_count, "new pose");
+    const std::string count = count_of(planning.search.pose_count, "new pose");
     if (found.target.limit) {
         text += fmt::format("target:      {}: {}, {} mm", describe_limit(found.target), count,
                             format_mm(found.error->assured));
@@ -170,6 +186,11 @@ std::string format(const TargetPlanning& found) {
         }
         text += fmt::format("; floor {} mm{}\n", format_mm(found.floor.assured),
                             found.is_settled ? "" : "; stopped early: fewer may do");
+        if (found.counts) {
+            text +=
+                fmt::format("enough:      {}\n",
+                            describe_counts(*found.counts, found.floor.upper, *found.target.limit));
+        }
     }
     if (found.target.duration) {
         text += fmt::format("time:        {} of {} min for {}", minutes(planning.duration),

@@ -136,7 +136,6 @@ class Search {
         const auto [found, is_new] = chosen_.try_emplace(count);
         CountPrediction& prediction = found->second;
         if (!is_new) return prediction;
-        check_stop();
         prediction.pose_count = count;
         const auto chosen = choices_.choose(count);
         if (!chosen) return prediction;
@@ -151,6 +150,7 @@ class Search {
     }
 
     bool is_crossed_by_choice(Index count) {
+        check_stop();
         const CountPrediction& prediction = choose(count);
         return has_crossed(prediction.error, prediction.duration);
     }
@@ -224,21 +224,43 @@ class Search {
             if (!result_.is_settled) check_stop();
             result_.ending = TargetEnding::TooLong;
             const Index most = std::min(most_, choices_.candidate_count());
-            least_count(least_, least_, most,
-                        [&](Index count) { return choose(count).duration > *target_.duration; });
+            least_count(least_, least_, most, [&](Index count) {
+                check_stop();
+                return choose(count).duration > *target_.duration;
+            });
         }
         if (result_.ending == TargetEnding::Reached) return;
         result_.planning.reset();
         result_.error.reset();
     }
 
-    /// What half, twice and four times as many poses would do.
+    /// What half, twice and four times as many poses would do, and between which numbers of them
+    /// the limit would be kept if what is not known yet were known.
     void look_around() {
-        if (!result_.planning || options_.stop.is_set()) return;
+        if (!result_.planning) return;
         const Index count = result_.planning->search.pose_count;
         for (const Index other : {count / 2, 2 * count, 4 * count}) {
+            if (options_.stop.is_set()) return;
             if (other >= least_ && other <= most_chosen()) choose(other);
         }
+        if (!has_limit()) return;
+        CountRange range{{}, {}, std::max(least_, std::min(most_chosen(), 4 * count))};
+        range.lower = count_within(&ErrorRange::lower, range.most);
+        if (result_.floor.upper <= *target_.limit) {
+            range.upper = count_within(&ErrorRange::upper, range.most);
+        }
+        if (!options_.stop.is_set()) result_.counts = range;
+    }
+
+    /// The least one of up to `most` poses; nothing after a stop.
+    std::optional<Index> count_within(double ErrorRange::*error, Index most) {
+        const Index guess = result_.planning->search.pose_count;
+        const Index count = least_count(guess, least_, most, [&](Index poses) {
+            if (options_.stop.is_set()) return false;
+            const auto& found = choose(poses).error;
+            return found && (*found).*error <= *target_.limit;
+        });
+        return count > most ? std::nullopt : std::optional(count);
     }
 
     /// Poses that reach little more than fewer: as good as those and any others.

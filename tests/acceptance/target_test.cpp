@@ -156,6 +156,42 @@ TEST_F(Target, NeedsMorePosesTheSurerAndTheTighterItIs) {
     EXPECT_LT(loose_at_95, loose_at_99);
 }
 
+TEST_F(Target, SaysHowFarTheNumberMayBeOff) {
+    const auto counts_of = [&](double limit, double assurance) {
+        target_.limit = limit;
+        target_.assurance = assurance;
+        return find();
+    };
+    const TargetPlanning found = counts_of(0.9e-3, 0.5);
+    const CountRange& counts = found.counts.value();
+    // Numbers of chosen poses: plans need about as many.
+    const auto planned = [&](double assurance) {
+        return static_cast<double>(counts_of(0.9e-3, assurance).planning.value().search.pose_count);
+    };
+    EXPECT_NEAR(static_cast<double>(counts.lower.value()), planned(0.05), 1.5);
+    EXPECT_NEAR(static_cast<double>(counts.upper.value()), planned(0.95), 3.5);
+    EXPECT_LT(counts.lower.value(), counts.upper.value());
+    EXPECT_NE(format(found).find(fmt::format("\nenough:      {} new poses with 5 % probability, {} "
+                                             "with 95 %\n",
+                                             *counts.lower, *counts.upper)),
+              std::string::npos)
+        << format(found);
+
+    const TargetPlanning low = counts_of(0.4e-3, 0.5);  // below the floor's 95 % end
+    EXPECT_TRUE(low.counts.value().lower);
+    EXPECT_FALSE(low.counts.value().upper);
+    EXPECT_NE(format(low).find("no number with 95 % (floor 0.78"), std::string::npos)
+        << format(low);
+    const TargetPlanning tight = counts_of(0.785e-3, 0.5);
+    EXPECT_FALSE(tight.counts.value().upper);
+    EXPECT_NE(format(tight).find(fmt::format(", more than {} with 95 %\n", tight.counts->most)),
+              std::string::npos)
+        << format(tight);
+    target_.limit.reset();
+    target_.duration = 60;
+    EXPECT_FALSE(find().counts);
+}
+
 TEST_F(Target, OfTheLargestErrorOrWithPosesMissingNeedsMore) {
     const Index rms = count();
     target_.robust_to = 1;

@@ -23,8 +23,9 @@ TEST_F(PlanTarget, SaysHowManyPosesAndWhatTheErrorConsistsOf) {
     const std::string text = run_well(plan("--target-mm 1.2 --robust-to 1"));
     for (const char* const words :
          {"target:      1.2 mm RMS with 95 %, the worst 1 pose missing: ", "new poses",
-          "; floor 0.78", "missing:     without p", "parameters, by the model error",
-          "Position error (RMS) by number of poses", "95 % below/mm", "minutes"}) {
+          "; floor 0.78", "\nenough:      ", "missing:     without p",
+          "parameters, by the model error", "Position error (RMS) by number of poses",
+          "95 % below/mm", "minutes"}) {
         EXPECT_NE(text.find(words), std::string::npos) << words << '\n' << text;
     }
     run_well("verify p.json");

@@ -27,6 +27,15 @@ struct CountPrediction {
     double duration = 0;  ///< s; of chosen poses straight moves and no collisions considered
 };
 
+/// Numbers of poses that are enough if the errors turn out as small, or as large, as one in twenty
+/// is: how far the number that a target needs may be off. Chosen from a part of the pool, see
+/// CountPrediction::is_planned.
+struct CountRange {
+    std::optional<Index> lower;  ///< with 5 % probability it is enough
+    std::optional<Index> upper;  ///< with 95 %; nothing: more than `most`, or no number
+    Index most = 0;              ///< that were looked at
+};
+
 /// How a search for the number of poses ended.
 enum class TargetEnding {
     NotRun,
@@ -45,6 +54,7 @@ struct TargetPlanning {
     /// There is no plan of one pose less that keeps the limit, or without a limit of one more that
     /// fits, as far as a search to its end found; false: stopped early, there may be one.
     bool is_settled = false;
+    std::optional<CountRange> counts;       ///< for a limit; nothing: stopped early
     std::vector<CountPrediction> curve;     ///< by count, as far as it was looked at
     ErrorRange floor;                       ///< left where the parameters are known exactly
     double floor_of_known_model_error = 0;  ///< m: the same if the model error were as expected
