@@ -47,7 +47,7 @@ std::vector<double> numbers_from(double first, std::size_t count) {
 }
 
 TEST(ScratchFile, GivesBackWhatWasWrittenInMemoryAndInTheFile) {
-    for (const std::size_t in_memory : {0, 10, 25, 1000}) {
+    for (const std::size_t in_memory : {0UL, 10UL, 25UL, 1000UL}) {
         ScratchFile file(in_memory);
         std::vector<std::size_t> places;
         for (int k = 0; k < 10; ++k) {

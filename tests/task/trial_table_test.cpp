@@ -25,7 +25,7 @@ std::vector<Trial> trials_in(const TrialTable& table) {
 }
 
 TEST(TrialTable, HasTrialsByNumberInWhateverOrderTheyCame) {
-    for (const std::size_t in_memory : {0, 1000000}) {
+    for (const std::size_t in_memory : {0UL, 1000000UL}) {
         const auto file = std::make_shared<ScratchFile>(in_memory);
         TrialTable table(file, 3), other(file, 5);
         RandomStream stream(1);
