@@ -36,15 +36,18 @@ RowMatrixXd residuals(const Campaign& campaign, const Parameters& parameters,
                       const Measurements& measurements) {
     const Index width = campaign.sensor->rows_per_target();
     RowMatrixXd r(measurements.is_seen.count(), width);
+    VectorXd q(measurements.configurations.cols());
+    VectorXd predicted(campaign.sensor->row_count());
+    VectorXd deviation(campaign.sensor->row_count());
     Index row = 0;
     for (Index i = 0; i < measurements.configuration_count(); ++i) {
-        const Isometry3d flange =
-            world_from_flange(campaign, parameters, measurements.configurations.row(i).transpose());
-        const VectorXd predicted = campaign.sensor->predict(flange, parameters.sensor);
+        q = measurements.configurations.row(i).transpose();
+        campaign.sensor->predict(world_from_flange(campaign, parameters, q), parameters.sensor,
+                                 predicted);
         const Index first = measurements.first_sample[static_cast<std::size_t>(i)];
         for (Index k = first; k < first + measurements.sample_count(i); ++k) {
-            const VectorXd deviation =
-                campaign.sensor->deviation(measurements.observations.row(k).transpose(), predicted);
+            campaign.sensor->deviation(measurements.observations.row(k).transpose(), predicted,
+                                       deviation);
             for (Index j = 0; j < measurements.is_seen.cols(); ++j) {
                 if (!measurements.is_seen(k, j)) continue;
                 r.row(row++) = deviation.segment(width * j, width).transpose();

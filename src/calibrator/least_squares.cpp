@@ -10,6 +10,7 @@
 #include "../core/products.hpp"
 #include "../core/text.hpp"
 #include "../measurement/noise.hpp"
+#include "normal_equations.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
@@ -39,31 +40,89 @@ void check_size(const Campaign& campaign, const Measurements& measurements) {
     }
 }
 
-/// The equations of configuration i, whitened, out of all that it would have.
-RowMatrixXd whiten_equations(const IdentificationProblem& problem, Index i,
-                             const FlangeMotion& motion, const Parameters& parameters,
-                             const RowMatrixXd& all) {
-    return whiten_seen(problem.campaign, motion, parameters.sensor,
-                       problem.repeats.row(i).transpose(), all);
-}
+/// Of one configuration after another what the measurements tell, in memory that it takes once.
+class Configurations {
+  public:
+    explicit Configurations(const IdentificationProblem& problem)
+        : problem_(problem),
+          sensor_(*problem.campaign.sensor),
+          width_(sensor_.rows_per_target()),
+          noise_(problem.campaign),
+          q_(problem.campaign.robot.configuration_size()),
+          repeats_(problem.repeats.cols()),
+          predicted_(sensor_.row_count()),
+          deviation_(sensor_.row_count()) {}
 
-/// Lengths of the whitened residual, the last column of `seen`, of one target after another.
-VectorXd target_lengths(const IdentificationProblem& problem, const RowMatrixXd& seen) {
-    const Index width = problem.campaign.sensor->rows_per_target();
-    const VectorXd r = seen.col(seen.cols() - 1);
-    return r.reshaped(width, r.size() / width).colwise().norm().transpose();
-}
+    Index count() const { return problem_.means.configuration_count(); }
 
-/// Multiplies the rows of each target by the square root of its weight.
-void weigh_targets(const IdentificationProblem& problem, RowMatrixXd& seen) {
-    if (problem.loss.kind == LossKind::Squares) return;
-    const Index width = problem.campaign.sensor->rows_per_target();
-    const VectorXd lengths = target_lengths(problem, seen);
-    for (Index j = 0; j < lengths.size(); ++j) {
-        seen.middleRows(width * j, width) *=
-            std::sqrt(problem.loss.weight(lengths[j] / problem.deviation));
+    /// The whitened equations of the targets seen, J and r, weighted, in the first rows of `all`
+    /// (all that an observation would have x L + 1); returns how many they are.
+    Index state(Index i, const Parameters& parameters, Eigen::Ref<RowMatrixXd> all) {
+        go_to(i);
+        differentiate_pose(problem_.campaign, parameters, q_, motion_,
+                           all.leftCols(all.cols() - 1));
+        // The residual is whitened with the Jacobian.
+        all.rightCols(1) = deviate(i, parameters);
+        const Index rows = noise_.whiten_seen(motion_, parameters.sensor, repeats_, all);
+        if (problem_.loss.kind == LossKind::Squares) return rows;
+        for (Index row = 0; row < rows; row += width_) {
+            auto of_target = all.middleRows(row, width_);
+            const double length = of_target.rightCols(1).norm();
+            of_target *= std::sqrt(problem_.loss.weight(length / problem_.deviation));
+        }
+        return rows;
     }
-}
+
+    /// Lengths of the whitened residuals, of one target seen after another, to the front of
+    /// `lengths`; returns how many they are.
+    Index measure(Index i, const Parameters& parameters, const Parameters& of_noise,
+                  Eigen::Ref<VectorXd> lengths) {
+        go_to(i);
+        place_flange(parameters);
+        const bool is_elsewhere = &of_noise != &parameters;
+        residual_ = deviate(i, parameters);
+        if (is_elsewhere) place_flange(of_noise);
+        const Index rows = noise_.whiten_seen(motion_, of_noise.sensor, repeats_, residual_);
+        for (Index row = 0; row < rows; row += width_) {
+            lengths[row / width_] = residual_.middleRows(row, width_).norm();
+        }
+        return rows / width_;
+    }
+
+  private:
+    void go_to(Index i) {
+        q_ = problem_.means.configurations.row(i).transpose();
+        repeats_ = problem_.repeats.row(i).transpose();
+    }
+
+    /// Of the flange's motion what the noise needs.
+    void place_flange(const Parameters& parameters) {
+        const Campaign& campaign = problem_.campaign;
+        if (campaign.joint_repeatability.size() > 0) {
+            differentiate_flange(campaign, parameters, q_, motion_);
+        } else {
+            motion_.world_from_flange = world_from_flange(campaign, parameters, q_);
+        }
+    }
+
+    /// Of what was observed from what is predicted where the flange is.
+    const VectorXd& deviate(Index i, const Parameters& parameters) {
+        sensor_.predict(motion_.world_from_flange, parameters.sensor, predicted_);
+        sensor_.deviation(problem_.means.observations.row(i).transpose(), predicted_, deviation_);
+        return deviation_;
+    }
+
+    const IdentificationProblem& problem_;
+    const Sensor& sensor_;
+    Index width_;
+    PoseNoise noise_;
+    FlangeMotion motion_;
+    VectorXd q_;
+    VectorXd repeats_;
+    VectorXd predicted_;
+    VectorXd deviation_;
+    RowMatrixXd residual_;
+};
 
 }  // namespace
 
@@ -165,21 +224,13 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
     const Campaign& campaign = problem.campaign;
     const Index size = problem.units.size();
     LinearisedSystem system{RowMatrixXd(problem.equation_count(), size + 1)};
-    // The residual is whitened with the Jacobian.
-    RowMatrixXd augmented(campaign.sensor->row_count(), size + 1);
-    FlangeMotion motion;
-    VectorXd q(campaign.robot.configuration_size());
+    RowMatrixXd of_configuration(campaign.sensor->row_count(), size + 1);
+    Configurations configurations(problem);
     Index row = 0;
-    for (Index i = 0; i < problem.means.configuration_count(); ++i) {
-        q = problem.means.configurations.row(i).transpose();
-        differentiate_pose(campaign, parameters, q, motion, augmented.leftCols(size));
-        augmented.col(size) = campaign.sensor->deviation(
-            problem.means.observations.row(i).transpose(),
-            campaign.sensor->predict(motion.world_from_flange, parameters.sensor));
-        RowMatrixXd seen = whiten_equations(problem, i, motion, parameters, augmented);
-        weigh_targets(problem, seen);
-        system.augmented.middleRows(row, seen.rows()) = seen;
-        row += seen.rows();
+    for (Index i = 0; i < configurations.count(); ++i) {
+        const Index rows = configurations.state(i, parameters, of_configuration);
+        system.augmented.middleRows(row, rows) = of_configuration.topRows(rows);
+        row += rows;
     }
     problem.units.scale_columns(system.augmented.topLeftCorner(row, size));
     const Index count = problem.prior_count();
@@ -193,35 +244,15 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
     return system;
 }
 
-/// Of the flange's motion what the noise needs.
-void place_flange(const Campaign& campaign, const Parameters& parameters, const VectorXd& q,
-                  FlangeMotion& motion) {
-    if (campaign.joint_repeatability.size() > 0) {
-        differentiate_flange(campaign, parameters, q, motion);
-    } else {
-        motion.world_from_flange = world_from_flange(campaign, parameters, q);
-    }
-}
-
 VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters& parameters,
                           const Parameters* noise_at) {
-    const Campaign& campaign = problem.campaign;
+    const Parameters& of_noise = noise_at != nullptr ? *noise_at : parameters;
     VectorXd lengths(problem.means.is_seen.count());
+    Configurations configurations(problem);
     Index count = 0;
-    FlangeMotion motion;
-    VectorXd q(campaign.robot.configuration_size());
-    for (Index i = 0; i < problem.means.configuration_count(); ++i) {
-        q = problem.means.configurations.row(i).transpose();
-        place_flange(campaign, parameters, q, motion);
-        const VectorXd r = campaign.sensor->deviation(
-            problem.means.observations.row(i).transpose(),
-            campaign.sensor->predict(motion.world_from_flange, parameters.sensor));
-        const Parameters& of_noise = noise_at != nullptr ? *noise_at : parameters;
-        if (noise_at != nullptr) place_flange(campaign, of_noise, q, motion);
-        const VectorXd of_pose =
-            target_lengths(problem, whiten_equations(problem, i, motion, of_noise, r));
-        lengths.segment(count, of_pose.size()) = of_pose;
-        count += of_pose.size();
+    for (Index i = 0; i < configurations.count(); ++i) {
+        count +=
+            configurations.measure(i, parameters, of_noise, lengths.tail(lengths.size() - count));
     }
     return lengths;
 }
@@ -262,8 +293,11 @@ std::vector<Index> confused_parameters(const IdentificationProblem& problem,
                                        const Parameters& parameters) {
     Parameters nominal = parameters;
     nominal.robot.setZero();
-    MatrixXd R = triangularise(linearise(problem, nominal)).R;
-    if (R.cols() == 0) return {};  // a registration where base and sensor are known
+    const LinearisedSystem system = linearise(problem, nominal);
+    if (system.J().cols() == 0) return {};  // a registration where base and sensor are known
+    // Mostly it is far from that, which is told more quickly.
+    if (Metric(normal_equations(problem, system).M).is_regular()) return {};
+    MatrixXd R = triangularise(system).R;
     const VectorXd norms = R.colwise().norm().transpose().cwiseMax(1e-300);
     R.array().rowwise() /= norms.transpose().array();
     // Unit columns: s1 <= sqrt(L). And sL >= 1 / |R^-1|, mostly enough, without singular values.
@@ -344,8 +378,8 @@ void finish(const IdentificationProblem& problem, const LinearisedSystem& system
     const Index lengths = problem.campaign.sensor->lengths_per_target();
     estimate.fit = make_metrics(
         residuals(problem.campaign, estimate.parameters, problem.measurements), lengths);
-    estimate.fit_means = make_metrics(
-        mean_residuals(problem.campaign, estimate.parameters, problem.measurements), lengths);
+    estimate.fit_means =
+        make_metrics(residuals(problem.campaign, estimate.parameters, problem.means), lengths);
 }
 
 }  // namespace posewise::detail

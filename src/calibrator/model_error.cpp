@@ -24,14 +24,6 @@ constexpr Index most_configurations = 400;
 /// A direction that one configuration alone determines has no prediction by the others.
 constexpr double undetermined = 1e-10;
 
-/// What one configuration tells, not whitened: covariance but for the model error, Jacobian by
-/// scaled parameters and residual beside it.
-struct Rows {
-    MatrixXd covariance;
-    RowMatrixXd augmented;
-    std::vector<bool> is_angle;
-};
-
 const double log_factor = std::log(model_error_factor);
 
 /// log of the model errors of lengths and angles.
@@ -54,20 +46,12 @@ class PredictiveScore {
 
     bool has(std::size_t kind) const { return has_[kind]; }
 
-    double operator()(const LogErrors& errors, std::size_t kind) const {
-        const System system = whiten(errors);
-        return freedom_[kind] * (predict(system) - system.log_deviations) + population(errors);
+    double operator()(const LogErrors& errors, std::size_t kind) {
+        whiten(errors);
+        return freedom_[kind] * (predict() - log_deviations_) + population(errors);
     }
 
   private:
-    /// All configurations under one pair of model errors.
-    struct System {
-        RowMatrixXd augmented;
-        double log_deviations = 0;  ///< of the observations, summed up
-        RowMatrixXd V{};            ///< B M^-1 B^T = V^T V; empty where M has no inverse
-        VectorXd residuals{};       ///< at the optimum
-    };
-
     void collect(const IdentificationProblem& problem, const Parameters& parameters) {
         Campaign without = problem.campaign;
         without.model_error = without.model_error_orientation = 0;
@@ -78,73 +62,88 @@ class PredictiveScore {
                 times(outlier.configuration, outlier.target) = 0;
             }
         }
-        RowMatrixXd augmented(sensor.row_count(), size_ + 1);
+        const std::vector<Index> configurations =
+            evenly_spaced(problem.means.configuration_count(), most_configurations);
+        const Index most_rows = std::ssize(configurations) * sensor.row_count();
+        stated_.resize(most_rows, size_ + 1);
+        covariances_.resize(most_rows, sensor.row_count());
+        RowMatrixXd all(sensor.row_count(), size_ + 1);
+        PoseNoise noise(without);
         FlangeMotion motion;
-        for (const Index i :
-             evenly_spaced(problem.means.configuration_count(), most_configurations)) {
-            const VectorXd q = problem.means.configurations.row(i).transpose();
-            differentiate_pose(without, parameters, q, motion, augmented.leftCols(size_));
-            problem.units.scale_columns(augmented.leftCols(size_));
-            augmented.col(size_) =
-                sensor.deviation(problem.means.observations.row(i).transpose(),
-                                 sensor.predict(motion.world_from_flange, parameters.sensor));
-            const VectorXd repeats = times.row(i).transpose();
-            const auto seen = seen_rows(repeats.array() > 0, sensor.rows_per_target());
-            if (seen.empty()) continue;
-            Rows rows{mean_covariance(without, motion, parameters.sensor, repeats),
-                      augmented(seen, Eigen::all),
-                      {}};
-            for (const Index row : seen) {
-                rows.is_angle.push_back(sensor.is_angle(row));
-                const std::size_t kind = sensor.is_angle(row) ? 1 : 0;
+        VectorXd q, repeats, predicted(sensor.row_count()), deviation(sensor.row_count());
+        Index row = 0;
+        for (const Index i : configurations) {
+            q = problem.means.configurations.row(i).transpose();
+            repeats = times.row(i).transpose();
+            differentiate_pose(without, parameters, q, motion, all.leftCols(size_));
+            sensor.predict(motion.world_from_flange, parameters.sensor, predicted);
+            sensor.deviation(problem.means.observations.row(i).transpose(), predicted, deviation);
+            all.col(size_) = deviation;
+            if ((repeats.array() == 0).all()) continue;
+            const MatrixXd& covariance = noise.covariance(motion, parameters.sensor, repeats);
+            const Index count = covariance.rows();
+            covariances_.block(row, 0, count, count) = covariance;
+            for (const Index of_all : noise.rows()) {
+                stated_.row(row++) = all.row(of_all);
+                is_angle_.push_back(sensor.is_angle(of_all));
+                const std::size_t kind = sensor.is_angle(of_all) ? 1 : 0;
                 has_[kind] = std::isfinite(expected_[kind]);
             }
-            row_count_ += rows.augmented.rows();
-            rows_.push_back(std::move(rows));
+            first_row_.push_back(row);
+        }
+        stated_.conservativeResize(row, Eigen::NoChange);
+        problem.units.scale_columns(stated_.leftCols(size_));
+        whitened_.resize(row, size_ + 1);
+    }
+
+    Index row_count() const { return stated_.rows(); }
+    /// Calls visit(first row, how many) for each configuration.
+    template <typename Visit>
+    void for_each_configuration(const Visit& visit) const {
+        for (std::size_t i = 0; i + 1 < first_row_.size(); ++i) {
+            visit(first_row_[i], first_row_[i + 1] - first_row_[i]);
         }
     }
 
-    System whiten(const LogErrors& errors) const {
+    /// All configurations under one pair of model errors.
+    void whiten(const LogErrors& errors) {
         const std::array<double, 2> squares{std::exp(2 * errors[0]), std::exp(2 * errors[1])};
-        System system{RowMatrixXd(row_count_, size_ + 1)};
-        Index row = 0;
-        for (const Rows& of_pose : rows_) {
-            RowMatrixXd whitened = of_pose.augmented;
-            MatrixXd covariance = of_pose.covariance;
-            for (Index k = 0; k < covariance.rows(); ++k) {
-                covariance(k, k) += squares[of_pose.is_angle[static_cast<std::size_t>(k)] ? 1 : 0];
+        whitened_ = stated_;
+        log_deviations_ = 0;
+        for_each_configuration([&](Index first, Index count) {
+            covariance_ = covariances_.block(first, 0, count, count);
+            for (Index k = 0; k < count; ++k) {
+                covariance_(k, k) +=
+                    squares[is_angle_[static_cast<std::size_t>(first + k)] ? 1 : 0];
             }
-            system.log_deviations += detail::whiten(covariance, whitened);
-            system.augmented.middleRows(row, whitened.rows()) = whitened;
-            row += whitened.rows();
-        }
-        const auto B = system.augmented.leftCols(size_);
-        const MatrixXd all = gram(system.augmented);
+            log_deviations_ +=
+                detail::whiten(covariance_, whitened_.middleRows(first, count), factor_);
+        });
+        const auto B = whitened_.leftCols(size_);
+        const MatrixXd all = gram(whitened_);
         MatrixXd M = all.topLeftCorner(size_, size_);
         M.diagonal().segment(prior_begin_, prior_errors_.size()).array() += 1;
         const MatrixXd L = cholesky(M);
-        if (L.rows() < size_) return system;
-        const auto r = system.augmented.col(size_);
-        RowMatrixXd sides(size_, row_count_ + 1);
+        V_.resize(0, 0);
+        if (L.rows() < size_) return;
+        const auto r = whitened_.col(size_);
+        RowMatrixXd sides(size_, row_count() + 1);
         sides << B.transpose(), all.row(size_).head(size_).transpose();
-        sides.col(row_count_).segment(prior_begin_, prior_errors_.size()) -= prior_errors_;
+        sides.col(row_count()).segment(prior_begin_, prior_errors_.size()) -= prior_errors_;
         const RowMatrixXd solved = solve_lower(L, sides);
-        system.V = solved.leftCols(row_count_);
-        system.residuals = r - system.V.transpose() * solved.col(row_count_);
-        return system;
+        V_ = solved.leftCols(row_count());
+        residuals_ = r - V_.transpose() * solved.col(row_count());
     }
 
     void count_freedom(const LogErrors& errors) {
-        const System system = whiten(errors);
-        if (system.V.cols() < row_count_) return;
-        const VectorXd used = system.V.colwise().squaredNorm().transpose();
+        whiten(errors);
+        if (V_.cols() < row_count()) return;
+        const VectorXd used = V_.colwise().squaredNorm().transpose();
         std::array<double, 2> left{}, counts{};
-        Index row = 0;
-        for (const Rows& of_pose : rows_) {
-            for (const bool is_angle : of_pose.is_angle) {
-                left[is_angle ? 1 : 0] += 1 - used[row++];
-                ++counts[is_angle ? 1 : 0];
-            }
+        for (Index row = 0; row < row_count(); ++row) {
+            const std::size_t kind = is_angle_[static_cast<std::size_t>(row)] ? 1 : 0;
+            left[kind] += 1 - used[row];
+            ++counts[kind];
         }
         for (std::size_t kind = 0; kind < 2; ++kind) {
             if (has_[kind]) freedom_[kind] = std::max(left[kind] / counts[kind], 0.0);
@@ -152,21 +151,22 @@ class PredictiveScore {
     }
 
     /// Log of the predictive densities of the whitened residuals.
-    double predict(const System& system) const {
-        if (system.V.cols() < row_count_) return -std::numeric_limits<double>::infinity();
+    double predict() {
+        if (V_.cols() < row_count()) return -std::numeric_limits<double>::infinity();
         double score = 0;
-        Index row = 0;
-        for (const Rows& of_pose : rows_) {
-            const Index count = of_pose.augmented.rows();
-            const auto V_i = system.V.middleCols(row, count);
-            MatrixXd A = -V_i.transpose() * V_i;
-            A.diagonal().array() += 1 + undetermined;
-            const Eigen::LLT<MatrixXd> root(A);
-            if (root.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
-            score += root.matrixLLT().diagonal().array().log().sum() -
-                     root.matrixL().solve(system.residuals.segment(row, count)).squaredNorm() / 2;
-            row += count;
-        }
+        for_each_configuration([&](Index first, Index count) {
+            const auto V_i = V_.middleCols(first, count);
+            factor_.noalias() = -V_i.transpose() * V_i;
+            factor_.diagonal().array() += 1 + undetermined;
+            const Eigen::LLT<Eigen::Ref<MatrixXd>> root(factor_);
+            if (root.info() != Eigen::Success) {
+                score = -std::numeric_limits<double>::infinity();
+                return;
+            }
+            predicted_ = residuals_.segment(first, count);
+            root.matrixL().solveInPlace(predicted_);
+            score += factor_.diagonal().array().log().sum() - predicted_.squaredNorm() / 2;
+        });
         return score;
     }
 
@@ -184,10 +184,25 @@ class PredictiveScore {
     Index size_;
     Index prior_begin_;
     VectorXd prior_errors_;
-    Index row_count_ = 0;
     std::array<bool, 2> has_{};
     std::array<double, 2> freedom_{};  ///< part of the observations that parameters leave over
-    std::vector<Rows> rows_;
+
+    // What the configurations tell, one after another.
+    std::vector<Index> first_row_{0};  ///< configurations + 1
+    std::vector<bool> is_angle_;
+    RowMatrixXd stated_;       ///< Jacobian by scaled parameters and residual, not whitened
+    RowMatrixXd covariances_;  ///< but for the model error, of each as many columns as it has rows
+
+    // The same under one pair of model errors.
+    RowMatrixXd whitened_;
+    double log_deviations_ = 0;  ///< of the observations, summed up
+    RowMatrixXd V_;              ///< B M^-1 B^T = V^T V; empty where M has no inverse
+    VectorXd residuals_;         ///< at the optimum
+
+    // Of one configuration.
+    MatrixXd covariance_;
+    MatrixXd factor_;
+    VectorXd predicted_;
 };
 
 /// Where the smooth function `f` is largest: uphill from `x` in steps that grow, then by parabolas
@@ -275,7 +290,7 @@ bool is_model_error_open(const Campaign& campaign) {
 Campaign find_model_error(const IdentificationProblem& problem, const Parameters& parameters,
                           const Campaign& expected) {
     Campaign found = expected;
-    const PredictiveScore score(problem, parameters, expected);
+    PredictiveScore score(problem, parameters, expected);
     LogErrors errors{std::log(problem.campaign.model_error),
                      std::log(problem.campaign.model_error_orientation)};
     LogErrors averages = errors;

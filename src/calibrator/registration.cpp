@@ -171,7 +171,7 @@ Registration register_roughly(const Campaign& campaign, const Measurements& meas
 
 Registration register_base_and_targets(const Campaign& campaign, const Measurements& measurements) {
     const Campaign expected = with_expected_robot(campaign);
-    Registration registered = register_roughly(expected, measurements);
+    Registration registered = find_start(expected, measurements);
     if (registered.is_determined()) {
         Estimate polished = identify(expected, measurements, registered.parameters);
         registered = {std::move(polished.parameters), std::move(polished.undetermined)};

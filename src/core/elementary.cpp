@@ -5,53 +5,13 @@
 #include <limits>
 #include <numbers>
 
+#include "sine_and_cosine.hpp"
+
 namespace posewise::detail {
 namespace {
 
-// Approximations and constants of fdlibm [Sun Microsystems 1993], "freely distributable".
-
-constexpr double to_integer = 0x1.8p52;  // added and subtracted it rounds to the nearest one
-
-/// x + rest, at most pi/4 in magnitude, rest far below x.
-struct Reduced {
-    double x, rest;
-};
-
-double sine_near_zero(Reduced r) {
-    const double z = r.x * r.x;
-    const double v = z * r.x;
-    const double p = 8.33333333332248946124e-03 +
-                     z * (-1.98412698298579493134e-04 +
-                          z * (2.75573137070700676789e-06 +
-                               z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
-    return r.x - ((z * (0.5 * r.rest - v * p) - r.rest) - v * -1.66666666666666324348e-01);
-}
-
-double cosine_near_zero(Reduced r) {
-    const double z = r.x * r.x;
-    const double p =
-        z * (4.16666666666666019037e-02 +
-             z * (-1.38888888888741095749e-03 +
-                  z * (2.48015872894767294178e-05 +
-                       z * (-2.75573143513906633035e-07 +
-                            z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
-    const double half = 0.5 * z;
-    const double w = 1 - half;
-    return w + (((1 - w) - half) + (z * p - r.x * r.rest));
-}
-
-/// x less n pi/2, pi/2 being the sum of three parts, so that no digit of it cancels.
-Reduced less_right_angles(double x, double n) {
-    constexpr double part1 = 1.57079632673412561417e+00;
-    constexpr double part2 = 6.07710050630396597660e-11;
-    constexpr double rest2 = 2.02226624879595063154e-21;
-    const double first = x - n * part1;
-    const double second = n * part2;
-    const double difference = first - second;
-    const double rest = n * rest2 - ((first - difference) - second);
-    const double result = difference - rest;
-    return {result, (difference - result) - rest};
-}
+// Approximations and constants of fdlibm [Sun Microsystems 1993], "freely distributable"; those of
+// sine and cosine in sine_and_cosine.hpp.
 
 double arc_tangent_near_zero(double x) {
     constexpr double a[11] = {
@@ -79,12 +39,14 @@ double arc_tangent_to_one(double x) {
 }  // namespace
 
 SineCosine sine_and_cosine(double x) {
-    // Beyond, n times the first part of pi/2 is no longer exact; no joint turns so far.
-    if (!(std::abs(x) < 1e6)) return {std::sin(x), std::cos(x)};
+    if (!(std::abs(x) < most_turned)) return {std::sin(x), std::cos(x)};
     const double n = (x * (2 * std::numbers::inv_pi) + to_integer) - to_integer;
-    const Reduced r = n == 0 ? Reduced{x, 0} : less_right_angles(x, n);
-    const double s = sine_near_zero(r);
-    const double c = cosine_near_zero(r);
+    Reduced<double> r{x, 0};
+    if (n != 0) less_right_angles(x, n, r);
+    double s = 0;
+    double c = 0;
+    sine_near_zero(r, s);
+    cosine_near_zero(r, c);
     switch (static_cast<long>(n) & 3) {
         case 0:
             return {s, c};

@@ -21,6 +21,30 @@ std::uint64_t mix(std::uint64_t x) {
 
 }  // namespace
 
+RandomStream::Engine::Engine(std::uint64_t seed) {
+    state_[0] = seed;
+    for (std::size_t i = 1; i < state_.size(); ++i) {
+        const std::uint64_t last = state_[i - 1];
+        state_[i] = 6364136223846793005ULL * (last ^ (last >> 62)) + i;
+    }
+}
+
+std::uint64_t RandomStream::Engine::operator()() {
+    constexpr std::uint64_t lower_bits = (1ULL << 31) - 1;
+    constexpr std::size_t middle = 156;
+    const std::size_t size = state_.size();
+    const std::size_t after = next_ + 1 < size ? next_ + 1 : 0;
+    const std::uint64_t y = (state_[next_] & ~lower_bits) | (state_[after] & lower_bits);
+    const std::uint64_t twisted = (y >> 1) ^ ((y & 1) != 0 ? 0xb5026f5aa96619e9ULL : 0);
+    std::uint64_t z = state_[next_ < middle ? next_ + middle : next_ - middle] ^ twisted;
+    state_[next_] = z;
+    next_ = after;
+    z ^= (z >> 29) & 0x5555555555555555ULL;
+    z ^= (z << 17) & 0x71d67fffeda60000ULL;
+    z ^= (z << 37) & 0xfff7eee000000000ULL;
+    return z ^ (z >> 43);
+}
+
 RandomStream::RandomStream(std::uint64_t seed, std::uint64_t item)
     : engine_(mix(mix(seed) + item)) {}
 

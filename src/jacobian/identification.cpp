@@ -22,11 +22,12 @@ void check_repeats(const Campaign& campaign, Index configuration_count,
     }
 }
 
-/// Every pose's rows of the targets it shows: of all rows J, `finish(motion, repeats, J)`.
-template <typename Finish>
+/// Every pose's rows of the targets it shows: of all rows J those that `finish(motion, repeats, J)`
+/// has taken to the front; `make_finish()` makes one for each range of configurations.
+template <typename MakeFinish>
 Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
                    const RowMatrixXd& configurations, const RowMatrixXd& repeats,
-                   const Finish& finish) {
+                   const MakeFinish& make_finish) {
     for (Index i = 0; i < configurations.rows(); ++i) {
         campaign.robot.check_configuration(configurations.row(i).transpose());
     }
@@ -44,13 +45,15 @@ Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
         RowMatrixXd J(sensor.row_count(), blocks.parameter_count());
         VectorXd q(configurations.cols());
         VectorXd times(repeats.cols());
+        auto finish = make_finish();
         for (Index i = first; i < last; ++i) {
             q = configurations.row(i).transpose();
             times = repeats.row(i).transpose();
             differentiate_pose(campaign, parameters, q, motion, J);
             const Index row = blocks.first_row[static_cast<std::size_t>(i)];
             const Index count = blocks.first_row[static_cast<std::size_t>(i) + 1] - row;
-            blocks.matrix.middleRows(row, count) = finish(motion, times, J);
+            finish(motion, times, J);
+            blocks.matrix.middleRows(row, count) = J.topRows(count);
         }
     });
     return blocks;
@@ -75,10 +78,11 @@ void differentiate_pose(const Campaign& campaign, const Parameters& parameters,
 Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
                          const RowMatrixXd& configurations, const RowMatrixXd& repeats) {
     const Index width = campaign.sensor->rows_per_target();
-    return fill_blocks(campaign, parameters, configurations, repeats,
-                       [width](const FlangeMotion&, const VectorXd& times, const RowMatrixXd& J) {
-                           return RowMatrixXd(J(seen_rows(times.array() > 0, width), Eigen::all));
-                       });
+    const auto take_seen = [width](const FlangeMotion&, const VectorXd& times, RowMatrixXd& J) {
+        Index count = 0;
+        for (const Index row : seen_rows(times.array() > 0, width)) J.row(count++) = J.row(row);
+    };
+    return fill_blocks(campaign, parameters, configurations, repeats, [&] { return take_seen; });
 }
 
 Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
@@ -112,13 +116,13 @@ Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,
                    const RowMatrixXd& configurations, const RowMatrixXd& repeats) {
     const VectorXd scale = parameter_scale(campaign);
     // Hidden rows are left out before whitening: what is not observed has no covariance.
-    return fill_blocks(
-        campaign, parameters, configurations, repeats,
-        [&](const FlangeMotion& motion, const VectorXd& times, const RowMatrixXd& J) {
-            RowMatrixXd block = detail::whiten_seen(campaign, motion, parameters.sensor, times, J);
-            block *= scale.asDiagonal();
-            return block;
-        });
+    return fill_blocks(campaign, parameters, configurations, repeats, [&] {
+        return [&, noise = detail::PoseNoise(campaign)](
+                   const FlangeMotion& motion, const VectorXd& times, RowMatrixXd& J) mutable {
+            const Index count = noise.whiten_seen(motion, parameters.sensor, times, J);
+            J.topRows(count) *= scale.asDiagonal();
+        };
+    });
 }
 
 Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,

@@ -18,15 +18,17 @@ class KnownSensor final : public Sensor {
         return sensor_->observation_names();
     }
     std::vector<std::string> unknown_names() const override { return {}; }
-    VectorXd predict(const Isometry3d& world_from_flange, const VectorXd&) const override {
-        return sensor_->predict(world_from_flange, unknowns_);
+    void predict(const Isometry3d& world_from_flange, const VectorXd&,
+                 Eigen::Ref<VectorXd> observation) const override {
+        sensor_->predict(world_from_flange, unknowns_, observation);
     }
     void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                        const VectorXd&, Eigen::Ref<RowMatrixXd> J) const override {
         sensor_->differentiate(world_from_flange, twists, unknowns_, J);
     }
-    MatrixXd covariance(const Isometry3d& world_from_flange, const VectorXd&) const override {
-        return sensor_->covariance(world_from_flange, unknowns_);
+    void covariance(const Isometry3d& world_from_flange, const VectorXd&,
+                    Eigen::Ref<MatrixXd> covariance) const override {
+        sensor_->covariance(world_from_flange, unknowns_, covariance);
     }
 
     bool is_angle(Index row) const override { return sensor_->is_angle(row); }
@@ -34,11 +36,13 @@ class KnownSensor final : public Sensor {
     bool has_orientation() const override { return sensor_->has_orientation(); }
     Index target_count() const override { return sensor_->target_count(); }
     std::vector<std::string> contact_names() const override { return sensor_->contact_names(); }
-    VectorXd deviation(const VectorXd& observation, const VectorXd& reference) const override {
-        return sensor_->deviation(observation, reference);
+    void deviation(const ConstNumbers& observation, const ConstNumbers& reference,
+                   Eigen::Ref<VectorXd> deviation) const override {
+        sensor_->deviation(observation, reference, deviation);
     }
-    VectorXd deviate(const VectorXd& reference, const VectorXd& deviation) const override {
-        return sensor_->deviate(reference, deviation);
+    void deviate(const ConstNumbers& reference, const ConstNumbers& deviation,
+                 Eigen::Ref<VectorXd> observation) const override {
+        sensor_->deviate(reference, deviation, observation);
     }
     void differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                              const Twist& direction, const TwistMatrix& twist_rates,

@@ -24,12 +24,6 @@ void for_each_seen(const Measurements& measurements, const Visit& visit) {
     }
 }
 
-/// Deviations of whole observations from others, of which only one target's part means anything.
-VectorXd deviation(const Sensor& sensor, const Measurements& measurements, Index sample,
-                   const VectorXd& reference) {
-    return sensor.deviation(measurements.observations.row(sample).transpose(), reference);
-}
-
 }  // namespace
 
 RowMatrixXd times_seen(const Measurements& measurements) {
@@ -58,14 +52,26 @@ Measurements mean_measurements(const Sensor& sensor, const Measurements& measure
     Measurements means{measurements.configurations, measurements.ids, {}, times.array() > 0, {0}};
     means.observations.setZero(times.rows(), measurements.observations.cols());
     const Index width = sensor.rows_per_target();
+    // Whole observations, of which only one target's part means anything.
+    VectorXd deviation(means.observations.cols());
+    VectorXd mean(means.observations.cols());
     for_each_seen(measurements, [&](Index i, Index j, const std::vector<Index>& samples) {
-        const VectorXd first = measurements.observations.row(samples.front()).transpose();
+        const auto first = measurements.observations.row(samples.front()).transpose();
+        auto of_target = means.observations.row(i).segment(width * j, width);
+        if (samples.size() == 1) {
+            of_target = first.segment(width * j, width).transpose();
+            return;
+        }
         VectorXd sum = VectorXd::Zero(first.size());
-        for (const Index k : samples) sum += deviation(sensor, measurements, k, first);
-        const VectorXd mean = sensor.deviate(first, sum / static_cast<double>(samples.size()));
-        means.observations.row(i).segment(width * j, width) =
-            mean.segment(width * j, width).transpose();
+        for (const Index k : samples) {
+            sensor.deviation(measurements.observations.row(k).transpose(), first, deviation);
+            sum += deviation;
+        }
+        sum /= static_cast<double>(samples.size());
+        sensor.deviate(first, sum, mean);
+        of_target = mean.segment(width * j, width).transpose();
     });
+    means.first_sample.reserve(static_cast<std::size_t>(times.rows()) + 1);
     for (Index i = 0; i < times.rows(); ++i) means.first_sample.push_back(i + 1);
     return means;
 }
@@ -127,12 +133,12 @@ std::optional<Repeatability> repeatability(const Sensor& sensor, const Measureme
     std::array<double, 2> sum_of_squares{};
     std::array<double, 2> degrees_of_freedom{};
     for_each_seen(measurements, [&](Index i, Index j, const std::vector<Index>& samples) {
-        const VectorXd mean = means.observations.row(i).transpose();
+        const auto mean = means.observations.row(i).transpose();
         for (Index row = width * j; row < width * (j + 1); ++row) {
             degrees_of_freedom[sensor.is_angle(row)] += static_cast<double>(samples.size()) - 1;
         }
         for (const Index k : samples) {
-            const VectorXd d = deviation(sensor, measurements, k, mean);
+            const VectorXd d = sensor.deviation(measurements.observations.row(k).transpose(), mean);
             for (Index row = width * j; row < width * (j + 1); ++row) {
                 sum_of_squares[sensor.is_angle(row)] += d[row] * d[row];
             }

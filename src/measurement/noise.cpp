@@ -12,12 +12,11 @@ namespace posewise::detail {
 namespace {
 
 /// J_q diag(s): how far one standard deviation of each joint moves the observation.
-RowMatrixXd joint_noise_effect(const Campaign& campaign, const FlangeMotion& motion,
-                               const VectorXd& sensor_unknowns) {
-    RowMatrixXd J(campaign.sensor->row_count(), motion.joint_twists.cols());
+void fill_joint_effect(const Campaign& campaign, const FlangeMotion& motion,
+                       const VectorXd& sensor_unknowns, Eigen::Ref<RowMatrixXd> effect) {
     campaign.sensor->differentiate(motion.world_from_flange, motion.joint_twists, sensor_unknowns,
-                                   J);
-    return J * campaign.joint_repeatability.asDiagonal();
+                                   effect);
+    effect *= campaign.joint_repeatability.asDiagonal();
 }
 
 InputError not_positive_definite(const MatrixXd& covariance) {
@@ -33,6 +32,13 @@ InputError not_positive_definite(const MatrixXd& covariance) {
         "the covariance of the observation's noise ({0} x {0}) has the least eigenvalue {1:.3g} "
         "where the largest is {2:.3g}{3}",
         covariance.rows(), eigen.eigenvalues()[0], eigen.eigenvalues().tail(1)[0], rule));
+}
+
+/// In its own memory: L is its lower half then. False: it is not positive definite.
+bool factorise(MatrixXd& covariance) {
+    const Eigen::LLT<Eigen::Ref<MatrixXd>> cholesky(covariance);
+    // Of what is not a number LLT says success.
+    return cholesky.info() == Eigen::Success && covariance.diagonal().allFinite();
 }
 
 bool is_sigma(double value) { return std::isfinite(value) && value >= 0; }
@@ -72,20 +78,7 @@ VectorXd model_error_of_rows(const Campaign& campaign) {
 
 MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
                          const VectorXd& sensor_unknowns, const VectorXd& repeats) {
-    const Sensor& sensor = *campaign.sensor;
-    const Index width = sensor.rows_per_target();
-    const std::vector<Index> rows = seen_rows(repeats.array() > 0, width);
-    MatrixXd covariance = sensor.covariance(motion.world_from_flange, sensor_unknowns)(rows, rows);
-    for (Index k = 0; k < covariance.rows(); ++k) {  // targets are independent of each other
-        covariance.row(k) /= repeats[rows[static_cast<std::size_t>(k)] / width];
-    }
-    covariance.diagonal() += model_error_of_rows(campaign)(rows).cwiseAbs2();
-    if (campaign.joint_repeatability.size() > 0) {
-        const RowMatrixXd effect =
-            joint_noise_effect(campaign, motion, sensor_unknowns)(rows, Eigen::all);
-        covariance.noalias() += effect * effect.transpose();
-    }
-    return covariance;
+    return PoseNoise(campaign).covariance(motion, sensor_unknowns, repeats);
 }
 
 MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
@@ -106,7 +99,8 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
         campaign.sensor->covariance_rate(motion.world_from_flange, direction, sensor_unknowns) /
         repeats;
     if (campaign.joint_repeatability.size() > 0) {
-        const RowMatrixXd effect = joint_noise_effect(campaign, motion, sensor_unknowns);
+        RowMatrixXd effect(campaign.sensor->row_count(), motion.joint_twists.cols());
+        fill_joint_effect(campaign, motion, sensor_unknowns, effect);
         RowMatrixXd effect_rate(effect.rows(), effect.cols());
         campaign.sensor->differentiate_along(motion.world_from_flange, motion.joint_twists,
                                              direction, rate.joint_twists, sensor_unknowns,
@@ -119,32 +113,85 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
 }
 
 double whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows) {
-    const auto variances = covariance.diagonal().array();
-    if (covariance.isDiagonal(0) && (variances > 0).all()) {
-        rows.array().colwise() *= variances.rsqrt();
-        return variances.log().sum() / 2;
-    }
-    const MatrixXd L = cholesky_factor(covariance);
-    L.triangularView<Eigen::Lower>().solveInPlace(rows);
-    return L.diagonal().array().log().sum();
+    MatrixXd factor;
+    return whiten(covariance, rows, factor);
 }
 
-RowMatrixXd whiten_seen(const Campaign& campaign, const FlangeMotion& motion,
-                        const VectorXd& sensor_unknowns, const VectorXd& repeats,
-                        const RowMatrixXd& rows) {
-    const Index width = campaign.sensor->rows_per_target();
-    RowMatrixXd seen = rows(seen_rows(repeats.array() > 0, width), Eigen::all);
-    whiten(mean_covariance(campaign, motion, sensor_unknowns, repeats), seen);
-    return seen;
+double whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows, MatrixXd& factor) {
+    const auto variances = covariance.diagonal().array();
+    if (covariance.isDiagonal(0) && (variances > 0).all()) {
+        for (Index k = 0; k < rows.rows(); ++k) rows.row(k) *= 1 / std::sqrt(variances[k]);
+        return variances.log().sum() / 2;
+    }
+    factor = covariance;
+    if (!factorise(factor)) throw not_positive_definite(covariance);
+    factor.triangularView<Eigen::Lower>().solveInPlace(rows);
+    return factor.diagonal().array().log().sum();
+}
+
+PoseNoise::PoseNoise(const Campaign& campaign)
+    : campaign_(campaign),
+      is_constant_(has_constant_noise(campaign)),
+      model_variances_(model_error_of_rows(campaign).cwiseAbs2()),
+      of_sensor_(campaign.sensor->row_count(), campaign.sensor->row_count()),
+      joint_effect_(campaign.sensor->row_count(), campaign.joint_repeatability.size()) {}
+
+const MatrixXd& PoseNoise::covariance(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
+                                      const VectorXd& repeats) {
+    const bool is_same = repeats_.size() > 0 && repeats_ == repeats;
+    if (is_same && is_constant_) return covariance_;
+    const Sensor& sensor = *campaign_.sensor;
+    const Index width = sensor.rows_per_target();
+    if (!is_same) {
+        repeats_ = repeats;
+        rows_ = seen_rows(repeats.array() > 0, width);
+    }
+    sensor.covariance(motion.world_from_flange, sensor_unknowns, of_sensor_);
+    const Index count = std::ssize(rows_);
+    covariance_.resize(count, count);
+    for (Index k = 0; k < count; ++k) {  // targets are independent of each other
+        const Index row = rows_[static_cast<std::size_t>(k)];
+        for (Index i = 0; i < count; ++i) {
+            const double of_one = of_sensor_(row, rows_[static_cast<std::size_t>(i)]);
+            covariance_(k, i) = of_one / repeats[row / width];
+        }
+        covariance_(k, k) += model_variances_[row];
+    }
+    if (joint_effect_.cols() > 0) add_joint_noise(motion, sensor_unknowns);
+    return covariance_;
+}
+
+void PoseNoise::add_joint_noise(const FlangeMotion& motion, const VectorXd& sensor_unknowns) {
+    fill_joint_effect(campaign_, motion, sensor_unknowns, joint_effect_);
+    seen_joint_effect_.resize(covariance_.rows(), joint_effect_.cols());
+    for (Index k = 0; k < covariance_.rows(); ++k) {
+        seen_joint_effect_.row(k) = joint_effect_.row(rows_[static_cast<std::size_t>(k)]);
+    }
+    covariance_.noalias() += seen_joint_effect_ * seen_joint_effect_.transpose();
+}
+
+Index PoseNoise::whiten_seen(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
+                             const VectorXd& repeats, Eigen::Ref<RowMatrixXd> rows) {
+    const MatrixXd& of_mean = covariance(motion, sensor_unknowns, repeats);
+    const Index count = of_mean.rows();
+    for (Index k = 0; k < count; ++k) {
+        const Index row = rows_[static_cast<std::size_t>(k)];
+        if (row != k) rows.row(k) = rows.row(row);
+    }
+    whiten(of_mean, rows.topRows(count), factor_);
+    return count;
 }
 
 MatrixXd cholesky_factor(const MatrixXd& covariance) {
-    const Eigen::LLT<MatrixXd> cholesky(covariance);
-    // Of what is not a number LLT says success.
-    if (cholesky.info() != Eigen::Success || !cholesky.matrixLLT().diagonal().allFinite()) {
-        throw not_positive_definite(covariance);
-    }
-    return cholesky.matrixL();
+    MatrixXd L;
+    cholesky_factor(covariance, L);
+    return L;
+}
+
+void cholesky_factor(const MatrixXd& covariance, MatrixXd& L) {
+    L = covariance;
+    if (!factorise(L)) throw not_positive_definite(covariance);
+    L.triangularView<Eigen::StrictlyUpper>().setZero();
 }
 
 }  // namespace posewise::detail

@@ -38,15 +38,44 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
 /// Multiplies `rows` from the left by L^-1, where covariance = L L^T (Cholesky): errors with this
 /// covariance become independent with variance 1. Returns log det L. Throws as cholesky_factor().
 double whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows);
+/// The same in memory that the caller has: `factor` becomes L, or is left alone.
+double whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows, MatrixXd& factor);
 
-/// Of `rows`, one for each number of an observation, those of the targets seen, whitened by the
-/// mean_covariance() of target j over repeats[j] observations (0: not seen).
-RowMatrixXd whiten_seen(const Campaign& campaign, const FlangeMotion& motion,
-                        const VectorXd& sensor_unknowns, const VectorXd& repeats,
-                        const RowMatrixXd& rows);
+/// The noise of one pose after another, in memory that it takes once; where it is the same at every
+/// pose it is computed once, too.
+class PoseNoise {
+  public:
+    explicit PoseNoise(const Campaign& campaign);
+
+    /// mean_covariance() of a pose, until the next one is asked for.
+    const MatrixXd& covariance(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
+                               const VectorXd& repeats);
+    /// Which rows of a complete observation it is of.
+    const std::vector<Index>& rows() const { return rows_; }
+
+    /// Of `rows`, one for each number of a complete observation, takes those of the targets seen,
+    /// whitened by the covariance(), to the front; returns how many they are.
+    Index whiten_seen(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
+                      const VectorXd& repeats, Eigen::Ref<RowMatrixXd> rows);
+
+  private:
+    void add_joint_noise(const FlangeMotion& motion, const VectorXd& sensor_unknowns);
+
+    const Campaign& campaign_;
+    bool is_constant_;
+    VectorXd model_variances_;  ///< of all rows, as what follows
+    MatrixXd of_sensor_;
+    RowMatrixXd joint_effect_;
+    std::vector<Index> rows_;
+    VectorXd repeats_;     ///< that covariance_ is of
+    MatrixXd covariance_;  ///< of rows_, as what follows
+    RowMatrixXd seen_joint_effect_;
+    MatrixXd factor_;
+};
 
 /// L such that covariance = L L^T, for drawing noise. Throws InputError if the covariance is not
 /// positive definite.
 MatrixXd cholesky_factor(const MatrixXd& covariance);
+void cholesky_factor(const MatrixXd& covariance, MatrixXd& L);
 
 }  // namespace posewise::detail

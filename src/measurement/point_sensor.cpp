@@ -25,12 +25,11 @@ std::vector<std::string> PointSensor::observation_names() const {
     return names;
 }
 
-VectorXd PointSensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const {
-    VectorXd points(row_count());
-    for (Index j = 0; j < target_count(); ++j) {
-        points.segment<3>(3 * j) = world_from_flange * targets_.position(j, unknowns);
+void PointSensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                          Eigen::Ref<VectorXd> observation) const {
+    for (Index j = 0; j < targets_.count(); ++j) {
+        observation.segment<3>(3 * j) = world_from_flange * targets_.position(j, unknowns);
     }
-    return points;
 }
 
 void PointSensor::differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
@@ -47,14 +46,13 @@ void PointSensor::differentiate_along(const Isometry3d& world_from_flange,
                                  J_rate);
 }
 
-MatrixXd PointSensor::covariance(const Isometry3d& world_from_flange,
-                                 const VectorXd& unknowns) const {
-    MatrixXd covariance = MatrixXd::Zero(row_count(), row_count());
-    for (Index j = 0; j < target_count(); ++j) {
+void PointSensor::covariance(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                             Eigen::Ref<MatrixXd> covariance) const {
+    covariance.setZero();
+    for (Index j = 0; j < targets_.count(); ++j) {
         covariance.block<3, 3>(3 * j, 3 * j) =
             point_covariance(noise_, world_from_flange * targets_.position(j, unknowns));
     }
-    return covariance;
 }
 
 MatrixXd PointSensor::covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,

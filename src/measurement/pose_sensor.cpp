@@ -80,26 +80,25 @@ std::vector<bool> PoseSensor::unknown_is_angle() const {
     return {false, false, false, true, true, true};
 }
 
-VectorXd PoseSensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const {
+void PoseSensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                         Eigen::Ref<VectorXd> observation) const {
     const Isometry3d body = world_from_flange * tool(unknowns);
-    VectorXd pose(6);
-    pose << body.translation(), vector_from_rotation(body.linear());
-    return pose;
+    observation << body.translation(), vector_from_rotation(body.linear());
 }
 
-VectorXd PoseSensor::deviation(const VectorXd& observation, const VectorXd& reference) const {
-    VectorXd deviation = observation - reference;
+void PoseSensor::deviation(const ConstNumbers& observation, const ConstNumbers& reference,
+                           Eigen::Ref<VectorXd> deviation) const {
+    deviation = observation - reference;
     deviation.tail<3>() =
         vector_from_rotation(rotation_from_vector(observation.tail<3>()) *
                              rotation_from_vector(reference.tail<3>()).transpose());
-    return deviation;
 }
 
-VectorXd PoseSensor::deviate(const VectorXd& reference, const VectorXd& deviation) const {
-    VectorXd observation = reference + deviation;
+void PoseSensor::deviate(const ConstNumbers& reference, const ConstNumbers& deviation,
+                         Eigen::Ref<VectorXd> observation) const {
+    observation = reference + deviation;
     observation.tail<3>() = vector_from_rotation(rotation_from_vector(deviation.tail<3>()) *
                                                  rotation_from_vector(reference.tail<3>()));
-    return observation;
 }
 
 void PoseSensor::differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
@@ -129,13 +128,12 @@ void PoseSensor::differentiate_along(const Isometry3d& world_from_flange, const 
                             rotation_vector_rate(unknowns.segment<3>(3));
 }
 
-MatrixXd PoseSensor::covariance(const Isometry3d& world_from_flange,
-                                const VectorXd& unknowns) const {
-    MatrixXd covariance = MatrixXd::Zero(6, 6);
+void PoseSensor::covariance(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                            Eigen::Ref<MatrixXd> covariance) const {
+    covariance.setZero();
     covariance.topLeftCorner<3, 3>() =
         point_covariance(noise_, world_from_flange * target_position(0, unknowns));
     covariance.diagonal().tail<3>().setConstant(sigma_orientation_ * sigma_orientation_);
-    return covariance;
 }
 
 MatrixXd PoseSensor::covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,

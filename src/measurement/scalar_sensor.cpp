@@ -81,33 +81,38 @@ std::vector<std::string> ScalarSensor::observation_names() const {
     return names;
 }
 
-VectorXd ScalarSensor::predict(const Isometry3d& world_from_flange,
-                               const VectorXd& unknowns) const {
-    VectorXd lengths(row_count());
+void ScalarSensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                           Eigen::Ref<VectorXd> observation) const {
     for (Index row = 0; row < row_count(); ++row) {
         const Vector3d x = world_from_flange * target_position(row, unknowns);
         const Index feature = row % feature_count();
-        lengths[row] = measure(x, feature, feature_values(feature, unknowns)).value;
+        observation[row] = measure(x, feature, feature_values(feature, unknowns)).value;
     }
-    return lengths;
 }
 
 void ScalarSensor::differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                                  const VectorXd& unknowns,
                                  Eigen::Ref<RowMatrixXd> J_measured_parameters) const {
-    RowMatrixXd J(3 * targets_.count(), J_measured_parameters.cols());
-    targets_.differentiate(world_from_flange, twists, unknowns, J);
-    const bool has_own = J.cols() > twists.cols();
+    auto J_unknowns = J_measured_parameters.rightCols(J_measured_parameters.cols() - twists.cols());
+    J_unknowns.setZero();
+    const bool has_own = J_unknowns.cols() > 0;
     for (Index row = 0; row < row_count(); ++row) {
         const Vector3d x = world_from_flange * target_position(row, unknowns);
         const Index feature = row % feature_count();
         const Length length = measure(x, feature, feature_values(feature, unknowns));
-        const Index target = row / feature_count();
-        J_measured_parameters.row(row) = length.gradient.transpose() * J.middleRows<3>(3 * target);
+        Twist wrench;  // what a twist does to the length
+        wrench << x.cross(length.gradient), length.gradient;
+        for (Index k = 0; k < twists.cols(); ++k) {
+            J_measured_parameters(row, k) = wrench.dot(twists.col(k));
+        }
+        const Vector3d in_flange = world_from_flange.linear().transpose() * length.gradient;
+        for (Index axis = 0; axis < 3 && has_own; ++axis) {
+            const Index index = targets_.unknown_index(row / feature_count(), axis);
+            if (index >= 0) J_unknowns(row, index) = in_flange[axis];
+        }
         for (Index value = 0; value < 3 && has_own; ++value) {
             if (is_known(feature, value)) continue;
-            J_measured_parameters(row, twists.cols() + unknown_index(feature, value)) =
-                length.by_feature[value];
+            J_unknowns(row, unknown_index(feature, value)) = length.by_feature[value];
         }
     }
 }
@@ -137,8 +142,9 @@ void ScalarSensor::differentiate_along(const Isometry3d& world_from_flange,
     }
 }
 
-MatrixXd ScalarSensor::covariance(const Isometry3d&, const VectorXd&) const {
-    return sigma_ * sigma_ * MatrixXd::Identity(row_count(), row_count());
+void ScalarSensor::covariance(const Isometry3d&, const VectorXd&,
+                              Eigen::Ref<MatrixXd> covariance) const {
+    covariance = sigma_ * sigma_ * MatrixXd::Identity(row_count(), row_count());
 }
 
 SensorWords ScalarSensor::words() const {

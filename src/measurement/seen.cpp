@@ -20,6 +20,7 @@ SeenTargets seen_targets(const std::vector<Index>& targets, Index target_count) 
 
 std::vector<Index> seen_rows(const SeenTargets& is_seen, Index rows_per_target) {
     std::vector<Index> rows;
+    rows.reserve(static_cast<std::size_t>(rows_per_target * is_seen.size()));
     for (Index row = 0; row < rows_per_target * is_seen.size(); ++row) {
         if (is_seen[row / rows_per_target]) rows.push_back(row);
     }

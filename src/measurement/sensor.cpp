@@ -58,6 +58,30 @@ std::vector<bool> Sensor::unknown_is_angle() const {
     return std::vector<bool>(unknown_names().size(), false);
 }
 
+VectorXd Sensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const {
+    VectorXd observation(row_count());
+    predict(world_from_flange, unknowns, observation);
+    return observation;
+}
+
+MatrixXd Sensor::covariance(const Isometry3d& world_from_flange, const VectorXd& unknowns) const {
+    MatrixXd of_noise(row_count(), row_count());
+    covariance(world_from_flange, unknowns, of_noise);
+    return of_noise;
+}
+
+VectorXd Sensor::deviation(const ConstNumbers& observation, const ConstNumbers& reference) const {
+    VectorXd step(observation.size());
+    deviation(observation, reference, step);
+    return step;
+}
+
+VectorXd Sensor::deviate(const ConstNumbers& reference, const ConstNumbers& deviation) const {
+    VectorXd observation(reference.size());
+    deviate(reference, deviation, observation);
+    return observation;
+}
+
 Index Sensor::count_angles() const {
     Index count = 0;
     for (Index row = 0; row < row_count(); ++row) count += is_angle(row) ? 1 : 0;

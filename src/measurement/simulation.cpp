@@ -132,31 +132,38 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
     const bool has_contacts = sensor.has_contacts();
     Measurements measurements;
     measurements.configurations = configurations;
+    measurements.ids.reserve(static_cast<std::size_t>(configurations.rows()));
+    measurements.first_sample.reserve(static_cast<std::size_t>(configurations.rows()) + 1);
     measurements.observations.resize(configurations.rows() * repeats, rows);
     measurements.is_seen.resize(configurations.rows() * repeats, sensor.target_count());
+    VectorXd q(configurations.cols());
+    VectorXd joint_errors = VectorXd::Zero(q.size());
+    VectorXd predicted(rows), expected(rows), noise(rows), drawn(rows);
+    MatrixXd covariance(rows, rows), noise_factor;
     for (Index i = 0; i < configurations.rows(); ++i) {
         RandomStream stream(seed, static_cast<std::uint64_t>(i));
-        VectorXd q = configurations.row(i).transpose();
-        VectorXd joint_errors = VectorXd::Zero(q.size());
-        if (campaign.joint_repeatability.size() > 0) {
-            const Index joints = campaign.robot.joint_count();
-            joint_errors.head(joints) =
-                campaign.joint_repeatability.cwiseProduct(stream.normals(joints));
+        q = configurations.row(i).transpose();
+        for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {
+            joint_errors[j] = campaign.joint_repeatability[j] * stream.normal();
         }
         q += joint_errors;
         const Isometry3d flange = world_from_flange(campaign, truth, q);
-        const VectorXd expected = sensor.deviate(sensor.predict(flange, truth.sensor),
-                                                 model_error.cwiseProduct(stream.normals(rows)));
-        const MatrixXd noise_factor =
-            detail::cholesky_factor(sensor.covariance(flange, truth.sensor));
+        sensor.predict(flange, truth.sensor, predicted);
+        for (Index row = 0; row < rows; ++row) drawn[row] = model_error[row] * stream.normal();
+        sensor.deviate(predicted, drawn, expected);
+        if (i == 0 || !sensor.has_constant_covariance()) {
+            sensor.covariance(flange, truth.sensor, covariance);
+            detail::cholesky_factor(covariance, noise_factor);
+        }
         measurements.is_seen.middleRows(i * repeats, repeats).rowwise() = is_seen.row(i);
         for (Index k = 0; k < repeats; ++k) {
-            const VectorXd noise = noise_factor * stream.normals(rows);
-            measurements.observations.row(i * repeats + k) =
-                sensor.deviate(expected, noise).transpose();
+            for (double& one : drawn) one = stream.normal();
+            noise.noalias() = noise_factor * drawn;
+            sensor.deviate(expected, noise, predicted);
+            measurements.observations.row(i * repeats + k) = predicted.transpose();
         }
         if (has_contacts) {
-            const VectorXd noise =
+            noise =
                 measurements.observations.row(i).transpose() - sensor.predict(flange, truth.sensor);
             measurements.configurations.row(i) =
                 (touching_joints(campaign, truth, q, is_seen.row(i), noise) - joint_errors)

@@ -119,26 +119,25 @@ Vector3d SocketSensor::socket_position(Index socket, const VectorXd& unknowns) c
                direction_to(of(socket), sockets_, unknowns.segment<2>(first)).value;
 }
 
-VectorXd SocketSensor::predict(const Isometry3d& world_from_flange,
-                               const VectorXd& unknowns) const {
+void SocketSensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                           Eigen::Ref<VectorXd> observation) const {
     const Vector3d ball = world_from_flange * ball_.position(0, unknowns);
-    VectorXd readings(row_count());
     for (Index k = 0; k < target_count(); ++k) {
-        readings.segment<3>(3 * k) = ball - socket_position(k, unknowns);
+        observation.segment<3>(3 * k) = ball - socket_position(k, unknowns);
     }
-    return readings;
 }
 
 void SocketSensor::differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                                  const VectorXd& unknowns,
                                  Eigen::Ref<RowMatrixXd> J_measured_parameters) const {
-    RowMatrixXd of_ball(3, J_measured_parameters.cols());
+    auto of_ball = J_measured_parameters.topRows<3>();
     ball_.differentiate(world_from_flange, twists, unknowns, of_ball);
-    const bool has_own = !are_known_ && of_ball.cols() > twists.cols();
+    for (Index k = 1; k < target_count(); ++k) {
+        J_measured_parameters.middleRows<3>(3 * k) = of_ball;
+    }
+    if (are_known_ || J_measured_parameters.cols() == twists.cols()) return;
     for (Index k = 0; k < target_count(); ++k) {
         auto J = J_measured_parameters.middleRows<3>(3 * k);
-        J = of_ball;
-        if (!has_own) continue;
         Index socket = k;
         for (; has_distance(socket); socket = of(socket).from) {
             const Index first = unknown_index_[static_cast<std::size_t>(socket)];
@@ -161,8 +160,9 @@ void SocketSensor::differentiate_along(const Isometry3d& world_from_flange,
     for (Index k = 0; k < target_count(); ++k) J_rate.middleRows<3>(3 * k) = of_ball;
 }
 
-MatrixXd SocketSensor::covariance(const Isometry3d&, const VectorXd&) const {
-    return sigma_ * sigma_ * MatrixXd::Identity(row_count(), row_count());
+void SocketSensor::covariance(const Isometry3d&, const VectorXd&,
+                              Eigen::Ref<MatrixXd> covariance) const {
+    covariance = sigma_ * sigma_ * MatrixXd::Identity(row_count(), row_count());
 }
 
 SensorWords SocketSensor::words() const {

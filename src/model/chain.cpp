@@ -8,32 +8,34 @@
 namespace posewise {
 
 Chain::Chain(std::vector<Joint> joints, std::vector<Element> elements,
-             std::vector<MeasuredTorque> torques)
-    : joints_(std::move(joints)), elements_(std::move(elements)), torques_(std::move(torques)) {
-    detail::check_joints(joints_);
-    detail::check_elements(elements_, joints_, configuration_size());
-    const std::vector<Motion> motions = detail::find_motions(joints_, elements_);
-    for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].motion = motions[j];
-    detail::check_torques(torques_, joints_);
-    for (std::size_t k = 0; k < elements_.size(); ++k) {
+             std::vector<MeasuredTorque> torques) {
+    Parts parts{std::move(joints), std::move(elements), std::move(torques), {}};
+    const auto size = static_cast<Index>(parts.joints.size() + parts.torques.size());
+    detail::check_joints(parts.joints);
+    detail::check_elements(parts.elements, parts.joints, size);
+    const std::vector<Motion> motions = detail::find_motions(parts.joints, parts.elements);
+    for (std::size_t j = 0; j < motions.size(); ++j) parts.joints[j].motion = motions[j];
+    detail::check_torques(parts.torques, parts.joints);
+    for (std::size_t k = 0; k < parts.elements.size(); ++k) {
         const auto element = static_cast<Index>(k);
-        if (!elements_[k].parameter.empty()) parameter_places_.push_back({element, -1});
-        const auto terms = static_cast<Index>(elements_[k].terms.size());
-        for (Index i = 0; i < terms; ++i) parameter_places_.push_back({element, i});
+        if (!parts.elements[k].parameter.empty()) parts.parameter_places.push_back({element, -1});
+        const auto terms = static_cast<Index>(parts.elements[k].terms.size());
+        for (Index i = 0; i < terms; ++i) parts.parameter_places.push_back({element, i});
     }
+    parts_ = std::make_shared<Parts>(std::move(parts));
 }
 
 Chain Chain::with_elements(std::vector<Element> elements) const {
-    return Chain(joints_, std::move(elements), torques_);
+    return Chain(joints(), std::move(elements), torques());
 }
 
 const Element& Chain::parameter_element(Index parameter) const {
-    const Place& place = parameter_places_[static_cast<std::size_t>(parameter)];
-    return elements_[static_cast<std::size_t>(place.element)];
+    const Place& place = parts_->parameter_places[static_cast<std::size_t>(parameter)];
+    return elements()[static_cast<std::size_t>(place.element)];
 }
 
 const ErrorTerm* Chain::parameter_term(Index parameter) const {
-    const Index term = parameter_places_[static_cast<std::size_t>(parameter)].term;
+    const Index term = parts_->parameter_places[static_cast<std::size_t>(parameter)].term;
     return term < 0 ? nullptr : &parameter_element(parameter).terms[static_cast<std::size_t>(term)];
 }
 
@@ -48,19 +50,20 @@ std::vector<std::string> Chain::parameter_names() const {
 
 void Chain::check_configuration(const VectorXd& q) const {
     if (q.size() != configuration_size()) {
-        const std::string torques =
-            torques_.empty() ? "" : " and " + std::to_string(torques_.size()) + " measured torques";
+        const std::string and_torques =
+            torques().empty() ? ""
+                              : " and " + std::to_string(torques().size()) + " measured torques";
         throw InputError("configuration has " + std::to_string(q.size()) +
-                         (torques_.empty() ? " joint values" : " values") + ", the robot has " +
-                         std::to_string(joint_count()) + " joints" + torques);
+                         (torques().empty() ? " joint values" : " values") + ", the robot has " +
+                         std::to_string(joint_count()) + " joints" + and_torques);
     }
     for (Index k = 0; k < q.size(); ++k) {
         if (std::isfinite(q[k])) continue;
         const bool is_joint = k < joint_count();
         const Index joint =
-            is_joint ? k : torques_[static_cast<std::size_t>(k - joint_count())].joint;
+            is_joint ? k : torques()[static_cast<std::size_t>(k - joint_count())].joint;
         throw InputError((is_joint ? "joint '" : "the torque of joint '") +
-                         joints_[static_cast<std::size_t>(joint)].name +
+                         joints()[static_cast<std::size_t>(joint)].name +
                          "' has a value that is not a finite number");
     }
 }
@@ -85,10 +88,10 @@ std::string transform_name(const Element& element) {
 }
 
 Chain without_parameters(const Chain& chain) {
-    std::vector<Element> elements = chain.elements();
-    for (Element& element : elements) {
-        element.parameter.clear();
-        element.terms.clear();
+    std::vector<Element> elements;
+    for (const Element& element : chain.elements()) {
+        elements.push_back({element.motion, element.axis, element.value, element.joints});
+        elements.back().known_terms = element.known_terms;
     }
     return chain.with_elements(std::move(elements));
 }

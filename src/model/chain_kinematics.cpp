@@ -1,11 +1,17 @@
 #include <cmath>
 
 #include "../core/elementary.hpp"
+#include "element_amount.hpp"
 #include "posewise/model/chain.hpp"
 #include "posewise/model/gravity_torque.hpp"
 
 namespace posewise {
 namespace {
+
+using detail::amount_of;
+using detail::evaluate;
+using detail::FunctionValue;
+using detail::sum_of;
 
 /// world_from_base * E_1 * ... * E_k, kept as rotation and position because an elementary
 /// transform touches only two columns of the one or one combination of the other.
@@ -55,38 +61,6 @@ Twist lie_bracket(const Twist& a, const Twist& b) {
     Twist result;
     result << w.cross(b.head<3>()), w.cross(b.tail<3>()) + a.tail<3>().cross(b.head<3>());
     return result;
-}
-
-double sum_of(double start, const std::vector<JointTerm>& joints, const VectorXd& q) {
-    for (const JointTerm& term : joints) start += term.coefficient * q[term.joint];
-    return start;
-}
-
-/// A joint function and its derivatives by u.
-struct FunctionValue {
-    double value, slope, curvature;
-};
-
-FunctionValue evaluate(const JointFunction& function, const VectorXd& q) {
-    if (function.torque != nullptr) return {function.torque->value(q), 0, 0};
-    const double u = sum_of(function.phase, function.joints, q);
-    if (function.shape == JointFunction::Shape::Linear) return {u, 1, 0};
-    const auto [sine, cosine] = detail::sine_and_cosine(u);
-    return {sine, cosine, -sine};
-}
-
-/// E's amount; `next` is the number of the element's first error parameter, then after its last.
-double amount_of(const Element& element, const VectorXd& q, const VectorXd& parameters,
-                 Index& next) {
-    double amount = sum_of(element.value, element.joints, q);
-    if (!element.parameter.empty()) amount += parameters[next++];
-    for (const ErrorTerm& term : element.terms) {
-        amount += parameters[next++] * evaluate(term.function, q).value;
-    }
-    for (const KnownTerm& term : element.known_terms) {
-        amount += term.coefficient * evaluate(term.function, q).value;
-    }
-    return amount;
 }
 
 /// f(q); adds to the joints' twists, if there are any, what `coefficient` times it moves.
@@ -177,7 +151,7 @@ void add_function_rates(const JointFunction& function, double coefficient, const
 Isometry3d Chain::base_from_flange(const VectorXd& q, const VectorXd& parameters) const {
     RunningProduct product{Matrix3d::Identity(), Vector3d::Zero()};
     Index k = 0;
-    for (const Element& element : elements_) {
+    for (const Element& element : elements()) {
         product.append(element.motion, element.axis, amount_of(element, q, parameters, k));
     }
     return product.pose();
@@ -199,7 +173,7 @@ void Chain::walk(const Isometry3d& world_from_base, const VectorXd& q, const Vec
     }
     RunningProduct product{world_from_base.linear(), base};
     Index next = 0;
-    for (const Element& element : elements_) {
+    for (const Element& element : elements()) {
         const Index first = next;
         double amount = sum_of(element.value, element.joints, q);
         if (!element.parameter.empty()) amount += parameters[next++];
@@ -223,11 +197,11 @@ void Chain::walk(const Isometry3d& world_from_base, const VectorXd& q, const Vec
 
 std::vector<Isometry3d> Chain::base_from_links(const VectorXd& q,
                                                const VectorXd& parameters) const {
-    std::vector<Isometry3d> links(joints_.size() + 2, Isometry3d::Identity());
-    std::vector<bool> is_found(joints_.size(), false);
+    std::vector<Isometry3d> links(joints().size() + 2, Isometry3d::Identity());
+    std::vector<bool> is_found(joints().size(), false);
     RunningProduct product{Matrix3d::Identity(), Vector3d::Zero()};
     Index k = 0;
-    for (const Element& element : elements_) {
+    for (const Element& element : elements()) {
         product.append(element.motion, element.axis, amount_of(element, q, parameters, k));
         for (const JointTerm& term : element.joints) {
             const auto joint = static_cast<std::size_t>(term.joint);
@@ -248,7 +222,7 @@ void Chain::differentiate(const Isometry3d& world_from_base, const VectorXd& q,
 void Chain::differentiate_twice(const Isometry3d& world_from_base, const VectorXd& q,
                                 const VectorXd& parameters, FlangeMotion& motion,
                                 std::vector<FlangeMotionRate>& rates) const {
-    rates.resize(joints_.size());
+    rates.resize(joints().size());
     for (FlangeMotionRate& rate : rates) {
         rate.twists.setZero(6, 6 + parameter_count());
         rate.joint_twists.setZero(6, joint_count());

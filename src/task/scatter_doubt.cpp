@@ -8,9 +8,9 @@ namespace {
 
 /// The targets' rows that a sample shows, less those of the mean, whitened by the instrument's
 /// noise alone.
-VectorXd whitened_deviation(const Campaign& instrument, const Parameters& parameters,
-                            const Measurements& measured, Index sample, const VectorXd& q,
-                            const VectorXd& mean) {
+RowMatrixXd whitened_deviation(const Campaign& instrument, const Parameters& parameters,
+                               const Measurements& measured, Index sample, const VectorXd& q,
+                               const VectorXd& mean) {
     const Sensor& sensor = *instrument.sensor;
     const std::vector<Index> rows =
         seen_rows(measured.is_seen.row(sample), sensor.rows_per_target());
@@ -19,8 +19,10 @@ VectorXd whitened_deviation(const Campaign& instrument, const Parameters& parame
     FlangeMotion motion;
     motion.world_from_flange = world_from_flange(instrument, parameters, q);
     const VectorXd seen = measured.is_seen.row(sample).cast<double>().transpose();
-    return detail::whiten_seen(instrument, motion, parameters.sensor, seen,
-                               sensor.deviation(observed, mean));
+    RowMatrixXd deviation = sensor.deviation(observed, mean);
+    const Index count =
+        detail::PoseNoise(instrument).whiten_seen(motion, parameters.sensor, seen, deviation);
+    return deviation.topRows(count);
 }
 
 }  // namespace

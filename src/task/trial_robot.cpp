@@ -56,14 +56,15 @@ RowMatrixXd target_positions(const Campaign& campaign, const Parameters& paramet
     for (Index j = 0; j < targets; ++j) {
         on_flange.push_back(sensor.target_position(j, parameters.sensor));
     }
-    VectorXd q(configurations.cols());
-    for (Index i = 0; i < configurations.rows(); ++i) {
-        q = configurations.row(i).transpose();
-        const Isometry3d flange = world_from_flange(campaign, parameters, q);
+    Index i = 0;
+    for (const Isometry3d& flange :
+         campaign.robot.base_from_flanges(configurations, parameters.robot)) {
+        const Isometry3d world_from_flange = parameters.world_from_base * flange;
         for (Index j = 0; j < targets; ++j) {
             positions.row(i).segment<3>(3 * j) =
-                (flange * on_flange[static_cast<std::size_t>(j)]).transpose();
+                (world_from_flange * on_flange[static_cast<std::size_t>(j)]).transpose();
         }
+        ++i;
     }
     return positions;
 }

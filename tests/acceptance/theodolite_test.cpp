@@ -61,19 +61,19 @@ class Theodolite final : public Sensor {
         return is_angle;
     }
 
-    VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const override {
-        VectorXd angles(row_count());
+    void predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                 Eigen::Ref<VectorXd> observation) const override {
         for (Index j = 0; j < targets_.count(); ++j) {
             const Vector3d d = from_station(world_from_flange, j, unknowns);
             const double azimuth = std::atan2(d.y(), d.x()) - unknowns[unknowns.size() - 1];
-            angles[2 * j] = within_half_a_turn(azimuth);
-            angles[2 * j + 1] = std::atan2(d.z(), d.head<2>().norm());
+            observation[2 * j] = within_half_a_turn(azimuth);
+            observation[2 * j + 1] = std::atan2(d.z(), d.head<2>().norm());
         }
-        return angles;
     }
 
-    VectorXd deviation(const VectorXd& observation, const VectorXd& reference) const override {
-        return (observation - reference).unaryExpr([](double d) { return within_half_a_turn(d); });
+    void deviation(const ConstNumbers& observation, const ConstNumbers& reference,
+                   Eigen::Ref<VectorXd> deviation) const override {
+        deviation = (observation - reference).unaryExpr(&Theodolite::within_half_a_turn);
     }
 
     void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
@@ -97,8 +97,9 @@ class Theodolite final : public Sensor {
         }
     }
 
-    MatrixXd covariance(const Isometry3d&, const VectorXd&) const override {
-        return sigma_ * sigma_ * MatrixXd::Identity(row_count(), row_count());
+    void covariance(const Isometry3d&, const VectorXd&,
+                    Eigen::Ref<MatrixXd> covariance) const override {
+        covariance = sigma_ * sigma_ * MatrixXd::Identity(row_count(), row_count());
     }
 
   private:

@@ -4,12 +4,32 @@
 
 #include <cmath>
 #include <map>
+#include <random>
 #include <set>
 
 #include "support/sweep.hpp"
 
 namespace posewise {
 namespace {
+
+/// SplitMix64's, as in src/core/random.cpp.
+std::uint64_t mix(std::uint64_t x) {
+    x += 0x9e3779b97f4a7c15ULL;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+    return x ^ (x >> 31);
+}
+
+TEST(RandomStream, HasTheNumbersOfTheStandardLibrarysEngine) {
+    for (const std::uint64_t seed : {0ULL, 1ULL, 5489ULL, ~0ULL}) {
+        RandomStream ours(seed, 2);
+        std::mt19937_64 theirs(mix(mix(seed) + 2));
+        for (int i = 0; i < 1000; ++i) {  // thrice its state
+            const double expected = static_cast<double>(theirs() >> 11) * 0x1.0p-53;
+            ASSERT_EQ(ours.uniform(), expected) << seed << ", number " << i;
+        }
+    }
+}
 
 TEST(RandomStream, GivesTheGoldenNumbers) {  // tests/golden/random_stream.py
     RandomStream first(1, 0);

@@ -4,8 +4,10 @@
 
 #include <limits>
 
+#include "../../src/core/simd.hpp"
 #include "../../src/model/complete_model.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/random.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "support/robots.hpp"
 #include "support/sweep.hpp"
@@ -252,6 +254,36 @@ TEST(Chain, PutsTheFrameOfACoupledJointBehindItsFirstElement) {
     EXPECT_LT(links[1].translation().norm(), 1e-15);
     EXPECT_NEAR(links[2].translation().norm(), 1, 1e-15);
     EXPECT_TRUE(links[3].isApprox(links[2]));
+}
+
+TEST(ManyFlanges, AreTheSameToTheLastDigitAsOneByOne) {
+    for (const Chain& robot : {fanuc(), detail::full_model(fanuc(), -9.81 * Vector3d::UnitZ())}) {
+        RandomStream stream(31);
+        VectorXd parameters = 1e-2 * stream.normals(robot.parameter_count());
+        parameters[1] = 0;
+        for (const double largest : {4.0, 3e6}) {  // the latter is beyond what vectors take
+            RowMatrixXd configurations(13, robot.configuration_size());
+            for (double& q : configurations.reshaped()) q = stream.uniform(-largest, largest);
+            for (int width = 2; width <= detail::simd::widest(); width *= 2) {
+                detail::simd::use_width(width);
+                const auto flanges = robot.base_from_flanges(configurations, parameters);
+                ASSERT_EQ(flanges.size(), 13U);
+                for (Index i = 0; i < 13; ++i) {
+                    const Isometry3d alone =
+                        robot.base_from_flange(configurations.row(i).transpose(), parameters);
+                    EXPECT_EQ(flanges[static_cast<std::size_t>(i)].matrix(), alone.matrix());
+                }
+            }
+            detail::simd::use_width(detail::simd::widest());
+        }
+    }
+    EXPECT_TRUE(fanuc().base_from_flanges(RowMatrixXd(0, 6), VectorXd::Zero(18)).empty());
+}
+
+TEST(Chain, IsWholeWhereItWasMovedFrom) {
+    Chain robot = fanuc();
+    const Chain other = std::move(robot);
+    EXPECT_EQ(robot.joint_count(), other.joint_count());  // NOLINT(bugprone-use-after-move)
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <random>
 #include <vector>
 
 #include "posewise/core/types.hpp"
@@ -30,7 +30,20 @@ class RandomStream {
     std::vector<Index> subset(Index count, Index k);
 
   private:
-    std::mt19937_64 engine_;
+    /// The numbers of std::mt19937_64 [Nishimura 2000], each made when it is asked for, not 312 at
+    /// once: streams of a few numbers, of which studies take one a configuration, cost as much
+    /// less.
+    class Engine {
+      public:
+        explicit Engine(std::uint64_t seed);
+        std::uint64_t operator()();
+
+      private:
+        std::array<std::uint64_t, 312> state_;
+        std::size_t next_ = 0;
+    };
+
+    Engine engine_;
 };
 
 }  // namespace posewise

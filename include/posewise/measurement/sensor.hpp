@@ -40,10 +40,14 @@ struct ObservedPoints {
     std::function<VectorXd(const VectorXd& coordinates)> unknowns;
 };
 
+/// Numbers of an observation, wherever they stand.
+using ConstNumbers = Eigen::Ref<const VectorXd>;
+
 /// What one measurement of a pose returns, how noisy it is, and which unknowns of its own it
 /// brings. The only virtual type of the library: a new kind of instrument is a new subclass and
 /// nothing else. It must say what it looks at and returns (targets, names, prediction, derivative,
-/// covariance); everything else has a default that is right for any sensor.
+/// covariance); everything else has a default that is right for any sensor. What is asked of it for
+/// each pose it writes to where the caller has room, so that a calibration takes no memory a pose.
 class Sensor {
   public:
     virtual ~Sensor() = default;
@@ -61,8 +65,8 @@ class Sensor {
     virtual std::vector<std::string> unknown_names() const = 0;
 
     /// The observation expected without noise, row_count() values in m or rad.
-    virtual VectorXd predict(const Isometry3d& world_from_flange,
-                             const VectorXd& unknowns) const = 0;
+    virtual void predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                         Eigen::Ref<VectorXd> observation) const = 0;
     /// Derivative of predict() by flange motions and by the sensor's own unknowns:
     /// row_count() x (twists.cols() + unknowns), or without the unknowns' columns. With the
     /// twists of a FlangeMotion this is the identification Jacobian of one pose.
@@ -70,8 +74,8 @@ class Sensor {
                                const VectorXd& unknowns,
                                Eigen::Ref<RowMatrixXd> J_measured_parameters) const = 0;
     /// Covariance of the noise of one observation at this pose: row_count() square, m^2 (rad^2).
-    virtual MatrixXd covariance(const Isometry3d& world_from_flange,
-                                const VectorXd& unknowns) const = 0;
+    virtual void covariance(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                            Eigen::Ref<MatrixXd> covariance) const = 0;
 
     // ---- What kinds of numbers these are: lengths, unless it says otherwise ----
 
@@ -118,14 +122,23 @@ class Sensor {
     //      go round ----
 
     /// By how much an observation deviates from another: the step that leads there, row_count()
-    /// values in m or rad.
-    virtual VectorXd deviation(const VectorXd& observation, const VectorXd& reference) const {
-        return observation - reference;
+    /// values in m or rad. `deviation` is neither of the two.
+    virtual void deviation(const ConstNumbers& observation, const ConstNumbers& reference,
+                           Eigen::Ref<VectorXd> deviation) const {
+        deviation = observation - reference;
     }
-    /// The observation with this deviation from `reference`.
-    virtual VectorXd deviate(const VectorXd& reference, const VectorXd& deviation) const {
-        return reference + deviation;
+    /// The observation with this deviation from `reference`; neither of the two.
+    virtual void deviate(const ConstNumbers& reference, const ConstNumbers& deviation,
+                         Eigen::Ref<VectorXd> observation) const {
+        observation = reference + deviation;
     }
+
+    // ---- The same as values of their own, where memory does not matter ----
+
+    VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const;
+    MatrixXd covariance(const Isometry3d& world_from_flange, const VectorXd& unknowns) const;
+    VectorXd deviation(const ConstNumbers& observation, const ConstNumbers& reference) const;
+    VectorXd deviate(const ConstNumbers& reference, const ConstNumbers& deviation) const;
 
     // ---- How derivative and covariance change with the pose: by differences, exact to about ten
     //      digits; a sensor that says it itself is quicker to plan for ----

@@ -32,7 +32,10 @@ class PointSensor final : public Sensor {
     Index row_count() const override { return 3 * targets_.count(); }
     std::vector<std::string> observation_names() const override;
     std::vector<std::string> unknown_names() const override { return targets_.unknown_names(); }
-    VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const override;
+    using Sensor::covariance;
+    using Sensor::predict;
+    void predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                 Eigen::Ref<VectorXd> observation) const override;
     void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                        const VectorXd& unknowns,
                        Eigen::Ref<RowMatrixXd> J_measured_parameters) const override;
@@ -40,8 +43,8 @@ class PointSensor final : public Sensor {
                              const Twist& direction, const TwistMatrix& twist_rates,
                              const VectorXd& unknowns,
                              Eigen::Ref<RowMatrixXd> J_rate) const override;
-    MatrixXd covariance(const Isometry3d& world_from_flange,
-                        const VectorXd& unknowns) const override;
+    void covariance(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                    Eigen::Ref<MatrixXd> covariance) const override;
     MatrixXd covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
                              const VectorXd& unknowns) const override;
     bool has_constant_covariance() const override;
@@ -79,9 +82,16 @@ class PoseSensor final : public Sensor {
     bool has_orientation() const override { return true; }
     std::vector<std::string> unknown_names() const override;
     std::vector<bool> unknown_is_angle() const override;
-    VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const override;
-    VectorXd deviation(const VectorXd& observation, const VectorXd& reference) const override;
-    VectorXd deviate(const VectorXd& reference, const VectorXd& deviation) const override;
+    using Sensor::covariance;
+    using Sensor::deviate;
+    using Sensor::deviation;
+    using Sensor::predict;
+    void predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                 Eigen::Ref<VectorXd> observation) const override;
+    void deviation(const ConstNumbers& observation, const ConstNumbers& reference,
+                   Eigen::Ref<VectorXd> deviation) const override;
+    void deviate(const ConstNumbers& reference, const ConstNumbers& deviation,
+                 Eigen::Ref<VectorXd> observation) const override;
     void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                        const VectorXd& unknowns,
                        Eigen::Ref<RowMatrixXd> J_measured_parameters) const override;
@@ -89,8 +99,8 @@ class PoseSensor final : public Sensor {
                              const Twist& direction, const TwistMatrix& twist_rates,
                              const VectorXd& unknowns,
                              Eigen::Ref<RowMatrixXd> J_rate) const override;
-    MatrixXd covariance(const Isometry3d& world_from_flange,
-                        const VectorXd& unknowns) const override;
+    void covariance(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                    Eigen::Ref<MatrixXd> covariance) const override;
     MatrixXd covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
                              const VectorXd& unknowns) const override;
     bool has_constant_covariance() const override;
@@ -122,14 +132,18 @@ class ScalarSensor : public Sensor {
     std::vector<std::string> observation_names() const final;
     std::vector<std::string> unknown_names() const final;
     std::vector<bool> unknown_is_angle() const final;
-    VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const final;
+    using Sensor::covariance;
+    using Sensor::predict;
+    void predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                 Eigen::Ref<VectorXd> observation) const final;
     void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                        const VectorXd& unknowns,
                        Eigen::Ref<RowMatrixXd> J_measured_parameters) const final;
     void differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                              const Twist& direction, const TwistMatrix& twist_rates,
                              const VectorXd& unknowns, Eigen::Ref<RowMatrixXd> J_rate) const final;
-    MatrixXd covariance(const Isometry3d&, const VectorXd&) const final;
+    void covariance(const Isometry3d&, const VectorXd&,
+                    Eigen::Ref<MatrixXd> covariance) const final;
     bool has_constant_covariance() const final { return true; }
     std::vector<NoiseNumber> noise_numbers() const final { return {{"sigma_m", {sigma_}}}; }
     SensorWords words() const final;
@@ -258,7 +272,10 @@ class SocketSensor final : public Sensor {
     std::vector<std::string> observation_names() const override;
     std::vector<std::string> unknown_names() const override;
     std::vector<bool> unknown_is_angle() const override;
-    VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const override;
+    using Sensor::covariance;
+    using Sensor::predict;
+    void predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                 Eigen::Ref<VectorXd> observation) const override;
     void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                        const VectorXd& unknowns,
                        Eigen::Ref<RowMatrixXd> J_measured_parameters) const override;
@@ -266,7 +283,8 @@ class SocketSensor final : public Sensor {
                              const Twist& direction, const TwistMatrix& twist_rates,
                              const VectorXd& unknowns,
                              Eigen::Ref<RowMatrixXd> J_rate) const override;
-    MatrixXd covariance(const Isometry3d&, const VectorXd&) const override;
+    void covariance(const Isometry3d&, const VectorXd&,
+                    Eigen::Ref<MatrixXd> covariance) const override;
     bool has_constant_covariance() const override { return true; }
     std::vector<NoiseNumber> noise_numbers() const override { return {{"sigma_m", {sigma_}}}; }
     SensorWords words() const override;

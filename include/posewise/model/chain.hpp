@@ -123,6 +123,8 @@ struct FlangeMotionRate {
 class Chain {
   public:
     Chain() = default;
+    Chain(const Chain&) = default;  // moved from it would have no parts
+    Chain& operator=(const Chain&) = default;
 
     /// Throws InputError if a joint drives no element or both a rotation and a translation, if its
     /// limits are not finite or out of order, if two parameters (or joints) share a name, if an
@@ -135,16 +137,16 @@ class Chain {
     /// The same joints and torques with other elements.
     Chain with_elements(std::vector<Element> elements) const;
 
-    const std::vector<Joint>& joints() const { return joints_; }
-    const Joint& joint(Index index) const { return joints_[static_cast<std::size_t>(index)]; }
-    const std::vector<MeasuredTorque>& torques() const { return torques_; }
-    const std::vector<Element>& elements() const { return elements_; }
-    Index joint_count() const { return static_cast<Index>(joints_.size()); }
+    const std::vector<Joint>& joints() const { return parts_->joints; }
+    const Joint& joint(Index index) const { return joints()[static_cast<std::size_t>(index)]; }
+    const std::vector<MeasuredTorque>& torques() const { return parts_->torques; }
+    const std::vector<Element>& elements() const { return parts_->elements; }
+    Index joint_count() const { return static_cast<Index>(joints().size()); }
     /// Numbers of a configuration: joints and measured torques.
     Index configuration_size() const {
-        return static_cast<Index>(joints_.size() + torques_.size());
+        return static_cast<Index>(joints().size() + torques().size());
     }
-    Index parameter_count() const { return static_cast<Index>(parameter_places_.size()); }
+    Index parameter_count() const { return static_cast<Index>(parts_->parameter_places.size()); }
 
     /// The element that carries error parameter k.
     const Element& parameter_element(Index parameter) const;
@@ -159,6 +161,11 @@ class Chain {
     /// base_from_flange at q (configuration_size(); rad or m, then N m) and error parameters
     /// (parameter_count(), rad or m; zero is nominal).
     Isometry3d base_from_flange(const VectorXd& q, const VectorXd& parameters) const;
+
+    /// The same of many configurations (m x configuration_size()), to the same digits but more
+    /// quickly: several at a time, and what does not depend on them once.
+    std::vector<Isometry3d> base_from_flanges(const RowMatrixXd& configurations,
+                                              const VectorXd& parameters) const;
 
     /// Frames of all links at the same arguments, joint_count() + 2 of them: [0] the base itself,
     /// [j] right after the first element that joint j (counting from 1) drives, the last one the
@@ -191,10 +198,14 @@ class Chain {
     void walk(const Isometry3d& world_from_base, const VectorXd& q, const VectorXd& parameters,
               FlangeMotion& motion, bool by_joints, const Visit& visit) const;
 
-    std::vector<Joint> joints_;
-    std::vector<Element> elements_;
-    std::vector<MeasuredTorque> torques_;
-    std::vector<Place> parameter_places_;
+    struct Parts {
+        std::vector<Joint> joints;
+        std::vector<Element> elements;
+        std::vector<MeasuredTorque> torques;
+        std::vector<Place> parameter_places;
+    };
+
+    std::shared_ptr<const Parts> parts_ = std::make_shared<Parts>();  ///< copies share them
 };
 
 /// For each element the joint whose errors it carries, -1 if none's: the first of its joints that
