@@ -116,8 +116,8 @@ class PredictiveScore {
                 covariance_(k, k) +=
                     squares[is_angle_[static_cast<std::size_t>(first + k)] ? 1 : 0];
             }
-            log_deviations_ +=
-                detail::whiten(covariance_, whitened_.middleRows(first, count), factor_);
+            detail::whiten(covariance_, whitened_.middleRows(first, count), factor_,
+                           &log_deviations_);
         });
         const auto B = whitened_.leftCols(size_);
         const MatrixXd all = gram(whitened_);

@@ -112,21 +112,23 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
     return covariance_rate;
 }
 
-double whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows) {
+void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows) {
     MatrixXd factor;
-    return whiten(covariance, rows, factor);
+    whiten(covariance, rows, factor);
 }
 
-double whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows, MatrixXd& factor) {
+void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows, MatrixXd& factor,
+            double* log_deviations) {
     const auto variances = covariance.diagonal().array();
     if (covariance.isDiagonal(0) && (variances > 0).all()) {
         for (Index k = 0; k < rows.rows(); ++k) rows.row(k) *= 1 / std::sqrt(variances[k]);
-        return variances.log().sum() / 2;
+        if (log_deviations != nullptr) *log_deviations += variances.log().sum() / 2;
+        return;
     }
     factor = covariance;
     if (!factorise(factor)) throw not_positive_definite(covariance);
     factor.triangularView<Eigen::Lower>().solveInPlace(rows);
-    return factor.diagonal().array().log().sum();
+    if (log_deviations != nullptr) *log_deviations += factor.diagonal().array().log().sum();
 }
 
 PoseNoise::PoseNoise(const Campaign& campaign)

@@ -36,10 +36,12 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
                               double repeats);
 
 /// Multiplies `rows` from the left by L^-1, where covariance = L L^T (Cholesky): errors with this
-/// covariance become independent with variance 1. Returns log det L. Throws as cholesky_factor().
-double whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows);
-/// The same in memory that the caller has: `factor` becomes L, or is left alone.
-double whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows, MatrixXd& factor);
+/// covariance become independent with variance 1. Throws as cholesky_factor().
+void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows);
+/// The same in memory that the caller has: `factor` becomes L, or is left alone. Adds log det L to
+/// `log_deviations`, if that is asked for.
+void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows, MatrixXd& factor,
+            double* log_deviations = nullptr);
 
 /// The noise of one pose after another, in memory that it takes once; where it is the same at every
 /// pose it is computed once, too.

@@ -5,29 +5,15 @@
 #include <benchmark/benchmark.h>
 
 #include "../../src/model/complete_model.hpp"
+#include "freed_memory.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/task/calibration.hpp"
 #include "support/campaigns.hpp"
 
-#ifdef __GLIBC__  // only after another header
-#include <malloc.h>
-#endif
-
 namespace posewise {
 namespace {
-
-/// Memory that was freed is kept, as by the program: a third of the time else.
-[[maybe_unused]] const bool keeps_freed_memory = [] {
-#ifdef __GLIBC__
-    constexpr int mebibyte = 1 << 20;
-    return mallopt(M_MMAP_THRESHOLD, 32 * mebibyte) == 1 &&
-           mallopt(M_TRIM_THRESHOLD, 256 * mebibyte) == 1;
-#else
-    return false;
-#endif
-}();
 
 struct Scene {
     Campaign campaign = testing::tracked_campaign(testing::fanuc());

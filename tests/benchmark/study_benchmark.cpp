@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "freed_memory.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/measurement/simulation.hpp"
@@ -19,12 +20,18 @@ Campaign fanuc_campaign() {
     return campaign;
 }
 
-/// Robots drawn one after the other, so that no two calibrations are of the same.
+/// At random poses, of robots drawn one after the other as a study draws them: errors and model
+/// error larger or smaller, too.
 void BM_calibration_alone(benchmark::State& state) {
     const Campaign campaign = fanuc_campaign();
     std::vector<Measurements> campaigns;
-    for (std::uint64_t seed = 0; seed < 100; ++seed) {
-        campaigns.push_back(simulate(campaign, {.pose_count = 24, .seed = seed}).measurements);
+    for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+        const DrawnRobot robot = draw_robot(campaign, seed);
+        Campaign truth = campaign;
+        truth.model_error = robot.model_error;
+        const RowMatrixXd poses =
+            simulate(campaign, {.pose_count = 24, .seed = seed}).measurements.configurations;
+        campaigns.push_back(simulate_measurements(truth, robot.truth, poses, 1, seed));
     }
     std::size_t next = 0;
     for (auto _ : state) {
@@ -38,13 +45,15 @@ BENCHMARK(BM_calibration_alone)->Unit(benchmark::kMillisecond);
 double seconds_of(const Campaign& campaign, Index trials) {
     SimulatedStudyOptions options;
     options.pose_counts = {24};
+    options.criteria.clear();
+    options.random_subsets = 2;
     options.trials = trials;
     const auto begin = std::chrono::steady_clock::now();
     benchmark::DoNotOptimize(simulate_study({{"", campaign}}, options));
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// A planned and a random one of each robot, without what is done once.
+/// Two at random poses of each robot, without what is done once.
 void BM_calibration_in_a_study(benchmark::State& state) {
     const Campaign campaign = fanuc_campaign();
     constexpr Index trials = 1000;
