@@ -5,13 +5,13 @@
 #include <limits>
 #include <numbers>
 
-#include "sine_and_cosine.hpp"
+#include "elementary_vectors.hpp"
 
 namespace posewise::detail {
 namespace {
 
 // Approximations and constants of fdlibm [Sun Microsystems 1993], "freely distributable"; those of
-// sine and cosine in sine_and_cosine.hpp.
+// sine and cosine in elementary_vectors.hpp.
 
 double arc_tangent_near_zero(double x) {
     constexpr double a[11] = {
@@ -67,19 +67,9 @@ double logarithm(double x) {
         m *= 2;
         --k;
     }
-    const double f = m - 1;
-    const double s = f / (2 + f);
-    const double z = s * s;
-    const double w = z * z;
-    const double even = w * (3.999999999940941908e-01 +
-                             w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01));
-    const double odd = z * (6.666666666666735130e-01 +
-                            w * (2.857142874366239149e-01 +
-                                 w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
-    const double half = 0.5 * f * f;
-    const double high = k * 6.93147180369123816490e-01;
-    const double low = k * 1.90821492927058770002e-10;
-    return high - ((half - (s * (half + even + odd) + low)) - f);
+    double result = 0;
+    logarithm_of_parts<double>(m, k, result);
+    return result;
 }
 
 double exponential(double x) {

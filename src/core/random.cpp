@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "elementary.hpp"
+#include "normals.hpp"
 
 namespace posewise {
 namespace {
@@ -62,7 +63,7 @@ double RandomStream::normal() {
 
 VectorXd RandomStream::normals(Index count) {
     VectorXd z(count);
-    for (double& one : z) one = normal();
+    detail::fill_normals(*this, z);
     return z;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "../core/elementary.hpp"
+#include "../core/normals.hpp"
 #include "contact.hpp"
 #include "noise.hpp"
 #include "posewise/core/errors.hpp"
@@ -149,7 +150,8 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
         q += joint_errors;
         const Isometry3d flange = world_from_flange(campaign, truth, q);
         sensor.predict(flange, truth.sensor, predicted);
-        for (Index row = 0; row < rows; ++row) drawn[row] = model_error[row] * stream.normal();
+        detail::fill_normals(stream, drawn);
+        drawn.array() *= model_error.array();
         sensor.deviate(predicted, drawn, expected);
         if (i == 0 || !sensor.has_constant_covariance()) {
             sensor.covariance(flange, truth.sensor, covariance);
@@ -157,7 +159,7 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
         }
         measurements.is_seen.middleRows(i * repeats, repeats).rowwise() = is_seen.row(i);
         for (Index k = 0; k < repeats; ++k) {
-            for (double& one : drawn) one = stream.normal();
+            detail::fill_normals(stream, drawn);
             noise.noalias() = noise_factor * drawn;
             sensor.deviate(expected, noise, predicted);
             measurements.observations.row(i * repeats + k) = predicted.transpose();

@@ -19,9 +19,7 @@ RowMatrixXd visited_positions(const Campaign& truth, const DrawnRobot& robot,
             truth.joint_repeatability.cwiseProduct(random.normals(joints)).transpose();
     }
     RowMatrixXd positions = target_positions(truth, robot.truth, visited);
-    for (double& coordinate : positions.reshaped()) {
-        coordinate += robot.model_error * random.normal();
-    }
+    positions.reshaped() += robot.model_error * random.normals(positions.size());
     return positions;
 }
 

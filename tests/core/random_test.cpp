@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 
+#include "../../src/core/simd.hpp"
 #include "support/sweep.hpp"
 
 namespace posewise {
@@ -29,6 +30,20 @@ TEST(RandomStream, HasTheNumbersOfTheStandardLibrarysEngine) {
             ASSERT_EQ(ours.uniform(), expected) << seed << ", number " << i;
         }
     }
+}
+
+TEST(RandomStream, DrawsManyNormalNumbersAsItDrawsOneByOne) {
+    const int all = detail::simd::widest();
+    for (int width = 2; width <= all; width *= 2) {
+        detail::simd::use_width(width);
+        RandomStream together(9, 4);
+        RandomStream one_by_one(9, 4);
+        for (const Index count : {Index{0}, Index{1}, Index{9}, Index{64}, Index{5000}}) {
+            for (const double z : together.normals(count)) ASSERT_EQ(z, one_by_one.normal());
+        }
+        EXPECT_EQ(together.uniform(), one_by_one.uniform());
+    }
+    detail::simd::use_width(all);
 }
 
 TEST(RandomStream, GivesTheGoldenNumbers) {  // tests/golden/random_stream.py

@@ -5,8 +5,8 @@
 
 #include "simd.hpp"
 
-/// Sine and cosine of one number or of a vector of them, with the same digits. What may be a vector
-/// is neither taken nor returned by value: how that is done depends on the instruction set.
+/// Elementary functions of one number or of a vector of them, with the same digits. What may be a
+/// vector is neither taken nor returned by value: how that is done depends on the instruction set.
 namespace posewise::detail {
 
 // Approximations and constants of fdlibm [Sun Microsystems 1993], "freely distributable".
@@ -79,6 +79,40 @@ POSEWISE_INLINE void sines_and_cosines(const V& x, V& sine, V& cosine) {
     const V b = is_odd ? s : c;
     sine = (quarter & 2) != 0 ? -a : a;
     cosine = ((quarter + 1) & 2) != 0 ? -b : b;
+}
+
+/// log(m 2^k), m from sqrt(1/2) to sqrt(2).
+template <typename T>
+POSEWISE_INLINE void logarithm_of_parts(const T& m, const T& k, T& result) {
+    const T f = m - 1;
+    const T s = f / (2 + f);
+    const T z = s * s;
+    const T w = z * z;
+    const T even = w * (3.999999999940941908e-01 +
+                        w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01));
+    const T odd = z * (6.666666666666735130e-01 +
+                       w * (2.857142874366239149e-01 +
+                            w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
+    const T half = 0.5 * f * f;
+    const T high = k * 6.93147180369123816490e-01;
+    const T low = k * 1.90821492927058770002e-10;
+    result = high - ((half - (s * (half + even + odd) + low)) - f);
+}
+
+/// Of a vector of doubles, all positive and normal.
+template <typename V>
+POSEWISE_INLINE void logarithms(const V& x, V& result) {
+    using Bits [[gnu::vector_size(sizeof(V))]] = std::int64_t;
+    constexpr std::int64_t mantissa = (std::int64_t{1} << 52) - 1;
+    constexpr std::int64_t exponent_of_half = std::int64_t{1022} << 52;
+    const Bits bits = reinterpret_cast<Bits>(x);
+    const V m = reinterpret_cast<V>((bits & mantissa) | exponent_of_half);
+    // An integer in the last bits of to_integer.
+    const V zero = V{} + to_integer;
+    const Bits shifted = reinterpret_cast<Bits>(zero) + ((bits >> 52) - 1022);
+    const V k = reinterpret_cast<V>(shifted) - to_integer;
+    const Bits is_below = m < std::numbers::sqrt2 / 2;
+    logarithm_of_parts<V>(is_below ? m * 2 : m, is_below ? k - 1 : k, result);
 }
 
 }  // namespace posewise::detail
