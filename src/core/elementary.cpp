@@ -11,7 +11,7 @@ namespace posewise::detail {
 namespace {
 
 // Approximations and constants of fdlibm [Sun Microsystems 1993], "freely distributable"; those of
-// sine and cosine in elementary_vectors.hpp.
+// sine, cosine and logarithm in elementary_vectors.hpp.
 
 double arc_tangent_near_zero(double x) {
     constexpr double a[11] = {
