@@ -6,7 +6,8 @@ set(posewise_slow_headers <Eigen/Dense> <algorithm> <cmath> <fmt/format.h> <func
 set(posewise_definitions EIGEN_DONT_PARALLELIZE)
 
 # Multiplication and addition are not fused: the same digits on CPUs that can and those that cannot.
-set(posewise_options -ffp-contract=off)
+# Nobody reads errno after a square root, which keeps them from being taken several at once.
+set(posewise_options -ffp-contract=off -fno-math-errno)
 
 # posewise_module(<name> <modules it may use>...)
 # An object library of src/<name>/*.cpp. Modules compile against the whole include tree; that they

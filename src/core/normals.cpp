@@ -1,14 +1,17 @@
 #include "normals.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "elementary_vectors.hpp"
 
 namespace posewise::detail {
 namespace {
 
+constexpr std::size_t most_lanes = 8;
 constexpr std::size_t most_at_once = 64;
 using Numbers = std::array<double, most_at_once>;
 
@@ -45,17 +48,22 @@ struct BoxMuller {
 }  // namespace
 
 void fill_normals(RandomStream& stream, Eigen::Ref<VectorXd> numbers) {
+    std::array<double, 2 * most_at_once> drawn;
     Numbers u, v, normals;
-    u.fill(1);  // beyond those drawn, where a vector is not full
-    v.fill(0);
     for (Index first = 0; first < numbers.size(); first += Index{most_at_once}) {
-        const Index count = std::min(Index{most_at_once}, numbers.size() - first);
-        for (Index k = 0; k < count; ++k) {
-            u[static_cast<std::size_t>(k)] = 1.0 - stream.uniform();  // above 0
-            v[static_cast<std::size_t>(k)] = stream.uniform();
+        const auto count =
+            static_cast<std::size_t>(std::min(Index{most_at_once}, numbers.size() - first));
+        stream.fill_uniform(std::span(drawn).first(2 * count));
+        for (std::size_t k = 0; k < count; ++k) {
+            u[k] = 1.0 - drawn[2 * k];  // above 0
+            v[k] = drawn[2 * k + 1];
         }
-        simd::run(BoxMuller{u, v, static_cast<std::size_t>(count), normals});
-        for (Index k = 0; k < count; ++k) numbers[first + k] = normals[static_cast<std::size_t>(k)];
+        for (std::size_t k = count; k < std::min(count + most_lanes, most_at_once); ++k) {
+            u[k] = 1;  // where a vector is not full
+            v[k] = 0;
+        }
+        simd::run(BoxMuller{u, v, count, normals});
+        for (std::size_t k = 0; k < count; ++k) numbers[first + static_cast<Index>(k)] = normals[k];
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -141,8 +142,12 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
     VectorXd joint_errors = VectorXd::Zero(q.size());
     VectorXd predicted(rows), expected(rows), noise(rows), drawn(rows);
     MatrixXd covariance(rows, rows), noise_factor;
+    std::array<RandomStream, 4> streams = RandomStream::of_four_items(seed, 0);
     for (Index i = 0; i < configurations.rows(); ++i) {
-        RandomStream stream(seed, static_cast<std::uint64_t>(i));
+        if (i > 0 && i % 4 == 0) {
+            streams = RandomStream::of_four_items(seed, static_cast<std::uint64_t>(i));
+        }
+        RandomStream& stream = streams[static_cast<std::size_t>(i % 4)];
         q = configurations.row(i).transpose();
         for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {
             joint_errors[j] = campaign.joint_repeatability[j] * stream.normal();

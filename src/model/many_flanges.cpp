@@ -77,6 +77,29 @@ struct ManyFlanges {
     }
 };
 
+/// The element's amounts at all configurations; `next` as for amount_of().
+void fill_amounts(const Element& element, const RowMatrixXd& configurations,
+                  const VectorXd& parameters, Index& next, std::vector<double>& amounts) {
+    const Index count = configurations.rows();
+    if (element.has_functions()) {
+        const Index first = next;
+        VectorXd q;
+        for (Index i = 0; i < count; ++i) {
+            next = first;
+            q = configurations.row(i).transpose();
+            amounts[static_cast<std::size_t>(i)] = detail::amount_of(element, q, parameters, next);
+        }
+        return;
+    }
+    // The same sum for all of them at once.
+    Eigen::Map<VectorXd> sum(amounts.data(), count);
+    sum.setConstant(element.value);
+    for (const JointTerm& term : element.joints) {
+        sum += term.coefficient * configurations.col(term.joint);
+    }
+    if (!element.parameter.empty()) sum.array() += parameters[next++];
+}
+
 bool is_in_reach(const Step& step) {
     return std::all_of(step.amounts.begin(), step.amounts.end(),
                        [](double x) { return std::abs(x) < detail::most_turned; });
@@ -88,26 +111,18 @@ std::vector<Isometry3d> Chain::base_from_flanges(const RowMatrixXd& configuratio
                                                  const VectorXd& parameters) const {
     const Index count = configurations.rows();
     std::vector<Step> steps;
-    std::vector<Index> first_parameters;
     Index next = 0;
-    VectorXd q = VectorXd::Zero(configuration_size());
     for (const Element& element : elements()) {
-        first_parameters.push_back(next);
         Step step{element.motion, static_cast<Index>(element.axis),
                   element.joints.empty() && !element.has_functions()};
-        step.amount = detail::amount_of(element, q, parameters, next);
-        step.turn = detail::sine_and_cosine(step.amount);
-        if (!step.is_constant) step.amounts.resize(static_cast<std::size_t>(count + most_lanes));
-        steps.push_back(std::move(step));
-    }
-    for (Index i = 0; i < count; ++i) {
-        q = configurations.row(i).transpose();
-        for (std::size_t k = 0; k < steps.size(); ++k) {
-            if (steps[k].is_constant) continue;
-            Index parameter = first_parameters[k];
-            steps[k].amounts[static_cast<std::size_t>(i)] =
-                detail::amount_of(elements()[k], q, parameters, parameter);
+        if (step.is_constant) {
+            step.amount = detail::amount_of(element, {}, parameters, next);
+            step.turn = detail::sine_and_cosine(step.amount);
+        } else {
+            step.amounts.resize(static_cast<std::size_t>(count + most_lanes));
+            fill_amounts(element, configurations, parameters, next, step.amounts);
         }
+        steps.push_back(std::move(step));
     }
     std::vector<Isometry3d> flanges(static_cast<std::size_t>(count));
     if (std::all_of(steps.begin(), steps.end(), is_in_reach)) {

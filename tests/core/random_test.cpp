@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>
 #include <set>
+#include <vector>
 
 #include "../../src/core/simd.hpp"
 #include "support/sweep.hpp"
@@ -44,6 +46,26 @@ TEST(RandomStream, DrawsManyNormalNumbersAsItDrawsOneByOne) {
         EXPECT_EQ(together.uniform(), one_by_one.uniform());
     }
     detail::simd::use_width(all);
+}
+
+TEST(RandomStream, DrawsManyUniformNumbersAsItDrawsOneByOne) {
+    RandomStream together(9, 4);
+    RandomStream one_by_one(9, 4);
+    // So that they begin and end before, at and after each half of a state of 312.
+    for (const std::size_t count : {1, 0, 155, 1, 154, 2, 311, 312, 313, 1000, 7}) {
+        std::vector<double> numbers(count);
+        together.fill_uniform(numbers);
+        for (const double x : numbers) ASSERT_EQ(x, one_by_one.uniform()) << count;
+    }
+    EXPECT_EQ(together.uniform(), one_by_one.uniform());
+}
+
+TEST(RandomStream, OfFourItemsAreThoseOfEach) {
+    std::array<RandomStream, 4> four = RandomStream::of_four_items(7, 5);
+    for (std::size_t k = 0; k < 4; ++k) {
+        RandomStream alone(7, 5 + k);
+        for (int i = 0; i < 400; ++i) ASSERT_EQ(four[k].uniform(), alone.uniform()) << k;
+    }
 }
 
 TEST(RandomStream, GivesTheGoldenNumbers) {  // tests/golden/random_stream.py

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "posewise/core/types.hpp"
@@ -15,8 +16,13 @@ class RandomStream {
   public:
     explicit RandomStream(std::uint64_t seed, std::uint64_t item = 0);
 
+    /// Those of items first, ..., first + 3, seeded side by side in a third of the time.
+    static std::array<RandomStream, 4> of_four_items(std::uint64_t seed, std::uint64_t first);
+
     /// Uniform in [lower, upper).
     double uniform(double lower = 0, double upper = 1);
+    /// As many as there is room for, in order, in [0, 1).
+    void fill_uniform(std::span<double> numbers);
 
     /// Standard normal (Box-Muller).
     double normal();
@@ -35,13 +41,25 @@ class RandomStream {
     /// less.
     class Engine {
       public:
-        explicit Engine(std::uint64_t seed);
-        std::uint64_t operator()();
+        /// Seeds engines side by side: each number of a state waits for the last one.
+        template <std::size_t count>
+        static void seed(const std::array<Engine*, count>& engines,
+                         const std::array<std::uint64_t, count>& seeds);
+
+        std::uint64_t next();
+        void fill_uniform(std::span<double> numbers);
 
       private:
-        std::array<std::uint64_t, 312> state_;
+        static constexpr std::size_t size = 312;
+
+        /// Makes number i of the state anew, from the one after and the one half a state on.
+        std::uint64_t renew(std::size_t i, std::size_t after, std::size_t half_on);
+
+        std::array<std::uint64_t, size> state_;
         std::size_t next_ = 0;
     };
+
+    RandomStream() = default;  // not seeded
 
     Engine engine_;
 };
