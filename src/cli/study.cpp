@@ -56,8 +56,10 @@ where the calibrated model has them, over configurations of the workspace, model
 columns are the same, one split a robot. With --from the robots are such as the one calibrated, with
 --as-prior they are that one, as surely as it is known. --truth draws from another campaign, with
 errors that the fitted model lacks; --vary repeats the study with other values of keys of the campaign,
-on the same robots draw by draw:
-  posewise study campaign.yaml --simulate --vary sensor.sigma_mm=0.01,0.05 --vary robot.errors=geometric,full
+on the same robots draw by draw. Where the model is varied, too, robots have the errors of each model, so
+that to compare models --truth must say what robots are like (here truth.yaml: errors: full):
+  posewise study campaign.yaml --simulate --vary sensor.sigma_mm=0.01,0.05
+  posewise study campaign.yaml --simulate --vary robot.errors=geometric,full --truth truth.yaml
 
 --store keeps each trial as it ends: a study that was stopped, or killed, goes on where it was, and
 --from prints what is in a store at any moment, also while it runs. --shard runs a part, each with a
@@ -138,9 +140,24 @@ void check_study_usage(const CLI::App& command, const StudyArguments& arguments,
                                          : "is not there; must be a store of trials");
     }
     if (arguments.paths.campaign.empty()) throw CLI::RequiredError("CAMPAIGN");
-    if (arguments.is_simulated == !arguments.paths.measurements.empty()) {
-        throw CLI::ValidationError("study",
-                                   "needs either measured configurations (-m) or --simulate");
+    const bool is_measured = !arguments.paths.measurements.empty();
+    if (arguments.is_simulated == is_measured) {
+        throw CLI::ValidationError(
+            "study", is_measured ? "has measured configurations (-m) and --simulate; leave one out"
+                                 : "needs measured configurations (-m) or --simulate");
+    }
+}
+
+void warn_of_precision(const std::vector<Study>& studies) {
+    for (const Study& study : studies) {
+        if (study.ending != Ending::IterationLimit) continue;
+        const std::string of =
+            study.model.empty() ? "" : " of " + detail::escape_controls(study.model);
+        std::fputs(fmt::format("posewise: the results{} are not as precise as asked (--precision) "
+                               "after {} robots; more may be allowed (--trials)\n",
+                               of, study.splits)
+                       .c_str(),
+                   stderr);
     }
 }
 
@@ -162,12 +179,19 @@ void study(const CLI::App& command, const StudyArguments& arguments, const Commo
                                            : study_measured(arguments, common, stop, extras);
     interrupted.reset();
     if (studies.front().rows.empty()) {
-        throw InputError(stop.is_set() ? "stopped before any pose count was complete; must have "
-                                         "longer"
-                                       : "no pose count is complete; the other shards must run, "
-                                         "then their stores be merged (--merge)");
+        if (stop.is_set()) {
+            throw InputError("stopped before any pose count was complete; must have longer");
+        }
+        const std::string remedy =
+            "no pose count is complete; the other shards must run, then their stores be merged "
+            "(--merge)";
+        if (arguments.store.empty()) throw InputError(remedy);
+        // What this shard was to do is done, and kept.
+        std::fputs(("posewise: " + remedy + '\n').c_str(), stderr);
+        return;
     }
     if (stop.is_set()) std::fputs("posewise: stopped early; what is complete is shown\n", stderr);
+    warn_of_precision(studies);
     print_studies(studies, arguments, common, std::move(extras));
 }
 

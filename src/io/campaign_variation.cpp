@@ -205,7 +205,7 @@ std::vector<Variation> vary_campaign(const std::string& content, const std::stri
     if (ranges.empty() != (point_count == 0)) {
         throw InputError(
             ranges.empty()
-                ? "no range is varied, which points could fill; must be like "
+                ? "no range is varied, which points (--points) could fill; must be like "
                   "sensor.sigma_mm=0.01..0.05"
                 : detail::quote(ranges.front().key) +
                       " is varied over a range: how many points fill it must be said (--points)");

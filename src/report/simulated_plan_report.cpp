@@ -97,8 +97,10 @@ std::string describe_verified(const TargetOptions& target,
         case LimitVerdict::Kept:
             return fmt::format("verified:    the limit is kept: {}\n", found);
         case LimitVerdict::Open:
-            return fmt::format("verified:    too close to {} mm to say: {}\n", format_short(limit),
-                               found);
+            return fmt::format(
+                "verified:    too close to {} mm to say: {}; more digits tell (--verify-digits), "
+                "one pose more is surer\n",
+                format_short(limit), found);
         default:
             break;
     }

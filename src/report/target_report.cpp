@@ -80,12 +80,10 @@ std::string describe_remedy(const TargetPlanning& found) {
                        "which no calibration mends; ",
                        format_mm(found.repeatability));
     if (!is_model) return text + "half the floor needs a robot that returns twice as well";
-    text +=
-        found.has_error_terms
-            ? "half the floor needs a robot of which the model leaves half as much "
-              "(model_error_mm)"
-            : "half the floor needs a model that has more of the robot's errors (errors: full), "
-              "of which half as much is left (model_error_mm)";
+    text += "half the floor needs half of it (model_error_mm, what the model leaves of the robot)";
+    if (!found.has_error_terms) {
+        text += ": more of the robot's errors in the model (errors: full) may leave so little";
+    }
     if (found.floor_of_known_model_error < found.floor.assured) {
         text += fmt::format(
             "; were it known, as a first calibration with priors (calibrate --prior) tells plan "

@@ -164,8 +164,10 @@ std::vector<Study> simulate_study(const std::vector<SimulatedCampaign>& campaign
         detail::TrialRuns runs(series, options);
         run_trials(series, options, run, runs);
         for (std::size_t s = 0; s < series.size(); ++s) {
-            studies.push_back(runs.study_of_all(s));
-            studies.back().ending = options.stop.ending_or(Ending::Converged);
+            Study& study = studies.emplace_back(runs.study_of_all(s));
+            const bool is_enough = options.precision == 0 || is_precise(study, options.precision);
+            study.ending =
+                options.stop.ending_or(is_enough ? Ending::Converged : Ending::IterationLimit);
         }
         const auto is_empty = [](const Study& study) { return study.rows.empty(); };
         if (!std::ranges::all_of(studies, is_empty)) std::erase_if(studies, is_empty);

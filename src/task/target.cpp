@@ -104,7 +104,10 @@ class Search {
   private:
     bool has_limit() const { return target_.limit.has_value(); }
 
-    void check_stop() const { options_.stop.check("it was found how many poses keep the target"); }
+    void check_stop() const {
+        options_.stop.check(has_limit() ? "it was found how many poses keep the target"
+                                        : "it was found how many poses fit in the time");
+    }
 
     /// Nothing: drop-outs leave parameters unidentified.
     std::optional<ErrorRange> judge(MatrixXd M, const Blocks& poses,
@@ -252,14 +255,18 @@ class Search {
         if (!options_.stop.is_set()) result_.counts = range;
     }
 
-    /// The least one of up to `most` poses; nothing after a stop.
+    /// The least one of up to `most` poses, chosen or planned; nothing after a stop.
     std::optional<Index> count_within(double ErrorRange::*error, Index most) {
-        const Index guess = result_.planning->search.pose_count;
-        const Index count = least_count(guess, least_, most, [&](Index poses) {
-            if (options_.stop.is_set()) return false;
-            const auto& found = choose(poses).error;
+        const auto is_within = [&](const std::optional<ErrorRange>& found) {
             return found && (*found).*error <= *target_.limit;
+        };
+        const Index guess = result_.planning->search.pose_count;
+        Index count = least_count(guess, least_, most, [&](Index poses) {
+            return !options_.stop.is_set() && is_within(choose(poses).error);
         });
+        for (const auto& [poses, prediction] : planned_) {
+            if (is_within(prediction.error)) count = std::min(count, poses);
+        }
         return count > most ? std::nullopt : std::optional(count);
     }
 

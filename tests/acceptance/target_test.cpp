@@ -177,6 +177,9 @@ TEST_F(Target, SaysHowFarTheNumberMayBeOff) {
               std::string::npos)
         << format(found);
 
+    const TargetPlanning sure = counts_of(0.9e-3, 0.95);  // what is planned counts, too
+    EXPECT_LE(sure.counts.value().upper.value(), sure.planning.value().search.pose_count);
+
     const TargetPlanning low = counts_of(0.4e-3, 0.5);  // below the floor's 95 % end
     EXPECT_TRUE(low.counts.value().lower);
     EXPECT_FALSE(low.counts.value().upper);

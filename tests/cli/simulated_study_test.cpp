@@ -39,6 +39,29 @@ TEST_F(SimulatedStudies, AreTheSameFromStoresAndShards) {
     EXPECT_FALSE(has_file("all.sqlite-wal"));
 }
 
+TEST_F(SimulatedStudies, OfMoreShardsThanTrialsEndWellWhereTheyKeepThem) {
+    const std::string whole = run_well(study_ + "2");
+    for (const std::string shard : {"1", "2", "3"}) {
+        run_well(study_ + "2 --store s" + shard + ".sqlite --shard " + shard + "/3");
+    }
+    const testing::Outcome outcome = run(study_ + "2 --store s3.sqlite --shard 3/3");
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find("no pose count is complete; the other shards"), std::string::npos);
+    expect_input_error(study_ + "2 --shard 3/3", "no pose count is complete");
+    EXPECT_EQ(run_well("study --merge s1.sqlite s2.sqlite s3.sqlite --store all.sqlite"), whole);
+}
+
+TEST_F(SimulatedStudies, SayWhatTooFewRobotsDoNotTell) {
+    const testing::Outcome one = run(study_ + "1");
+    EXPECT_NE(one.out.find("planned against random: within chance at 8, 12"), std::string::npos)
+        << one.out;
+    EXPECT_EQ(one.err, "");
+    const testing::Outcome few = run(study_ + "4 --precision 0.1%");
+    EXPECT_NE(few.err.find("not as precise as asked (--precision) after 4 robots"),
+              std::string::npos)
+        << few.err;
+}
+
 TEST_F(SimulatedStudies, GoOnAfterTheyWereKilled) {
     const std::string whole = run_well(study_ + "150 --csv whole.csv");
     int killed = 0;

@@ -235,8 +235,12 @@ TEST(SimulatedStudy, EndsWhenItIsAsPreciseAsAskedFor) {
     EXPECT_LT(study.splits, 2000);
     const auto advantage = planned_advantage(study, study.rows[0], 0);
     EXPECT_LE((advantage->upper - advantage->lower) / 2 / advantage->ratio, 0.04);
+    EXPECT_EQ(study.ending, Ending::Converged);
     options.precision = 0.2;
     EXPECT_LT(simulate_study(campaigns, options).front().splits, study.splits);
+    options.precision = 0.001;
+    options.trials = 60;
+    EXPECT_EQ(simulate_study(campaigns, options).front().ending, Ending::IterationLimit);
 }
 
 TrialStore store_with(const Trial& trial) {
