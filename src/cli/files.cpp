@@ -3,11 +3,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 
 #include "../io/text.hpp"
+#include "posewise/io/trial_store.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -37,6 +40,22 @@ bool is_same_file(const std::string& a, const std::string& b) {
     if (error) return a == b;
     const fs::path whole_b = fs::weakly_canonical(fs::absolute(b, error), error);
     return error ? a == b : whole_a == whole_b;
+}
+
+/// What SQLite keeps beside a store of trials may hold the latest of them.
+void check_beside_stores(const std::string& path, const std::vector<std::string>& inputs) {
+    std::error_code error;
+    const fs::path whole = fs::weakly_canonical(path, error);  // where a link leads
+    const std::string file = error ? path : whole.string();
+    for (const std::string_view end : {"-wal", "-shm", "-lock"}) {
+        if (!file.ends_with(end)) continue;
+        const std::string store = file.substr(0, file.size() - end.size());
+        const bool is_used = std::ranges::any_of(inputs, [&](const std::string& input) {
+            return !input.empty() && is_same_file(store, input);
+        });
+        if (!is_used && !io::is_trial_store(store)) continue;
+        throw input_error_at({path}, "belongs to a store of trials; must be another file");
+    }
 }
 
 void check_folder(const std::string& path) {
@@ -91,6 +110,7 @@ void check_outputs(const std::vector<const io::CampaignFile*>& campaigns,
                 throw input_error_at({path}, "is read and shall be written; must be another file");
             }
         }
+        check_beside_stores(path, inputs);
         for (std::size_t k = 0; k < i; ++k) {
             if (!outputs[k].empty() && is_same_file(path, outputs[k])) {
                 throw input_error_at({path}, "shall be written twice; must be two files");

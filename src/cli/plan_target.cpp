@@ -38,9 +38,11 @@ void add_target_options(CLI::App& command, TargetArguments& arguments,
             .add_option("--minutes", arguments.minutes,
                         "As many poses as fit: moves, and the cell's dwell_s for each sample")
             ->check(real_number(1e-6, 1e6));
-    command.add_option("--poses-at-most", arguments.most_poses, "With --target-mm or --minutes")
-        ->check(whole_number(1, 10000))
-        ->capture_default_str();
+    CLI::Option* const most =
+        command
+            .add_option("--poses-at-most", arguments.most_poses, "With --target-mm or --minutes")
+            ->check(whole_number(1, 10000))
+            ->capture_default_str();
     command
         .add_option("--robust-to", arguments.robust_to,
                     "So many poses, those that hurt most, may be missing")
@@ -49,6 +51,7 @@ void add_target_options(CLI::App& command, TargetArguments& arguments,
     for (CLI::Option* const option : excluded) {
         limit->excludes(option);
         minutes->excludes(option);
+        most->excludes(option);
     }
 }
 

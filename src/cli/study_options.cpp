@@ -119,7 +119,7 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
     command
         .add_option("--time", arguments.time_limit,
                     "Seconds after which it ends with what is complete (default: none)")
-        ->check(real_number(0, 1e9));
+        ->check(real_number(1e-3, 1e9));
     command.add_option("--csv", arguments.csv, "Write every subset's result to this file")
         ->check(file_name());
     add_plot_option(command, arguments.plot, "Draw error against pose count");

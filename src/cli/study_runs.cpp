@@ -73,7 +73,8 @@ void complete_options(StudyOptions& options, const StudyArguments& arguments,
 
 /// The campaign as it is, or with each combination of what is varied.
 std::vector<SimulatedCampaign> list_variations(const StudyArguments& arguments,
-                                               const io::CampaignFile& file) {
+                                               const io::CampaignFile& file,
+                                               const StopSignal& stop) {
     std::optional<Campaign> truth;
     if (!arguments.truth.empty()) truth = io::read_campaign(arguments.truth);
     if (arguments.varied.empty() && arguments.points == 0) return {{"", file, truth}};
@@ -87,6 +88,7 @@ std::vector<SimulatedCampaign> list_variations(const StudyArguments& arguments,
         return io::vary_campaign(detail::read_file(path), path, keys, arguments.points);
     });
     for (const io::Variation& variation : variations) {
+        stop.check("variations were read");
         // Lines of the text that was varied are not those of the file.
         io::CampaignFile varied = compute_from("--vary " + variation.name, [&] {
             return io::parse_campaign(variation.content, path);
@@ -180,7 +182,7 @@ std::vector<Study> study_simulated(const StudyArguments& arguments, const Common
     ProgressLine line("simulating", arguments.progress);
     const RateNote note;
     options.progress = [&](const Progress& progress) { line(progress, note(progress)); };
-    const auto campaigns = list_variations(arguments, file);
+    const auto campaigns = list_variations(arguments, file, stop);
     return compute_from(arguments.paths.campaign,
                         [&] { return simulate_study(campaigns, options); });
 }
@@ -190,8 +192,7 @@ std::vector<Study> read_store(const std::string& path) {
     const TrialStore store = io::read_trial_store(path);
     std::vector<Study> studies;
     for (const TrialSeries& one : series) {
-        studies.push_back(
-            compute_from(path, [&] { return study_of_trials(one, store); }));
+        studies.push_back(compute_from(path, [&] { return study_of_trials(one, store); }));
     }
     return studies;
 }

@@ -19,6 +19,9 @@ std::string database_file(const std::string& path, Access access) {
     if (path.empty()) throw InputError("the name of a store of trials is empty; must be a file");
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
+    if (!fs::status_known(status)) {
+        throw input_error_at({path}, "cannot be read: " + error.message());
+    }
     if (fs::is_directory(status)) {
         throw input_error_at({path}, "is a directory; must be the name of a file");
     }

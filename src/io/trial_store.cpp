@@ -196,6 +196,9 @@ void StoreFile::read_series() {
             detail::read_trial_statement(statement, database_.path());
         series_.push_back({stated.series, stated.version, rows.number(1), checksum});
     }
+    const Index is_any_lost = database_.number(
+        "SELECT EXISTS (SELECT 1 FROM trials WHERE series NOT IN (SELECT id FROM series))");
+    if (is_any_lost != 0) throw database_.damaged();
 }
 
 void StoreFile::check_version() const {

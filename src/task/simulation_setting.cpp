@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "../core/checksum.hpp"
+#include "../core/text.hpp"
 #include "inputs.hpp"
 #include "planning_problem.hpp"
 #include "posewise/calibrator/registration.hpp"
@@ -28,6 +29,13 @@ Campaign true_campaign(const SimulatedCampaign& given, const Campaign& campaign)
                                      what, must, campaign.name));
     };
     differs("joints", truth.robot.joint_count(), campaign.robot.joint_count());
+    for (std::size_t j = 0; j < truth.robot.joints().size(); ++j) {
+        const std::string& has = truth.robot.joints()[j].name;
+        const std::string& must = campaign.robot.joints()[j].name;
+        if (has == must) continue;
+        throw InputError(fmt::format("{}: joint {} of the truth is {}, must be {} as of {}",
+                                     truth.name, j + 1, quote(has), quote(must), campaign.name));
+    }
     differs("targets", truth.sensor->target_count(), campaign.sensor->target_count());
     differs("numbers an observation", truth.sensor->row_count(), campaign.sensor->row_count());
     if (!truth.has_nominal_base) truth.nominal.world_from_base = campaign.nominal.world_from_base;
@@ -57,18 +65,21 @@ std::vector<Index> pose_counts(const SimulatedStudyOptions& options, const Campa
     return counts;
 }
 
-/// Poses for the nominal robot; none if they do not identify the model.
+/// Poses for the nominal robot; none if they do not identify the model. A deadline does not cut the
+/// search: trials must be the same however much time they have.
 Subset plan_subset(const SimulationSetting& setting, const SimulatedStudyOptions& options,
                    const Blocks& blocks, const Blocks& prediction, const RowMatrixXd& turning,
                    std::size_t criterion, Index count) {
+    constexpr const char* what = "poses to measure were chosen";
     if (options.is_refined) {
         PlanningOptions planning(count);
         planning.criterion = options.criteria[criterion];
         planning.pool_count = options.pool_count;
         planning.repeats = static_cast<double>(options.repeats);
         planning.seed = options.seed;
-        planning.stop = options.stop;
+        planning.stop.interrupted = options.stop.interrupted;
         const Plan plan = make_plan(setting.campaign, planning).plan;
+        options.stop.check(what);
         Subset subset{configurations_of(plan.poses, setting.pool.configurations.cols()), {}};
         subset.is_seen.resize(count, setting.pool.is_seen.cols());
         for (Index i = 0; i < count; ++i) {
@@ -81,7 +92,9 @@ Subset plan_subset(const SimulationSetting& setting, const SimulatedStudyOptions
                                               setting.pool.configurations.rows());
     if (needs_test_poses(selection.criterion)) selection.test_poses = &prediction;
     if (options.least_distance > 0) selection.positions = turning;
+    selection.stop.interrupted = options.stop.interrupted;
     const Choice choice = select_poses(blocks, selection);
+    options.stop.check(what);
     if (choice.ending == Ending::NotIdentifiable) return {};
     return take(setting.pool, choice.poses);
 }

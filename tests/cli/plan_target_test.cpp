@@ -56,6 +56,7 @@ TEST_F(PlanTarget, RefusesWhatCannotBeMeant) {
     }
     expect_usage_error("--target-mm 1 --quantity mean", "--quantity");
     expect_usage_error("--target-mm 1 -k 12", "excludes");
+    expect_usage_error("--poses-at-most 9 -k 12", "excludes");
     expect_usage_error("--minutes 1 -k 12", "excludes");
     expect_usage_error("--target-mm 1 --plan p.json", "excludes");
     expect_usage_error("--minutes 1 --assurance 0.9", "--target-mm");

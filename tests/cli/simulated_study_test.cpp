@@ -138,6 +138,17 @@ TEST_F(SimulatedStudies, AreInTheOrderOfTheirVariationsInAStoreToo) {
     expect_input_error("study --from text.txt", "text.txt: is no store of trials");
 }
 
+TEST_F(SimulatedStudies, AreNotReplacedByWhatIsWrittenBesideTheirStores) {
+    run_well(study_ + "3 --store s.sqlite");
+    for (const std::string end : {"-wal", "-shm", "-lock"}) {
+        const std::string words = "s.sqlite" + end + ": belongs to a store of trials";
+        expect_input_error("study --from s.sqlite --csv s.sqlite" + end, words);
+        expect_input_error(study_ + "3 --store new.sqlite --csv new.sqlite" + end, "belongs to");
+        expect_input_error("plan " + testing::fanuc_design + " -k 12 -o s.sqlite" + end, words);
+    }
+    EXPECT_FALSE(has_file("new.sqlite"));
+}
+
 TEST_F(SimulatedStudies, RefuseVariationsThatAreNone) {
     expect_input_error(study_ + "3 --vary criterion=v,d", "are the same study");
     expect_input_error(study_ + "3 --vary sensor.sigma_mm=0.1 --vary sensor.sigma_mm=0.2",
@@ -181,6 +192,7 @@ TEST_F(SimulatedStudies, RefuseWhatIsNoStudy) {
     usage(study_ + "5 --exclude 3", "--exclude: is of measured configurations");
     usage(study_ + "5 --splits 3", "--splits: is of measured configurations");
     usage(study_ + "0", "--trials");
+    usage(study_ + "5 --time 0", "--time");
     write_text("text.sqlite", "no database");
     expect_input_error(study_ + "5 --store text.sqlite", "text.sqlite");
     EXPECT_EQ(text_of("text.sqlite"), "no database");

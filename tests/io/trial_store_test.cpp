@@ -161,6 +161,10 @@ TEST(TrialStore, RefusesWhatIsNoStore) {
               "folder: is a directory; must be the name of a file");
     EXPECT_EQ(opening_error(folder.path("none/a.sqlite")),
               "none/a.sqlite: cannot be written: No such file or directory");
+    std::filesystem::create_symlink("loop", folder.path("loop"));
+    EXPECT_EQ(opening_error(folder.path("loop")),
+              "loop: cannot be read: Too many levels of symbolic links");
+    std::filesystem::remove(folder.path("loop"));
     for (const std::size_t size : {1U, 80U, 5000U}) {
         const std::string text(size, 'x');
         const std::string path = folder.write("a.csv", text);
@@ -187,9 +191,10 @@ TEST(TrialStore, RefusesOtherFormatsAndVersions) {
     EXPECT_EQ(opening_error(path),
               "a.sqlite: is a store of format 2, of another version of posewise; must be of format "
               "1");
-    for (const std::string sql : {"CREATE TABLE other (a)", "DROP TABLE trials",
-                                  "CREATE TRIGGER t AFTER INSERT ON trials BEGIN DELETE FROM "
-                                  "trials; END"}) {
+    for (const std::string sql :
+         {"CREATE TABLE other (a)", "DROP TABLE trials", "UPDATE trials SET series = 99",
+          "CREATE TRIGGER t AFTER INSERT ON trials BEGIN DELETE FROM "
+          "trials; END"}) {
         folder.write("a.sqlite", content);
         run_sql(path, sql);
         EXPECT_EQ(opening_error(path),

@@ -221,7 +221,8 @@ TEST(SimulatedStudy, LeavesOutWhatWasStoppedBeforeItsFirstRobot) {
     EXPECT_GE(studies[0].splits, 4);
     EXPECT_LT(studies[0].splits, 40);
     interrupted = true;
-    EXPECT_EQ(simulate_study({{"a", noisy, {}}, {"b", tracked_fanuc(), {}}}, options).size(), 2u);
+    EXPECT_THROW(simulate_study({{"a", noisy, {}}, {"b", tracked_fanuc(), {}}}, options),
+                 InputError);
 }
 
 TEST(SimulatedStudy, EndsWhenItIsAsPreciseAsAskedFor) {
@@ -276,6 +277,15 @@ TEST(SimulatedStudy, RefusesWhatItCannotDo) {
     refuses(fanuc, options, "neither planned nor random");
     const Campaign arm = testing::tracked_campaign(testing::planar_arm({1, 0.8}));
     refuses({"", tracked_fanuc(), arm}, few_trials(), "has 2 joints, must have 6");
+    Campaign other = tracked_fanuc();
+    std::vector<Joint> joints = other.robot.joints();
+    joints[3].name = "wrist";
+    other.robot = Chain(joints, other.robot.elements());
+    refuses({"", tracked_fanuc(), other}, few_trials(), "joint 4 of the truth is 'wrist', must be");
+    const std::atomic<bool> interrupted = true;
+    options = few_trials();
+    options.stop.interrupted = &interrupted;
+    refuses(fanuc, options, "interrupted while");
 
     TrialSeries series;
     series.is_simulated = true;
