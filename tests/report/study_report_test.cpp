@@ -107,7 +107,7 @@ TEST(ModelsTable, ShowsEachModelAgainstItsRandomSubsetsAndThoseOfTheFirst) {
                                                        "-", "0.30", "0"}));
     EXPECT_EQ(table.rows[1], (std::vector<std::string>{"2", "full", "0.5000", "0.1500", "0.30", "-",
                                                        "0.15", "0"}));
-    EXPECT_NE(format(two_models()).find("\nfull, d, planned against random: better at 2\n"),
+    EXPECT_NE(format(two_models()).find("\nfull, d, planned against random: within chance at 2\n"),
               std::string::npos);
 }
 
