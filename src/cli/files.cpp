@@ -42,11 +42,15 @@ bool is_same_file(const std::string& a, const std::string& b) {
     return error ? a == b : whole_a == whole_b;
 }
 
+fs::path follow_links(const std::string& path) {
+    std::error_code error;
+    fs::path whole = fs::weakly_canonical(path, error);
+    return error ? fs::path(path) : whole;
+}
+
 /// What SQLite keeps beside a store of trials may hold the latest of them.
 void check_beside_stores(const std::string& path, const std::vector<std::string>& inputs) {
-    std::error_code error;
-    const fs::path whole = fs::weakly_canonical(path, error);  // where a link leads
-    const std::string file = error ? path : whole.string();
+    const std::string file = follow_links(path).string();
     for (const std::string_view end : {"-wal", "-shm", "-lock"}) {
         if (!file.ends_with(end)) continue;
         const std::string store = file.substr(0, file.size() - end.size());
@@ -59,9 +63,7 @@ void check_beside_stores(const std::string& path, const std::vector<std::string>
 }
 
 void check_folder(const std::string& path) {
-    std::error_code error;
-    const fs::path whole = fs::weakly_canonical(path, error);  // where a link leads
-    fs::path folder = (error ? fs::path(path) : whole).parent_path();
+    fs::path folder = follow_links(path).parent_path();
     if (folder.empty()) folder = ".";
     if (::access(folder.c_str(), W_OK | X_OK) != 0) {
         throw input_error_at({path}, std::string("cannot be written: ") + std::strerror(errno));

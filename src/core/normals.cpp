@@ -11,7 +11,6 @@
 namespace posewise::detail {
 namespace {
 
-constexpr std::size_t most_lanes = 8;
 constexpr std::size_t most_at_once = 64;
 using Numbers = std::array<double, most_at_once>;
 
@@ -58,7 +57,7 @@ void fill_normals(RandomStream& stream, Eigen::Ref<VectorXd> numbers) {
             u[k] = 1.0 - drawn[2 * k];  // above 0
             v[k] = drawn[2 * k + 1];
         }
-        for (std::size_t k = count; k < std::min(count + most_lanes, most_at_once); ++k) {
+        for (std::size_t k = count; k < std::min(count + simd::most_lanes, most_at_once); ++k) {
             u[k] = 1;  // where a vector is not full
             v[k] = 0;
         }

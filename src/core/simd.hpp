@@ -20,6 +20,7 @@ using V8 = VectorOf<8>::type;
 
 template <typename V>
 constexpr int width = static_cast<int>(sizeof(V) / sizeof(double));
+constexpr int most_lanes = width<V8>;
 
 #if defined(__x86_64__)
 template <typename Kernel>

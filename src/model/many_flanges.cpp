@@ -18,8 +18,6 @@ struct Step {
     std::vector<double> amounts{};  ///< else, of each configuration and some zeros
 };
 
-constexpr Index most_lanes = 8;
-
 /// The running product of as many configurations side by side as a vector has numbers.
 struct ManyFlanges {
     const std::vector<Step>& steps;
@@ -119,7 +117,7 @@ std::vector<Isometry3d> Chain::base_from_flanges(const RowMatrixXd& configuratio
             step.amount = detail::amount_of(element, {}, parameters, next);
             step.turn = detail::sine_and_cosine(step.amount);
         } else {
-            step.amounts.resize(static_cast<std::size_t>(count + most_lanes));
+            step.amounts.resize(static_cast<std::size_t>(count + detail::simd::most_lanes));
             fill_amounts(element, configurations, parameters, next, step.amounts);
         }
         steps.push_back(std::move(step));

@@ -16,8 +16,7 @@ std::string ratio_cell(const std::optional<Advantage>& advantage) {
 }
 
 std::string interval_cell(const std::optional<Advantage>& advantage) {
-    const bool is_single = advantage && advantage->lower == advantage->upper;  // of one split
-    if (!advantage || is_single) return "-";
+    if (!advantage || advantage->is_of_one_split()) return "-";
     return format_fixed(advantage->lower, 2) + ".." + format_fixed(advantage->upper, 2);
 }
 

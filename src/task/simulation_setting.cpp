@@ -70,7 +70,6 @@ std::vector<Index> pose_counts(const SimulatedStudyOptions& options, const Campa
 Subset plan_subset(const SimulationSetting& setting, const SimulatedStudyOptions& options,
                    const Blocks& blocks, const Blocks& prediction, const RowMatrixXd& turning,
                    std::size_t criterion, Index count) {
-    constexpr const char* what = "poses to measure were chosen";
     if (options.is_refined) {
         PlanningOptions planning(count);
         planning.criterion = options.criteria[criterion];
@@ -79,7 +78,6 @@ Subset plan_subset(const SimulationSetting& setting, const SimulatedStudyOptions
         planning.seed = options.seed;
         planning.stop.interrupted = options.stop.interrupted;
         const Plan plan = make_plan(setting.campaign, planning).plan;
-        options.stop.check(what);
         Subset subset{configurations_of(plan.poses, setting.pool.configurations.cols()), {}};
         subset.is_seen.resize(count, setting.pool.is_seen.cols());
         for (Index i = 0; i < count; ++i) {
@@ -94,7 +92,6 @@ Subset plan_subset(const SimulationSetting& setting, const SimulatedStudyOptions
     if (options.least_distance > 0) selection.positions = turning;
     selection.stop.interrupted = options.stop.interrupted;
     const Choice choice = select_poses(blocks, selection);
-    options.stop.check(what);
     if (choice.ending == Ending::NotIdentifiable) return {};
     return take(setting.pool, choice.poses);
 }
@@ -199,6 +196,7 @@ SimulationSetting make_setting(const SimulatedCampaign& given,
         for (std::size_t c = 0; c < options.criteria.size(); ++c) {
             planned.push_back(plan_subset(setting, options, blocks, problem.errors.by_parameters,
                                           turning, c, count));
+            options.stop.check("poses to measure were chosen");
         }
     }
     return setting;

@@ -62,9 +62,7 @@ std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& r
 }
 
 Verdict verdict_of(const Advantage& advantage) {
-    const bool is_single =
-        advantage.lower == advantage.upper;  // one split is no better than chance
-    if (is_single) return Verdict::WithinChance;
+    if (advantage.is_of_one_split()) return Verdict::WithinChance;
     if (advantage.upper < 1) return Verdict::Better;
     return advantage.lower > 1 ? Verdict::Loses : Verdict::WithinChance;
 }

@@ -158,6 +158,8 @@ struct Advantage {
     double ratio = 1;  ///< geometric mean over the splits, planned / median of the random ones
     double lower = 1;  ///< its 95 % interval, by Student's t of the logarithms; of one split the
     double upper = 1;  ///< ratio itself
+
+    bool is_of_one_split() const { return lower == upper; }
 };
 /// Of the criterion of that number in one row of a study with splits. Nothing where a planned
 /// subset or half of the random ones of a split do not identify the model.
