@@ -40,7 +40,7 @@ function(posewise_module name)
     target_precompile_headers(posewise_${name} REUSE_FROM posewise_core)
   endif()
   set_property(GLOBAL APPEND PROPERTY posewise_modules ${name})
-  set_property(GLOBAL PROPERTY posewise_uses_${name} ${ARGN})
+  set_property(GLOBAL PROPERTY posewise_uses_${name} ${name} ${ARGN})
 endfunction()
 
 # Where nothing is computed a compiler is thrice as quick at -O1. No product of matrices may be there:
