@@ -41,10 +41,17 @@ install_packages() {
     apt-get install --quiet --yes --no-install-recommends "${missing[@]}"
 }
 
+# What was compiled once, here or in another clone, is not compiled again, precompiled headers included.
+use_ccache() {
+  export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+  export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+}
+
 # build <preset> [<argument of cmake --build>...]
 build() {
   local preset=$1 options=()
   shift
+  use_ccache
   if command -v ccache >/dev/null; then options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
   cmake --preset "$preset" "${options[@]}"
   cmake --build --preset "$preset" "$@"

@@ -13,6 +13,7 @@
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/task/doubts.hpp"
 #include "support/json_mutants.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise {
@@ -21,9 +22,9 @@ namespace {
 using namespace testing;
 using Json = nlohmann::ordered_json;
 
-const std::string design = POSEWISE_SOURCE_DIR "/designs/fanuc_r2000ic_165f/campaign.yaml";
+const std::string design = source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml";
 const std::string measured =
-    POSEWISE_SOURCE_DIR "/data/fanuc_r2000ic_165f_simulated/measurements.csv";
+    source_folder() + "/data/fanuc_r2000ic_165f_simulated/measurements.csv";
 
 /// Why it must not reach a robot, by the file alone; empty: it may.
 std::string why_refused(const Json& file, const Json& original) {

@@ -14,6 +14,7 @@
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/task/verification.hpp"
 #include "support/json_mutants.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise {
@@ -22,7 +23,7 @@ namespace {
 using namespace testing;
 using Json = nlohmann::ordered_json;
 
-const std::string design = POSEWISE_SOURCE_DIR "/tests/fuzz/corpus/campaign/points.yaml";
+const std::string design = source_folder() + "/tests/fuzz/corpus/campaign/points.yaml";
 const std::vector<std::string> words{"optimal", "converged", "time limit",     "d",     "robot",
                                      "1",       "random",    "configurations", "crane", "1/"};
 

@@ -11,6 +11,7 @@
 #include "support/cell_recheck.hpp"
 #include "support/fanuc_planning.hpp"
 #include "support/parameter_error.hpp"
+#include "support/places.hpp"
 #include "support/sweep.hpp"
 
 namespace posewise {
@@ -20,7 +21,7 @@ using namespace detail;
 using namespace testing;
 
 io::CampaignFile demo() {
-    return io::read_campaign(std::string(POSEWISE_SOURCE_DIR) + "/designs/cell_demo/campaign.yaml");
+    return io::read_campaign(source_folder() + "/designs/cell_demo/campaign.yaml");
 }
 
 /// The demonstration cell where each pose must show all targets, as calibrate needs them.

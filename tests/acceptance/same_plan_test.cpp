@@ -11,6 +11,7 @@
 #include "posewise/io/plan_file.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/planning.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise {
@@ -28,7 +29,7 @@ std::string written(const Plan& plan) {
 }
 
 io::CampaignFile design(const std::string& name) {
-    return io::read_campaign(std::string(POSEWISE_SOURCE_DIR) + "/designs/" + name);
+    return io::read_campaign(source_folder() + "/designs/" + name);
 }
 
 std::string chosen(Criterion criterion) {

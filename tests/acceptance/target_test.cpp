@@ -24,12 +24,13 @@
 #include "posewise/report/reports.hpp"
 #include "posewise/task/verification.hpp"
 #include "support/campaigns.hpp"
+#include "support/places.hpp"
 
 namespace posewise {
 namespace {
 
 io::CampaignFile design(const std::string& name) {
-    return io::read_campaign(std::string(POSEWISE_SOURCE_DIR) + "/designs/" + name);
+    return io::read_campaign(source_folder() + "/designs/" + name);
 }
 
 /// The RMS of robots drawn one by one from the linear model: each parameter a normal number, sizes

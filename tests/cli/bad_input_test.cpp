@@ -11,9 +11,8 @@ class BadInput : public Program {
   protected:
     void SetUp() override {
         Program::SetUp();
-        std::filesystem::copy_file(
-            std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml",
-            folder_ / "c.yaml");
+        std::filesystem::copy_file(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml",
+                                   folder_ / "c.yaml");
         run_well("simulate c.yaml --truth 7 --seed 3 --poses 12 --repeats 2 -o s.csv");
     }
 

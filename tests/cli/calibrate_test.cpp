@@ -41,8 +41,7 @@ class Calibrate : public Program {
     }
 
     std::string design_with(const std::string& part, const std::string& by) const {
-        std::string text = read_text(std::string(POSEWISE_SOURCE_DIR) +
-                                     "/designs/fanuc_r2000ic_165f/campaign.yaml");
+        std::string text = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
         EXPECT_NE(text.find(part), std::string::npos);
         return text.replace(text.find(part), part.size(), by);
     }

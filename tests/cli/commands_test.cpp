@@ -44,8 +44,7 @@ TEST_F(Commands, SimulateIsReproducibleFromItsComment) {
 }
 
 TEST_F(Commands, IndicesCountWhatThePriorTells) {
-    std::string campaign =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    std::string campaign = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     campaign.insert(campaign.find("  elements:"), "  errors: full\n");
     write_text("full.yaml", campaign);
     const std::string text = run_well("indices full.yaml -m s.csv");
@@ -142,8 +141,7 @@ TEST_F(Commands, StudyComparesErrorModelsOnTheSameSubsets) {
         run_well("study " + input_ + "--models stated,full " + options + "both.csv");
     EXPECT_NE(text.find("d/random stated"), std::string::npos) << text;
     run_well("study " + input_ + options + "stated.csv");
-    std::string campaign =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    std::string campaign = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     campaign.insert(campaign.find("  elements:"), "  errors: full\n");
     write_text("full.yaml", campaign);
     run_well("study full.yaml -m s.csv " + options + "full.csv");

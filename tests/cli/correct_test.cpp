@@ -100,8 +100,7 @@ TEST_F(Correct, RefusesWhatItCannotUse) {
     expect_input_error(correct_ + "p.csv -o e.json", "is read and shall be written");
     expect_input_error(correct_ + "absent.csv", "absent.csv");
     expect_input_error("correct " + fanuc_design + " m.csv --poses m.csv", "m.csv");
-    std::string design =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    std::string design = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     design.replace(design.find("\nbase:"), 6, "\n# ");
     write_text("adrift.yaml", design);
     expect_input_error("correct adrift.yaml e.json --poses m.csv --base campaign",

@@ -10,8 +10,7 @@ class Directions : public Program {
   protected:
     void SetUp() override {
         Program::SetUp();
-        design_ = read_text(std::string(POSEWISE_SOURCE_DIR) +
-                            "/designs/fanuc_r2000ic_165f/campaign.yaml");
+        design_ = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     }
     void replace(const std::string& part, const std::string& by) {
         ASSERT_NE(design_.find(part), std::string::npos) << part;
@@ -61,8 +60,7 @@ TEST_F(Directions, ThatAreReversedAreNamedWhereNothingElseExplainsTheMisfit) {
 }
 
 TEST_F(Directions, OfAWristAreNamedThoughItIsLittleOff) {
-    std::string robot =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/abb_irb120/planning.yaml");
+    std::string robot = read_text(source_folder() + "/designs/abb_irb120/planning.yaml");
     robot.replace(robot.find("{count: 3}"), 10,
                   "{position_mm: [[80, 0, 30], [20, 70, 10], [20, -60, -50]]}\n"
                   "base: {position_mm: [2000, 300, -400], rpy_deg: [0, 0, 90]}");
@@ -89,10 +87,9 @@ TEST_F(Directions, OfAWrongRobotAreNotGuessed) {
 }
 
 TEST_F(Directions, OfThePublishedCampaignFitTenTimesBetterThanAnyOther) {
-    const std::string csv =
-        std::string(POSEWISE_REAL_DATA) + "/fanuc_r2000ic_165f/measurements.csv";
+    const std::string csv = real_data() + "/fanuc_r2000ic_165f/measurements.csv";
     if (!std::filesystem::exists(csv)) {
-        GTEST_SKIP() << "no real campaign at POSEWISE_REAL_DATA = " << POSEWISE_REAL_DATA;
+        GTEST_SKIP() << "no real campaign at POSEWISE_REAL_DATA = " << real_data();
     }
     replace("Rx -q4", "Rx q4");
     write_text("c.yaml", design_);

@@ -59,8 +59,7 @@ TEST_F(Export, HasTheOrientationOfAToolOfMeasuredPoses) {
 }
 
 TEST_F(Export, WarnsOfAURThatBeginsAtTheWrongLink) {
-    std::string design =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/ur10/campaign.yaml") + base_;
+    std::string design = read_text(source_folder() + "/designs/ur10/campaign.yaml") + base_;
     design.insert(design.find("    - Rz q1"), "    - Rz 180 deg\n");
     design.insert(design.find("  sigma_mm"),
                   "  tool: {position_mm: [0, 0, 50], rpy_deg: [0, 0, 0]}\n");

@@ -9,9 +9,9 @@ class Fanuc : public Program {
   protected:
     void SetUp() override {
         Program::SetUp();
-        const std::string folder = std::string(POSEWISE_REAL_DATA) + "/fanuc_r2000ic_165f";
+        const std::string folder = real_data() + "/fanuc_r2000ic_165f";
         if (!std::filesystem::exists(folder + "/measurements.csv")) {
-            GTEST_SKIP() << "no real campaign at POSEWISE_REAL_DATA = " << POSEWISE_REAL_DATA;
+            GTEST_SKIP() << "no real campaign at POSEWISE_REAL_DATA = " << real_data();
         }
         csv_ = fanuc_design + " -m '" + folder + "/measurements.csv' ";
         mat_ = fanuc_design + " -m '" + folder + "/calibration_dataset.mat' ";
@@ -34,7 +34,7 @@ TEST_F(Fanuc, CalibrationReachesTheKnownFigures) {
 
 TEST_F(Fanuc, GravityTermsReachTheKnownFigures) {
     const std::string design =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+        read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     const std::string measured = csv_.substr(fanuc_design.size());
     std::string text = design;
     write_text("six.yaml", text.insert(text.find("  elements:"), "  gravity: true\n"));
@@ -53,8 +53,7 @@ TEST_F(Fanuc, GravityTermsReachTheKnownFigures) {
 }
 
 TEST_F(Fanuc, ModelSelectionTakesGravityTermsAndNoHarmonics) {
-    std::string text =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    std::string text = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     text.insert(text.find("  elements:"),
                 "  gravity: true\n  harmonics: {orders: [1, 2], joints: [q4]}\n");
     write_text("all.yaml", text);

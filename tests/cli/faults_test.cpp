@@ -90,8 +90,7 @@ TEST_F(Faults, AreValuesThatNoRobotHas) {
 
 TEST_F(Faults, AnEstimateOfAnotherRobotIsNamedByWhatDiffers) {
     run_well(calibrate_ + "-o e.json");
-    std::string text =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    std::string text = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     const auto at = text.find("Tz 1075 mm");
     ASSERT_NE(at, std::string::npos);
     write_text("other.yaml", text.replace(at, 10, "Tz 1000 mm"));
@@ -103,8 +102,7 @@ TEST_F(Faults, AnEstimateOfAnotherRobotIsNamedByWhatDiffers) {
 
 /// The FANUC campaign with a base at this x (mm) that is known, or is not.
 std::string with_base(const std::string& x, bool is_known) {
-    std::string text =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    std::string text = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     text.erase(text.find("measurements:"));  // of MATLAB files
     const std::string turn = "0.35]}";
     if (is_known) text.replace(text.find(turn), turn.size(), "0.35], known: true}");

@@ -75,8 +75,7 @@ class From : public Program {
   protected:
     void SetUp() override {
         Program::SetUp();
-        campaign_ = read_text(std::string(POSEWISE_SOURCE_DIR) +
-                              "/designs/fanuc_r2000ic_165f/campaign.yaml");
+        campaign_ = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
         write_text("c.yaml", campaign_);
         run_well("simulate c.yaml --truth 7 --seed 3 --poses 30 --repeats 3 -o s.csv");
         run_well("calibrate c.yaml -m s.csv --folds 0 -o e.json");

@@ -13,8 +13,7 @@ class Global : public Program {
 };
 
 TEST_F(Global, FindsTheRobotFromABadCampaignFile) {
-    std::string design =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    std::string design = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     const auto replace = [&](const std::string& part, const std::string& by) {
         ASSERT_NE(design.find(part), std::string::npos) << part;
         design.replace(design.find(part), part.size(), by);

@@ -8,8 +8,7 @@
 namespace posewise::testing {
 namespace {
 
-const std::string cell =
-    std::string("'") + POSEWISE_SOURCE_DIR + "/designs/cell_demo/campaign.yaml'";
+const std::string cell = "'" + source_folder() + "/designs/cell_demo/campaign.yaml'";
 
 class HiddenTargets : public Program {
   protected:

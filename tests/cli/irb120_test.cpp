@@ -9,17 +9,15 @@ class Irb120 : public Program {
   protected:
     void SetUp() override {
         Program::SetUp();
-        const std::string csv = std::string(POSEWISE_REAL_DATA) + "/abb_irb120/measurements.csv";
+        const std::string csv = real_data() + "/abb_irb120/measurements.csv";
         if (!std::filesystem::exists(csv)) {
-            GTEST_SKIP() << "no real campaign at POSEWISE_REAL_DATA = " << POSEWISE_REAL_DATA;
+            GTEST_SKIP() << "no real campaign at POSEWISE_REAL_DATA = " << real_data();
         }
         measured_ = " -m '" + csv + "' --folds 0";
     }
 
-    const std::string design_ =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/abb_irb120/campaign.yaml");
-    const std::string planning_ =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/abb_irb120/planning.yaml");
+    const std::string design_ = read_text(source_folder() + "/designs/abb_irb120/campaign.yaml");
+    const std::string planning_ = read_text(source_folder() + "/designs/abb_irb120/planning.yaml");
     std::string measured_;
 };
 

@@ -41,7 +41,7 @@ class OtherCampaigns : public Program {
     double judged_on(const std::string& other, const std::string& campaign,
                      const std::string& errors, const std::string& robot,
                      const std::string& options = "--refit base,targets") const {
-        const std::string data = std::string(POSEWISE_REAL_DATA) + "/";
+        const std::string data = real_data() + "/";
         write_text("c.yaml", "name: c\nrobot:\n  errors: " + errors + "\n" + robot);
         const Outcome outcome = run("calibrate c.yaml --no-prior --folds 0 -m " + data + campaign +
                                     " --validate " + data + other + ' ' + options);
@@ -51,8 +51,8 @@ class OtherCampaigns : public Program {
 
     void SetUp() override {
         Program::SetUp();
-        if (!std::filesystem::exists(std::string(POSEWISE_REAL_DATA) + "/meca500")) {
-            GTEST_SKIP() << "no real campaigns at POSEWISE_REAL_DATA = " << POSEWISE_REAL_DATA;
+        if (!std::filesystem::exists(real_data() + "/meca500")) {
+            GTEST_SKIP() << "no real campaigns at POSEWISE_REAL_DATA = " << real_data();
         }
     }
 };

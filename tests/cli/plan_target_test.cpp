@@ -82,7 +82,7 @@ TEST_F(PlanTarget, IsVerifiedOnRobotsThatAreDrawn) {
 
 TEST_F(PlanTarget, DwellIsTimeAtEachPose) {
     const std::string campaign =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+        read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     write_text("c.yaml", campaign + "cell: {dwell_s: 4}\n");
     const std::string text = run_well("plan c.yaml -k 8 --repeats 2" + quick);
     EXPECT_NE(text.find("min with 4 s for each sample"), std::string::npos) << text;

@@ -6,8 +6,7 @@
 namespace posewise::testing {
 namespace {
 
-const std::string cell_design =
-    std::string("'") + POSEWISE_SOURCE_DIR + "/designs/cell_demo/campaign.yaml'";
+const std::string cell_design = "'" + source_folder() + "/designs/cell_demo/campaign.yaml'";
 const std::string quick = " --pool 500 --starts 2 --workspace-poses 50 ";
 
 class PlanCommand : public Program {
@@ -17,8 +16,7 @@ class PlanCommand : public Program {
     }
     /// The demonstration cell with one line changed.
     void write_changed(const std::string& from, const std::string& to) const {
-        std::string text =
-            read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/cell_demo/campaign.yaml");
+        std::string text = read_text(source_folder() + "/designs/cell_demo/campaign.yaml");
         const auto place = text.find(from);
         ASSERT_NE(place, std::string::npos) << from;
         write_text("changed.yaml", text.replace(place, from.size(), to));
@@ -115,7 +113,7 @@ TEST_F(PlanCommand, ChecksThePlanItRepairs) {
     plan.at("campaign") = "another cell";
     expect_refused(plan, "campaign: is 'another cell'; must be a plan of 'FANUC");
     const std::string blocks = "/tests/golden/plan_format_1/blocks.plan.json";
-    expect_input_error("plan " + cell_design + " --plan '" + POSEWISE_SOURCE_DIR + blocks +
+    expect_input_error("plan " + cell_design + " --plan '" + source_folder() + blocks +
                            "' --drop p2" + quick + "-o x.json",
                        "is a choice from plain blocks; must be a plan of continuous poses");
 }
@@ -238,8 +236,7 @@ TEST_F(PlanCommand, SaysThatTheBoundIsLooseAtFewPoses) {
 }
 
 TEST_F(PlanCommand, RefusesMeasurementsOfAnotherRobot) {
-    std::string other =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    std::string other = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     const std::string length = "Tz 1075 mm";
     write_text("other.yaml", other.replace(other.find(length), length.size(), "Tz 600 mm"));
     run_well("simulate other.yaml -k 12 -o other.csv");

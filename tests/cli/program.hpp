@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 
+#include "support/places.hpp"
+
 /// Runs the built program as a user would, in a folder of its own.
 namespace posewise::testing {
 
@@ -42,7 +44,7 @@ class Program : public ::testing::Test {
     /// `arguments` as typed in a shell; `before` may set environment variables, `behind` may pipe.
     Outcome run(const std::string& arguments, const std::string& before = "",
                 const std::string& behind = "") const {
-        return run_line(before + " '" + POSEWISE_PROGRAM + "' " + arguments + " 2> .err " + behind +
+        return run_line(before + " '" + program_path() + "' " + arguments + " 2> .err " + behind +
                         " > .out");
     }
 
@@ -120,9 +122,9 @@ inline const std::string six_joints = R"(  joints:
 )";
 
 inline const std::string fanuc_design =
-    std::string("'") + POSEWISE_SOURCE_DIR + "/designs/fanuc_r2000ic_165f/campaign.yaml'";
+    "'" + source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml'";
 inline const std::string seed_design =
-    std::string("'") + POSEWISE_SOURCE_DIR + "/designs/fanuc_r2000ic_165f/seed_report.yaml'";
+    "'" + source_folder() + "/designs/fanuc_r2000ic_165f/seed_report.yaml'";
 
 /// The number in `column` (0 is the first) of the first line that starts with `label`; blanks
 /// separate columns. Fails the test and gives NaN if there is none.

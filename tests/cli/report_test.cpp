@@ -10,8 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::string cell_design =
-    std::string("'") + POSEWISE_SOURCE_DIR + "/designs/cell_demo/campaign.yaml'";
+const std::string cell_design = "'" + source_folder() + "/designs/cell_demo/campaign.yaml'";
 
 class Report : public Program {
   protected:
@@ -91,7 +90,7 @@ TEST_F(Report, OfAPlanHasWhatItPrintsAndWhatItsFileAndCampaignTell) {
 
 TEST_F(Report, LeavesOutWhatAChangedCampaignSaysOfAPlan) {
     const std::string design =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+        read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     write_text("c.yaml", design);
     run_well("plan c.yaml -k 9 --pool 40 --starts 1 --workspace-poses 10 --criterion d -o p.json");
     run_well("report p.json -o r.html");
@@ -152,8 +151,7 @@ TEST_F(Report, OfACalibrationIsTheSameFromItsFile) {
 
 TEST_F(Report, SaysWhatItLeavesOut) {
     simulate();
-    write_text("c.yaml", read_text(std::string(POSEWISE_SOURCE_DIR) +
-                                   "/designs/fanuc_r2000ic_165f/campaign.yaml"));
+    write_text("c.yaml", read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml"));
     run_well("calibrate c.yaml -m s.csv --folds 0 -o e.json");
     run_well("simulate " + fanuc_design + " --truth 7 --seed 4 --poses 16 -o s.csv");
     const Outcome changed = run("report e.json -o r.html");
@@ -222,8 +220,7 @@ TEST_F(Report, ShowsHowFarExportedFilesAre) {
 
 TEST_F(Report, LeavesAHostileNameText) {
     simulate();
-    std::string campaign =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    std::string campaign = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     const std::string name = "name: FANUC R-2000iC/165F";
     ASSERT_NE(campaign.find(name), std::string::npos);
     campaign.replace(campaign.find(name), name.size(),

@@ -21,7 +21,7 @@ TEST_F(SamePlan, IsChosenByTheFunctionsOfAnOlderCpu) {
 }
 
 TEST_F(SamePlan, IsRefinedInACellByTheFunctionsOfAnOlderCpu) {
-    const std::string command = "plan '" + std::string(POSEWISE_SOURCE_DIR) +
+    const std::string command = "plan '" + source_folder() +
                                 "/designs/cell_demo/campaign.yaml' --poses 6 --pool 400 "
                                 "--starts 2 --workspace-poses 50";
     run_well(command + " --out plan.json");

@@ -52,7 +52,7 @@ TEST_F(Select, ChoosesFromConfigurationsThatWereNotMeasured) {
 TEST_F(Select, ReadsTheCampaignOnce) {
     const std::string plain = run_well("select " + input_ + "-k 8 --starts 1 -o one.json");
     const std::filesystem::path design =
-        std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml";
+        source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml";
     write_fifo("campaign.fifo", design.string());
     const std::string piped =
         run_well("select campaign.fifo -m s.csv -k 8 --starts 1 -o one.json", "timeout 60");
@@ -71,7 +71,7 @@ TEST_F(Select, ChoosesFromRandomConfigurationsTheSameEveryTime) {
 
 TEST_F(Select, NeedsToKnowWhereTheBaseIs) {
     const std::string design =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+        read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     std::string text = design;
     text.erase(text.find("base: {"), text.find('\n', text.find("base: {")) - text.find("base: {"));
     write_text("c.yaml", text);
@@ -102,8 +102,7 @@ TEST_F(Select, APriorAllowsFewerPosesThanParametersNeed) {
     expect_input_error("select " + input_ + "-k 3 -o p.json", "state a prior");
     run_well("select " + input_ + "-k 3 --prior -o p.json");
     EXPECT_EQ(ids_of("p.json").size(), 3U);
-    write_text("c.yaml", read_text(std::string(POSEWISE_SOURCE_DIR) +
-                                   "/designs/fanuc_r2000ic_165f/campaign.yaml") +
+    write_text("c.yaml", read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml") +
                              "\nprior: true\n");
     run_well("select c.yaml -m s.csv -k 3 -o q.json");
     EXPECT_EQ(ids_of("q.json"), ids_of("p.json"));
@@ -227,7 +226,7 @@ TEST_F(Select, RefusesCandidatesBeyondTheLimits) {
 
 TEST_F(Select, WarnsAboutMeasuredPosesBeyondTheLimits) {
     const std::string design =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+        read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     std::string text = design;
     const auto limits = text.find("q1: {limits_deg: [");
     text.replace(limits, text.find('}', limits) - limits, "q1: {limits_deg: [-20, 20]");
@@ -240,8 +239,7 @@ TEST_F(Select, WarnsAboutMeasuredPosesBeyondTheLimits) {
 }
 
 TEST_F(Select, RefusesMeasurementsOfAnotherRobot) {
-    std::string other =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    std::string other = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     const std::string length = "Tz 1075 mm";
     write_text("other.yaml", other.replace(other.find(length), length.size(), "Tz 600 mm"));
     run_well("simulate other.yaml -k 16 -o other.csv");

@@ -12,7 +12,7 @@ class SimulatedStudies : public testing::Program {
   protected:
     void SetUp() override {
         Program::SetUp();
-        study_ = std::string("study '") + POSEWISE_SOURCE_DIR +
+        study_ = std::string("study '") + source_folder() +
                  "/designs/fanuc_r2000ic_165f/campaign.yaml' --simulate --poses 8,12 --pool 200 "
                  "--test-poses 50 --trials ";
     }
@@ -67,7 +67,7 @@ TEST_F(SimulatedStudies, GoOnAfterTheyWereKilled) {
     for (int i = 0; i < 6; ++i) {
         const std::string seconds = "0." + std::to_string(2 + i);
         const testing::Outcome outcome =
-            run_line("timeout -s KILL " + seconds + " '" + POSEWISE_PROGRAM + "' " + study_ +
+            run_line("timeout -s KILL " + seconds + " '" + program_path() + "' " + study_ +
                      "150 --threads 1 --store s.sqlite > .out 2> .err");
         if (outcome.code != 0) ++killed;
     }
@@ -159,7 +159,7 @@ TEST_F(SimulatedStudies, RefuseVariationsThatAreNone) {
 
 TEST_F(SimulatedStudies, KeepMeasuredOnesToo) {
     const std::string campaign =
-        std::string("'") + POSEWISE_SOURCE_DIR + "/designs/fanuc_r2000ic_165f/campaign.yaml' ";
+        "'" + source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml' ";
     run_well("simulate " + campaign + "--poses 14 --out m.csv");
     const std::string study =
         "study " + campaign +

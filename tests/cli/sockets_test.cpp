@@ -197,7 +197,7 @@ TEST_F(Sockets, TwoForOneConfigurationAndWhatSeesThemAreRefused) {
 }
 
 TEST_F(Sockets, OfARealPandaAreFittedAsIndependently) {
-    const std::string data = std::string(POSEWISE_REAL_DATA) + "/panda_sockets/measurements.csv";
+    const std::string data = real_data() + "/panda_sockets/measurements.csv";
     if (!std::filesystem::exists(data)) GTEST_SKIP() << "no real campaign at " << data;
     std::string places;
     for (int k = 0; k < 12; k += 2) {

@@ -9,14 +9,13 @@ class Ur10 : public Program {
   protected:
     void SetUp() override {
         Program::SetUp();
-        csv_ = std::string(POSEWISE_REAL_DATA) + "/ur10_ipa/measurements.csv";
+        csv_ = real_data() + "/ur10_ipa/measurements.csv";
         if (!std::filesystem::exists(csv_)) {
-            GTEST_SKIP() << "no real campaign at POSEWISE_REAL_DATA = " << POSEWISE_REAL_DATA;
+            GTEST_SKIP() << "no real campaign at POSEWISE_REAL_DATA = " << real_data();
         }
     }
 
-    const std::string design_ =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/ur10/campaign.yaml");
+    const std::string design_ = read_text(source_folder() + "/designs/ur10/campaign.yaml");
     std::string csv_;
 };
 
@@ -31,8 +30,7 @@ TEST_F(Ur10, CalibratesGeometricallyFromPositionsAndOrientations) {
 }
 
 TEST_F(Ur10, IsThreeTimesAsAccurateWithJointMapsAndGravity) {
-    write_text("c.yaml",
-               read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/ur10/joint_maps.yaml"));
+    write_text("c.yaml", read_text(source_folder() + "/designs/ur10/joint_maps.yaml"));
     const std::string report = run_well("calibrate c.yaml --folds 4 -m '" + csv_ + "'");
     EXPECT_LT(number_behind(report, "distance RMS", 1), 0.135);
     EXPECT_LT(number_behind(report, "distance RMS", 3), 0.147);  // with ten folds 0.1447

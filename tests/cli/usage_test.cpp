@@ -11,7 +11,7 @@ const std::string commands[] = {"inspect",   "indices", "select",  "plan",  "ver
                                 "calibrate", "export",  "correct", "study", "simulate"};
 
 TEST_F(Usage, VersionIsThatOfTheProject) {
-    EXPECT_EQ(run_well("--version"), std::string("posewise ") + POSEWISE_VERSION + '\n');
+    EXPECT_EQ(run_well("--version"), std::string("posewise ") + stated_version() + '\n');
 }
 
 TEST_F(Usage, HelpNamesEveryCommand) {

@@ -52,8 +52,7 @@ TEST_F(Verify, FindsEveryPlanOfEveryCriterion) {
 }
 
 TEST_F(Verify, SaysInOneSentenceThatTheErrorsAreOthersNow) {
-    std::string campaign =
-        read_text(std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    std::string campaign = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     write_text("c.yaml", campaign);
     run_well("select c.yaml -m s.csv -k 10 --starts 1 -o q.json");
     run_well("plan c.yaml -k 10 --pool 500 --starts 1 --workspace-poses 50 -o r.json");
@@ -219,7 +218,7 @@ TEST_F(Verify, RefusesFilesThePlanHasNoneOf) {
                               "--candidates"),
               std::string::npos)
         << random.err;
-    const std::string golden = std::string(POSEWISE_SOURCE_DIR) + "/tests/golden/plan_format_1/";
+    const std::string golden = source_folder() + "/tests/golden/plan_format_1/";
     const Outcome plain = run("verify '" + golden + "blocks.plan.json' --campaign " + fanuc_design);
     EXPECT_EQ(plain.code, 2);
     EXPECT_NE(plain.err.find("PLAN: is a choice from plain blocks, which takes no --campaign"),
@@ -258,7 +257,7 @@ TEST_F(Verify, RefusesWhatIsNoPlan) {
 }
 
 TEST_F(Verify, ReadsFormatOneWithTheSameFigures) {
-    const std::string golden = std::string(POSEWISE_SOURCE_DIR) + "/tests/golden/plan_format_1/";
+    const std::string golden = source_folder() + "/tests/golden/plan_format_1/";
     for (const std::string name :
          {"blocks.plan.json", "choice.plan.json", "continuous.poses.json"}) {
         const std::string text = run_well("verify '" + golden + name + "'");
@@ -294,7 +293,7 @@ TEST_F(Verify, ParsesThePlanOnce) {
 
 TEST_F(Verify, EveryPlanOfTheRepositoryIsAsStated) {
     int count = 0;
-    const std::filesystem::path designs = std::string(POSEWISE_SOURCE_DIR) + "/designs";
+    const std::filesystem::path designs = source_folder() + "/designs";
     for (const auto& entry : std::filesystem::recursive_directory_iterator(designs)) {
         if (!entry.path().string().ends_with(".plan.json")) continue;
         run_well("verify '" + entry.path().string() + "'");

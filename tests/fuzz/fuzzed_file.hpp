@@ -9,6 +9,7 @@
 
 #include "posewise/core/errors.hpp"
 #include "posewise/io/campaign_file.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 /// What a fuzzer calls with each input; 0: go on.
@@ -18,7 +19,7 @@ namespace posewise::testing {
 
 /// One of the small campaigns in corpus/campaign.
 inline io::CampaignFile corpus_campaign(const std::string& name) {
-    return io::read_campaign(std::string(POSEWISE_FUZZ_CORPUS) + "/campaign/" + name + ".yaml");
+    return io::read_campaign(source_folder() + "/tests/fuzz/corpus/campaign/" + name + ".yaml");
 }
 
 /// Lets `read` have an input as a file of this name. It must take it or throw an InputError of one

@@ -9,6 +9,7 @@
 #include "posewise/jacobian/identifiability.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -306,7 +307,7 @@ sensor: {kind: points, sigma_mm: 0.1, targets: {count: 3}}
 }
 
 TEST(ReadCampaign, ReadsTheFanucDesigns) {
-    const std::string folder = std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/";
+    const std::string folder = source_folder() + "/designs/fanuc_r2000ic_165f/";
     const CampaignFile file = read_campaign(folder + "campaign.yaml");
     EXPECT_EQ(file.robot.parameter_count(), 18);
     EXPECT_EQ(find_identifiable(file).dropped.size(), 0U);
@@ -317,8 +318,7 @@ TEST(ReadCampaign, ReadsTheFanucDesigns) {
 
 TEST(ReadCampaign, FindsAsManyErrorsInTheFanucAsItsDesignStates) {
     const TemporaryFolder folder;
-    const std::string path =
-        std::string(POSEWISE_SOURCE_DIR) + "/designs/fanuc_r2000ic_165f/campaign.yaml";
+    const std::string path = source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml";
     std::ifstream in(path);
     const std::string text(std::istreambuf_iterator<char>(in), {});
     const auto complete = replaced(text, "  elements:", "  errors: complete\n  elements:");

@@ -4,6 +4,7 @@
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "support/cells.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -137,7 +138,7 @@ TEST(ReadCell, TellsWhatIsWrongAndWhere) {
 }
 
 TEST(ReadCell, KnowsTheDemonstrationCell) {
-    const std::string folder = POSEWISE_SOURCE_DIR "/designs/cell_demo/";
+    const std::string folder = source_folder() + "/designs/cell_demo/";
     const CampaignFile file = read_campaign(folder + "campaign.yaml");
     const Campaign expected_campaign = testing::cell_campaign();
     const Cell expected = testing::demo_cell();

@@ -5,6 +5,7 @@
 
 #include "../../src/io/atomic_file.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -20,11 +21,10 @@ class FanucMeasurements : public ::testing::Test {
             GTEST_SKIP() << "needs the measured campaign in " << folder_
                          << " (set POSEWISE_REAL_DATA)";
         }
-        file_ = read_campaign(std::string(POSEWISE_SOURCE_DIR) +
-                              "/designs/fanuc_r2000ic_165f/campaign.yaml");
+        file_ = read_campaign(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
     }
 
-    const std::string folder_ = POSEWISE_REAL_DATA "/fanuc_r2000ic_165f";
+    const std::string folder_ = real_data() + "/fanuc_r2000ic_165f";
     const std::string csv_ = folder_ + "/measurements.csv";
     const std::string mat_ = folder_ + "/calibration_dataset.mat";
     CampaignFile file_;
