@@ -30,7 +30,7 @@ struct BoxMuller {
     POSEWISE_INLINE void run() const {
         constexpr std::size_t lanes = sizeof(V) / sizeof(double);
         for (std::size_t first = 0; first < count; first += lanes) {
-            V radius, angle, sine, cosine;
+            V radius{}, angle{}, sine, cosine;
             load(u, first, radius);
             load(v, first, angle);
             logarithms(V(radius), radius);
