@@ -105,9 +105,9 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
         if (norm <= least_share * largest) continue;
         for (std::size_t k = 0; k < result.kept.size(); ++k) {
             const double coefficient = combination(static_cast<Index>(k), static_cast<Index>(d));
-            // What is less than 1e-7 of the dropped column is rounding.
+            // What is less of the dropped column is rounding.
             const double part = std::abs(coefficient) * J.col(result.kept[k]).norm();
-            if (part > std::max(1e-7 * norm, least_share * largest)) {
+            if (part > std::max(1e-7, least_share) * norm) {
                 result.dropped[d].absorbed_by.push_back({result.kept[k], coefficient});
             }
         }
