@@ -83,8 +83,10 @@ void print_head(const io::CampaignFile& file) {
 /// With the joint directions that were tried, if there are some.
 void print_campaign(const io::CampaignFile& file, const std::vector<detail::SignPattern>& patterns,
                     const CommonOptions& common) {
-    const bool is_stated = file.error_model == io::ErrorModel::Stated;
-    const Inspection inspection = posewise::inspect(file, file.declared_robot, is_stated);
+    const bool is_stated =
+        file.error_model == io::ErrorModel::Stated || file.error_model == io::ErrorModel::Offsets;
+    Inspection inspection = posewise::inspect(file, file.declared_robot, is_stated);
+    inspection.rounded_angle_count = file.rounded_angle_count;
     const std::string gap = describe_gap(inspection);
     if (!gap.empty()) print_warning(file.path + ": " + gap);
     if (common.json) {

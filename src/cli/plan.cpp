@@ -20,6 +20,8 @@
 #include "plan_verification.hpp"
 #include "plot.hpp"
 #include "posewise/io/plan_file.hpp"
+#include "posewise/report/reports.hpp"
+#include "posewise/task/inspection.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -117,6 +119,7 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
                   {arguments.earlier.from, sources.augment, sources.repaired, sources.workspace},
                   {out, arguments.csv, arguments.page, arguments.plot}, common);
     const PlanRequest request = make_request(arguments, &campaign, Criterion::V);
+    for (const OnAxis& one : find_on_axis(campaign)) print_warning(describe(one));
     PlanningOptions options = read_planning_inputs(request, campaign);
     check_verification(arguments.verification, campaign, options);
     if (!sources.repaired.empty()) options.repaired = io::read_plan(sources.repaired);

@@ -100,6 +100,15 @@ Json inspection_to_json(const Inspection& inspection) {
                                   {"rank", inspection.of_complete.kept.size()}};
     document["calibrated_parameter_count"] = parameter_count(campaign);
     document["least_pose_count"] = inspection.least_pose_count;
+    document["unknowable"] = {
+        {"parameters", inspection.unknowable.parameters},
+        {"cures", make_list(inspection.unknowable.cures, [](const KnownAxes& known) {
+             return Json{{"base", known.base}, {"targets", known.targets}};
+         })}};
+    document["on_axis"] = make_list(inspection.on_axis, [](const OnAxis& one) {
+        return Json{{"target", one.target + 1}, {"joint", one.joint}};
+    });
+    document["rounded_angle_count"] = inspection.rounded_angle_count;
     return document;
 }
 

@@ -25,6 +25,10 @@ std::optional<double> read_number(const XmlDocument& document, pugi::xml_node el
 std::optional<Vector3d> read_vector(const XmlDocument& document, pugi::xml_node element,
                                     const char* attribute, const std::string& subject);
 
+/// Whether a name is of another namespace than the format's own, "drake:acceleration": an extension
+/// of other programs, no slip.
+inline bool is_foreign(std::string_view name) { return name.find(':') != std::string_view::npos; }
+
 /// The joint in an element <joint> on the way from base to tip.
 io::UrdfJoint read_urdf_joint(const XmlDocument& document, pugi::xml_node element);
 

@@ -127,9 +127,16 @@ std::string describe_distance(const DistanceDoubt& distance) {
         detail::quote(distance.from), detail::format_short(mm_per_m * distance.found, 4));
 }
 
-constexpr const char* no_length =
-    "no length is stated: how large the robot is follows from its nominal lengths alone; state the "
-    "distance of two sockets of one body, keys from and distance_mm";
+std::string describe_no_length(const Sensor& sensor) {
+    return fmt::format(
+        "no length is stated: how large the robot is follows from its nominal lengths alone; state "
+        "{}",
+        sensor.has_contacts()
+            ? "the distance of two sockets of one body, keys from and distance_mm"
+            : "how far a plane is from the base, which must be known (known: [offset], of one not "
+              "through the base itself), or where the target is on the flange "
+              "(sensor.targets.known)");
+}
 
 std::string describe_held_back(const HeldBackSize& size) {
     const bool is_angle = size.held.is_angle;
@@ -174,7 +181,7 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
         sentences.push_back(describe_model_errors(calibration.campaign.robot, doubts.model_errors));
     }
     if (doubts.scatter) sentences.push_back(at + describe_scatter(*doubts.scatter));
-    if (doubts.lacks_length) sentences.push_back(no_length);
+    if (doubts.lacks_length) sentences.push_back(describe_no_length(*calibration.campaign.sensor));
     if (doubts.distance) sentences.push_back(at + describe_distance(*doubts.distance));
     if (doubts.small_residuals) {
         sentences.push_back(

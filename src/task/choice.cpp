@@ -9,6 +9,7 @@
 #include "../model/halton.hpp"
 #include "choice_problem.hpp"
 #include "inputs.hpp"
+#include "posewise/jacobian/unknowable.hpp"
 
 namespace posewise {
 namespace {
@@ -124,6 +125,7 @@ Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_
 }
 
 Plan choose(const Campaign& campaign, Candidates candidates, const ChoiceOptions& options) {
+    check_knowable(campaign, options.stop);
     if (campaign.spread.is_prior) {  // else selection says if they are too few
         detail::compute_from(options.sources.campaign, [&] {
             detail::check_enough_poses(campaign, options.pose_count,

@@ -251,7 +251,7 @@ void add_doubts(const Campaign& campaign, const Measurements& measured, const Es
     doubts.small_residuals = find_small_residuals(campaign, estimate);
     doubts.missing_errors = find_missing_errors(campaign, measured, estimate);
     doubts.scatter = find_scatter_doubt(campaign, measured, estimate.parameters);
-    doubts.lacks_length = lacks_length(campaign);
+    doubts.lacks_length = lacks_length(campaign, measured);
     doubts.distance = find_distance_doubt(campaign, measured, estimate);
     doubts.negative_compliances = find_negative_compliances(campaign, estimate);
 }

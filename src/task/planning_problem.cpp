@@ -12,6 +12,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/jacobian/unknowable.hpp"
 #include "workspace.hpp"
 
 namespace posewise::detail {
@@ -118,6 +119,7 @@ PlanningOptions options_of(const Plan& plan, const PlanningOptions& inputs) {
 PlanningProblem state_planning(const Campaign& given, const PlanningOptions& options) {
     check_torques_known(given);
     const Campaign campaign = with_base(given, options);
+    check_knowable(campaign, options.stop);
     Cell cell = campaign.cell;
     if (options.repaired) {
         cell.least_joint_distance = std::max(cell.least_joint_distance, distance_from_dropped);

@@ -160,6 +160,46 @@ TEST(ReadUrdf, WarnsOfAttributesOfLimitsThatItDoesNotKnow) {
     EXPECT_EQ(make_chain(robot).joints()[1].upper, 2);
 }
 
+TEST(ReadUrdf, LeavesWhatIsOfOtherNamespacesToOthers) {
+    std::string extended =
+        replaced(text, "effort=\"10\"", "drake:acceleration=\"5\" effort=\"10\"");
+    extended = replaced(extended, "<axis xyz=\"0 -1 0\"/>",
+                        "<axis drake:x=\"1\" xyz=\"0 -1 0\"/><drake:mimc joint=\"a\"/>");
+    const UrdfRobot robot = read(extended);
+    EXPECT_TRUE(describe_doubts(robot).empty());
+    EXPECT_EQ(make_chain(robot).joints()[1].upper, 2);
+}
+
+TEST(ReadUrdf, TakesATemplateThatIsOnlyOfLooks) {
+    const auto with = [](const std::string& inside) {
+        return replaced(text, "<link name=\"base\"/>", "<link name=\"base\">" + inside + "</link>");
+    };
+    const std::string macro = "<xacro:colour name=\"grey\"/>";
+    EXPECT_EQ(error_of(with("<visual>" + macro + "</visual>")), "no error");
+    EXPECT_EQ(error_of(with("<collision><geometry>" + macro + "</geometry></collision>")),
+              "no error");
+    for (const std::string& inside : {macro, "<inertial>" + macro + "</inertial>"}) {
+        EXPECT_NE(error_of(with(inside)).find("is a template for xacro"), std::string::npos);
+    }
+    EXPECT_NE(error_of(replaced(text, "<axis xyz=\"0 -1 0\"/>", "<axis xyz=\"0 -1 0\"/>" + macro))
+                  .find("is a template for xacro"),
+              std::string::npos);
+}
+
+TEST(BadUrdf, NamesAMimicOfAJointOutsideBeforeItMissesJoints) {
+    const std::string error = error_of(R"(<robot name="finger">
+<link name="base"/><link name="f"/><link name="tool"/>
+<joint name="drive" type="revolute"><parent link="base"/><child link="f"/>
+<limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+<joint name="follow" type="revolute"><parent link="base"/><child link="tool"/>
+<limit lower="0" upper="1" effort="1" velocity="1"/><mimic joint="drive"/></joint></robot>
+)",
+                                       "base", "tool");
+    EXPECT_NE(error.find("joint 'follow' mimics 'drive', which is no joint between base link"),
+              std::string::npos)
+        << error;
+}
+
 TEST(ReadUrdf, TakesHugeLimitsForNone) {
     const std::string turning =
         replaced(text, "lower=\"-1.5\" upper=\"2\"", "lower=\"-1e16\" upper=\"1e16\"");

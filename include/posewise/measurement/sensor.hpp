@@ -104,6 +104,8 @@ class Sensor {
     /// all readings are 0, and files have a column of these names instead. Empty: readings differ.
     virtual std::vector<std::string> contact_names() const { return {}; }
     bool has_contacts() const { return !contact_names().empty(); }
+    /// Whether its readings are those of a probe that is brought to what it measures: about 0.
+    virtual bool touches() const { return has_contacts(); }
     /// How many a pose can show at once.
     Index seen_at_once() const { return has_contacts() ? 1 : target_count(); }
     /// Which of targets() it belongs to.

@@ -228,6 +228,7 @@ class PlaneSensor final : public ScalarSensor {
     const std::vector<Plane>& planes() const { return planes_; }
     /// With these values of the unknowns.
     Plane plane(Index plane, const VectorXd& unknowns) const;
+    bool touches() const override { return true; }
 
   protected:
     Length measure(const Vector3d& x, Index plane, const Vector3d& tilts_and_offset) const override;

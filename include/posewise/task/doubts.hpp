@@ -166,8 +166,9 @@ std::optional<DistanceDoubt> find_distance_doubt(const Campaign& campaign,
                                                  const Estimate& estimate);
 
 /// Whether nothing but the robot's lengths, which are identified, says how large all is: sockets
-/// without a distance known.
-bool lacks_length(const Campaign& campaign);
+/// without a distance known, or planes none of whose offsets is, which were touched (readings
+/// within 1 mm of 0).
+bool lacks_length(const Campaign& campaign, const Measurements& measurements);
 
 /// All doubts about a calibration.
 struct Doubts {
