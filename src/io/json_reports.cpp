@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "doubts_json.hpp"
 #include "json.hpp"
 #include "measurement_columns.hpp"
 #include "parameters_json.hpp"
@@ -253,12 +254,17 @@ std::string to_json(const Inspection& inspection) {
     return detail::json_text(inspection_to_json(inspection));
 }
 
-std::string to_json(const Inspection& inspection, const std::vector<JointDirections>& directions) {
+std::string to_json(const Inspection& inspection, const ReadingSearch& readings) {
     Json document = inspection_to_json(inspection);
-    document["joint_directions"] = make_list(directions, [](const JointDirections& tried) {
-        return Json{{"reversed", tried.reversed},
-                    {"distance_rms_mm", mm_per_m * tried.distance_rms}};
+    document["joint_directions"] = make_list(readings.tried, [](const TriedReading& tried) {
+        Json one{{"read_with", tried.words},
+                 {"reversed", tried.reversed},
+                 {"distance_rms_mm", mm_per_m * tried.misfit.distance_rms}};
+        const double angle = tried.misfit.orientation_rms;
+        if (angle > 0) one["orientation_rms_deg"] = to_degrees(angle);
+        return one;
     });
+    if (readings.better) document["better_reading"] = detail::reading_to_json(*readings.better);
     return detail::json_text(document);
 }
 

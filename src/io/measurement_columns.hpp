@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/seen.hpp"
 #include "units.hpp"
 
@@ -38,9 +39,11 @@ enum class Role {
 struct OrientationForm {
     std::vector<std::string> stems;
     bool has_unit;
+    OrientationNotation notation;
 };
 inline const std::array<OrientationForm, 2> orientation_forms{
-    {{{"qw", "qx", "qy", "qz"}, false}, {{"roll", "pitch", "yaw"}, true}}};
+    {{{"qw", "qx", "qy", "qz"}, false, OrientationNotation::Quaternion},
+     {{"roll", "pitch", "yaw"}, true, OrientationNotation::RollPitchYaw}}};
 
 /// A column with a unit that a campaign's measurements must have.
 struct WantedColumn {

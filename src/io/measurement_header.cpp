@@ -131,7 +131,7 @@ class HeaderReader {
     /// A column of another form of an orientation.
     std::optional<Column> find_orientation(std::size_t field, const NameWithUnit& name) const {
         for (std::size_t form = 0; form < orientation_forms.size(); ++form) {
-            const auto& [stems, has_unit] = orientation_forms[form];
+            const auto& [stems, has_unit, notation] = orientation_forms[form];
             const auto found = std::find(stems.begin(), stems.end(), name.stem);
             if (found == stems.end()) continue;
             const bool is_angle = name.unit != nullptr && name.unit->quantity == Quantity::Angle;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <unordered_set>
 
 #include "csv_reader.hpp"
@@ -50,7 +51,8 @@ class RowReader {
         row_.joints.resize(campaign.robot.configuration_size());
         row_.is_seen.setConstant(campaign.sensor->target_count(), true);
         if (content == Content::JointsAndObservations) {
-            row_.observation.setZero(campaign.sensor->row_count());
+            const Index beside = notation() == OrientationNotation::RollPitchYaw ? 3 : 0;
+            row_.observation.setZero(campaign.sensor->row_count() + beside);
         }
     }
 
@@ -64,6 +66,11 @@ class RowReader {
             return csv_.locate(field_of_joint_[static_cast<std::size_t>(joint)]);
         };
         samples.add(row_, locate, is_each_row_one_);
+    }
+
+    OrientationNotation notation() const {
+        if (orientation_fields_.empty()) return OrientationNotation::RotationVector;
+        return detail::orientation_forms[columns_[orientation_fields_.front()].form].notation;
     }
 
   private:
@@ -174,6 +181,12 @@ class RowReader {
                              "the sample shows no target; must show one at least, or be left out");
     }
 
+    /// Programs write nothing, or "nan", of what was not seen.
+    static bool is_nothing(std::string_view text) {
+        return text.empty() || (text.size() == 3 && (text[0] | 0x20) == 'n' &&
+                                (text[1] | 0x20) == 'a' && (text[2] | 0x20) == 'n');
+    }
+
     /// The cells of a target that was not seen are empty, all of them.
     void read_target(Index target) {
         const auto width = orientation_fields_.empty()
@@ -184,22 +197,23 @@ class RowReader {
         for (std::size_t k = first; k < first + width; ++k) {
             fields.push_back(field_of_observation_[k]);
         }
-        const auto is_empty = [&](std::size_t field) { return csv_.fields()[field].empty(); };
+        const auto is_empty = [&](std::size_t field) { return is_nothing(csv_.fields()[field]); };
         row_.is_seen[target] = !std::all_of(fields.begin(), fields.end(), is_empty);
         if (!row_.is_seen[target]) return;
         const auto gap = std::find_if(fields.begin(), fields.end(), is_empty);
         if (gap != fields.end()) {
             throw input_error_at(
                 csv_.locate(*gap),
-                fmt::format("{} is empty, but not all cells of target {} are; must be a "
+                fmt::format("{} is {}, but not all cells of target {} are; must be a "
                             "number, or all empty if it was not seen",
-                            name_of(*gap), target + 1));
+                            name_of(*gap), csv_.fields()[*gap].empty() ? "empty" : "not a number",
+                            target + 1));
         }
         for (std::size_t k = first; k < first + width; ++k) {
             row_.observation[static_cast<Index>(k)] = read_number(field_of_observation_[k]);
             check_distance(k);
         }
-        if (!orientation_fields_.empty()) row_.observation.tail<3>() = read_orientation();
+        if (!orientation_fields_.empty()) row_.observation.segment<3>(3) = read_orientation();
     }
 
     /// No target is at its anchor, or behind it.
@@ -222,12 +236,16 @@ class RowReader {
     }
 
     /// The rotation vector of an orientation in another form.
-    Vector3d read_orientation() const {
+    Vector3d read_orientation() {
         VectorXd values(static_cast<Index>(orientation_fields_.size()));
         for (Index k = 0; k < values.size(); ++k) {
             values[k] = read_number(orientation_fields_[static_cast<std::size_t>(k)]);
         }
-        if (values.size() == 3) return vector_from_rotation(rotation_from_rpy(values));
+        if (values.size() == 3) {
+            check_turns(values);
+            row_.observation.tail<3>() = values;
+            return vector_from_rotation(rotation_from_rpy(values));
+        }
         constexpr double tolerance = 1e-3;
         const Eigen::Quaterniond q(values[0], values[1], values[2], values[3]);
         if (!(std::abs(q.norm() - 1) <= tolerance)) {
@@ -236,6 +254,18 @@ class RowReader {
                 fmt::format("the quaternion has length {:g}; must be 1 within 0.001", q.norm()));
         }
         return vector_from_rotation(q.normalized().toRotationMatrix());
+    }
+
+    /// Roll, pitch and yaw of degrees under rad turn round and round.
+    void check_turns(const Vector3d& rpy) const {
+        constexpr double impossible = 4 * std::numbers::pi;
+        Index k = 0;
+        if (rpy.cwiseAbs().maxCoeff(&k) <= impossible) return;
+        const std::size_t field = orientation_fields_[static_cast<std::size_t>(k)];
+        throw input_error_at(csv_.locate(field),
+                             fmt::format("{} is {:g} rad, more than two turns, and looks like "
+                                         "degrees; state degrees as such",
+                                         name_of(field), rpy[k]));
     }
 
     /// The same sample of the same configuration twice is a file joined with itself.
@@ -270,7 +300,14 @@ Measurements read_csv(const std::string& path, const Campaign& campaign, Content
     RowReader row(csv, campaign, content, read_header(csv, campaign, content));
     detail::SampleCollector samples(campaign);
     while (csv.next_row()) row.add_to(samples);
-    return samples.finish(path, content == Content::Program);
+    Measurements measurements = samples.finish(path);
+    measurements.notation = row.notation();
+    if (measurements.notation == OrientationNotation::RollPitchYaw &&
+        measurements.observations.cols() > 0) {
+        measurements.roll_pitch_yaw = measurements.observations.rightCols(3);
+        measurements.observations.conservativeResize(Eigen::NoChange, campaign.sensor->row_count());
+    }
+    return measurements;
 }
 
 Configurations read_unmeasured(const std::string& path, const Campaign& campaign, Content content) {

@@ -50,6 +50,7 @@ class Exclusion {
         std::vector<Index> samples;
         std::vector<Index> configurations;
         Measurements rest;
+        rest.notation = measurements_.notation;
         for (Index i = 0; i < measurements_.configuration_count(); ++i) {
             const auto before = samples.size();
             for (Index k = first_sample(i); k < first_sample(i + 1); ++k) {
@@ -64,6 +65,9 @@ class Exclusion {
         rest.configurations = measurements_.configurations(configurations, Eigen::all);
         rest.observations = measurements_.observations(samples, Eigen::all);
         rest.is_seen = measurements_.is_seen(samples, Eigen::all);
+        if (measurements_.roll_pitch_yaw.rows() > 0) {
+            rest.roll_pitch_yaw = measurements_.roll_pitch_yaw(samples, Eigen::all);
+        }
         if (measurements_.sample_names.empty()) return rest;
         for (const Index k : samples) {
             rest.sample_names.push_back(measurements_.sample_names[static_cast<std::size_t>(k)]);

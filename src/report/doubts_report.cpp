@@ -14,34 +14,6 @@
 namespace posewise {
 namespace {
 
-const char* advise(OrientationSense sense) {
-    switch (sense) {
-        case OrientationSense::AsRead:
-            break;
-        case OrientationSense::Inverted:
-            return "inverted: the quaternions look conjugate, turn round the signs of qx, qy and "
-                   "qz";
-        case OrientationSense::RealPartLast:
-            return "with the last number of each quaternion as its real part: name the columns qx, "
-                   "qy, qz, qw";
-    }
-    return "";
-}
-
-std::string describe_orientations(const OrientationDoubt& doubt) {
-    const std::string text =
-        fmt::format("the nominal robot misses the orientations by {} deg (RMS)",
-                    detail::format_short(to_degrees(doubt.rms), 3));
-    if (doubt.sense == OrientationSense::AsRead) {
-        return text +
-               "; is qw the real part of the quaternion, are roll, pitch and yaw about the fixed "
-               "axes x, y and z?";
-    }
-    return text + fmt::format(", but by {} deg {}",
-                              detail::format_short(to_degrees(doubt.rms_in_sense), 2),
-                              advise(doubt.sense));
-}
-
 /// Where the campaign states the expected sizes of these: "spread.gravity_mrad (0.7 now)".
 std::string list_size_keys(const Campaign& campaign, const std::vector<SizeDoubt>& sizes) {
     const std::vector<std::string> names = campaign.robot.parameter_names();
@@ -169,7 +141,14 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
             at, calibration.campaign.sensor->words().readings,
             detail::format_short(*doubts.gross_error, 3)));
     }
-    if (doubts.orientations) sentences.push_back(at + describe_orientations(*doubts.orientations));
+    if (doubts.orientations) {
+        sentences.push_back(fmt::format(
+            "{}the nominal robot misses the orientations by {} deg (RMS){}", at,
+            detail::format_short(to_degrees(*doubts.orientations), 3),
+            doubts.misfit && doubts.misfit->reading
+                ? ""
+                : "; in no other sense of their columns that was tried by clearly less"));
+    }
     if (calibration.moved_since) {
         sentences.push_back(at + "measured with another set-up than the earlier estimate, " +
                             describe_moved(*calibration.moved_since, "that found it", "--moved"));

@@ -10,17 +10,14 @@
 #include "../core/statistics.hpp"
 #include "../model/joint_limits.hpp"
 #include "absurd_values.hpp"
-#include "other_senses.hpp"
+#include "gross_errors.hpp"
+#include "plane_doubts.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/planner/prediction.hpp"
 
 namespace posewise {
 namespace {
-
-/// A robot's maker is rarely wrong by 10 cm, nor by 5 deg.
-constexpr double gross_distance = 0.1;  // m
-constexpr double gross_angle = 0.1;     // rad
 
 /// Times the expected size: a joint with a wrong sign may converge as well, with an offset of half
 /// a turn.
@@ -235,10 +232,9 @@ Doubts find_doubts(const Campaign& campaign, const Measurements& measured,
         doubts.planes = find_plane_doubts(campaign, measured);
         doubts.places = find_place_doubts(campaign, registered);
     }
-    if (nominal.distance_rms > gross_distance) doubts.gross_error = nominal.distance_rms;
-    if (campaign.sensor->has_orientation() && nominal.orientation_rms > gross_angle) {
-        doubts.orientations = OrientationDoubt{nominal.orientation_rms};
-        detail::find_other_sense(campaign, measured, gross_angle, *doubts.orientations);
+    if (nominal.distance_rms > detail::gross_distance) doubts.gross_error = nominal.distance_rms;
+    if (campaign.sensor->has_orientation() && nominal.orientation_rms > detail::gross_angle) {
+        doubts.orientations = nominal.orientation_rms;
     }
     return doubts;
 }

@@ -264,8 +264,8 @@ TEST_F(Select, SuspectsTheUnitOfMeasurements) {
         write_text("wrong.csv", text);
         return "select " + fanuc_design + " -m wrong.csv -k 8";
     };
-    expect_input_error(renamed("_mm", "_m"), "are points in mm where the file says m?");
-    expect_input_error(renamed("_rad", "_deg"), "are joint values in rad where the file says deg");
+    expect_input_error(renamed("_mm", "_m"), "with points in mm where the file says m (");
+    expect_input_error(renamed("_rad", "_deg"), "with joint values in rad where the file says degrees (");
 }
 
 TEST_F(Select, RefusesMoreCandidatesThanMemoryHolds) {

@@ -136,15 +136,14 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
     Calibration calibration = calibrate(example.campaign, example.measurements, {.folds = 0});
     calibration.doubts.gross_error = 0.25;
     calibration.doubts.sizes = {{"dq2", 40, 0, true, false}, {"Tx1", 25.5, 0, false, false}};
-    calibration.doubts.orientations = OrientationDoubt{0.5, OrientationSense::RealPartLast, 0.001};
+    calibration.doubts.orientations = 0.5;
     EXPECT_EQ(
         describe_doubts(calibration, "m.csv"),
         (std::vector<std::string>{
             "m.csv: the nominal robot misses the points by 0.25 m (RMS); if some are grossly "
             "wrong, try --loss cauchy",
-            "m.csv: the nominal robot misses the orientations by 28.6 deg (RMS), but by 0.057 deg "
-            "with the last number of each quaternion as its real part: name the columns qx, qy, "
-            "qz, qw",
+            "m.csv: the nominal robot misses the orientations by 28.6 deg (RMS); in no other sense "
+            "of their columns that was tried by clearly less",
             "far above the expected size: dq2 (40 times), Tx1 (25.5 times); are sign, unit and "
             "nominal value in the campaign right, and do the poses tell them apart? If so, state "
             "a larger size in spread.angle_mrad (1 now) and spread.length_mm (1 now)"}));

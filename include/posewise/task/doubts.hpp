@@ -7,6 +7,7 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/measurement/sensors.hpp"
+#include "posewise/task/readings.hpp"
 
 /// What looks wrong with measurements and what was identified from them. A doubt stops nothing; it
 /// is what to look at first.
@@ -48,15 +49,6 @@ struct PlaneDoubt {
 std::vector<PlaneDoubt> find_plane_doubts(const Campaign& campaign,
                                           const Measurements& measurements);
 
-/// In which unit values look as if they were.
-enum class UnitDoubt {
-    None,
-    JointsInDegrees,  ///< though read as rad
-    JointsInRadians,  ///< though read as degrees
-    PointsInMillimetres,
-    PointsInMetres,
-};
-
 /// Base or a target that the measurements put elsewhere than the campaign states it.
 struct PlaceDoubt {
     std::string name;  ///< as that of its parameters: "base", "target1", "tool"
@@ -79,13 +71,12 @@ std::vector<PlaceDoubt> find_place_doubts(const Campaign& campaign, const Parame
 struct Misfit {
     double distance = 0;  ///< by which it misses half of them at least, base and targets fitted, m
     double expected = 0;  ///< as the spread says, m
-    UnitDoubt unit = UnitDoubt::None;
     std::vector<PlaneDoubt> planes;
-    std::vector<std::string> reversed;  ///< joints that fit clearly better the other way round
-    Index other_choices = 0;            ///< of joints that fit alike, by the robot's symmetry
+    std::optional<BetterReading> reading;  ///< of joints, lengths or orientations
 };
 
-/// Nothing if the nominal robot explains the measurements. `registered`: base and targets, by
+/// Nothing if the nominal robot explains the measurements, or misses them by less than ten expected
+/// errors and no other reading fits clearly better. `registered`: base and targets, by
 /// register_base_and_targets() of these measurements.
 std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& measurements,
                                   const Parameters& registered);
@@ -96,27 +87,12 @@ void check_is_of_robot(const Campaign& campaign, const Measurements& measurement
                        const Registration& registration);
 
 /// One sentence, for messages: by how much the nominal robot misses the measurements, and which
-/// unit or plane may be wrong.
+/// planes may be wrong or how else they may have been meant.
 std::string describe_misfit(const Campaign& campaign, const Misfit& misfit);
 /// "plane 2 looks reversed: stated with ..."; empty for none.
 std::string describe_planes(const std::vector<PlaneDoubt>& planes);
 /// "the base is stated at [...] mm, measured at [...] mm ..."; empty for none.
 std::string describe_places(const std::vector<PlaceDoubt>& places);
-
-/// How orientations may have been meant, from how they were read.
-enum class OrientationSense {
-    AsRead,
-    Inverted,      ///< conjugate quaternions
-    RealPartLast,  ///< quaternions qx, qy, qz, qw
-};
-
-/// The nominal robot misses the orientations by more than a robot does.
-struct OrientationDoubt {
-    double rms = 0;  ///< rad
-    /// In which sense they fit far better; AsRead: in none.
-    OrientationSense sense = OrientationSense::AsRead;
-    double rms_in_sense = 0;  ///< rad
-};
 
 /// An error of the robot far above its expected size.
 struct SizeDoubt {
@@ -177,7 +153,8 @@ struct Doubts {
     std::vector<PlaceDoubt> places;  ///< where there is no misfit
     /// Distance by which the nominal robot misses the points (RMS, m), if grossly: outliers?
     std::optional<double> gross_error;
-    std::optional<OrientationDoubt> orientations;
+    /// The same of orientations (RMS, rad).
+    std::optional<double> orientations;
     std::vector<SizeDoubt> sizes;
     std::vector<ModelErrorDoubt> model_errors;  ///< of lengths, of angles
     /// About how much of the squares left over follows bending and periodic errors of joints that

@@ -4,11 +4,6 @@
 
 namespace posewise::detail {
 
-/// In which other sense of the orientations the nominal robot misses them by less than `tolerance`
-/// (rad, RMS), into `doubt`.
-void find_other_sense(const Campaign& campaign, const Measurements& measurements, double tolerance,
-                      OrientationDoubt& doubt);
-
 /// Whether two normals are 45 deg and more apart, and as far from opposite.
 bool is_turned(const Vector3d& normal, const Vector3d& other);
 

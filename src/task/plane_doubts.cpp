@@ -1,14 +1,11 @@
-#include "other_senses.hpp"
+#include "plane_doubts.hpp"
 
 #include <cmath>
 
 #include "posewise/calibrator/registration.hpp"
-#include "posewise/model/transforms.hpp"
 
 namespace posewise {
 namespace {
-
-// ---- Planes ----
 
 /// The campaign with the base as stated and nothing known of all planes.
 Campaign with_unknown_planes(const Campaign& campaign, const PlaneSensor& sensor) {
@@ -24,26 +21,6 @@ Campaign with_unknown_planes(const Campaign& campaign, const PlaneSensor& sensor
     }
     changed.sensor = std::make_shared<PlaneSensor>(sensor.targets(), planes, sensor.sigma());
     return changed;
-}
-
-// ---- Orientations ----
-
-Matrix3d inverted(const Matrix3d& read) { return read.transpose(); }
-
-Matrix3d with_real_part_last(const Matrix3d& read) {
-    const Eigen::Quaterniond q(read);
-    return Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()).toRotationMatrix();
-}
-
-Measurements read_otherwise(const Measurements& measured, OrientationSense sense) {
-    Measurements other = measured;
-    for (auto sample : other.observations.rowwise()) {
-        const Matrix3d read = rotation_from_vector(sample.tail<3>());
-        const Matrix3d meant =
-            sense == OrientationSense::Inverted ? inverted(read) : with_real_part_last(read);
-        sample.tail<3>() = vector_from_rotation(meant).transpose();
-    }
-    return other;
 }
 
 }  // namespace
@@ -90,21 +67,6 @@ std::vector<detail::TurnedPlane> detail::find_turned_planes(const Campaign& camp
         if (is_turned(stated, found)) turned.push_back({k, std::acos(stated.dot(found))});
     }
     return turned;
-}
-
-void detail::find_other_sense(const Campaign& campaign, const Measurements& measured,
-                              double tolerance, OrientationDoubt& doubt) {
-    for (const auto sense : {OrientationSense::Inverted, OrientationSense::RealPartLast}) {
-        const Measurements other = read_otherwise(measured, sense);
-        const Registration fitted = register_base_and_targets(campaign, other);
-        if (!fitted.is_determined()) continue;  // it was not that
-        const double rms =
-            make_metrics(residuals(campaign, fitted.parameters, other)).orientation_rms;
-        if (rms >= tolerance) continue;
-        doubt.sense = sense;
-        doubt.rms_in_sense = rms;
-        return;
-    }
 }
 
 }  // namespace posewise
