@@ -62,9 +62,9 @@ Measurements read_measured_without(const std::vector<std::string>& excluded,
 
 void add_exclude_option(CLI::App& command, std::vector<std::string>& excluded) {
     add_ids_option(command, "--exclude", excluded,
-                   "Leave out these configurations (ids, by commas) and samples (7:2 has 7 in the "
-                   "column config and 2 in the column sample; without such a column it is the "
-                   "second sample of 7)");
+                   "Leave out these configurations (ids, by commas; 7-12 are all from 7 to 12 in the "
+                   "file's order) and samples (7:2 has 7 in the column config and 2 in the column "
+                   "sample; without such a column it is the second sample of 7)");
 }
 
 io::Configurations read_unlimited(const std::string& path, const io::CampaignFile& file) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "posewise/core/units.hpp"
+#include "residual_look_json.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -125,6 +126,9 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
     if (doubts.missing_errors) json["missing_errors"] = *doubts.missing_errors;
     for (const Index joint : doubts.negative_compliances) {
         json["negative_compliances"].push_back(campaign.robot.joint(joint).name);
+    }
+    if (!doubts.look.is_empty()) {
+        json["look"] = look_to_json(doubts.look, !campaign.sensor->has_lengths());
     }
     return json;
 }

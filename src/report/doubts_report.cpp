@@ -9,6 +9,7 @@
 #include "../core/text.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/report/reports.hpp"
+#include "residual_look_report.hpp"
 #include "sentences.hpp"
 
 namespace posewise {
@@ -172,6 +173,9 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
         sentences.push_back(
             "the validation was measured with another set-up, " +
             describe_moved(*calibration.moved, "the calibration has it", "--refit"));
+    }
+    for (const std::string& sentence : detail::describe_look(doubts.look, calibration.campaign)) {
+        sentences.push_back(at + sentence);
     }
     if (doubts.held_back) sentences.push_back(describe_held_back(*doubts.held_back));
     return sentences;

@@ -178,6 +178,16 @@ std::map<std::string, double> sigmas_by_name(const Estimate& estimate) {
     return by_name;
 }
 
+/// At the residuals; not where it was stopped, since that takes fits.
+void look(const Work& work, Calibration& result) {
+    if (work.options.stop.is_set()) return;
+    Doubts& doubts = result.doubts;
+    doubts.look = look_at_residuals(work.campaign, work.used, result.estimate);
+    if (doubts.misfit || doubts.gross_error) {
+        doubts.look.shifted = find_shifted_rows(work.campaign, work.used);
+    }
+}
+
 /// All that `used` alone tell.
 void calibrate_with(Work& work, Calibration& result) {
     Registration registration = register_base_and_targets(work.campaign, work.used);
@@ -211,6 +221,7 @@ void calibrate_with(Work& work, Calibration& result) {
                     result.method == CalibrationMethod::Global ? ValueCheck::None
                                                                : ValueCheck::ByExpectedSizes);
     add_doubts(work.campaign, work.used, result.estimate, result.doubts);
+    look(work, result);
     if (work.options.learns_sizes) {
         result.doubts.held_back =
             find_held_back_size(result.campaign, *result.stated_spread, work.used,

@@ -8,6 +8,7 @@
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/task/readings.hpp"
+#include "posewise/task/residual_look.hpp"
 
 /// What looks wrong with measurements and what was identified from them. A doubt stops nothing; it
 /// is what to look at first.
@@ -172,6 +173,7 @@ struct Doubts {
     std::optional<double> small_residuals;
     /// Joints whose compliance is clearly negative: by three standard deviations.
     std::vector<Index> negative_compliances;
+    ResidualLook look;
 };
 
 /// How large values may be to be believed.
