@@ -88,9 +88,9 @@ void print_campaign(const io::CampaignFile& file, const std::vector<detail::Sign
     const std::string gap = describe_gap(inspection);
     if (!gap.empty()) print_warning(file.path + ": " + gap);
     if (common.json) {
-        return print(patterns.empty()
-                         ? io::to_json(inspection)
-                         : io::to_json(inspection, name_directions(file.robot, patterns)));
+        return print_document(patterns.empty()
+                                  ? io::to_json(inspection)
+                                  : io::to_json(inspection, name_directions(file.robot, patterns)));
     }
     print_head(file);
     print(format(inspection) + describe_unused_planning(file));
