@@ -164,7 +164,7 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     CalibrationOptions options = make_options(arguments, file.seed);
     const Measurements measured =
         read_measured_without(options.excluded, paths.measurements, file, earlier);
-    const io::Provenance made_from = provenance_of(command, file, paths.measurements, measured);
+    io::Provenance made_from = provenance_of(command, file, paths.measurements, measured);
     if (!earlier.from.empty()) {
         options.earlier = read_usable_earlier(earlier.from, file, earlier.use(), earlier.is_forced);
     }
@@ -184,14 +184,16 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     std::ranges::for_each(describe_doubts(result, paths.measurements), print_warning);
     const Printed printed = describe_calibration(arguments, common, result, made_from);
     if (!result.faults.empty()) check_faults(arguments, common, result, printed);
+    const Measurements used = options.used.empty() ? measured : take(measured, options.used);
+    io::PagePart part;
+    if (!arguments.page.empty()) part = show_estimate(result.campaign, result.estimate, &used);
+    made_from.warnings = given_warnings();
     if (!arguments.out.empty()) io::write_estimate(arguments.out, result, made_from);
     if (!arguments.predict_out.empty()) {
         io::write_predictions_csv(arguments.predict_out, predicted.ids, result.predicted);
     }
     print(printed, common);
-    const std::vector<Index>& used = options.used;
-    show_calibration(arguments, common, result, used.empty() ? measured : take(measured, used),
-                     printed);
+    show_calibration(arguments, common, result, used, std::move(part), printed);
 }
 
 }  // namespace

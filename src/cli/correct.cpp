@@ -78,7 +78,7 @@ void correct(const CorrectArguments& arguments, const CommonOptions& common) {
     if (!arguments.out.empty()) {
         io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections);
     }
-    if (common.json) return print(io::to_json(corrected, file));
+    if (common.json) return print_document(io::to_json(corrected, file));
     print(fmt::format("{}: {} corrected{}\n", file.name,
                       detail::count_of(std::ssize(poses.ids), "configuration"),
                       arguments.out.empty() ? "" : ": " + detail::escape_controls(arguments.out)));

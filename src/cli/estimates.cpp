@@ -55,8 +55,8 @@ void check_prior(const std::string& path, const Campaign& expected) {
 
 }  // namespace
 
-void add_force_option(CLI::App& command, bool& is_forced) {
-    command.add_flag("--force", is_forced,
+CLI::Option* add_force_option(CLI::App& command, bool& is_forced) {
+    return command.add_flag("--force", is_forced,
                      "Take an estimate that did not converge or has values no robot has");
 }
 
@@ -89,12 +89,15 @@ EarlierUse EarlierArguments::use() const {
 }
 
 CLI::Option* add_from_option(CLI::App& command, EarlierArguments& arguments) {
-    add_force_option(command, arguments.is_forced);
-    return command
-        .add_option("--from", arguments.from,
-                    "An estimate of the same robot (JSON), from calibrate --out: base, targets, "
-                    "errors, model error and learned sizes are as it found them")
-        ->check(file_name());
+    CLI::Option* const force = add_force_option(command, arguments.is_forced);
+    CLI::Option* const from =
+        command
+            .add_option("--from", arguments.from,
+                        "An estimate of the same robot (JSON), from calibrate --out: base, targets, "
+                        "errors, model error and learned sizes are as it found them")
+            ->check(file_name());
+    force->needs(from);
+    return from;
 }
 
 void add_earlier_options(CLI::App& command, EarlierArguments& arguments) {

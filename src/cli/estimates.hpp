@@ -22,7 +22,7 @@ class NoCalibration : public std::runtime_error {
 };
 
 /// --force: an estimate with faults is taken all the same.
-void add_force_option(CLI::App& command, bool& is_forced);
+CLI::Option* add_force_option(CLI::App& command, bool& is_forced);
 
 /// "it did not converge (iteration limit); ...", the first few.
 std::string join_some(const std::vector<std::string>& texts);

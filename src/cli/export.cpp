@@ -124,7 +124,7 @@ void export_estimate(const ExportArguments& arguments, const CommonOptions& comm
     io::ExportedRobot robot = make_robot(arguments, file, found);
     write_files(paths, file, robot);
     warn_of(robot, paths);
-    if (common.json) return print(io::to_json(robot, file));
+    if (common.json) return print_document(io::to_json(robot, file));
     print_export(robot, file, paths);
 }
 

@@ -76,8 +76,8 @@ void print_campaign(const io::CampaignFile& file, const ReadingSearch& readings,
     const std::string gap = describe_gap(inspection);
     if (!gap.empty()) print_warning(file.path + ": " + gap);
     if (common.json) {
-        return print(readings.tried.empty() ? io::to_json(inspection)
-                                            : io::to_json(inspection, readings));
+        return print_document(readings.tried.empty() ? io::to_json(inspection)
+                                                     : io::to_json(inspection, readings));
     }
     print_head(file);
     print(format(inspection) + describe_unused_planning(file));

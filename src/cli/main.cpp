@@ -15,6 +15,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/reproducible.hpp"
 #include "posewise/core/version.hpp"
+#include "threads.hpp"
 
 #ifdef __GLIBC__  // only after another header
 #include <malloc.h>
@@ -102,6 +103,7 @@ void add_commands(CLI::App& program, posewise::cli::CommonOptions& common) {
         add(program, common);
     }
     for (CLI::App* command : program.get_subcommands(nullptr)) add_common_options(*command, common);
+    program.parse_complete_callback(warn_of_many_threads);
 }
 
 ProgramEnd run(int argc, char** argv) {
@@ -134,6 +136,7 @@ ProgramEnd run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    posewise::cli::wait_passively(argv);
     keep_freed_memory();
     posewise::fix_cache_sizes();
     std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is an error like a full disk

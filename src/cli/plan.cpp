@@ -127,7 +127,8 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     const auto read = std::chrono::steady_clock::now();
     const TargetPlanning made = plan_with_progress(campaign, options, arguments);
     if (!arguments.verification.is_wanted) note_overtime(request.time_limit, stop, read, "plan");
-    io::write_plan(out, made.planning->plan, arguments.csv, made.planning->campaign);
+    io::write_plan(out, made.planning->plan, arguments.csv, made.planning->campaign,
+                   given_warnings());
     const auto simulated = verify_made(arguments.verification, made, options, arguments.progress);
     if (simulated) note_overtime(request.time_limit, stop, read, "plan and verify");
     interrupted.reset();

@@ -93,9 +93,11 @@ void warn_of_few(Index count, Index asked) {
 
 void print_design(const ApproximateDesign& design, const SelectArguments& arguments,
                   const ChoiceInputs& inputs, const CommonOptions& common) {
-    print(common.json
-              ? io::to_json(design)
-              : format(design, arguments.digits) + '\n' + describe_robot(inputs, design.request));
+    if (common.json) {
+        print_document(io::to_json(design));
+    } else {
+        print(format(design, arguments.digits) + '\n' + describe_robot(inputs, design.request));
+    }
     note_interrupt(design.ending, "weights are");
 }
 
@@ -112,11 +114,14 @@ void print_plan(const Plan& plan, const SelectArguments& arguments, ChoiceInputs
                         "plan:       " + detail::escape_controls(out) + '\n',
                     ""};
     if (needs_document(common, arguments.page)) printed.document = io::to_json(plan, out);
+    io::PagePart part;
+    if (!arguments.page.empty()) {
+        static_cast<PlanRequest&>(inputs.options) = plan.request;
+        part = show_choice(plan, inputs);
+    }
     print(printed, common);
     note_interrupt(plan.ending, "plan is");
-    if (arguments.page.empty()) return;
-    static_cast<PlanRequest&>(inputs.options) = plan.request;
-    write_page(arguments.page, show_choice(plan, inputs), printed, common);
+    write_page(arguments.page, std::move(part), printed, common);
 }
 
 void select(const SelectArguments& arguments, const CommonOptions& common) {
@@ -144,7 +149,7 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
                 : relax_choice(std::move(inputs.blocks), inputs.options);
         note_overtime(request.time_limit, stop, read, "weight the candidates");
         warn_of_few(design.candidate_count, arguments.random);
-        if (!out.empty()) io::write_weights(out, design);
+        if (!out.empty()) io::write_weights(out, design, given_warnings());
         interrupted.reset();
         return print_design(design, arguments, inputs, common);
     }
@@ -156,7 +161,7 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
             : choose(std::move(inputs.blocks), inputs.options);
     note_overtime(request.time_limit, stop, read, "choose");
     warn_of_few(plan.candidate_count, arguments.random);
-    io::write_plan(out, plan);
+    io::write_plan(out, plan, given_warnings());
     interrupted.reset();
     print_plan(plan, arguments, inputs, out, common);
 }

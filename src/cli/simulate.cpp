@@ -68,7 +68,7 @@ void run_simulation(SimulateArguments arguments, const CommonOptions& common) {
     const Simulation simulation = simulate_as_asked(arguments, file);
     io::write_measurements_csv(arguments.out, file, simulation.measurements,
                                make_comments(arguments, file));
-    if (common.json) return print(io::to_json(simulation, file));
+    if (common.json) return print_document(io::to_json(simulation, file));
     print(fmt::format(
         "{}, {}: {}\n",
         detail::count_of(simulation.measurements.configuration_count(), "configuration"),

@@ -207,7 +207,9 @@ std::vector<std::vector<Study>> read_store_groups(const std::string& path) {
             });
         (group == groups.end() ? groups.emplace_back() : *group).push_back(study);
     }
-    if (groups.empty()) throw input_error_at({path}, "holds no pose count that is complete yet");
+    for (std::vector<Study>& group : groups) keep_common(group);
+    std::erase_if(groups, [](const auto& group) { return group.front().rows.empty(); });
+    if (groups.empty()) throw input_error_at({path}, "holds no split that is finished yet");
     return groups;
 }
 

@@ -7,6 +7,7 @@
 #include "json.hpp"
 #include "measurement_columns.hpp"
 #include "parameters_json.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 
 namespace posewise::io {
@@ -170,7 +171,9 @@ Json study_row_to_json(const Study& study, const StudyRow& row, const StudyRow& 
     const auto quantile = [&](double p) {
         return detail::millimetres(held_out_quantile(row.random, p));
     };
+    const Index splits = study.splits > 0 ? split_count(row, study.criteria.size()) : 0;
     return {{"pose_count", row.pose_count},
+            {"splits", splits},
             {"planned", planned_to_json(study, row, first)},
             {"random",
              {{"subsets", row.random.size()},
@@ -249,6 +252,13 @@ Json read_back_to_json(const ReadBack& file) {
 }
 
 }  // namespace
+
+std::string with_warnings(const std::string& document, const std::vector<std::string>& warnings) {
+    Json json = Json::parse(document, nullptr, false);
+    if (!json.is_object()) throw InputError("a document is not JSON; must be one of posewise");
+    json["warnings"] = warnings;
+    return detail::json_text(json);
+}
 
 std::string to_json(const Inspection& inspection) {
     return detail::json_text(inspection_to_json(inspection));

@@ -160,16 +160,23 @@ std::string configurations_text(const Campaign& campaign, const std::vector<Plan
     return text;
 }
 
+std::string plan_text(const Plan& plan, const std::string& path,
+                      const std::vector<std::string>& warnings) {
+    Json document = detail::plan_to_json(plan, path);
+    document["warnings"] = warnings;
+    return detail::json_text(document, path);
+}
+
 }  // namespace
 
-void write_plan(const std::string& path, const Plan& plan) {
-    detail::write_json(path, detail::plan_to_json(plan, path));
+void write_plan(const std::string& path, const Plan& plan,
+                const std::vector<std::string>& warnings) {
+    detail::write_file(path, plan_text(plan, path, warnings));
 }
 
 void write_plan(const std::string& path, const Plan& plan, const std::string& csv_path,
-                const Campaign& campaign) {
-    std::vector<detail::FileContent> files{
-        {path, detail::json_text(detail::plan_to_json(plan, path), path)}};
+                const Campaign& campaign, const std::vector<std::string>& warnings) {
+    std::vector<detail::FileContent> files{{path, plan_text(plan, path, warnings)}};
     if (!csv_path.empty()) files.push_back({csv_path, configurations_text(campaign, plan.poses)});
     detail::write_files(files);
 }

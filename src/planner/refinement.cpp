@@ -194,6 +194,7 @@ class Refiner {
         };
         const VectorXd start = poses_.reshaped<Eigen::RowMajor>();
         const VectorXd free = maximise(problem, start, maximise_options(Method::Lbfgs)).x;
+        if (is_constrained() && has_stopped()) return;  // distances of many poses take their time
         const double before = current(objective);
         for (Index i = 0; i < m; ++i) {
             const VectorXd end = free.segment(n * i, n);

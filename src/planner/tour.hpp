@@ -1,6 +1,7 @@
 #pragma once
 
 #include "order.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/planner/planning.hpp"
 
 namespace posewise::detail {
@@ -23,11 +24,13 @@ struct TourOptions {
     /// Random via points tried for a move that is not free.
     Index via_attempts = 200;
     double resolution = 1e-3;  ///< of is_move_free(), m
+    StopSignal stop{};         ///< from then on it takes half a second, and what it has then
 };
 
 /// The shortest tour found from the cell's home (or from anywhere, if it has none) through all
 /// poses (K x joints). A straight move that is not free is avoided by another order or, where that
-/// is shorter or inevitable, given a via point; what is left is marked as blocked. Throws
+/// is shorter or inevitable, given a via point; what is left, or was not looked at before the stop,
+/// is marked as blocked. Throws
 /// InputError if the home is not free or a pose has the wrong size.
 Tour plan_tour(const Constraints& constraints, const RowMatrixXd& poses,
                const TourOptions& options = {});

@@ -160,7 +160,7 @@ Planning PlanMaker::make(Index pose_count,
     add_searched_bound(from.space, from.configurations, from.blocks, search, planned);
     planning.plan.searched_bound = planned.searched_bound;
     planning.plan.searched_efficiency = planned.efficiency;
-    planning.plan.ending = ending_of(planned);
+    if (!planning.tour.is_cut_short) planning.plan.ending = ending_of(planned);
     return planning;
 }
 
@@ -180,10 +180,12 @@ Ending PlanMaker::ending_of(const PlannedPoses& planned) const {
 Planning PlanMaker::finish(PlanOptions search, const PlannedPoses& planned) const {
     TourOptions tour_options;
     tour_options.order.seed = options_.seed;
+    tour_options.stop = options_.stop;
     Tour tour =
         plan_tour(problem_.constraints, all_poses(problem_, planned.configurations), tour_options);
     Plan plan = make_result(problem_, planned, pool_, tour);
-    plan.ending = ending_of(planned);
+    plan.ending =
+        tour.is_cut_short ? options_.stop.ending_or(Ending::TimeLimit) : ending_of(planned);
     search.progress = {};
     search.test_poses = nullptr;
     search.bound_iterations = problem_.search.bound_iterations;

@@ -25,10 +25,12 @@ PoolChoices::PoolChoices(const Campaign& campaign, const Pool& pool, double repe
     select_.seed = search.seed;
 }
 
-std::optional<std::vector<Index>> PoolChoices::choose(Index pose_count) const {
+std::optional<std::vector<Index>> PoolChoices::choose(Index pose_count,
+                                                      const StopSignal& stop) const {
     if (pose_count > blocks_.count()) return std::nullopt;
     SelectOptions select = select_;
     select.pose_count = pose_count;
+    select.stop = stop;
     const Choice choice = select_poses(blocks_, select);
     if (choice.ending == Ending::NotIdentifiable) return std::nullopt;
     return choice.poses;

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <set>
 
 #include "../core/checksum.hpp"
 #include "inputs.hpp"
@@ -239,19 +237,6 @@ Prepared prepare(Index least, const RobotModel& model, const Measurements& measu
     return prepared;
 }
 
-/// Of studies that were stopped, those rows stay that are complete in all.
-void keep_common_rows(std::vector<Study>& studies) {
-    std::map<Index, std::set<const Study*>> having;
-    for (const Study& study : studies) {
-        for (const StudyRow& row : study.rows) having[row.pose_count].insert(&study);
-    }
-    for (Study& study : studies) {
-        std::erase_if(study.rows, [&](const StudyRow& row) {
-            return having[row.pose_count].size() < studies.size();
-        });
-    }
-}
-
 }  // namespace
 
 Study study(const Campaign& campaign, const Measurements& measurements,
@@ -290,7 +275,7 @@ std::vector<Study> compare_models(const std::vector<RobotModel>& models,
                                                       : Ending::NotIdentifiable;
         }
     });
-    if (options.stop.is_set()) keep_common_rows(studies);
+    if (options.stop.is_set() || options.shard.count > 1) keep_common(studies);
     return studies;
 }
 

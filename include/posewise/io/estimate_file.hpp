@@ -16,6 +16,7 @@ struct Provenance {
     std::string campaign_checksum{};  ///< CampaignFile::checksum
     /// Of the command line: its name and what was said.
     std::vector<std::pair<std::string, std::vector<std::string>>> options{};
+    std::vector<std::string> warnings{};  ///< what was warned of, a sentence each
 };
 
 /// Tells whether measurements are the same: of configurations, their ids, what was observed there.

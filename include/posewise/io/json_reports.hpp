@@ -26,6 +26,10 @@
 /// InputError if a name or id is not UTF-8.
 namespace posewise::io {
 
+/// A document with these sentences as its `warnings`, in place of those it has. Throws InputError
+/// if it is no JSON object.
+std::string with_warnings(const std::string& document, const std::vector<std::string>& warnings);
+
 std::string to_json(const Inspection& inspection);
 
 /// With the readings of measurements that were tried, the best fitting first.

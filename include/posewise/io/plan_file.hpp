@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/task/plan.hpp"
@@ -10,12 +11,14 @@ namespace posewise::io {
 /// Writes a plan as JSON (format 2): what was asked for and from which candidates, value, bounds
 /// and the matrix that proves them, how it was made, what it assumes (noise, scales), and the
 /// poses, joint values in rad (m) exactly and in degrees (mm) for people. Relative paths are stored
-/// as seen from the plan's folder; infinite numbers are null.
-void write_plan(const std::string& path, const Plan& plan);
+/// as seen from the plan's folder; infinite numbers are null. `warnings`: what was warned of, a
+/// sentence each.
+void write_plan(const std::string& path, const Plan& plan,
+                const std::vector<std::string>& warnings = {});
 /// The same beside write_configurations_csv() of its poses, unless `csv_path` is empty: both files
 /// or none.
 void write_plan(const std::string& path, const Plan& plan, const std::string& csv_path,
-                const Campaign& campaign);
+                const Campaign& campaign, const std::vector<std::string>& warnings = {});
 
 /// Reads a plan of format 2 or 1 (which had two kinds: "posewise plan" and "posewise pose plan");
 /// the file is read once. Relative paths lead from the plan's folder or else from the current one.

@@ -79,6 +79,8 @@ struct Tour {
     double planning_order_time = 0;  ///< of straight moves in the order the poses were given
     double nearest_neighbour_time = 0;  ///< of straight moves to the nearest pose each
     Index blocked_count = 0;
+    /// There was no time to look for the shortest one, nor for ways round what blocks a move.
+    bool is_cut_short = false;
 };
 
 }  // namespace posewise
