@@ -18,9 +18,9 @@ VectorXd speed_of(const Constraints& constraints) {
     return speed.size() > 0 ? speed : VectorXd::Ones(constraints.robot().joint_count());
 }
 
-/// Home (the first, if it is not empty) and poses.
-std::vector<VectorXd> nodes_of(const Constraints& constraints, const RowMatrixXd& poses) {
-    std::vector<VectorXd> nodes{constraints.cell().home};
+/// Where the tour begins (the first, if it is not empty) and poses.
+std::vector<VectorXd> nodes_of(const VectorXd& start, const RowMatrixXd& poses) {
+    std::vector<VectorXd> nodes{start};
     for (Index i = 0; i < poses.rows(); ++i) nodes.push_back(poses.row(i).transpose());
     return nodes;
 }
@@ -43,13 +43,14 @@ class Roadmap {
   public:
     Roadmap(const Constraints& constraints, const RowMatrixXd& poses, const TourOptions& options)
         : constraints_(constraints), options_(options), speed_(speed_of(constraints)) {
-        nodes_ = nodes_of(constraints, poses);
+        const bool is_from_home = options.start.size() == 0;
+        nodes_ = nodes_of(is_from_home ? constraints.cell().home : options.start, poses);
         for (const VectorXd& node : nodes_) {
             if (node.size() != 0 || &node != &nodes_[0]) {
                 constraints.robot().check_configuration(node);
             }
         }
-        if (has_home() && constraints.collision_clearance(nodes_[0]) < 0) {
+        if (has_home() && is_from_home && constraints.collision_clearance(nodes_[0]) < 0) {
             throw InputError("cell: home collides with a keep-out or the robot itself");
         }
         straight_times_ = times_between(speed_, nodes_);
@@ -188,8 +189,9 @@ bool is_move_free(const Constraints& constraints, const VectorXd& a, const Vecto
 double straight_tour_time(const Constraints& constraints, const RowMatrixXd& poses) {
     OrderOptions options;
     options.kicks = 0;
-    return shortest_order(times_between(speed_of(constraints), nodes_of(constraints, poses)),
-                          options)
+    return shortest_order(
+               times_between(speed_of(constraints), nodes_of(constraints.cell().home, poses)),
+               options)
         .time;
 }
 
