@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -29,6 +31,7 @@ namespace {
 constexpr const char* plan_footer = R"(
 Example:
   posewise plan campaign.yaml --poses 24 --out plan.json --csv poses.csv --report plan.html
+  posewise plan campaign.yaml --poses 24 --verification 15 --out plan.json --csv poses.csv
   posewise plan campaign.yaml --target-mm 0.2 --assurance 0.95 --verify
   posewise plan campaign.yaml --poses 12 --augment measured.csv --criterion d
   posewise plan campaign.yaml --plan plan.json --drop p7,p12 --out repaired.json
@@ -57,7 +60,12 @@ many poses are missing. "enough" says how far that number may be off: which ones
 and with 95 % probability. Where none does, it says what is left at best and why: exit code 1, no plan.
 --minutes takes as many as fit; with --target-mm it says whether both can be kept.
 
---verify checks what is predicted: robots are drawn, measured at the poses, calibrated and judged at
+--verification adds poses to judge the calibration on (v1, v2, ...): random in the workspace, visited
+after the others, so that these stay as they are without it. --minutes is without them. Measure them
+into the same file: calibrate --plan calibrates without them and judges on them; 29 of them and no
+error above X say that 90 % of the workspace is below X with 95 % confidence, 59 that 95 % are.
+
+--verify checks what is predicted, before anything is measured: robots are drawn, measured at the poses, calibrated and judged at
 other places, block by block, until what it finds is sure; a limit that is not kept then is said.
 
 --from plans for the robot as an earlier calibration found it, --as-prior for what that left open;
@@ -106,6 +114,16 @@ TargetPlanning plan_with_progress(const io::CampaignFile& campaign, PlanningOpti
     return made;
 }
 
+/// Where there were not as many poses to verify as were asked for.
+void warn_of_few(const Plan& plan) {
+    const Index asked_for = plan.request.verification_count;
+    const Index count = std::ssize(plan.verification);
+    if (count == asked_for) return;
+    print_warning(fmt::format(
+        "--verification is {}, only {} poses are feasible and far enough from all others; raise {}",
+        asked_for, count, plan.request.workspace_box_mm.empty() ? "--pool" : "--workspace-poses"));
+}
+
 void plan(const PlanArguments& arguments, const CommonOptions& common) {
     check_plan_usage(arguments);
     if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
@@ -127,6 +145,7 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     const auto read = std::chrono::steady_clock::now();
     const TargetPlanning made = plan_with_progress(campaign, options, arguments);
     if (!arguments.verification.is_wanted) note_overtime(request.time_limit, stop, read, "plan");
+    warn_of_few(made.planning->plan);
     io::write_plan(out, made.planning->plan, arguments.csv, made.planning->campaign,
                    given_warnings());
     const auto simulated = verify_made(arguments.verification, made, options, arguments.progress);
@@ -162,6 +181,11 @@ void add_plan_problem(CLI::App& command, PlanArguments& problem) {
     add_ids_option(command, "--drop", request.dropped, "Ids of its poses to replace, by commas");
     add_prior_option(command, problem.prior, "; --poses may then be below what identifies");
     add_earlier_options(command, problem.earlier);
+    command
+        .add_option("--verification", request.verification_count,
+                    "Poses to add that judge the calibration and are not calibrated with: random "
+                    "and feasible, 5 deg or more from all others (with --plan: all together)")
+        ->check(whole_number(1, 10000));
     command.add_option("--repeats", request.repeats, "Samples of each configuration")
         ->check(real_number(1, 1e9))
         ->default_val(1.0);

@@ -19,6 +19,11 @@ inline constexpr std::string_view visible_targets = "visible_targets";
 /// has_contacts(); it stands for the columns observed, and for visible_targets.
 inline constexpr std::string_view contact = "socket";
 
+/// Of a row of configurations: what the robot is sent there for.
+inline constexpr std::string_view purpose = "purpose";
+inline constexpr std::string_view to_calibrate = "calibrate";
+inline constexpr std::string_view to_verify = "verify";
+
 /// What correct writes beside the joints, and configurations may hold: it is not read.
 inline constexpr std::array<std::string_view, 5> correction_columns{
     "residual_mm", "residual_mrad", "uncorrected_mm", "uncorrected_mrad", "note"};
@@ -27,6 +32,7 @@ enum class Role {
     Configuration,
     Sample,
     VisibleTargets,
+    Purpose,
     Contact,
     Joint,  ///< or a measured torque: a number of the configuration
     Observation,

@@ -88,6 +88,7 @@ class HeaderReader {
         if (name == "config") return {Role::Configuration, 0, nullptr};
         if (name == "sample") return {Role::Sample, 0, nullptr};
         if (name == visible_targets && !has_contact_) return {Role::VisibleTargets, 0, nullptr};
+        if (name == purpose) return {Role::Purpose, 0, nullptr};
         if (name == contact && has_contact_) return {Role::Contact, 0, nullptr};
         const NameWithUnit with_unit = split_unit(name);
         const auto found = std::find_if(wanted_.begin(), wanted_.end(), [&](const auto& column) {

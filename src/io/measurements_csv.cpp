@@ -114,6 +114,7 @@ class RowReader {
             case Role::Observation:
             case Role::Orientation:
                 return;  // by read_targets()
+            case Role::Purpose:
             case Role::Unused:
                 return;
         }

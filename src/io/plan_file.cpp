@@ -68,6 +68,7 @@ Json problem_to_json(const Plan& plan, const std::string& plan_path) {
         json["workspace_poses"] = request.workspace_count;
         json["workspace_box_mm"] = request.workspace_box_mm;
         json["workspace_target"] = request.workspace_target;
+        json["verification_count"] = request.verification_count;
         json["time_limit_s"] = request.time_limit;
     } else {
         json["test_poses"] = detail::path_to_json(request.sources.test_poses, plan_path);
@@ -148,16 +149,24 @@ Json pose_to_json(const Plan& plan, const PlannedPose& pose) {
     return json;
 }
 
-std::string configurations_text(const Campaign& campaign, const std::vector<PlannedPose>& poses) {
-    std::string text =
-        fmt::format("config{},{}\n", detail::joint_header(campaign), detail::seen_header(campaign));
+std::string rows_of(const Campaign& campaign, const std::vector<PlannedPose>& poses,
+                    std::string_view purpose) {
     const Index targets = campaign.sensor->target_count();
+    std::string text;
     for (const PlannedPose& pose : poses) {
-        fmt::format_to(std::back_inserter(text), "{}{},{}\n", detail::csv_field(pose.id),
+        fmt::format_to(std::back_inserter(text), "{}{},{},{}\n", detail::csv_field(pose.id),
                        detail::joint_cells(campaign, pose.configuration),
-                       detail::seen_cell(campaign, seen_targets(pose.targets, targets)));
+                       detail::seen_cell(campaign, seen_targets(pose.targets, targets)), purpose);
     }
     return text;
+}
+
+std::string configurations_text(const Campaign& campaign, const std::vector<PlannedPose>& poses,
+                                const std::vector<PlannedPose>& verification = {}) {
+    return fmt::format("config{},{},{}\n", detail::joint_header(campaign),
+                       detail::seen_header(campaign), detail::purpose) +
+           rows_of(campaign, poses, detail::to_calibrate) +
+           rows_of(campaign, verification, detail::to_verify);
 }
 
 std::string plan_text(const Plan& plan, const std::string& path,
@@ -177,7 +186,8 @@ void write_plan(const std::string& path, const Plan& plan,
 void write_plan(const std::string& path, const Plan& plan, const std::string& csv_path,
                 const Campaign& campaign, const std::vector<std::string>& warnings) {
     std::vector<detail::FileContent> files{{path, plan_text(plan, path, warnings)}};
-    if (!csv_path.empty()) files.push_back({csv_path, configurations_text(campaign, plan.poses)});
+    if (!csv_path.empty())
+        files.push_back({csv_path, configurations_text(campaign, plan.poses, plan.verification)});
     detail::write_files(files);
 }
 
@@ -208,6 +218,13 @@ Json plan_to_json(const Plan& plan, const std::string& path) {
     if (!plan.assumptions.empty()) document["assumes"] = numbers_to_json(plan.assumptions);
     Json& poses = document["poses"] = Json::array();
     for (const PlannedPose& pose : plan.poses) poses.push_back(io::pose_to_json(plan, pose));
+    if (!plan.verification.empty()) {
+        Json& others = document["verification"] = Json::array();
+        for (const PlannedPose& pose : plan.verification) {
+            others.push_back(io::pose_to_json(plan, pose));
+        }
+        document["verification_time_s"] = plan.verification_time;
+    }
     if (!plan.is_continuous()) document["certificate"] = io::certificate_to_json(plan.certificate);
     return document;
 }

@@ -8,6 +8,7 @@
 #include "../core/text.hpp"
 #include "calibration_tables.hpp"
 #include "error_classes.hpp"
+#include "judgement_report.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/report/reports.hpp"
 #include "sentences.hpp"
@@ -153,38 +154,6 @@ std::string describe(const std::optional<BeyondMeasured>& beyond, const char* wh
         beyond->count, detail::count_of(beyond->of, "pose"), what, fmt::join(beyond->joints, ", "));
 }
 
-/// Whether what was found on the validation is what was expected there, by chance: of so many
-/// numbers, and of the model error, which is known within a factor.
-std::string judge_validation(const Calibration& calibration) {
-    if (!calibration.validation || !calibration.expected_validation) return "";
-    constexpr double deviations = 2;
-    constexpr double tolerated = 1.25;
-    const Metrics& found = *calibration.validation;
-    const Estimate& estimate = calibration.estimate;
-    const double ratio = found.rms() / calibration.expected_validation->total();
-    const double numbers =
-        static_cast<double>(found.point_count * std::max<Index>(1, found.coordinate_count));
-    const double freedom = std::max<double>(1, static_cast<double>(estimate.degrees_of_freedom));
-    const double within = calibration.campaign.spread.is_prior
-                              ? std::log(estimate.model_error_within)
-                              : std::sqrt(0.5 / freedom);
-    const double chance =
-        std::max(tolerated, std::exp(deviations * std::hypot(within, std::sqrt(0.5 / numbers))));
-    const std::string times = detail::format_short(ratio, 3);
-    if (!(ratio <= chance)) {
-        return fmt::format(
-            "the validation is off by {} times what is expected, beyond chance (up to {}): {}\n",
-            times, detail::format_short(chance, 3),
-            calibration.moved ? "it was measured with another set-up (--refit)"
-            : calibration.validation_beyond
-                ? "calibrate with poses like those, too"
-                : "the robot has changed, or its errors there are unlike those calibrated with");
-    }
-    return fmt::format("the validation is off by {} times what is expected, {}\n", times,
-                       ratio * chance >= 1 ? "within chance: the calibration holds there"
-                                           : "less than chance would have it: it holds there");
-}
-
 /// Base and targets that the validation was judged with.
 std::string format_refitted(const Calibration& calibration) {
     if (!calibration.refitted) return "";
@@ -223,14 +192,13 @@ std::string describe_expected(const Calibration& calibration) {
         text +=
             "expected over the workspace: not known; the joint limits or the cell leave no poses\n";
     }
-    if (calibration.expected_left_out) {
-        text += describe(*calibration.expected_left_out, "not in plan", is_angle) + '\n';
-    }
-    if (calibration.expected_validation) {
-        text += describe(*calibration.expected_validation, "at the validation", is_angle) + '\n';
-    }
-    text += judge_validation(calibration) +
-            describe(calibration.validation_beyond, "of the validation");
+    const auto add = [&](const std::optional<Judgement>& judged, const char* where) {
+        if (judged && judged->expected) text += describe(*judged->expected, where, is_angle) + '\n';
+    };
+    add(calibration.verification, "at the verification");
+    add(calibration.left_out, "not in plan");
+    add(calibration.validation, "at the validation");
+    text += detail::describe_judgements(calibration);
     for (const ErrorPrediction& prediction : calibration.predicted) {
         const auto where =
             fmt::format("at the {} to predict",
@@ -254,8 +222,12 @@ std::string format_accuracy(const Calibration& calibration) {
         columns.emplace_back("held out", calibration.held_out->samples);
         columns.emplace_back("held-out means", calibration.held_out->means);
     }
-    if (calibration.left_out) columns.emplace_back("not in plan", *calibration.left_out);
-    if (calibration.validation) columns.emplace_back("validation", *calibration.validation);
+    const auto add = [&](const std::optional<Judgement>& judged, const char* name) {
+        if (judged) columns.emplace_back(name, judged->found);
+    };
+    add(calibration.verification, "verification");
+    add(calibration.left_out, "not in plan");
+    add(calibration.validation, "validation");
     std::string text = format_section("Accuracy", detail::metrics_table(columns)) + '\n';
     if (calibration.held_out) {
         text += fmt::format(

@@ -1,35 +1,17 @@
 #include "plan_maker.hpp"
 
 #include <cmath>
-#include <set>
 
 #include "../planner/plan_space.hpp"
 #include "../planner/tour.hpp"
 #include "inputs.hpp"
+#include "new_ids.hpp"
 #include "pool_choices.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "verification_poses.hpp"
 
 namespace posewise::detail {
 namespace {
-
-/// p1, p2, ... but for those that poses kept or dropped have.
-class NewIds {
-  public:
-    explicit NewIds(const PlanningProblem& problem)
-        : taken_(problem.request.dropped.begin(), problem.request.dropped.end()) {
-        for (const PlannedPose& pose : problem.kept) taken_.insert(pose.id);
-    }
-    std::string next() {
-        std::string id;
-        do id = 'p' + std::to_string(++last_);
-        while (taken_.count(id) > 0);
-        return id;
-    }
-
-  private:
-    std::set<std::string> taken_;
-    int last_ = 0;
-};
 
 /// The poses kept, then the new ones.
 RowMatrixXd all_poses(const PlanningProblem& problem, const RowMatrixXd& planned) {
@@ -43,7 +25,7 @@ RowMatrixXd all_poses(const PlanningProblem& problem, const RowMatrixXd& planned
 /// All poses in the order of the tour; new ones are named in it.
 std::vector<PlannedPose> arrange(const PlanningProblem& problem, const RowMatrixXd& poses,
                                  const Tour& tour) {
-    NewIds ids(problem);
+    NewIds ids('p', problem);
     std::vector<PlannedPose> arranged;
     const auto kept = static_cast<Index>(problem.kept.size());
     for (const Visit& visit : tour.visits) {
@@ -51,9 +33,7 @@ std::vector<PlannedPose> arrange(const PlanningProblem& problem, const RowMatrix
         if (visit.pose < kept) {
             pose = problem.kept[static_cast<std::size_t>(visit.pose)];
         } else {
-            pose.id = ids.next();
-            pose.configuration = poses.row(visit.pose).transpose();
-            pose.targets = targets_seen(problem.constraints.seen(pose.configuration));
+            pose = pose_at(problem, ids.next(), poses.row(visit.pose).transpose());
         }
         pose.via = visit.via;
         pose.is_blocked = visit.is_blocked;
@@ -170,6 +150,10 @@ Planning PlanMaker::make_quickly(Index pose_count) const {
     const Candidates from = candidates(
         std::min(pool_.configurations.rows(), std::max(quick_pool_part, 2 * pose_count)));
     return finish(search, plan_poses(from.space, from.configurations, from.blocks, search));
+}
+
+void PlanMaker::add_verification(Planning& planning) const {
+    detail::add_verification(problem_, pool_, options_, planning);
 }
 
 Ending PlanMaker::ending_of(const PlannedPoses& planned) const {

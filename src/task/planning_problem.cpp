@@ -18,9 +18,6 @@
 namespace posewise::detail {
 namespace {
 
-/// New poses keep so far from those that could not be reached (some joint, rad).
-constexpr double distance_from_dropped = to_radians(5);
-
 // ---- What is known before ----
 
 /// Base and targets: as stated, else registered from what was measured.
@@ -81,6 +78,12 @@ void check_repaired(const PlanningProblem& problem, const Plan& repaired) {
     }
     if (!fault.empty()) throw input_error_at({name}, fault);
     for (const std::string& id : problem.request.dropped) {
+        if (std::ranges::count(repaired.verification, id, &PlannedPose::id) > 0) {
+            throw InputError(fmt::format(
+                "--drop {}: is a pose to verify, which need not be replaced; leave it out of what "
+                "is measured",
+                id));
+        }
         const auto has_id = [&](const PlannedPose& pose) { return pose.id == id; };
         if (std::any_of(repaired.poses.begin(), repaired.poses.end(), has_id)) continue;
         throw InputError(fmt::format("--drop {}: {} has no such pose", id, name));
@@ -96,7 +99,10 @@ void hold_kept(PlanningProblem& problem, const Plan& repaired) {
         const bool is_dropped = std::find(ids.begin(), ids.end(), pose.id) != ids.end();
         (is_dropped ? away : problem.kept).push_back(pose);
     }
+    problem.kept_to_verify = repaired.verification;
+    away.insert(away.end(), repaired.verification.begin(), repaired.verification.end());
     for (const PlannedPose& pose : problem.kept) check_kept(problem, pose);
+    for (const PlannedPose& pose : problem.kept_to_verify) check_kept(problem, pose);
     const Index L = parameter_count(problem.campaign);
     const Index joints = problem.campaign.robot.joint_count();
     hold(problem, MatrixXd::Zero(L, L), configurations_of(away, joints));
@@ -122,9 +128,9 @@ PlanningProblem state_planning(const Campaign& given, const PlanningOptions& opt
     check_knowable(campaign, options.stop);
     Cell cell = campaign.cell;
     if (options.repaired) {
-        cell.least_joint_distance = std::max(cell.least_joint_distance, distance_from_dropped);
+        cell.least_joint_distance = std::max(cell.least_joint_distance, distance_from_others);
     }
-    PlanningProblem problem{options, campaign, Constraints(campaign, std::move(cell)), {}, 0, 0,
+    PlanningProblem problem{options, campaign, Constraints(campaign, std::move(cell)), {}, 0, 0, {},
                             {},      {}};
     problem.request.has_prior = campaign.spread.is_prior;
     if (problem.request.repeats == 0) problem.request.repeats = 1;
@@ -185,6 +191,14 @@ RowMatrixXd configurations_of(const std::vector<PlannedPose>& poses, Index joint
         configurations.row(i) = poses[static_cast<std::size_t>(i)].configuration.transpose();
     }
     return configurations;
+}
+
+PlannedPose pose_at(const PlanningProblem& problem, std::string id, const VectorXd& configuration) {
+    PlannedPose pose;
+    pose.id = std::move(id);
+    pose.configuration = configuration;
+    pose.targets = targets_seen(problem.constraints.seen(configuration));
+    return pose;
 }
 
 Seen seen_at(const std::vector<PlannedPose>& poses, Index target_count) {

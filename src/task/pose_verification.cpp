@@ -12,6 +12,7 @@
 #include "planning_problem.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
+#include "verification_poses.hpp"
 
 namespace posewise {
 namespace {
@@ -60,6 +61,31 @@ void check_poses(const PlanningProblem& problem, const std::vector<PlannedPose>&
         }
     }
     if (is_right) findings.note("poses", true, fmt::format("{}, all feasible", poses.size()));
+}
+
+/// Those that the calibration is to be judged on: feasible, and apart from all others.
+void check_verification(const PlanningProblem& problem, const Plan& plan, Findings& findings) {
+    if (plan.verification.empty()) return;
+    const double least = detail::verification_distance(problem);
+    std::vector<PlannedPose> others = plan.poses;
+    bool is_right = true;
+    for (const PlannedPose& pose : plan.verification) {
+        std::string fault = find_fault(problem, pose);
+        for (const PlannedPose& other : others) {
+            const double distance = joint_distance(pose.configuration, other.configuration);
+            if (!fault.empty() || distance >= least - rounding) continue;
+            fault = fmt::format("is {} deg from {}, must be {} away",
+                                detail::format_short(to_degrees(distance)), detail::quote(other.id),
+                                detail::format_short(to_degrees(least)));
+        }
+        others.push_back(pose);
+        if (fault.empty()) continue;
+        findings.note("verification", false, detail::quote(pose.id) + ' ' + fault);
+        is_right = false;
+    }
+    if (!is_right) return;
+    findings.note("verification", true,
+                  fmt::format("{}, all feasible and apart", plan.verification.size()));
 }
 
 void check_value(const Plan& plan, const PlanningProblem& problem, const Blocks& blocks,
@@ -152,6 +178,7 @@ Verification verify(const Plan& plan, const Campaign& campaign, const PlanningOp
     if (!mismatch.empty()) throw InputError(mismatch);
     return detail::collect(static_cast<Index>(plan.poses.size()), [&](Findings& findings) {
         check_poses(problem, plan.poses, findings);
+        check_verification(problem, plan, findings);
         if (!findings.has_same_parameters(plan, problem.campaign)) return;
         const Blocks blocks = detail::blocks_of(problem, plan.poses);
         check_value(plan, problem, blocks, findings);

@@ -148,6 +148,18 @@ TEST(PlanTour, FindsAViaWhereTheStraightMoveHits) {
     EXPECT_GT(sampled_clearance(constraints, via, poses.row(0).transpose()), -1e-3);
 }
 
+TEST(PlanTour, StartsWhereTheRobotIsIfThatIsStated) {
+    const Constraints constraints = arm_and_post({9, 9, 0}, angle(0));
+    RowMatrixXd poses(3, 1);
+    poses << 10 * degree, 50 * degree, 90 * degree;
+    TourOptions options;
+    EXPECT_EQ(plan_tour(constraints, poses, options).visits.front().pose, 0);
+    options.start = angle(95);
+    const Tour tour = plan_tour(constraints, poses, options);
+    EXPECT_EQ(tour.visits.front().pose, 2);
+    EXPECT_NEAR(tour.time, 85 * degree, 1e-9);
+}
+
 TEST(PlanTour, StartsAnywhereIfThereIsNoHome) {
     const Constraints constraints = arm_and_post(Vector3d(0, 3, 0), VectorXd());
     RowMatrixXd poses(3, 1);

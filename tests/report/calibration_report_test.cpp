@@ -121,8 +121,48 @@ TEST(FormatCalibration, SaysWhetherTheValidationIsAsExpected) {
     EXPECT_TRUE(holds(report(), "times what is expected, beyond chance")) << report();
     EXPECT_TRUE(holds(report(), "the robot has changed")) << report();
     others.configurations(4, 1) += 3;
-    EXPECT_TRUE(holds(report(), "\n1 of 30 poses of the validation leave the range measured of "))
+    EXPECT_TRUE(holds(report(), "\nvalidation, 29 new poses: RMS ")) << report();
+    EXPECT_TRUE(
+        holds(report(), "\nvalidation, 1 pose beyond the joint ranges calibrated with (q2): RMS "))
         << report();
+    EXPECT_TRUE(holds(report(), "extrapolated; calibrate with poses like those, too\n"))
+        << report();
+}
+
+TEST(FormatCalibration, NeverSaysWithinChanceOfPosesCalibratedWith) {
+    const Example example(20);
+    const Measurements again =
+        simulate(example.campaign, {.pose_count = 20, .repeats = 1}).measurements;
+    CalibrationOptions options;
+    options.folds = 0;
+    options.limit = 1e-3;
+    options.validation = &again;
+    const std::string text = format(calibrate(example.campaign, example.measurements, options));
+    EXPECT_TRUE(holds(text, "\nvalidation, 20 poses calibrated with: RMS ")) << text;
+    EXPECT_TRUE(holds(text,
+                      " degrees of freedom), limit 1 mm: not judged; they were calibrated "
+                      "with and say nothing of other poses\n"))
+        << text;
+    EXPECT_FALSE(holds(text, "within chance")) << text;
+}
+
+TEST(FormatCalibration, SaysWhetherALimitIsKept) {
+    const Example example(30);
+    const Measurements others =
+        simulate(example.campaign, {.pose_count = 15, .seed = 9}).measurements;
+    CalibrationOptions options;
+    options.folds = 0;
+    options.validation = &others;
+    const auto report = [&](double limit) {
+        options.limit = limit;
+        return format(calibrate(example.campaign, example.measurements, options));
+    };
+    const double rms =
+        calibrate(example.campaign, example.measurements, options).validation->found.rms();
+    EXPECT_TRUE(holds(report(2 * rms), " mm: pass; ")) << report(2 * rms);
+    EXPECT_TRUE(holds(report(0.5 * rms), " mm: fail; ")) << report(0.5 * rms);
+    EXPECT_TRUE(holds(report(1.1 * rms), " mm: undecided (if the RMS stays, "))
+        << report(1.1 * rms);
 }
 
 TEST(FormatCalibration, OfOneThatIsNotIdentifiedSaysWhy) {

@@ -26,7 +26,8 @@ void write_plan(const std::string& path, const Plan& plan, const std::string& cs
 Plan read_plan(const std::string& path);
 
 /// The poses as CSV: config, then each joint in degrees or mm, digits enough to read the numbers
-/// back exactly, then visible_targets ("1 3"). read_configurations() reads it.
+/// back exactly, then visible_targets ("1 3") and purpose: calibrate, or verify of those that a
+/// plan has to verify, which come last. read_configurations() reads it.
 void write_configurations_csv(const std::string& path, const Campaign& campaign,
                               const std::vector<PlannedPose>& poses);
 

@@ -11,6 +11,7 @@
 #include "posewise/core/progress.hpp"
 #include "posewise/task/doubts.hpp"
 #include "posewise/task/earlier.hpp"
+#include "posewise/task/judgement.hpp"
 
 namespace posewise {
 
@@ -33,6 +34,9 @@ struct CalibrationOptions {
     /// Configurations to calibrate with, such as those of a plan; it is judged on the others, too.
     /// Empty: all.
     std::vector<Index> used{};
+    /// Configurations that are not used but to judge by themselves, such as the poses that a plan
+    /// has to verify; none of `used`, which must be stated.
+    std::vector<Index> verification{};
     /// What was left out of the measurements by hand, with leave_out(): for the record.
     std::vector<std::string> excluded{};
     /// Needs Joint.
@@ -46,6 +50,8 @@ struct CalibrationOptions {
     /// other targets or another sensor. Then base and targets must both be refitted. Null: the
     /// same.
     const Campaign* validation_campaign = nullptr;
+    /// That the RMS of distances is to keep where the calibration is judged (judge_limit()), m.
+    std::optional<double> limit{};
     /// Configurations that need not be measured, to say what to expect there (m x joints, and
     /// measured torques; rad, m, N m). Empty: none.
     RowMatrixXd predicted{};
@@ -109,18 +115,16 @@ struct Calibration {
     std::optional<Repeatability> repeatability;  ///< nothing: no configuration was repeated
     std::optional<CrossValidation> held_out;
     /// Of means at poses like those measured; of samples over the workspace as estimated_geometry()
-    /// draws it (nothing where it cannot, and for contacts), at the configurations not used, and at
-    /// the validation's.
+    /// draws it (nothing where it cannot, and for contacts).
     ExpectedError expected;
     std::optional<ExpectedError> expected_workspace;
-    std::optional<ExpectedError> expected_left_out;
-    std::optional<ExpectedError> expected_validation;
     /// At CalibrationOptions::predicted: of distances, of angles.
     std::vector<ErrorPrediction> predicted;
-    std::optional<Metrics> left_out;    ///< on the configurations not used
-    std::optional<Metrics> validation;  ///< on CalibrationOptions::validation
-    /// Where poses of the validation, or those to predict, are unlike those calibrated with.
-    std::optional<BeyondMeasured> validation_beyond;
+    std::optional<double> limit;            ///< CalibrationOptions::limit
+    std::optional<Judgement> verification;  ///< at CalibrationOptions::verification
+    std::optional<Judgement> left_out;      ///< at the other configurations not used
+    std::optional<Judgement> validation;    ///< at CalibrationOptions::validation
+    /// Where poses to predict are unlike those calibrated with.
     std::optional<BeyondMeasured> predicted_beyond;
     /// With CalibrationOptions::refitted: the validation's campaign, which may have other targets,
     /// at the parameters that it was judged with.
