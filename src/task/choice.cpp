@@ -39,10 +39,9 @@ std::vector<PlannedPose> poses_of(const ChoiceProblem& problem, const std::vecto
 Plan solve(ChoiceProblem& problem, const ChoiceOptions& options) {
     problem.options.stop = options.stop;
     problem.options.progress = options.progress;
-    const PlanSources& sources = problem.request.sources;
-    const std::string& name = sources.candidates.empty() ? sources.campaign : sources.candidates;
-    const Choice choice = detail::compute_from(
-        name, [&] { return determined(select_poses(problem.blocks, problem.options)); });
+    const Choice choice = detail::compute_from(detail::name_of(problem.request.sources), [&] {
+        return determined(select_poses(problem.blocks, problem.options));
+    });
     Plan plan;
     plan.poses = poses_of(problem, choice.poses);
     plan.request = problem.request;

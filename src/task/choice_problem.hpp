@@ -24,6 +24,9 @@ struct ChoiceProblem {
     SelectOptions options;               ///< the problem's part; refers to test_poses
 };
 
+/// The file that candidates are of, for messages.
+const std::string& name_of(const PlanSources& sources);
+
 /// Of random candidates fewer are used if `stop` comes. Throws InputError as choose().
 ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
                            const ChoiceOptions& options, const StopSignal& stop = {});

@@ -62,7 +62,6 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.request.starts = planned.starts;
     plan.starts_at_best = planned.starts_at_best;
     plan.value_rms = value_rms_of(problem, plan.value);
-    plan.standard_deviations = detail::standard_deviations(campaign, planned.information);
     plan.visiting_time = tour.time;
     plan.assumptions = assumptions_of(campaign);
     return plan;
@@ -182,7 +181,11 @@ Planning PlanMaker::finish(PlanOptions search, const PlannedPoses& planned) cons
     planning.campaign = problem_.campaign;
     planning.errors = problem_.errors;
     planning.search = std::move(search);
-    planning.information = planned.information;
+    // As verify() sums it, so that no digit depends on the order of the poses.
+    planning.information =
+        held_information(problem_) + information(blocks_of(problem_, planning.plan.poses));
+    planning.plan.standard_deviations =
+        standard_deviations(problem_.campaign, planning.information);
     conclude(planning, problem_, options_.drop_out_count);
     return planning;
 }

@@ -5,7 +5,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "../core/decompositions.hpp"
 #include "../core/text.hpp"
+#include "../measurement/prior_rows.hpp"
 #include "../model/joint_limits.hpp"
 #include "inputs.hpp"
 #include "posewise/calibrator/registration.hpp"
@@ -41,11 +43,9 @@ Campaign with_base(Campaign campaign, const PlanningOptions& options) {
     return campaign;
 }
 
-void hold(PlanningProblem& problem, const MatrixXd& information, const RowMatrixXd& poses) {
+void hold(PlanningProblem& problem, const RowMatrixXd& rows, const RowMatrixXd& poses) {
     HeldPoses& held = problem.search.held;
-    const Index L = parameter_count(problem.campaign);
-    if (held.information.size() == 0) held.information.setZero(L, L);
-    held.information += information;
+    held.rows = stack(held.rows, rows);
     RowMatrixXd all(held.configurations.rows() + poses.rows(),
                     problem.campaign.robot.joint_count());
     if (held.configurations.rows() > 0)
@@ -103,13 +103,11 @@ void hold_kept(PlanningProblem& problem, const Plan& repaired) {
     away.insert(away.end(), repaired.verification.begin(), repaired.verification.end());
     for (const PlannedPose& pose : problem.kept) check_kept(problem, pose);
     for (const PlannedPose& pose : problem.kept_to_verify) check_kept(problem, pose);
-    const Index L = parameter_count(problem.campaign);
     const Index joints = problem.campaign.robot.joint_count();
-    hold(problem, MatrixXd::Zero(L, L), configurations_of(away, joints));
+    hold(problem, {}, configurations_of(away, joints));
     if (problem.kept.empty()) return;
     for (PlannedPose& pose : problem.kept) pose.is_kept = true;
-    hold(problem, information(blocks_of(problem, problem.kept)),
-         configurations_of(problem.kept, joints));
+    hold(problem, blocks_of(problem, problem.kept).matrix, configurations_of(problem.kept, joints));
     problem.search.held_pose_count += static_cast<Index>(problem.kept.size());
 }
 
@@ -139,9 +137,9 @@ PlanningProblem state_planning(const Campaign& given, const PlanningOptions& opt
     problem.request.starts = problem.search.starts;
     problem.search.seed = options.seed;
     if (options.is_focused_on_robot) problem.search.nuisance = nuisance_of_robot(campaign);
-    if (campaign.spread.is_prior) hold(problem, prior_information(campaign), {});
+    if (campaign.spread.is_prior) hold(problem, prior_rows(campaign), {});
     if (options.held) {
-        hold(problem, information(measured_blocks(campaign, campaign.nominal, *options.held)),
+        hold(problem, measured_blocks(campaign, campaign.nominal, *options.held).matrix,
              options.held->configurations);
         problem.measured_count = options.held->configuration_count();
         problem.search.held_pose_count += problem.measured_count;
@@ -217,9 +215,7 @@ Blocks blocks_of(const PlanningProblem& problem, const std::vector<PlannedPose>&
 }
 
 MatrixXd held_information(const PlanningProblem& problem) {
-    const Index L = parameter_count(problem.campaign);
-    const MatrixXd& held = problem.search.held.information;
-    return held.size() > 0 ? held : MatrixXd::Zero(L, L);
+    return information_of(problem.search.held.rows, parameter_count(problem.campaign));
 }
 
 std::vector<NamedNumber> standard_deviations(const Campaign& campaign, const MatrixXd& M) {

@@ -95,13 +95,12 @@ void check_value(const Plan& plan, const PlanningProblem& problem, const Blocks&
     options.pose_count = blocks.count();
     if (needs_test_poses(options.criterion)) options.test_poses = &problem.errors.by_parameters;
     options.nuisance = problem.search.nuisance;
-    options.held = problem.search.held.information;
+    options.held_rows = problem.search.held.rows;
     options.held_pose_count = problem.search.held_pose_count;
     std::vector<Index> all(plan.poses.size());
     std::iota(all.begin(), all.end(), Index{0});
     const double value = detail::choice_value(blocks, options, all);
-    findings.compare("value", plan.value, value,
-                     detail::is_same_value(options.criterion, plan.value, value, rounding));
+    findings.compare_value(options.criterion, plan.value, value, rounding);
 }
 
 /// Each parameter's, which the plan must state, and no other.

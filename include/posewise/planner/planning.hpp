@@ -10,7 +10,7 @@ namespace posewise {
 
 /// What a plan has besides the poses that are refined: a prior, poses already measured, or both.
 struct HeldPoses {
-    MatrixXd information;        ///< parameters square; empty: none
+    RowMatrixXd rows;            ///< as SelectOptions::held_rows; empty: none
     RowMatrixXd configurations;  ///< poses x joints; for the least joint distance
 };
 
