@@ -8,6 +8,7 @@
 #include "../core/checksum.hpp"
 #include "../core/format.hpp"
 #include "../core/text.hpp"
+#include "calibration_options.hpp"
 #include "inputs.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
@@ -179,6 +180,13 @@ void check_test_poses(const ChoiceOptions& options) {
 }
 
 }  // namespace
+
+void judge_candidates(const Campaign& campaign, const std::optional<Measurements>& measured,
+                      const ChoiceOptions& options) {
+    if (!measured) return;
+    compute_from(options.sources.candidates,
+                 [&] { judge_measured(campaign, *measured, options.judge, options.stop); });
+}
 
 std::vector<std::string> ids_of(const std::vector<PlannedPose>& poses) {
     std::vector<std::string> ids;

@@ -9,17 +9,15 @@
 #include "../core/format.hpp"
 #include "../core/statistics.hpp"
 #include "../core/text.hpp"
+#include "expected_distance.hpp"
 #include "other_senses.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
-#include "posewise/planner/prediction.hpp"
 #include "posewise/task/doubts.hpp"
 
 namespace posewise {
 namespace {
 
-/// Another robot's measurements are off by more than so many expected errors.
-constexpr double credible_errors = 10;
 /// From here on joints that turn the other way are looked for: of a wrist they may do no more.
 constexpr double doubtful_errors = 1;
 
@@ -122,20 +120,11 @@ std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& 
     if (!campaign.sensor->has_lengths()) return std::nullopt;  // of angles it is not known
     Misfit misfit;
     misfit.distance = median_distance(mean_residuals(campaign, registered, measured));
-    // At nominal targets: fitted to another robot's points they may be anywhere.
-    const Blocks blocks =
-        make_prediction_blocks(campaign, campaign.nominal, measured.configurations);
-    const auto points = static_cast<double>(blocks.matrix.rows()) / 3;
-    misfit.expected =
-        std::sqrt(blocks.matrix
-                      .middleCols(base_parameter_count(campaign), campaign.robot.parameter_count())
-                      .squaredNorm() /
-                  points) +
-        campaign.model_error;
+    misfit.expected = detail::expected_distance(campaign, measured);
     if (misfit.distance <= doubtful_errors * misfit.expected) return std::nullopt;
     misfit.unit = find_unit_doubt(campaign, measured);
     if (misfit.unit == UnitDoubt::None) find_reversed_joints(campaign, measured, misfit);
-    const bool is_credible = misfit.distance <= credible_errors * misfit.expected;
+    const bool is_credible = misfit.distance <= detail::credible_errors * misfit.expected;
     if (is_credible && misfit.reversed.empty()) return std::nullopt;
     misfit.planes = find_plane_doubts(campaign, measured);
     if (!misfit.reversed.empty() && !misfit.planes.empty()) {
