@@ -141,6 +141,7 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     ChoiceInputs inputs =
         read_choice_inputs(request, kind_of(arguments), arguments.random, std::move(file));
     inputs.options.stop = stop;
+    inputs.options.judge = judge_of(sources.candidates, arguments.earlier.is_forced);
     const auto read = std::chrono::steady_clock::now();
     if (arguments.relaxes) {
         const ApproximateDesign design =

@@ -115,6 +115,12 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
                                   {"learned" + unit, mm_per_m * size->held.size},
                                   {"fitting" + unit, mm_per_m * size->fitting}};
     }
+    if (const auto& held_out = doubts.held_out) {
+        const std::string unit = error_suffix(!campaign.sensor->has_lengths());
+        json["held_out"] = {{"calibrated" + unit, mm_per_m * held_out->calibrated},
+                            {"nominal" + unit, mm_per_m * held_out->nominal},
+                            {"rank_deviations", held_out->rank_deviations}};
+    }
     if (!doubts.residuals.empty()) {
         const auto farthest = std::ranges::max(
             doubts.residuals, {},
@@ -131,6 +137,17 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
         json["look"] = look_to_json(doubts.look, !campaign.sensor->has_lengths());
     }
     return json;
+}
+
+Json cures_to_json(const Campaign& campaign, const Cures& cures) {
+    const std::string unit = error_suffix(!campaign.sensor->has_lengths());
+    Json found = Json::array();
+    for (const Cure& cure : cures.found) {
+        found.push_back({{"option", cure.option},
+                         {"held_out" + unit, mm_per_m * cure.after},
+                         {"held_out_before" + unit, mm_per_m * cure.before}});
+    }
+    return {{"found", std::move(found)}, {"without_effect", cures.without_effect}};
 }
 
 }  // namespace posewise::detail

@@ -10,5 +10,6 @@ Json reading_to_json(const BetterReading& reading);
 
 /// What looks wrong, in mm, mrad and deg; a key for each kind of doubt that there is.
 Json doubts_to_json(const Campaign& campaign, const Doubts& doubts);
+Json cures_to_json(const Campaign& campaign, const Cures& cures);
 
 }  // namespace posewise::detail

@@ -290,6 +290,7 @@ Json estimate_to_json(const Calibration& calibration, const Provenance& made_fro
     if (calibration.stated_spread) document["learned_sizes"] = sizes_to_json(calibration);
     document["assumes"] = detail::numbers_to_json(assumptions_of(campaign));
     document["doubts"] = detail::doubts_to_json(campaign, calibration.doubts);
+    document["cures"] = detail::cures_to_json(campaign, calibration.cures);
     return document;
 }
 

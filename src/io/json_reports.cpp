@@ -347,6 +347,10 @@ std::string to_json(const CorrectedPoses& poses, const Campaign& campaign) {
     document["campaign"] = campaign.name;
     document["uncorrected"] = pose_error_to_json(poses.corrections, &Correction::uncorrected);
     document["corrected"] = pose_error_to_json(poses.corrections, &Correction::residual);
+    document["not_brought_home"] = Json::array();
+    for (const Index i : poses.not_home) {
+        document["not_brought_home"].push_back(poses.ids[static_cast<std::size_t>(i)]);
+    }
     Json& list = document["configurations"] = Json::array();
     for (std::size_t i = 0; i < poses.ids.size(); ++i) {
         list.push_back(correction_to_json(poses.ids[i], poses.corrections[i], campaign));

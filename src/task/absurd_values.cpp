@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../core/format.hpp"
@@ -85,6 +86,24 @@ void add_variance_factor(const Estimate& estimate, std::vector<std::string>& fau
 }
 
 }  // namespace
+
+double times_stated(const Campaign& stated, const Estimate& estimate) {
+    constexpr double beyond = 2;
+    double largest = std::sqrt(estimate.variance_factor);
+    const auto add = [&](bool is_angle, double found, double expected) {
+        const double ratio = std::sqrt(estimate.variance_of(is_angle).factor);
+        largest = std::max(largest, ratio);
+        if (ratio > beyond && found > expected && expected > 0) {
+            largest = std::max(largest, found / expected * ratio);
+        }
+    };
+    const Sensor& sensor = *stated.sensor;
+    if (sensor.has_lengths()) add(false, estimate.model_error, stated.model_error);
+    if (sensor.has_angles()) {
+        add(true, estimate.model_error_orientation, stated.model_error_orientation);
+    }
+    return largest;
+}
 
 void add_absurd_values(const Campaign& campaign, const Estimate& estimate,
                        std::vector<std::string>& faults) {

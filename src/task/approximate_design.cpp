@@ -67,8 +67,10 @@ ApproximateDesign weigh(ChoiceProblem& problem, const ChoiceOptions& options) {
 
 ApproximateDesign relax_choice(const Campaign& campaign, Candidates candidates,
                                const ChoiceOptions& options) {
+    const std::optional<Measurements> measured = candidates.measured;
     ChoiceProblem problem = detail::state_choice(campaign, std::move(candidates), options,
                                                  options.stop.with_half_the_time());
+    detail::judge_candidates(campaign, measured, options);
     ApproximateDesign design = detail::compute_from(detail::name_of(problem.request.sources),
                                                     [&] { return weigh(problem, options); });
     design.campaign = campaign.name;

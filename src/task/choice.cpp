@@ -132,8 +132,10 @@ Plan choose(const Campaign& campaign, Candidates candidates, const ChoiceOptions
                                        options.stop);
         });
     }
+    const std::optional<Measurements> measured = candidates.measured;
     ChoiceProblem problem = detail::state_choice(campaign, std::move(candidates), options,
                                                  options.stop.with_half_the_time());
+    detail::judge_candidates(campaign, measured, options);
     Plan plan = solve(problem, options);
     plan.campaign = campaign.name;
     plan.columns = configuration_columns(campaign);

@@ -10,6 +10,7 @@
 #include "../core/format.hpp"
 #include "../core/text.hpp"
 #include "../measurement/prior_rows.hpp"
+#include "calibration_options.hpp"
 #include "inputs.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
@@ -180,6 +181,13 @@ void check_test_poses(const ChoiceOptions& options) {
 
 const std::string& name_of(const PlanSources& sources) {
     return sources.candidates.empty() ? sources.campaign : sources.candidates;
+}
+
+void judge_candidates(const Campaign& campaign, const std::optional<Measurements>& measured,
+                      const ChoiceOptions& options) {
+    if (!measured) return;
+    compute_from(options.sources.candidates,
+                 [&] { judge_measured(campaign, *measured, options.judge, options.stop); });
 }
 
 std::vector<std::string> ids_of(const std::vector<PlannedPose>& poses) {

@@ -32,6 +32,10 @@ ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
                            const ChoiceOptions& options, const StopSignal& stop = {});
 ChoiceProblem state_choice(Blocks candidates, const ChoiceOptions& options);
 
+/// ChoiceOptions::judge of what measured candidates calibrate, if they are measured.
+void judge_candidates(const Campaign& campaign, const std::optional<Measurements>& measured,
+                      const ChoiceOptions& options);
+
 std::vector<std::string> ids_of(const std::vector<PlannedPose>& poses);
 
 /// Where poses are among the candidates, as often as they are measured.

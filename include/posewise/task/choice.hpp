@@ -4,6 +4,7 @@
 #include "posewise/core/progress.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
+#include "posewise/task/calibration.hpp"
 #include "posewise/task/plan.hpp"
 
 namespace posewise {
@@ -31,6 +32,8 @@ struct ChoiceOptions : PlanRequest {
     std::vector<Index> groups;         ///< label of each candidate; empty: none
     Blocks held_blocks;                ///< the same of plain blocks
     Blocks test_blocks;
+    /// Of measured candidates: what all of them calibrate.
+    JudgeCalibration judge = refuse_faults;
     StopSignal stop{};  ///< ends the search with the best so far
     ProgressCallback progress{};
 };
@@ -39,7 +42,8 @@ struct ChoiceOptions : PlanRequest {
 /// registered from measured candidates, else as the campaign states them, else registered from
 /// held measurements. Of random candidates only those are used whose blocks can be made in half of
 /// the time there is; Plan::candidate_count says how many. Throws InputError as select_poses(), for
-/// ids that are not among the candidates, and if base or targets are known from nowhere.
+/// ids that are not among the candidates, if base or targets are known from nowhere, and for
+/// measured candidates that are no calibration (ChoiceOptions::judge).
 Plan choose(const Campaign& campaign, Candidates candidates, const ChoiceOptions& options);
 
 /// The same of plain blocks, named 0, 1, ..., without a robot.

@@ -7,6 +7,7 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/measurement/sensors.hpp"
+#include "posewise/task/held_out.hpp"
 #include "posewise/task/readings.hpp"
 #include "posewise/task/residual_look.hpp"
 
@@ -165,6 +166,8 @@ struct Doubts {
     bool lacks_length = false;  ///< see lacks_length()
     std::optional<DistanceDoubt> distance;
     std::optional<HeldBackSize> held_back;  ///< where sizes were learned
+    /// Where the calibrated robot is not shown to predict others better than the nominal one.
+    std::optional<HeldOutComparison> held_out;
     /// Those that are more than 1.2 times larger or smaller than stated, and beyond what chi
     /// squared of the degrees of freedom is once in a thousand times.
     std::vector<ResidualDoubt> residuals;
@@ -180,8 +183,9 @@ struct Doubts {
 enum class ValueCheck { ByExpectedSizes, None };
 
 /// What is so wrong with an estimate of this campaign that it must not reach a robot, in words:
-/// that it did not converge, residuals of hundreds of times the noise and model error stated, a
-/// value or standard deviation of a hundred times its expected size, or what no cell has: a model
+/// that it did not converge, residuals (of lengths or of angles) of hundreds of times the noise and
+/// model error stated, a value or standard deviation of a hundred times its expected size, the
+/// offset of a joint beyond 10 deg and five times its expected size, or what no cell has: a model
 /// error beyond 100 mm or 100 mrad, a base 1 km from the instrument, a target 10 m from the
 /// flange or within 1 mm of another, a variance below what rounding leaves. Empty: nothing.
 std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& estimate,
