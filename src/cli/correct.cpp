@@ -75,8 +75,12 @@ void correct(const CorrectArguments& arguments, const CommonOptions& common) {
         return correct_poses(file, found, poses.joints, poses.ids, base,
                              correction_options(arguments));
     });
+    if (!corrected.collisions.empty()) {
+        print_warning(arguments.poses + ": " + corrected.collisions);
+    }
     if (!arguments.out.empty()) {
-        io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections);
+        io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections,
+                                  poses.purposes);
     }
     if (common.json) return print(io::to_json(corrected, file));
     print(fmt::format("{}: {} corrected{}\n", file.name,

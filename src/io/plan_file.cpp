@@ -144,18 +144,48 @@ Json pose_to_json(const Plan& plan, const PlannedPose& pose) {
     if (!plan.is_continuous()) return json;
     json["via"] = pose.via ? configuration_to_json(plan.columns, *pose.via) : Json(nullptr);
     json["way_is_blocked"] = pose.is_blocked;
+    json["clearance_m"] = pose.clearance ? Json(pose.clearance->distance) : Json(nullptr);
+    json["nearest"] = Json::array();
+    if (pose.clearance) json["nearest"] = {pose.clearance->body, pose.clearance->other};
     json["kept"] = pose.is_kept;
     return json;
 }
 
+/// The cells of a row beside its configuration: what is seen, what for, how it is reached.
+std::string configuration_row(const Campaign& campaign, const std::string& id, const VectorXd& q,
+                              const std::string& rest) {
+    return fmt::format("{}{},{}\n", detail::csv_field(id), detail::joint_cells(campaign, q), rest);
+}
+
+/// How near the robot comes to something, where that is known.
+std::string clearance_cells(const PlannedPose& pose) {
+    if (!pose.clearance) return ",,";
+    const auto& [distance, body, other] = *pose.clearance;
+    return fmt::format(",{:.2f},{}", mm_per_m * distance, detail::csv_field(body + " to " + other));
+}
+
 std::string configurations_text(const Campaign& campaign, const std::vector<PlannedPose>& poses) {
+    const bool has_clearance =
+        std::ranges::any_of(poses, [](const auto& pose) { return pose.clearance.has_value(); });
     std::string text =
-        fmt::format("config{},{}\n", detail::joint_header(campaign), detail::seen_header(campaign));
+        fmt::format("config{},{},{},{}", detail::joint_header(campaign),
+                    detail::seen_header(campaign), detail::purpose_column, detail::way_column);
+    if (has_clearance)
+        text += fmt::format(",{},{}", detail::clearance_column, detail::nearest_column);
+    text += '\n';
     const Index targets = campaign.sensor->target_count();
     for (const PlannedPose& pose : poses) {
-        fmt::format_to(std::back_inserter(text), "{}{},{}\n", detail::csv_field(pose.id),
-                       detail::joint_cells(campaign, pose.configuration),
-                       detail::seen_cell(campaign, seen_targets(pose.targets, targets)));
+        if (pose.via) {
+            text += configuration_row(
+                campaign, pose.id + ".via", *pose.via,
+                fmt::format(",{},straight{}", detail::on_the_way, has_clearance ? ",," : ""));
+        }
+        text += configuration_row(
+            campaign, pose.id, pose.configuration,
+            fmt::format("{},{},{}{}",
+                        detail::seen_cell(campaign, seen_targets(pose.targets, targets)),
+                        detail::to_calibrate, pose.is_blocked ? "BLOCKED" : "straight",
+                        has_clearance ? clearance_cells(pose) : ""));
     }
     return text;
 }
@@ -198,6 +228,7 @@ Json plan_to_json(const Plan& plan, const std::string& path) {
     if (plan.tried > 0) document["search"]["tried"] = plan.tried;
     if (plan.request.proof) document["search"]["proof_s"] = *plan.request.proof;
     io::add_prediction(document, plan);
+    if (!plan.cell_doubts.empty()) document["cell_doubts"] = plan.cell_doubts;
     if (!plan.assumptions.empty()) document["assumes"] = numbers_to_json(plan.assumptions);
     Json& poses = document["poses"] = Json::array();
     for (const PlannedPose& pose : plan.poses) poses.push_back(io::pose_to_json(plan, pose));

@@ -50,7 +50,9 @@ class Roadmap {
             }
         }
         if (has_home() && constraints.collision_clearance(nodes_[0]) < 0) {
-            throw InputError("cell: home collides with a keep-out or the robot itself");
+            throw InputError("cell: home is not free: " +
+                             describe_clearance(constraints.nearest(nodes_[0]),
+                                                constraints.cell().safety_distance));
         }
         straight_times_ = times_between(speed_, nodes_);
         find_free_moves();

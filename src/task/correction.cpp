@@ -2,6 +2,7 @@
 
 #include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/pool.hpp"
 
 namespace posewise {
 namespace {
@@ -17,6 +18,19 @@ Isometry3d estimated_base_from_base(const Campaign& campaign, const Parameters& 
     return found.world_from_base.inverse() * campaign.nominal.world_from_base;
 }
 
+/// What of the program collides in the campaign's cell, the targets taken off.
+std::string describe_collisions(const Campaign& campaign, const RowMatrixXd& configurations,
+                                const std::vector<std::string>& ids) {
+    Campaign working = campaign;
+    working.has_nominal_targets = false;
+    Cell cell;
+    cell.links = campaign.cell.links;
+    cell.keep_outs = campaign.cell.keep_outs;
+    cell.safety_distance = campaign.cell.safety_distance;
+    working.cell = cell;
+    return describe(find_violations(Constraints(working, cell, false), configurations), ids);
+}
+
 }  // namespace
 
 CorrectedPoses correct_poses(const Campaign& campaign, const Parameters& found,
@@ -25,6 +39,7 @@ CorrectedPoses correct_poses(const Campaign& campaign, const Parameters& found,
     const Isometry3d from_base = estimated_base_from_base(campaign, found, base);
     const VectorXd no_errors = VectorXd::Zero(campaign.robot.parameter_count());
     CorrectedPoses corrected{campaign.robot, ids, configurations, {}};
+    corrected.collisions = describe_collisions(campaign, configurations, ids);
     for (Index i = 0; i < configurations.rows(); ++i) {
         const VectorXd nominal = configurations.row(i).transpose();
         try {

@@ -55,6 +55,9 @@ std::vector<PlannedPose> arrange(const PlanningProblem& problem, const RowMatrix
             pose.configuration = poses.row(visit.pose).transpose();
             pose.targets = targets_seen(problem.constraints.seen(pose.configuration));
         }
+        const Clearance nearest = problem.constraints.nearest(pose.configuration);
+        pose.clearance.reset();
+        if (!nearest.body.empty()) pose.clearance = nearest;
         pose.via = visit.via;
         pose.is_blocked = visit.is_blocked;
         arranged.push_back(std::move(pose));
@@ -85,6 +88,8 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.standard_deviations = detail::standard_deviations(campaign, planned.information);
     plan.visiting_time = tour.time;
     plan.assumptions = assumptions_of(campaign);
+    const std::string unchecked = describe_unchecked_bodies(campaign);
+    if (!unchecked.empty()) plan.cell_doubts.push_back(unchecked);
     return plan;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "../core/text.hpp"
+#include "../measurement/places.hpp"
 #include "../model/joint_limits.hpp"
 #include "inputs.hpp"
 #include "posewise/calibrator/registration.hpp"
@@ -118,6 +119,7 @@ PlanningOptions options_of(const Plan& plan, const PlanningOptions& inputs) {
 PlanningProblem state_planning(const Campaign& given, const PlanningOptions& options) {
     check_torques_known(given);
     const Campaign campaign = with_base(given, options);
+    check_places(campaign);
     Cell cell = campaign.cell;
     if (options.repaired) {
         cell.least_joint_distance = std::max(cell.least_joint_distance, distance_from_dropped);
@@ -230,7 +232,12 @@ std::string describe_violation(const PlanningProblem& problem, const PlannedPose
     for (std::size_t k = 0; k < constraint_count; ++k) {
         const auto constraint = static_cast<Constraint>(k);
         if (report[constraint] >= -rounding || constraint == Constraint::JointLimits) continue;
-        return std::string("does not meet ") + constraint_name(constraint);
+        std::string text = std::string("does not meet ") + constraint_name(constraint);
+        if (constraint == Constraint::KeepOuts || constraint == Constraint::SelfCollision) {
+            text += ": " +
+                    describe_clearance(constraints.nearest(q), constraints.cell().safety_distance);
+        }
+        return text;
     }
     const std::vector<std::string> contacts = problem.campaign.sensor->contact_names();
     for (const Index target : pose.targets) {

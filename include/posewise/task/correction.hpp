@@ -20,6 +20,9 @@ struct CorrectedPoses {
     std::vector<std::string> ids;
     RowMatrixXd nominal;                  ///< m x joints, as programmed
     std::vector<Correction> corrections;  ///< m
+    /// Which of them would bring links of the campaign's cell into obstacles or each other, in
+    /// words; empty: none.
+    std::string collisions = {};
 };
 
 /// Joint values that bring the robot with the errors found to where the nominal one would be at
