@@ -94,8 +94,12 @@ void correct(const CorrectArguments& arguments, const CommonOptions& common) {
                              correction_options(arguments));
     });
     check_corrected(arguments, corrected);
+    if (!corrected.collisions.empty()) {
+        print_warning(arguments.poses + ": " + corrected.collisions);
+    }
     if (!arguments.out.empty()) {
-        io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections);
+        io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections,
+                                  poses.purposes);
     }
     if (common.json) return print_document(io::to_json(corrected, file));
     print(fmt::format("{}: {} corrected{}\n", file.name,

@@ -45,7 +45,8 @@ instrument, other senses of orientations. The right one misses the points by wha
 are, any other by far more; with --from, by what an earlier estimate left.
 
 A robot can be inspected before there is a campaign, straight from its URDF; --write-campaign then
-makes a file to begin with, which says what is left to fill in.)";
+makes a file to begin with, which says what is left to fill in. Its cell.links are capsules around the
+URDF's collision shapes (boxes, cylinders, spheres, capsules); a warning names the links of meshes.)";
 
 struct InspectArguments {
     std::string file;  ///< campaign or URDF
@@ -106,7 +107,10 @@ void inspect_urdf(const InspectArguments& arguments, const CommonOptions& common
     const std::string path = written.empty() ? urdf : written;
     const std::string text = io::make_campaign_text(robot, path);
     const io::CampaignFile file = io::parse_campaign(text, path);
-    if (!written.empty()) detail::write_file(written, text);
+    if (!written.empty()) {
+        std::ranges::for_each(io::read_urdf_bodies(robot).skipped, print_warning);
+        detail::write_file(written, text);
+    }
     print_campaign(file, {}, common);
     if (!written.empty() && !common.json) {
         print(fmt::format("\nThe campaign is in {}; fill in what is marked there.\n",

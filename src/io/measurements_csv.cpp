@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <unordered_set>
 
 #include "csv_reader.hpp"
@@ -39,6 +40,7 @@ class RowReader {
                            })) {
         for (std::size_t field = 0; field < columns_.size(); ++field) {
             const auto index = static_cast<std::size_t>(columns_[field].index);
+            if (columns_[field].role == Role::Purpose) field_of_purpose_ = field;
             if (columns_[field].role == Role::Joint) field_of_joint_[index] = field;
             if (columns_[field].role == Role::Observation) field_of_observation_[index] = field;
             if (columns_[field].role == Role::Orientation) {
@@ -58,6 +60,8 @@ class RowReader {
 
     void add_to(detail::SampleCollector& samples) {
         check_width();
+        is_via_ = read_purpose() == detail::on_the_way;
+        if (is_via_ && content_ != Content::Program) return;  // nothing is measured there
         row_.name.clear();
         for (std::size_t field = 0; field < columns_.size(); ++field) read_field(field);
         if (content_ == Content::JointsAndObservations && contacts_.empty()) read_targets();
@@ -66,12 +70,15 @@ class RowReader {
             return csv_.locate(field_of_joint_[static_cast<std::size_t>(joint)]);
         };
         samples.add(row_, locate, is_each_row_one_);
+        if (field_of_purpose_ && is_each_row_one_) purposes_.emplace_back(read_purpose());
     }
 
     OrientationNotation notation() const {
         if (orientation_fields_.empty()) return OrientationNotation::RotationVector;
         return detail::orientation_forms[columns_[orientation_fields_.front()].form].notation;
     }
+    /// Of each row that is a configuration by itself, where the file says it.
+    const std::vector<std::string>& purposes() const { return purposes_; }
 
   private:
     void check_width() const {
@@ -81,6 +88,20 @@ class RowReader {
             csv_.locate(std::min(count, columns_.size())),
             fmt::format("row has {} fields; must have {} as the header{}", count, columns_.size(),
                         count > columns_.size() ? "; are there decimal commas?" : ""));
+    }
+
+    /// What the robot is sent there for; empty where the file does not say.
+    std::string_view read_purpose() const {
+        if (!field_of_purpose_) return "";
+        const std::string_view text = csv_.fields()[*field_of_purpose_];
+        if (text == detail::to_calibrate || text == detail::to_verify ||
+            text == detail::on_the_way) {
+            return text;
+        }
+        throw input_error_at(csv_.locate(*field_of_purpose_),
+                             fmt::format("{} is {}; must be {}, {} or {}", detail::purpose_column,
+                                         detail::quote(text), detail::to_calibrate,
+                                         detail::to_verify, detail::on_the_way));
     }
 
     void read_field(std::size_t field) {
@@ -98,10 +119,15 @@ class RowReader {
                 return;
             case Role::VisibleTargets:
                 // What was planned; what was measured tells by itself what was seen.
-                if (content_ != Content::JointsAndObservations) read_visible(field);
+                if (content_ == Content::JointsAndObservations) return;
+                if (is_via_) {
+                    row_.is_seen.setConstant(true);
+                } else {
+                    read_visible(field);
+                }
                 return;
             case Role::Contact:
-                read_contact(field);
+                if (!is_via_) read_contact(field);
                 return;
             case Role::Joint:
                 row_.joints[column.index] = read_number(field);
@@ -113,8 +139,8 @@ class RowReader {
                 return;
             case Role::Observation:
             case Role::Orientation:
-                return;  // by read_targets()
-            case Role::Purpose:
+                return;          // by read_targets()
+            case Role::Purpose:  // by read_purpose()
             case Role::Unused:
                 return;
         }
@@ -284,13 +310,21 @@ class RowReader {
     std::vector<std::string> contacts_;
     std::vector<std::size_t> field_of_joint_;
     std::vector<std::size_t> field_of_observation_;
+    std::optional<std::size_t> field_of_purpose_;
+    bool is_via_ = false;  ///< the row at hand
+    std::vector<std::string> purposes_;
     bool is_each_row_one_;                         ///< a configuration by itself
     std::vector<std::size_t> orientation_fields_;  ///< if it is not a rotation vector
     std::unordered_set<std::string> seen_;
     detail::Sample row_;
 };
 
-Measurements read_csv(const std::string& path, const Campaign& campaign, Content content) {
+struct ReadFile {
+    Measurements samples;
+    std::vector<std::string> purposes;
+};
+
+ReadFile read_csv(const std::string& path, const Campaign& campaign, Content content) {
     detail::CsvReader csv(path);
     if (!csv.next_row()) {
         throw input_error_at({path}, std::string("is empty; must begin with a header like ") +
@@ -301,26 +335,27 @@ Measurements read_csv(const std::string& path, const Campaign& campaign, Content
     RowReader row(csv, campaign, content, read_header(csv, campaign, content));
     detail::SampleCollector samples(campaign);
     while (csv.next_row()) row.add_to(samples);
-    Measurements measurements = samples.finish(path);
+    Measurements measurements = samples.finish(path, content == Content::Program);
     measurements.notation = row.notation();
     if (measurements.notation == OrientationNotation::RollPitchYaw &&
         measurements.observations.cols() > 0) {
         measurements.roll_pitch_yaw = measurements.observations.rightCols(3);
         measurements.observations.conservativeResize(Eigen::NoChange, campaign.sensor->row_count());
     }
-    return measurements;
+    return {std::move(measurements), row.purposes()};
 }
 
 Configurations read_unmeasured(const std::string& path, const Campaign& campaign, Content content) {
-    Measurements read = read_csv(path, campaign, content);
+    auto [read, purposes] = read_csv(path, campaign, content);
     const RowMatrixXd visible = times_seen(read);
-    return {std::move(read.ids), std::move(read.configurations), visible.array() > 0};
+    return {std::move(read.ids), std::move(read.configurations), visible.array() > 0,
+            std::move(purposes)};
 }
 
 }  // namespace
 
 Measurements read_measurements_csv(const std::string& path, const Campaign& campaign) {
-    return read_csv(path, campaign, Content::JointsAndObservations);
+    return read_csv(path, campaign, Content::JointsAndObservations).samples;
 }
 
 Configurations read_configurations_csv(const std::string& path, const Campaign& campaign) {

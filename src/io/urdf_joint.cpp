@@ -157,7 +157,7 @@ class JointReader {
         if (joint.kind == io::UrdfJointKind::Continuous) {
             joint.limits = Interval{-std::numbers::pi, std::numbers::pi};
         } else if (is_revolute && largest > most_turns * 2 * std::numbers::pi) {
-            throw error(limit, "has limits beyond five turns; must be rad: are they degrees?");
+            throw error(limit, "has limits beyond three turns; must be rad: are they degrees?");
         } else if (stated.lower < stated.upper && largest <= none) {
             joint.limits = stated;
         }

@@ -15,6 +15,20 @@ struct UrdfPath {
 /// Throws InputError as read_urdf() does for what is wrong with the tree.
 UrdfPath find_path(const XmlDocument& document, const io::UrdfSource& source);
 
+/// Where a link is.
+struct LinkPlace {
+    pugi::xml_node link;
+    Index moving =
+        0;  ///< joints that move from the base up to it: its frame is that after the last
+    Isometry3d in_frame = Isometry3d::Identity();  ///< the link there
+    std::optional<io::UrdfJoint> mimic =
+        {};  ///< the first on the way there, whose frame has no name
+};
+/// The links from base to tip.
+std::vector<LinkPlace> place_links(const XmlDocument& document, const UrdfPath& path);
+/// The same with the links that fixed joints hang on them.
+std::vector<LinkPlace> place_bodies(const XmlDocument& document, const UrdfPath& path);
+
 /// The only child of that name; an empty node if there is none. Throws InputError if there are two.
 pugi::xml_node find_child(const XmlDocument& document, pugi::xml_node parent, const char* name);
 

@@ -6,7 +6,7 @@
 #include "../core/parallel.hpp"
 #include "../core/text.hpp"
 #include "../jacobian/pose_information.hpp"
-#include "cell_check.hpp"
+#include "../measurement/cell_check.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::detail {
@@ -33,8 +33,7 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
     if (constraints == nullptr) return space;
     space.is_pool_only = constraints->needs_contact();
     space.least_joint_distance = constraints->cell().least_joint_distance;
-    const Cell& cell = constraints->cell();
-    if (!cell.sight && cell.target_boxes.empty() && cell.links.empty()) return space;
+    if (!constraints->restricts_places()) return space;
     space.margin = [constraints](const VectorXd& q) { return constraints->margin(q); };
     return space;
 }

@@ -6,7 +6,7 @@
 
 #include "posewise/core/blocks.hpp"
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/planner/constraints.hpp"
+#include "posewise/measurement/constraints.hpp"
 #include "posewise/planner/planning.hpp"
 
 namespace posewise::detail {

@@ -78,7 +78,9 @@ class Roadmap {
             }
         }
         if (has_home() && is_from_home && constraints.collision_clearance(nodes_[0]) < 0) {
-            throw InputError("cell: home collides with a keep-out or the robot itself");
+            throw InputError("cell: home is not free: " +
+                             describe_clearance(constraints.nearest(nodes_[0]),
+                                                constraints.cell().safety_distance));
         }
     }
 

@@ -6,15 +6,13 @@
 #include <cmath>
 
 #include "../core/format.hpp"
+#include "../measurement/places.hpp"
 #include "posewise/core/units.hpp"
 
 namespace posewise::detail {
 namespace {
 
 constexpr double largest_model_error = 0.1;  // m, rad
-constexpr double farthest_base = 1e3;        // m
-constexpr double farthest_target = 10;       // m
-constexpr double nearest_targets = 1e-3;     // m: no two reflectors fit into that
 /// m^2, rad^2, or a variance factor: measurements without any noise leave 1e-34 and less, since
 /// numbers have 16 digits.
 constexpr double least_variance = 1e-42;

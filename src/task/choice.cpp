@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "../measurement/contact.hpp"
+#include "../measurement/feasible.hpp"
 #include "../measurement/noise.hpp"
 #include "../model/halton.hpp"
 #include "choice_problem.hpp"
@@ -115,8 +115,8 @@ Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_
     candidates.kind = CandidateKind::Random;
     candidates.ids = detail::number_ids(count);
     detail::ShownPoses poses =
-        detail::draw_poses(campaign, campaign.nominal, count, [&](Index drawn) {
-            return detail::halton_configurations(campaign.robot, drawn, {{}, 1, seed});
+        detail::draw_feasible(campaign, count, [&](const Chain& robot, Index drawn) {
+            return detail::halton_configurations(robot, drawn, {{}, 1, seed});
         });
     candidates.configurations = std::move(poses.configurations);
     candidates.share = times_seen(poses.is_seen, 1);
@@ -139,6 +139,7 @@ Plan choose(const Campaign& campaign, Candidates candidates, const ChoiceOptions
     Plan plan = solve(problem, options);
     plan.campaign = campaign.name;
     plan.columns = configuration_columns(campaign);
+    plan.cell_doubts = problem.cell_doubts;
     plan.assumptions = assumptions_of(campaign);
     plan.predicted = predict(campaign, problem, plan.poses);
     plan.value_rms = value_rms(campaign, problem, options.test_poses, plan.value);

@@ -11,6 +11,7 @@
 #include "../core/text.hpp"
 #include "../measurement/prior_rows.hpp"
 #include "calibration_options.hpp"
+#include "choice_cell.hpp"
 #include "inputs.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
@@ -48,24 +49,26 @@ void hold_blocks(ChoiceProblem& problem, const Blocks& measured) {
     }
 }
 
-/// Blocks of random candidates, part by part until `stop` comes; all targets are seen.
+/// Blocks of random candidates, part by part until `stop` comes.
 void make_random_blocks(ChoiceProblem& problem, const Campaign& campaign,
                         const Parameters& parameters, const StopSignal& stop) {
-    const Index rows = campaign.sensor->row_count();
     const Index count = problem.configurations.rows();
     Blocks& blocks = problem.blocks;
-    blocks.matrix.resize(rows * count, parameter_count(campaign));
+    blocks.matrix.resize(campaign.sensor->row_count() * count, parameter_count(campaign));
     Index made = 0;
     while (made < count && !(made > 0 && stop.is_set())) {
         const Index size = std::min(count - made, at_once);
-        blocks.matrix.middleRows(rows * made, rows * size) =
-            make_blocks(campaign, parameters, problem.configurations.middleRows(made, size),
-                        problem.request.repeats)
-                .matrix;
+        const Blocks part = make_blocks(
+            campaign, parameters, problem.configurations.middleRows(made, size),
+            RowMatrixXd(problem.request.repeats * problem.share.middleRows(made, size)));
+        const Index begin = blocks.first_row.back();
+        blocks.matrix.middleRows(begin, part.matrix.rows()) = part.matrix;
+        for (Index i = 1; i <= size; ++i) {
+            blocks.first_row.push_back(begin + part.first_row[static_cast<std::size_t>(i)]);
+        }
         made += size;
     }
-    blocks.matrix.conservativeResize(rows * made, Eigen::NoChange);
-    for (Index i = 1; i <= made; ++i) blocks.first_row.push_back(rows * i);
+    blocks.matrix.conservativeResize(blocks.first_row.back(), Eigen::NoChange);
     problem.configurations.conservativeResize(made, Eigen::NoChange);
     problem.share.conservativeResize(made, Eigen::NoChange);
     problem.ids.resize(static_cast<std::size_t>(made));
@@ -277,12 +280,15 @@ ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
         make_random_blocks(problem, campaign, parameters, stop);
     } else {
         if (!candidates.measured) {
-            compute_from(request.sources.candidates,
-                         [&] { check_contacts(problem, campaign, parameters); });
+            compute_from(request.sources.candidates, [&] {
+                check_contacts(problem, campaign, parameters);
+                heed_cell(problem, campaign, options.held.has_value());
+            });
         }
         problem.blocks = make_blocks(campaign, parameters, problem.configurations,
                                      RowMatrixXd(request.repeats * problem.share));
     }
+    add_unchecked_bodies(problem, campaign);
     problem.checksum = checksum_of(problem, candidates);
     problem.options.column_names = parameter_names(campaign);
     if (request.has_prior) hold(problem, prior_rows(campaign));

@@ -20,8 +20,9 @@ struct ChoiceProblem {
     std::string checksum;        ///< of all of the candidates' numbers
     Parameters parameters;       ///< that blocks are linearised at; nothing for plain blocks
     Blocks blocks;
-    std::unique_ptr<Blocks> test_poses;  ///< null: the candidates
-    SelectOptions options;               ///< the problem's part; refers to test_poses
+    std::unique_ptr<Blocks> test_poses;    ///< null: the candidates
+    SelectOptions options;                 ///< the problem's part; refers to test_poses
+    std::vector<std::string> cell_doubts;  ///< as Plan::cell_doubts
 };
 
 /// The file that candidates are of, for messages.

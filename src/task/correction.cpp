@@ -4,6 +4,7 @@
 
 #include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/pool.hpp"
 
 namespace posewise {
 namespace {
@@ -28,6 +29,19 @@ bool is_home(const Chain& robot, const Correction& correction, const CorrectionO
            size(correction.residual) <= most * size(correction.uncorrected);
 }
 
+/// What of the program collides in the campaign's cell, the targets taken off.
+std::string describe_collisions(const Campaign& campaign, const RowMatrixXd& configurations,
+                                const std::vector<std::string>& ids) {
+    Campaign working = campaign;
+    working.has_nominal_targets = false;
+    Cell cell;
+    cell.links = campaign.cell.links;
+    cell.keep_outs = campaign.cell.keep_outs;
+    cell.safety_distance = campaign.cell.safety_distance;
+    working.cell = cell;
+    return describe(find_violations(Constraints(working, cell, false), configurations), ids);
+}
+
 }  // namespace
 
 CorrectedPoses correct_poses(const Campaign& campaign, const Parameters& found,
@@ -35,7 +49,8 @@ CorrectedPoses correct_poses(const Campaign& campaign, const Parameters& found,
                              CorrectionBase base, const CorrectionOptions& options) {
     const Isometry3d from_base = estimated_base_from_base(campaign, found, base);
     const VectorXd no_errors = VectorXd::Zero(campaign.robot.parameter_count());
-    CorrectedPoses corrected{campaign.robot, ids, configurations, {}, {}};
+    CorrectedPoses corrected{campaign.robot, ids, configurations, {}, {}, {}};
+    corrected.collisions = describe_collisions(campaign, configurations, ids);
     for (Index i = 0; i < configurations.rows(); ++i) {
         const VectorXd nominal = configurations.row(i).transpose();
         try {

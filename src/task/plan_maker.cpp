@@ -35,6 +35,9 @@ std::vector<PlannedPose> arrange(const PlanningProblem& problem, const RowMatrix
         } else {
             pose = pose_at(problem, ids.next(), poses.row(visit.pose).transpose());
         }
+        const Clearance nearest = problem.constraints.nearest(pose.configuration);
+        pose.clearance.reset();
+        if (!nearest.body.empty()) pose.clearance = nearest;
         pose.via = visit.via;
         pose.is_blocked = visit.is_blocked;
         arranged.push_back(std::move(pose));
@@ -64,6 +67,8 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.value_rms = value_rms_of(problem, plan.value);
     plan.visiting_time = tour.time;
     plan.assumptions = assumptions_of(campaign);
+    const std::string unchecked = describe_unchecked_bodies(campaign);
+    if (!unchecked.empty()) plan.cell_doubts.push_back(unchecked);
     return plan;
 }
 

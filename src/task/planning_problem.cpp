@@ -7,6 +7,7 @@
 
 #include "../core/decompositions.hpp"
 #include "../core/text.hpp"
+#include "../measurement/places.hpp"
 #include "../measurement/prior_rows.hpp"
 #include "../model/joint_limits.hpp"
 #include "inputs.hpp"
@@ -123,6 +124,7 @@ PlanningOptions options_of(const Plan& plan, const PlanningOptions& inputs) {
 PlanningProblem state_planning(const Campaign& given, const PlanningOptions& options) {
     check_torques_known(given);
     const Campaign campaign = with_base(given, options);
+    check_places(campaign);
     check_knowable(campaign, options.stop);
     Cell cell = campaign.cell;
     if (options.repaired) {
@@ -242,7 +244,12 @@ std::string describe_violation(const PlanningProblem& problem, const PlannedPose
     for (std::size_t k = 0; k < constraint_count; ++k) {
         const auto constraint = static_cast<Constraint>(k);
         if (report[constraint] >= -rounding || constraint == Constraint::JointLimits) continue;
-        return std::string("does not meet ") + constraint_name(constraint);
+        std::string text = std::string("does not meet ") + constraint_name(constraint);
+        if (constraint == Constraint::KeepOuts || constraint == Constraint::SelfCollision) {
+            text += ": " +
+                    describe_clearance(constraints.nearest(q), constraints.cell().safety_distance);
+        }
+        return text;
     }
     const std::vector<std::string> contacts = problem.campaign.sensor->contact_names();
     for (const Index target : pose.targets) {

@@ -142,7 +142,7 @@ TEST(BadUrdf, Limits) {
         {"velocity=\"1.5\"", "velocity=\"-1.5\"",
          "24:5: joint 'arm-joint' has a negative velocity; must be positive"},
         {"lower=\"-1.5\"", "lower=\"-90\"",
-         "24:5: joint 'arm-joint' has limits beyond five turns; must be rad: are they degrees?"},
+         "24:5: joint 'arm-joint' has limits beyond three turns; must be rad: are they degrees?"},
         {"effort=\"10\"", "efort=\"10\"",
          "24:5: joint 'arm-joint' has limit with unknown attribute 'efort'; did you mean "
          "'effort'?"},

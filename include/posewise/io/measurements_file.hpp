@@ -21,6 +21,8 @@ struct Configurations {
     std::vector<std::string> ids;
     RowMatrixXd joints;  ///< configurations x joints, rad or m
     Seen is_seen;        ///< which targets are to be measured there
+    /// Of a program with a column purpose (as plan --csv writes it): calibrate, verify or via.
+    std::vector<std::string> purposes = {};
 };
 
 /// Reads configurations as read_measurements() does; a CSV need not have the sensor's columns, and

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "posewise/planner/pool.hpp"
+#include "posewise/measurement/pool.hpp"
 #include "posewise/selection/exchange.hpp"
 
 namespace posewise {

@@ -22,7 +22,8 @@ struct Candidates {
     std::optional<Measurements> measured;
 };
 Candidates measured_candidates(Measurements measured);
-/// Scrambled Halton sequence within the joint limits, named 0, 1, ...; all targets are seen.
+/// Of a scrambled Halton sequence within the joint limits those that the campaign's cell allows,
+/// named 0, 1, ..., with the targets seen there. Throws InputError if hardly any is allowed.
 Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_t seed);
 
 /// What is asked for, what there is besides the candidates, and when to stop.

@@ -167,7 +167,22 @@ JointRange joint_range(const Chain& robot, const Cell& cell) {
     return range;
 }
 
-std::vector<std::pair<std::size_t, std::size_t>> colliding_pairs(const std::vector<Link>& links) {
+std::vector<Link> bodies_of(const Campaign& campaign, const Cell& cell) {
+    std::vector<Link> bodies = cell.links;
+    const std::optional<double> radius = campaign.sensor->target_radius();
+    if (!radius || !campaign.has_nominal_targets) return bodies;
+    const Targets& targets = campaign.sensor->targets();
+    const Index flange = campaign.robot.joint_count() + 1;
+    for (Index k = 0; k < targets.count(); ++k) {
+        const Vector3d center = targets.position(k, campaign.nominal.sensor);
+        bodies.push_back({"target " + std::to_string(k + 1), flange, {center, center, *radius}});
+    }
+    return bodies;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> colliding_pairs(const std::vector<Link>& links,
+                                                                 const std::vector<Link>& bodies,
+                                                                 Index joint_count) {
     std::set<Index> frames;
     for (const Link& link : links) frames.insert(link.frame);
     const auto rank = [&frames](const Link& link) {
@@ -179,13 +194,18 @@ std::vector<std::pair<std::size_t, std::size_t>> colliding_pairs(const std::vect
             if (std::abs(rank(links[i]) - rank(links[j])) > 1) pairs.emplace_back(i, j);
         }
     }
+    for (std::size_t ball = links.size(); ball < bodies.size(); ++ball) {
+        for (std::size_t i = 0; i < links.size(); ++i) {
+            if (links[i].frame <= joint_count - 2) pairs.emplace_back(i, ball);
+        }
+    }
     return pairs;
 }
 
-VectorXd clearance_rates(const Chain& robot, const std::vector<Link>& links) {
+VectorXd clearance_rates(const Chain& robot, const std::vector<Link>& bodies) {
     const std::vector<double> lengths = lengths_along(robot);
     VectorXd rates = VectorXd::Zero(robot.joint_count());
-    for (const Link& link : links) {
+    for (const Link& link : bodies) {
         if (link.frame < 0 || link.frame > robot.joint_count() + 1) continue;  // check_cell() tells
         const std::size_t end = elements_before(robot, link.frame);
         const double reach = std::max(link.solid.from.norm(), link.solid.to.norm());

@@ -1,4 +1,4 @@
-#include "posewise/planner/pool.hpp"
+#include "posewise/measurement/pool.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -118,7 +118,7 @@ TEST(MakePool, SaysWhichConstraintLeavesNothing) {
     } catch (const InputError& error) {
         const std::string text = error.what();
         EXPECT_NE(text.find("none of 500 candidates"), std::string::npos) << text;
-        EXPECT_NE(text.find("target_boxes by 500"), std::string::npos) << text;
+        EXPECT_NE(text.find("target_boxes: 500"), std::string::npos) << text;
         EXPECT_NE(text.find("target_boxes alone leaves nothing, so relax target_boxes first"),
                   std::string::npos)
             << text;

@@ -1,4 +1,4 @@
-#include "posewise/planner/constraints.hpp"
+#include "posewise/measurement/constraints.hpp"
 
 #include <gtest/gtest.h>
 
@@ -94,8 +94,57 @@ TEST(Constraints, KeepLinksApartButForNeighbours) {
     // Only pedestal and lower can collide: folded, the tip of the lower link is at the pedestal.
     EXPECT_NEAR(check(cell, angles(0, 0))[Constraint::SelfCollision], 1 - 0.3, 1e-12);
     EXPECT_NEAR(check(cell, angles(0, 180))[Constraint::SelfCollision], -0.3, 1e-12);
-    cell.links.pop_back();
-    EXPECT_EQ(check(cell, angles(0, 180))[Constraint::SelfCollision], infinity);
+    cell.links.pop_back();  // the ball at the target is at the pedestal then
+    EXPECT_NEAR(check(cell, angles(0, 180))[Constraint::SelfCollision], -0.2 - 0.01905, 1e-12);
+    Campaign flat = arm_campaign();
+    flat.has_nominal_targets = false;
+    EXPECT_EQ(Constraints(flat, cell).check(angles(0, 180))[Constraint::SelfCollision], infinity);
+}
+
+TEST(Constraints, KeepTheBallsAtTargetsOffKeepOutsWithoutAnyLink) {
+    Cell cell;
+    cell.keep_outs = {{"fence", HalfSpace{{0, 2.1, 0}, {0, -1, 0}}}};
+    cell.safety_distance = 0.03;
+    const double radius = 0.01905;
+    EXPECT_NEAR(check(cell, angles(90, 0))[Constraint::KeepOuts], 0.1 - radius - 0.03, 1e-12);
+    cell.keep_outs = {{"fence", HalfSpace{{0, 2.04, 0}, {0, -1, 0}}}};
+    EXPECT_FALSE(check(cell, angles(90, 0)).is_feasible());
+    Campaign marks = arm_campaign();
+    marks.sensor = std::make_shared<PointSensor>(
+        Targets(std::vector<std::optional<Vector3d>>(1, std::nullopt)).with_radius(0),
+        IsotropicNoise{1e-4});
+    EXPECT_TRUE(Constraints(marks, cell).check(angles(90, 0)).is_feasible());
+}
+
+TEST(Constraints, TellWhichBodiesAreNearest) {
+    Cell cell;
+    cell.links = {{"pedestal", 0, {{0, 0, -3}, {0, 0, 0}, 0.2}},
+                  {"lower", 2, {Vector3d::Zero(), Vector3d::UnitX() / 2, 0.1}}};
+    cell.keep_outs = {{"wall", HalfSpace{{0, 2.5, 0}, {0, -1, 0}}}};
+    const Constraints constraints(arm_campaign(), cell);
+    const Clearance ahead = constraints.nearest(angles(90, 0));
+    EXPECT_NEAR(ahead.distance, 0.5 - 0.01905, 1e-12);
+    EXPECT_EQ(ahead.body, "target 1");
+    EXPECT_EQ(ahead.other, "wall");
+    const Clearance folded = constraints.nearest(angles(-90, 180));
+    EXPECT_EQ(folded.body, "target 1");
+    EXPECT_EQ(folded.other, "pedestal");
+    EXPECT_EQ(describe_clearance(ahead, 0.6),
+              "target 1 is 480.95 mm from wall, must be 600 mm away");
+    EXPECT_EQ(Constraints(arm_campaign(), {}).nearest(angles(90, 0)).body, "");
+}
+
+TEST(DescribeUncheckedBodies, SaysThatAnArmWithoutLinksIsNotKeptOffObstacles) {
+    Campaign campaign = arm_campaign();
+    EXPECT_EQ(describe_unchecked_bodies(campaign), "");
+    campaign.cell.keep_outs = {{"fence", HalfSpace{{0, 2.1, 0}, {0, -1, 0}}}};
+    EXPECT_NE(describe_unchecked_bodies(campaign).find("the arm is not kept off"),
+              std::string::npos);
+    campaign.cell.links = {{"lower", 2, {Vector3d::Zero(), Vector3d::UnitX(), 0.1}}};
+    EXPECT_EQ(describe_unchecked_bodies(campaign), "");
+    campaign.has_nominal_targets = false;
+    EXPECT_NE(describe_unchecked_bodies(campaign).find("the targets are not kept off"),
+              std::string::npos);
 }
 
 TEST(Constraints, MeasureRangeAzimuthAndElevationInTheTrackersFrame) {

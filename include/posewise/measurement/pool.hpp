@@ -2,8 +2,9 @@
 
 #include <cstdint>
 
+#include "posewise/core/errors.hpp"
 #include "posewise/core/progress.hpp"
-#include "posewise/planner/constraints.hpp"
+#include "posewise/measurement/constraints.hpp"
 
 namespace posewise {
 
@@ -30,6 +31,22 @@ Pool make_pool(const Constraints& constraints, Index count, std::uint64_t seed,
 
 /// Throws InputError if a pool has fewer poses than a plan needs; it names the constraint to blame.
 void check_pool_size(const Pool& pool, Index needed);
+
+/// What to throw where so many poses are needed and only those of this pool were found: it names
+/// the constraint to blame and, if that is a collision, the bodies that collide most.
+InputError few_feasible(const Constraints& constraints, const Pool& pool, Index needed);
+
+/// Which of these configurations the cell of the constraints does not allow, rows from 0. What
+/// rounding to twelve digits does is let pass.
+struct CellViolations {
+    std::vector<Index> rows;
+    Pool allowed;  ///< the others, and what rejects these
+};
+CellViolations find_violations(const Constraints& constraints, const RowMatrixXd& configurations);
+
+/// "3 of 20 configurations violate the campaign's cell: 4, 7, 9 (keep_out: 2, tracker.range: 1)",
+/// by their ids; empty if there is none.
+std::string describe(const CellViolations& violations, const std::vector<std::string>& ids);
 
 /// One line a constraint that removed anything: "keep_out: 812 (310 first)", the largest first.
 std::string describe_rejections(const Pool& pool);

@@ -1,13 +1,16 @@
-#include "posewise/planner/constraints.hpp"
+#include "posewise/measurement/constraints.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "../core/elementary.hpp"
-#include "../measurement/contact.hpp"
+#include "../core/format.hpp"
 #include "../model/halton.hpp"
 #include "cell_check.hpp"
+#include "contact.hpp"
 
 namespace posewise {
 namespace {
@@ -37,9 +40,20 @@ double angle_between(const Vector3d& a, const Vector3d& b) {
 
 /// Where everything that moves with the robot is, in the base frame.
 struct Constraints::Posture {
-    std::vector<Capsule> links;
+    std::vector<Capsule> bodies;  ///< links first
     std::vector<Vector3d> targets;
     Isometry3d base_from_flange;
+};
+
+/// A body and what is nearest to it.
+struct Constraints::Pair {
+    double distance = infinity;  ///< of the surfaces, m
+    std::size_t body = 0;
+    std::size_t other = 0;  ///< a keep-out, or a body
+
+    void consider(double candidate, std::size_t first, std::size_t second) {
+        if (candidate < distance) *this = {candidate, first, second};
+    }
 };
 
 const char* constraint_name(Constraint constraint) {
@@ -71,8 +85,9 @@ Constraints::Constraints(const Campaign& campaign, Cell cell, bool needs_contact
       target_count_(campaign.sensor->target_count()),
       tracker_from_base_(campaign.nominal.world_from_base),
       targets_(detail::nominal_targets(campaign, cell_)),
-      pairs_(detail::colliding_pairs(cell_.links)),
-      clearance_rates_(detail::clearance_rates(robot_, cell_.links)) {
+      bodies_(detail::bodies_of(campaign, cell_)),
+      pairs_(detail::colliding_pairs(cell_.links, bodies_, robot_.joint_count())),
+      clearance_rates_(detail::clearance_rates(robot_, bodies_)) {
     detail::check_cell(cell_, robot_, targets_);
     const Vector3d tracker = tracker_from_base_.inverse().translation();
     for (std::size_t i = 0; i < cell_.keep_outs.size(); ++i) {
@@ -80,11 +95,17 @@ Constraints::Constraints(const Campaign& campaign, Cell cell, bool needs_contact
     }
 }
 
-Constraints::Posture Constraints::pose_links(const VectorXd& q) const {
+bool Constraints::restricts_places() const {
+    const bool has_obstacles = !bodies_.empty() && !cell_.keep_outs.empty();
+    return contact_ || cell_.sight || !cell_.target_boxes.empty() || has_obstacles ||
+           !pairs_.empty();
+}
+
+Constraints::Posture Constraints::pose_bodies(const VectorXd& q) const {
     const std::vector<Isometry3d> frames = robot_.base_from_links(q, VectorXd());
     Posture posture{{}, {}, frames.back()};
-    for (const Link& link : cell_.links) {
-        posture.links.push_back(frames[static_cast<std::size_t>(link.frame)] * link.solid);
+    for (const Link& body : bodies_) {
+        posture.bodies.push_back(frames[static_cast<std::size_t>(body.frame)] * body.solid);
     }
     for (const Vector3d& target : targets_) posture.targets.push_back(frames.back() * target);
     return posture;
@@ -123,31 +144,31 @@ double Constraints::box_clearance(const Posture& posture) const {
     return least;
 }
 
-double Constraints::keep_out_clearance(const Posture& posture) const {
-    double least = infinity;
-    for (std::size_t i = 0; i < posture.links.size(); ++i) {
-        if (cell_.links[i].frame == 0) continue;  // never moves
-        for (const KeepOut& keep_out : cell_.keep_outs) {
-            least = std::min(least, clearance(posture.links[i], keep_out.solid));
+Constraints::Pair Constraints::nearest_keep_out(const Posture& posture) const {
+    Pair nearest;
+    for (std::size_t i = 0; i < posture.bodies.size(); ++i) {
+        if (bodies_[i].frame == 0) continue;  // never moves
+        for (std::size_t k = 0; k < cell_.keep_outs.size(); ++k) {
+            nearest.consider(clearance(posture.bodies[i], cell_.keep_outs[k].solid), i, k);
         }
     }
-    return least - cell_.safety_distance;
+    return nearest;
 }
 
-double Constraints::self_clearance(const Posture& posture) const {
-    double least = infinity;
+Constraints::Pair Constraints::nearest_of_robot(const Posture& posture) const {
+    Pair nearest;
     for (const auto& [i, j] : pairs_) {
-        least = std::min(least, clearance(posture.links[i], posture.links[j]));
+        nearest.consider(clearance(posture.bodies[i], posture.bodies[j]), i, j);
     }
-    return least - cell_.safety_distance;
+    return nearest;
 }
 
 double Constraints::line_clearance(const Posture& posture, const Vector3d& target) const {
     if (!cell_.sight->is_line_required) return infinity;
     const Capsule line{tracker_from_base_.inverse().translation(), target, 0};
     double least = infinity;
-    for (const Capsule& link : posture.links) {
-        least = std::min(least, clearance(line, link));
+    for (std::size_t i = 0; i < cell_.links.size(); ++i) {
+        least = std::min(least, clearance(line, posture.bodies[i]));
     }
     for (const std::size_t i : screens_) {
         least = std::min(least, clearance(line, cell_.keep_outs[i].solid));
@@ -174,6 +195,7 @@ RowMatrixXd Constraints::bring_to_contacts(const RowMatrixXd& candidates, Index 
 }
 
 void Constraints::check_sight(const Posture& posture, ConstraintReport& report) const {
+    constexpr double rounding = 1e-9;  // m or rad: a pose at its bound, read from a file
     const Sight& sight = *cell_.sight;
     const std::size_t count = posture.targets.size();
     const Matrix3d tracker_R_flange =
@@ -197,7 +219,7 @@ void Constraints::check_sight(const Posture& posture, ConstraintReport& report) 
                                             line_clearance(posture, posture.targets[j]),
                                             infinity};
         of_target.back() = *std::min_element(of_target.begin(), of_target.end());
-        report.is_seen[static_cast<Index>(j)] = of_target.back() >= 0;
+        report.is_seen[static_cast<Index>(j)] = of_target.back() >= -rounding;
         for (std::size_t k = 0; k < kinds; ++k) clearances[k].push_back(of_target[k]);
     }
     const auto needed =
@@ -212,7 +234,7 @@ void Constraints::check_sight(const Posture& posture, ConstraintReport& report) 
 
 ConstraintReport Constraints::check(const VectorXd& q) const {
     robot_.check_configuration(q);
-    const Posture posture = pose_links(q);
+    const Posture posture = pose_bodies(q);
     ConstraintReport report;
     report.clearance.fill(infinity);
     report.is_seen.setConstant(target_count_, true);
@@ -222,8 +244,8 @@ ConstraintReport Constraints::check(const VectorXd& q) const {
     set(Constraint::JointLimits, limit_clearance(q));
     set(Constraint::FixedJoints, fixed_clearance(q));
     set(Constraint::TargetBoxes, box_clearance(posture));
-    set(Constraint::KeepOuts, keep_out_clearance(posture));
-    set(Constraint::SelfCollision, self_clearance(posture));
+    set(Constraint::KeepOuts, nearest_keep_out(posture).distance - cell_.safety_distance);
+    set(Constraint::SelfCollision, nearest_of_robot(posture).distance - cell_.safety_distance);
     if (cell_.sight) check_sight(posture, report);
     if (contact_) check_contact(q, report);
     return report;
@@ -234,8 +256,47 @@ SeenTargets Constraints::seen(const VectorXd& q) const {
 }
 
 double Constraints::collision_clearance(const VectorXd& q) const {
-    const Posture posture = pose_links(q);
-    return std::min(keep_out_clearance(posture), self_clearance(posture));
+    const Posture posture = pose_bodies(q);
+    return std::min(nearest_keep_out(posture).distance, nearest_of_robot(posture).distance) -
+           cell_.safety_distance;
+}
+
+Clearance Constraints::nearest(const VectorXd& q) const {
+    const Posture posture = pose_bodies(q);
+    const Pair outer = nearest_keep_out(posture);
+    const Pair inner = nearest_of_robot(posture);
+    if (std::min(outer.distance, inner.distance) == infinity) return {};
+    if (outer.distance <= inner.distance) {
+        return {outer.distance, bodies_[outer.body].name, cell_.keep_outs[outer.other].name};
+    }
+    // The later one along the chain first, as it is what moves.
+    return {inner.distance, bodies_[inner.other].name, bodies_[inner.body].name};
+}
+
+std::string describe_clearance(const Clearance& nearest, double safety_distance) {
+    const bool is_apart = nearest.distance >= 0;
+    return fmt::format(
+        "{} {} {} mm {} {}, must be {} mm away", nearest.body, is_apart ? "is" : "reaches",
+        detail::format_fixed(1e3 * std::abs(nearest.distance), 2), is_apart ? "from" : "into",
+        nearest.other, detail::format_short(1e3 * safety_distance));
+}
+
+std::string describe_unchecked_bodies(const Campaign& campaign) {
+    const Cell& cell = campaign.cell;
+    if (cell.keep_outs.empty()) return "";
+    const bool are_balls = campaign.sensor->target_radius().has_value();
+    std::string text;
+    if (cell.links.empty()) {
+        text =
+            "the arm is not kept off the cell's obstacles, since cell.links are not stated: "
+            "state them (inspect --write-campaign makes them from a URDF's collision shapes)";
+    }
+    if (are_balls && !campaign.has_nominal_targets) {
+        text += std::string(text.empty() ? "" : "; ") +
+                "the targets are not kept off them, since it is not stated where they are: state " +
+                campaign.sensor->words().key;
+    }
+    return text;
 }
 
 double joint_distance(const VectorXd& a, const VectorXd& b) {
