@@ -133,8 +133,10 @@ void warn_of_few(const Plan& plan) {
 void warn_of_cell(const Plan& plan, bool is_strict) {
     std::ranges::for_each(plan.cell_doubts, print_warning);
     std::vector<std::string> blocked;
-    for (const PlannedPose& pose : plan.poses) {
-        if (pose.is_blocked) blocked.push_back(pose.id);
+    for (const auto* poses : {&plan.poses, &plan.verification}) {
+        for (const PlannedPose& pose : *poses) {
+            if (pose.is_blocked) blocked.push_back(pose.id);
+        }
     }
     if (blocked.empty()) return;
     const std::string text = fmt::format("no free way was found to {}", fmt::join(blocked, ", "));

@@ -35,9 +35,7 @@ std::vector<PlannedPose> arrange(const PlanningProblem& problem, const RowMatrix
         } else {
             pose = pose_at(problem, ids.next(), poses.row(visit.pose).transpose());
         }
-        const Clearance nearest = problem.constraints.nearest(pose.configuration);
-        pose.clearance.reset();
-        if (!nearest.body.empty()) pose.clearance = nearest;
+        pose.clearance = least_clearance(problem, pose.configuration);
         pose.via = visit.via;
         pose.is_blocked = visit.is_blocked;
         arranged.push_back(std::move(pose));

@@ -198,7 +198,14 @@ PlannedPose pose_at(const PlanningProblem& problem, std::string id, const Vector
     pose.id = std::move(id);
     pose.configuration = configuration;
     pose.targets = targets_seen(problem.constraints.seen(configuration));
+    pose.clearance = least_clearance(problem, configuration);
     return pose;
+}
+
+std::optional<Clearance> least_clearance(const PlanningProblem& problem,
+                                         const VectorXd& configuration) {
+    Clearance nearest = problem.constraints.nearest(configuration);
+    return nearest.body.empty() ? std::nullopt : std::optional(std::move(nearest));
 }
 
 Seen seen_at(const std::vector<PlannedPose>& poses, Index target_count) {
