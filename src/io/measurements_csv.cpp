@@ -335,7 +335,7 @@ ReadFile read_csv(const std::string& path, const Campaign& campaign, Content con
     RowReader row(csv, campaign, content, read_header(csv, campaign, content));
     detail::SampleCollector samples(campaign);
     while (csv.next_row()) row.add_to(samples);
-    Measurements measurements = samples.finish(path, content == Content::Program);
+    Measurements measurements = samples.finish(path);
     measurements.notation = row.notation();
     if (measurements.notation == OrientationNotation::RollPitchYaw &&
         measurements.observations.cols() > 0) {
