@@ -99,6 +99,7 @@ std::vector<ReadingChanges> all_readings(const Campaign& campaign, OrientationNo
     const std::size_t count = all.size();
     for (std::size_t k = 0; k < count; ++k) {
         if (all[k].empty() || has_kind(all[k], Kind::LengthFactor)) continue;
+        if (has_kind(all[k], Kind::Zero)) continue;  // base and targets take up most of them
         ReadingChanges both = all[k];
         both.push_back({.kind = Kind::LengthFactor, .factor = length_factor});
         all.push_back(both);
