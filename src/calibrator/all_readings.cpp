@@ -82,6 +82,11 @@ void add_observation_changes(const Sensor& sensor, OrientationNotation notation,
         }
     }
     if (!sensor.has_orientation()) return;
+    constexpr Index orders = 6;
+    constexpr Index signs = 8;
+    for (Index k = 1; k < orders * signs; ++k) {
+        all.push_back({{.kind = Kind::Axes, .joint = k / signs, .other = k % signs}});
+    }
     for (const OrientationSense& sense : orientation_senses(notation)) {
         all.push_back({{.kind = Kind::Orientation, .sense = &sense}});
     }
