@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/statistics.hpp"
 #include "residual_patterns.hpp"
 
 namespace posewise::detail {
@@ -15,7 +14,7 @@ struct Part {
     std::string name;
     RowMatrixXd X;               ///< translations first, three; then rotations, if there are some
     std::vector<Index> members;  ///< configurations that see it
-    bool is_in_instrument = false;
+    ScaleFrom scale_from = ScaleFrom::Score;
 };
 
 Part part_of_target(const Fitted& fitted, const PatternColumns& columns, Index target) {
@@ -37,7 +36,7 @@ Part part_of_target(const Fitted& fitted, const PatternColumns& columns, Index t
 std::vector<Part> list_parts(const Fitted& fitted, const PatternColumns& columns,
                              const LinearFit& fit) {
     const Sensor& sensor = *fitted.campaign.sensor;
-    std::vector<Part> parts{{"base", columns.base(), all_but(fit.count(), {}), true}};
+    std::vector<Part> parts{{"base", columns.base(), all_but(fit.count(), {})}};
     for (Index target = 0; target < sensor.targets().count(); ++target) {
         Part part = part_of_target(fitted, columns, target);
         if (part.X.cols() > 0) parts.push_back(std::move(part));
@@ -45,7 +44,8 @@ std::vector<Part> list_parts(const Fitted& fitted, const PatternColumns& columns
     const std::vector<std::string> contacts = sensor.contact_names();
     const RowMatrixXd seen = times_seen(fitted.measured);
     for (Index k = 0; k < std::ssize(contacts); ++k) {
-        Part part{"socket " + contacts[static_cast<std::size_t>(k)], {}, {}, true};
+        Part part{
+            "socket " + contacts[static_cast<std::size_t>(k)], {}, {}, ScaleFrom::AllResiduals};
         for (Index i = 0; i < fit.count(); ++i) {
             if (seen(i, k) > 0) part.members.push_back(i);
         }
@@ -81,7 +81,7 @@ RowMatrixXd ramp(const LinearFit& fit, const Part& part) {
 /// Translation alone, if the rotation is within chance.
 Candidate judge(const LinearFit& fit, const Part& part, Index first, RowMatrixXd X) {
     Candidate candidate{&part, first, std::move(X), {}};
-    candidate.score = score(fit, candidate.X);
+    candidate.score = score(fit, candidate.X, 1, part.scale_from);
     if (candidate.X.cols() == 3) return candidate;
     const Score translation = score(fit, candidate.X.leftCols(3));
     if (score(translation.with, candidate.X.rightCols(candidate.X.cols() - 3)).is_beyond(0.01)) {
