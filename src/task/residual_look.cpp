@@ -122,7 +122,8 @@ void look_for_patterns(const Fitted& fitted, ResidualLook& look) {
 }  // namespace
 
 bool ResidualLook::is_empty() const {
-    return !outlying && changes.empty() && !lengths && joints.empty() && !rounded && !shifted;
+    return !outlying && changes.empty() && !lengths && joints.empty() && !rounded &&
+           !rounded_readings && !shifted;
 }
 
 ResidualLook look_at_residuals(const Campaign& campaign, const Measurements& measurements,
@@ -135,6 +136,7 @@ ResidualLook look_at_residuals(const Campaign& campaign, const Measurements& mea
     }
     std::optional<Fitted> fitted(std::in_place, campaign, measurements, estimate);
     look.rounded = detail::find_rounded_joints(*fitted);
+    look.rounded_readings = detail::find_rounded_readings(*fitted);
     if (estimate.loss.kind == LossKind::Squares) look.outlying = take_out_outlying(fitted);
     look_for_patterns(*fitted, look);
     return look;

@@ -55,6 +55,9 @@ class PatternColumns {
     RowMatrixXd all_;
 };
 
+/// Whether readings hold lengths, not only that something is touched.
+bool tells_lengths(const Sensor& sensor);
+
 /// Steps and drifts of base, targets and sockets; what is found is beside the parameters in `fit`
 /// from then on.
 std::vector<SetUpChange> find_set_up_changes(const Fitted& fitted, const PatternColumns& columns,
@@ -64,5 +67,6 @@ std::vector<JointPattern> find_joint_patterns(const Fitted& fitted, const Patter
 std::optional<LengthFactor> find_length_factor(const Fitted& fitted, const PatternColumns& columns,
                                                const LinearFit& fit);
 std::optional<RoundedJoints> find_rounded_joints(const Fitted& fitted);
+std::optional<RoundedReadings> find_rounded_readings(const Fitted& fitted);
 
 }  // namespace posewise::detail

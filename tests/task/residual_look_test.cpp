@@ -150,6 +150,15 @@ TEST_F(LookAtResiduals, SeesJointsThatWereRounded) {
     EXPECT_LT(found.rounded->held_out.after, found.rounded->held_out.before);
 }
 
+TEST_F(LookAtResiduals, SeesReadingsThatWereRounded) {
+    measured_.observations = (measured_.observations / 1e-3).array().round() * 1e-3;
+    const ResidualLook found = look();
+    ASSERT_TRUE(found.rounded_readings);
+    EXPECT_NEAR(found.rounded_readings->step, 1e-3, 1e-12);
+    EXPECT_NEAR(found.rounded_readings->effect, 0.5e-3, 1e-12);
+    EXPECT_FALSE(found.rounded);
+}
+
 TEST_F(LookAtResiduals, FindsTheRowFromWhichOneIsLost) {
     Measurements lost = take(measured_, all_but(30, {29}));
     EXPECT_FALSE(find_shifted_rows(campaign_, lost));

@@ -71,6 +71,13 @@ struct RoundedJoints {
     HeldOutChange held_out;  ///< with the rounding stated as the joints' repeatability
 };
 
+/// All lengths read are multiples of a step that explains what is left over.
+struct RoundedReadings {
+    double step = 0;    ///< m
+    double effect = 0;  ///< that rounding alone has on distances (RMS, m)
+    double left = 0;    ///< that the fit leaves (RMS, m)
+};
+
 /// Rows of the file that belong to others.
 struct ShiftedRows {
     std::string first;  ///< configuration from which on
@@ -87,6 +94,7 @@ struct ResidualLook {
     std::optional<LengthFactor> lengths;
     std::vector<JointPattern> joints;
     std::optional<RoundedJoints> rounded;
+    std::optional<RoundedReadings> rounded_readings;
     std::optional<ShiftedRows> shifted;
 
     bool is_empty() const;
