@@ -34,8 +34,11 @@ readings) from nothing, then identifies all parameters together, and prints
   - the noise floor, from the repeats: no calibration gets below it;
   - every parameter with its standard deviation, the base as position and rotation vector;
   - the strongest correlations: what these poses can hardly tell apart.
-What did not converge, or has errors a hundred times their expected size, or residuals of hundreds of
-standard deviations, is printed and not written, with exit code 3; --force writes it, marked.
+What did not converge, has errors a hundred times their expected size or a joint offset beyond 10 deg,
+leaves more over than a robot misses before it is calibrated, is spoilt by one configuration, or
+predicts poses that were held out worse than the nominal robot does, is printed and not written, with
+exit code 3; --force writes it, marked. Where something is doubtful, robust losses, --exclude,
+--learn-sizes and richer errors are tried, and those that help are named with the error held out.
 With --exclude it leaves out configurations by their ids and samples (7:2), and the estimate records it.
 With --plan the calibration sees only the plan's configurations. It is judged on those that the plan
 has to verify (plan --verification), as far as they were measured, and on the others, each by itself.
@@ -92,6 +95,26 @@ CalibrationOptions make_options(const CalibrateArguments& arguments, std::uint64
         *limit = arguments.iteration_limit.value_or(*limit);
     }
     return options;
+}
+
+/// The campaign with a richer error model than it has, to try.
+std::vector<OtherCampaign> richer_campaigns(const io::CampaignFile& file,
+                                            const std::optional<bool>& prior) {
+    std::vector<OtherCampaign> campaigns;
+    const auto add = [&](io::ErrorModel model) {
+        if (model <= file.error_model) return;
+        try {
+            io::CampaignFile other = io::read_campaign(file.path, {model}).front();
+            io::set_prior(other, prior.value_or(other.spread.is_prior));
+            campaigns.push_back(
+                {"errors: " + std::string(io::error_model_name(model)), std::move(other)});
+        } catch (const InputError&) {  // not of this robot
+        }
+    };
+    if (file.error_model == io::ErrorModel::Stated) add(io::ErrorModel::Complete);
+    // Without a prior it has more errors than most poses tell apart.
+    if (prior.value_or(true)) add(io::ErrorModel::Full);
+    return campaigns;
 }
 
 /// The library knows groups, the message the option that asks for them.
@@ -171,7 +194,7 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     CalibrationOptions options = make_options(arguments, file.seed);
     const Measurements measured =
         read_measured_without(options.excluded, paths.measurements, file, earlier);
-    const io::Provenance made_from = provenance_of(command, file, paths.measurements, measured);
+    io::Provenance made_from = provenance_of(command, file, paths.measurements, measured);
     if (!earlier.from.empty()) {
         options.earlier = read_usable_earlier(earlier.from, file, earlier.use(), earlier.is_forced);
     }
@@ -180,6 +203,7 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     options.validation = validation.measured ? &*validation.measured : nullptr;
     options.validation_campaign = validation.campaign ? &*validation.campaign : nullptr;
     check_limit(arguments, file, measured, options);
+    options.richer = [&] { return richer_campaigns(file, arguments.prior); };
     io::Configurations predicted;
     if (!arguments.predict.empty()) predicted = read_unlimited(arguments.predict, file);
     options.predicted = predicted.joints;
@@ -191,14 +215,16 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     std::ranges::for_each(describe_doubts(result, paths.measurements), print_warning);
     const Printed printed = describe_calibration(arguments, common, result, made_from);
     if (!result.faults.empty()) check_faults(arguments, common, result, printed);
+    const Measurements used = options.used.empty() ? measured : take(measured, options.used);
+    io::PagePart part;
+    if (!arguments.page.empty()) part = show_estimate(result.campaign, result.estimate, &used);
+    made_from.warnings = given_warnings();
     if (!arguments.out.empty()) io::write_estimate(arguments.out, result, made_from);
     if (!arguments.predict_out.empty()) {
         io::write_predictions_csv(arguments.predict_out, predicted.ids, result.predicted);
     }
     print(printed, common);
-    const std::vector<Index>& used = options.used;
-    show_calibration(arguments, common, result, used.empty() ? measured : take(measured, used),
-                     printed);
+    show_calibration(arguments, common, result, used, std::move(part), printed);
 }
 
 }  // namespace

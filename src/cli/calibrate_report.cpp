@@ -45,11 +45,11 @@ io::PagePart show_estimate(const Campaign& campaign, const Estimate& estimate,
 }
 
 void show_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
-                      const Calibration& result, const Measurements& used, const Printed& printed) {
+                      const Calibration& result, const Measurements& used, io::PagePart part,
+                      const Printed& printed) {
     if ((arguments.page + arguments.plot).empty()) return;
     const std::vector<ReadingResidual> readings = list_residuals(result, used);
     if (!arguments.page.empty()) {
-        io::PagePart part = show_estimate(result.campaign, result.estimate, &used);
         part.residuals = io::page_residuals(result.campaign, used, readings);
         write_page(arguments.page, std::move(part), printed, common);
     }

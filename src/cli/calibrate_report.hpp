@@ -16,8 +16,10 @@ Printed describe_calibration(const CalibrateArguments& arguments, const CommonOp
 io::PagePart show_estimate(const Campaign& campaign, const Estimate& estimate,
                            const Measurements* measurements);
 
-/// The page and the plot of one that was made with these measurements, if there are paths for them.
+/// The page, with this part, and the plot of one that was made with these measurements, if there
+/// are paths for them.
 void show_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
-                      const Calibration& result, const Measurements& used, const Printed& printed);
+                      const Calibration& result, const Measurements& used, io::PagePart part,
+                      const Printed& printed);
 
 }  // namespace posewise::cli

@@ -15,9 +15,19 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/threads.hpp"
 #include "posewise/core/units.hpp"
+#include "posewise/io/json_reports.hpp"
 #include "posewise/io/plan_file.hpp"
 
 namespace posewise::cli {
+namespace {
+
+/// Like standard error, there is one of them.
+std::vector<std::string>& warnings_of_run() {
+    static std::vector<std::string> warnings;
+    return warnings;
+}
+
+}  // namespace
 
 CLI::Option* add_campaign_argument(CLI::App& command, InputPaths& paths) {
     return command
@@ -43,8 +53,10 @@ void add_digits_option(CLI::App& command, int& digits) {
 void add_common_options(CLI::App& command, CommonOptions& common) {
     CLI::Option* const json = command.add_flag(
         "--json", common.json, "Print the result as one JSON document instead of text");
-    CLI::Option* const digits = command.get_option_no_throw("--digits");
-    if (digits != nullptr) json->excludes(digits);  // it has all
+    for (const char* const of_text : {"--digits", "--all-parameters"}) {
+        CLI::Option* const option = command.get_option_no_throw(of_text);
+        if (option != nullptr) json->excludes(option);  // it has all
+    }
     command
         .add_option_function<Index>("--threads", set_thread_count,
                                     "Threads to compute with; no result depends on it (default: "
@@ -80,8 +92,16 @@ void print_section(const std::string& title, const detail::Table& table) {
 }
 
 void print_warning(const std::string& text) {
-    const std::string line = "posewise: warning: " + detail::escape_controls(text) + '\n';
+    const std::string sentence = detail::escape_controls(text);
+    const std::string line = "posewise: warning: " + sentence + '\n';
     std::fwrite(line.data(), 1, line.size(), stderr);
+    warnings_of_run().push_back(sentence);
+}
+
+const std::vector<std::string>& given_warnings() { return warnings_of_run(); }
+
+void print_document(const std::string& document) {
+    print(io::with_warnings(document, given_warnings()));
 }
 
 ProgressLine::ProgressLine(std::string label, bool asked_for)

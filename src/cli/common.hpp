@@ -35,8 +35,14 @@ std::vector<Index> find_planned(const Campaign& campaign, const Measurements& me
 void print(const std::string& text);
 void print_section(const std::string& title, const detail::Table& table);
 
-/// "posewise: warning: ..." on standard error, one line whatever it quotes.
+/// "posewise: warning: ..." on standard error, one line whatever it quotes; every document that is
+/// printed or written from then on has the sentence, too.
 void print_warning(const std::string& text);
+/// All that was warned of up to now.
+const std::vector<std::string>& given_warnings();
+
+/// Prints a document of io::to_json(), with what was warned of.
+void print_document(const std::string& document);
 
 /// A counter on standard error, shown if that is a terminal or the user asks for it.
 class ProgressLine {

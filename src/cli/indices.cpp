@@ -51,9 +51,9 @@ void print_indices(const IndicesArguments& arguments, const CommonOptions& commo
     const Rating rating = compute_from(arguments.paths.measurements, [&] {
         return rate(file, measurements, arguments.directions);
     });
-    print(common.json ? io::to_json(rating, file)
-                      : format(rating, file, arguments.digits) +
-                            describe_earlier(arguments.earlier) + describe_unused_planning(file));
+    if (common.json) return print_document(io::to_json(rating, file));
+    print(format(rating, file, arguments.digits) + describe_earlier(arguments.earlier) +
+          describe_unused_planning(file));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/reproducible.hpp"
 #include "posewise/core/version.hpp"
+#include "threads.hpp"
 
 #ifdef __GLIBC__  // only after another header
 #include <malloc.h>
@@ -44,7 +45,7 @@ Start with:
 posewise COMMAND --help explains each with an example. With --json each prints one JSON document, which
 designs/json.md explains, and nothing else.
 Exit code: 0 good, 1 unusable input (the last line on standard error), 2 wrong usage,
-3 a calibration that must not be used (calibrate), 70 internal error, a bug of posewise.)";
+3 a calibration that must not be used, 70 internal error, a bug of posewise.)";
 
 /// The end of good work, if all of its output went out.
 ProgramEnd finish() {
@@ -102,6 +103,7 @@ void add_commands(CLI::App& program, posewise::cli::CommonOptions& common) {
         add(program, common);
     }
     for (CLI::App* command : program.get_subcommands(nullptr)) add_common_options(*command, common);
+    program.parse_complete_callback(warn_of_many_threads);
 }
 
 ProgramEnd run(int argc, char** argv) {
@@ -134,6 +136,7 @@ ProgramEnd run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    posewise::cli::wait_passively(argv);
     keep_freed_memory();
     posewise::fix_cache_sizes();
     std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is an error like a full disk

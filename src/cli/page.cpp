@@ -9,6 +9,7 @@
 #include "common.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/io/json_reports.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -57,7 +58,11 @@ bool needs_document(const CommonOptions& common, const std::string& page) {
 }
 
 void print(const Printed& printed, const CommonOptions& common) {
-    print(common.json ? printed.document : printed.text);
+    if (common.json) {
+        print_document(printed.document);
+    } else {
+        print(printed.text);
+    }
     std::fflush(stdout);  // what comes behind may take its time, or fail
 }
 
@@ -67,8 +72,8 @@ void write_page(const std::string& path, io::PagePart part, const Printed& print
     part.command = common.command_line;
     part.made_at = format_time(std::filesystem::file_time_type::clock::now());
     part.printed = printed.text;
-    part.document = printed.document;
-    io::write_page(path, {part});
+    part.document = io::with_warnings(printed.document, given_warnings());
+    io::write_page(path, {part}, given_warnings());
 }
 
 std::optional<ErrorMap> map_if_possible(const std::function<ErrorMap()>& map) {

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -21,7 +22,10 @@
 #include "plan_target.hpp"
 #include "plan_verification.hpp"
 #include "plot.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/io/plan_file.hpp"
+#include "posewise/report/reports.hpp"
+#include "posewise/task/inspection.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -47,6 +51,8 @@ joint steps until the ball sits in one: state where ball and sockets are, or use
   searched     no plan at all has a larger value, if the search met the best poses; not a proof
   order        time at the joints' speeds, from the cell's home; a via point where the straight
                way is not free, BLOCKED where none was found
+  nearest      of each pose the two bodies that come nearest to each other: links, obstacles, and
+               the balls at the targets (radius_mm)
   missing      RMS without the pose that hurts most, or without as many as --robust-to says
 and tables of the poses, of the accuracy for other numbers of poses, and of how sure each parameter
 will be. The workspace is drawn within the limits and the cell's target boxes, collisions excluded,
@@ -80,6 +86,7 @@ struct PlanArguments : RequestArguments {
     TargetArguments target;
     VerificationArguments verification;
     std::string csv;
+    bool is_strict = false;
     std::string page;
     std::string plot;
 };
@@ -122,6 +129,25 @@ void warn_of_few(const Plan& plan) {
         asked_for, count, plan.request.workspace_box_mm.empty() ? "--pool" : "--workspace-poses"));
 }
 
+/// Moves for which no free way was found, the ids that they lead to; with --strict an InputError.
+void warn_of_cell(const Plan& plan, bool is_strict) {
+    std::ranges::for_each(plan.cell_doubts, print_warning);
+    std::vector<std::string> blocked;
+    for (const auto* poses : {&plan.poses, &plan.verification}) {
+        for (const PlannedPose& pose : *poses) {
+            if (pose.is_blocked) blocked.push_back(pose.id);
+        }
+    }
+    if (blocked.empty()) return;
+    const std::string text = fmt::format("no free way was found to {}", fmt::join(blocked, ", "));
+    if (is_strict) {
+        throw InputError(text +
+                         "; nothing is written. Leave them out (--plan with --drop), state another "
+                         "home_deg, or plan without --strict and find the ways by hand");
+    }
+    print_warning(text + ": find one by hand before a robot is sent there; marked BLOCKED");
+}
+
 void plan(const PlanArguments& arguments, const CommonOptions& common) {
     check_plan_usage(arguments);
     if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
@@ -135,6 +161,7 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
                   {arguments.earlier.from, sources.augment, sources.repaired, sources.workspace},
                   {out, arguments.csv, arguments.page, arguments.plot}, common);
     const PlanRequest request = make_request(arguments, &campaign, Criterion::V);
+    for (const OnAxis& one : find_on_axis(campaign)) print_warning(describe(one));
     PlanningOptions options = read_planning_inputs(request, campaign);
     check_verification(arguments.verification, campaign, options);
     if (!sources.repaired.empty()) options.repaired = io::read_plan(sources.repaired);
@@ -143,7 +170,9 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     const TargetPlanning made = plan_with_progress(campaign, options, arguments);
     if (!arguments.verification.is_wanted) note_overtime(request.time_limit, stop, read, "plan");
     warn_of_few(made.planning->plan);
-    io::write_plan(out, made.planning->plan, arguments.csv, made.planning->campaign);
+    warn_of_cell(made.planning->plan, arguments.is_strict);
+    io::write_plan(out, made.planning->plan, arguments.csv, made.planning->campaign,
+                   given_warnings());
     const auto simulated = verify_made(arguments.verification, made, options, arguments.progress);
     if (simulated) note_overtime(request.time_limit, stop, read, "plan and verify");
     interrupted.reset();
@@ -199,8 +228,12 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
     add_search_options(command, arguments, "Of all draws (default: the campaign's)",
                        "<campaign>.poses.json");
     add_verification_options(command, arguments.verification);
-    command.add_option("--csv", arguments.csv, "Write the configurations as CSV, too")
+    command
+        .add_option("--csv", arguments.csv,
+                    "Write the configurations as CSV, too, with the points to pass on the way")
         ->check(file_name());
+    command.add_flag("--strict", arguments.is_strict,
+                     "Refuse a plan with a move for which no free way was found (exit code 1)");
     add_report_option(command, arguments.page);
     add_plot_option(command, arguments.plot, "Draw the poses from the side and from above");
     add_progress_flag(command, arguments);

@@ -1,7 +1,8 @@
 #include "plan_options.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 
 #include "common.hpp"
 #include "options.hpp"
@@ -80,10 +81,10 @@ void note_overtime(double limit, const StopSignal& stop, std::chrono::steady_clo
     if (limit == 0 || late < std::max(most, 0.1 * limit)) return;
     const double planned = Seconds(now - read).count();
     const double all = limit + late;
-    std::fprintf(stderr,
-                 "posewise: took %.1f s, --time is %g: %.1f s to read the campaign and what goes "
-                 "with it, %.1f s to %s; its single steps are not cut short\n",
-                 all, limit, all - planned, planned, what);
+    print_warning(fmt::format(
+        "took {:.1f} s, --time is {:g}: {:.1f} s to read the campaign and what goes with it, "
+        "{:.1f} s to {}; its single steps are not cut short",
+        all, limit, all - planned, planned, what));
 }
 
 PlanRequest make_request(const RequestArguments& arguments, const io::CampaignFile* campaign,

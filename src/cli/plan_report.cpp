@@ -7,6 +7,7 @@
 #include "../core/text.hpp"
 #include "../report/plot.hpp"
 #include "estimates.hpp"
+#include "interrupt.hpp"
 #include "measured.hpp"
 #include "plot.hpp"
 #include "posewise/io/json_reports.hpp"
@@ -40,19 +41,21 @@ void report_plan(const MadePlan& plan, const std::string& page, const std::strin
     const Planning& planning = *plan.made.planning;
     const bool has_target = plan.made.ending != TargetEnding::NotRun;
     const bool is_stopped = planning.plan.is_stopped_early();
-    const auto counts =
-        is_stopped || has_target ? std::vector<CountAccuracy>() : predict_other_counts(planning);
+    std::vector<CountAccuracy> counts;
+    if (!is_stopped && !has_target) {
+        const InterruptFlag interrupted("interrupted twice; the plan is written");
+        counts = predict_other_counts(planning, {interrupted.get(), plan.options.stop.deadline});
+    }
     if (is_stopped) std::fputs("posewise: stopped early; the plan is the best so far\n", stderr);
     Printed printed{describe(plan, counts), ""};
     if (needs_document(common, page)) {
         printed.document = has_target ? io::to_json(plan.made, plan.out, plan.simulated)
                                       : io::to_json(planning, counts, plan.out, plan.simulated);
     }
+    io::PagePart part;
+    if (!page.empty()) part = show_plan(planning.plan, planning.campaign, plan.options);
     print(printed, common);
-    if (!page.empty()) {
-        write_page(page, show_plan(planning.plan, planning.campaign, plan.options), printed,
-                   common);
-    }
+    write_page(page, std::move(part), printed, common);
     if (plot.empty()) return;
     const Scene scene = make_scene(planning.campaign);
     draw_plot(plot, [&](const std::string& image) {

@@ -57,9 +57,9 @@ void report_files(const ReportArguments& arguments, const CommonOptions& common)
     }
     check_outputs({}, read, {arguments.out}, common);
     if (arguments.files.size() > 1) name_parts(parts, files);
-    io::write_page(arguments.out, parts);
-    print(common.json ? io::to_json(parts)
-                      : text + "page: " + detail::escape_controls(arguments.out) + '\n');
+    io::write_page(arguments.out, parts, given_warnings());
+    if (common.json) return print_document(io::to_json(parts));
+    print(text + "page: " + detail::escape_controls(arguments.out) + '\n');
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -44,8 +45,10 @@ calibrate --plan and verify, prints the chosen ids, the criterion's value and wh
 Measurements register the base and the targets; other candidates need them in the campaign file (or
 measured poses, --augment), or from an earlier estimate, --from, which tells the robot's errors, too. A candidate file has the columns config,q1_deg,... and perhaps
 visible_targets (as plan --csv writes it), or is a measurement file; --random draws a scrambled Halton
-sequence within the joint limits. A file of blocks has a row of numbers a line (or is a MATLAB
-matrix), each --rows of them one candidate, named 0, 1, ... One of --groups: columns config,group.
+sequence of what the joint limits and the campaign's cell allow; listed candidates that the cell does
+not allow are not chosen, a warning names them. A file of blocks has a row of numbers a line (or is a
+MATLAB matrix), each --rows of them one candidate, named 0, 1, ... One of --groups: columns
+config,group.
 
 --relax chooses nothing: it weights the candidates (an approximate design), 0 to --repeat-limit each and
 -k in sum, by what an experiment that could be split at will would take of each, and proves the bound.
@@ -93,9 +96,11 @@ void warn_of_few(Index count, Index asked) {
 
 void print_design(const ApproximateDesign& design, const SelectArguments& arguments,
                   const ChoiceInputs& inputs, const CommonOptions& common) {
-    print(common.json
-              ? io::to_json(design)
-              : format(design, arguments.digits) + '\n' + describe_robot(inputs, design.request));
+    if (common.json) {
+        print_document(io::to_json(design));
+    } else {
+        print(format(design, arguments.digits) + '\n' + describe_robot(inputs, design.request));
+    }
     note_interrupt(design.ending, "weights are");
 }
 
@@ -112,11 +117,14 @@ void print_plan(const Plan& plan, const SelectArguments& arguments, ChoiceInputs
                         "plan:       " + detail::escape_controls(out) + '\n',
                     ""};
     if (needs_document(common, arguments.page)) printed.document = io::to_json(plan, out);
+    io::PagePart part;
+    if (!arguments.page.empty()) {
+        static_cast<PlanRequest&>(inputs.options) = plan.request;
+        part = show_choice(plan, inputs);
+    }
     print(printed, common);
     note_interrupt(plan.ending, "plan is");
-    if (arguments.page.empty()) return;
-    static_cast<PlanRequest&>(inputs.options) = plan.request;
-    write_page(arguments.page, show_choice(plan, inputs), printed, common);
+    write_page(arguments.page, std::move(part), printed, common);
 }
 
 void select(const SelectArguments& arguments, const CommonOptions& common) {
@@ -136,6 +144,7 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     ChoiceInputs inputs =
         read_choice_inputs(request, kind_of(arguments), arguments.random, std::move(file));
     inputs.options.stop = stop;
+    inputs.options.judge = judge_of(sources.candidates, arguments.earlier.is_forced);
     const auto read = std::chrono::steady_clock::now();
     if (arguments.relaxes) {
         const ApproximateDesign design =
@@ -144,7 +153,7 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
                 : relax_choice(std::move(inputs.blocks), inputs.options);
         note_overtime(request.time_limit, stop, read, "weight the candidates");
         warn_of_few(design.candidate_count, arguments.random);
-        if (!out.empty()) io::write_weights(out, design);
+        if (!out.empty()) io::write_weights(out, design, given_warnings());
         interrupted.reset();
         return print_design(design, arguments, inputs, common);
     }
@@ -156,7 +165,8 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
             : choose(std::move(inputs.blocks), inputs.options);
     note_overtime(request.time_limit, stop, read, "choose");
     warn_of_few(plan.candidate_count, arguments.random);
-    io::write_plan(out, plan);
+    std::ranges::for_each(plan.cell_doubts, print_warning);
+    io::write_plan(out, plan, given_warnings());
     interrupted.reset();
     print_plan(plan, arguments, inputs, out, common);
 }

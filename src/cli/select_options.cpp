@@ -123,6 +123,8 @@ void check_select_usage(const SelectArguments& arguments) {
     require_usage(!has_distance, "--least-distance-deg", "cannot be kept by weights, --relax");
     require_usage(arguments.page.empty(), "--report", "shows a plan, which --relax makes none of");
     require_usage(request.starts == 0, "--starts", "are of a search, which --relax does not need");
+    require_usage(!request.proof, "--proof", "is of a choice, which --relax makes none of");
+    require_usage(!arguments.progress, "--progress", "is of a search, which --relax does not need");
     require_usage(out.empty() || out.ends_with(".csv") || out.ends_with(".json"), "--out",
                   "must end in .csv or .json with --relax");
 }

@@ -110,27 +110,34 @@ void print_store(const std::string& path, const StudyArguments& arguments,
     }
 }
 
-/// A store says all that the trials in it depend on.
-void check_printing_only(const CLI::App& command) {
-    const std::vector<std::string> used{"--from", "--csv",      "--plot", "--report",
-                                        "--json", "--progress", "--help"};
+/// A store says all that the trials in it depend on: beside these options others have no effect.
+void check_printing_only(const CLI::App& command, std::vector<std::string> used, const char* what) {
+    used.insert(used.end(), {"--csv", "--plot", "--report", "--json", "--help"});
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
         if (option->count() == 0 || std::ranges::find(used, name) != used.end()) continue;
-        throw CLI::ValidationError(name,
-                                   "is not looked at where --from prints what a store holds; "
-                                   "leave it out, or run the study with --store");
+        throw CLI::ValidationError(name, fmt::format("is not looked at where {}; leave it out, or "
+                                                     "run the study with --store",
+                                                     what));
     }
 }
 
 void check_study_usage(const CLI::App& command, const StudyArguments& arguments, bool reads_store) {
+    const bool has_splits = arguments.options.splits != Index{0};
+    if (!has_splits && command.count("--holdout") > 0) {
+        throw CLI::ValidationError("--holdout", "is of splits, and --splits 0 makes none");
+    }
     for (const char* option : {"--exclude", "--splits", "--holdout", "--models"}) {
         if (!arguments.is_simulated || command.count(option) == 0) continue;
         throw CLI::ValidationError(option,
                                    "is of measured configurations; leave it out, or --simulate");
     }
-    if (reads_store) return check_printing_only(command);
-    if (!arguments.merged.empty()) return;
+    if (reads_store) {
+        return check_printing_only(command, {"--from"}, "--from prints what a store holds");
+    }
+    if (!arguments.merged.empty()) {
+        return check_printing_only(command, {"--merge", "--store"}, "--merge puts stores together");
+    }
     const std::string& from = arguments.earlier.from;
     if (arguments.paths.campaign.empty() && !from.empty()) {
         std::error_code ignored;
@@ -148,16 +155,24 @@ void check_study_usage(const CLI::App& command, const StudyArguments& arguments,
     }
 }
 
+void warn_of_early_stop(const Study& study) {
+    if (study.ending != Ending::Interrupted && study.ending != Ending::TimeLimit) return;
+    print_warning(study.splits == 0 || study.is_simulated
+                      ? "stopped early; what is finished is shown"
+                      : fmt::format("stopped early; the splits that are finished are shown, {} of "
+                                    "{} with {} poses",
+                                    split_count(study.rows.back(), study.criteria.size()),
+                                    study.splits, study.rows.back().pose_count));
+}
+
 void warn_of_precision(const std::vector<Study>& studies) {
     for (const Study& study : studies) {
         if (study.ending != Ending::IterationLimit) continue;
-        const std::string of =
-            study.model.empty() ? "" : " of " + detail::escape_controls(study.model);
-        std::fputs(fmt::format("posewise: the results{} are not as precise as asked (--precision) "
-                               "after {} robots; more may be allowed (--trials)\n",
-                               of, study.splits)
-                       .c_str(),
-                   stderr);
+        const std::string of = study.model.empty() ? "" : " of " + study.model;
+        print_warning(fmt::format(
+            "the results{} are not as precise as asked (--precision) after {} robots; more may be "
+            "allowed (--trials)",
+            of, study.splits));
     }
 }
 
@@ -180,16 +195,16 @@ void study(const CLI::App& command, const StudyArguments& arguments, const Commo
     interrupted.reset();
     if (studies.front().rows.empty()) {
         if (stop.is_set()) {
-            throw InputError("stopped before any pose count was complete; must have longer");
+            throw InputError("stopped before any split was finished; must have longer");
         }
         // What this shard was to do is done, and kept.
         std::fputs(
-            "posewise: no pose count is complete by this shard; when the others have run, their "
-            "stores must be merged (--merge)\n",
+            "posewise: no split is finished by this shard; when the others have run, their stores "
+            "must be merged (--merge)\n",
             stderr);
         return;
     }
-    if (stop.is_set()) std::fputs("posewise: stopped early; what is complete is shown\n", stderr);
+    warn_of_early_stop(studies.front());
     warn_of_precision(studies);
     print_studies(studies, arguments, common, std::move(extras));
 }

@@ -124,10 +124,13 @@ void verify_file(const VerifyArguments& arguments, const CommonOptions& common) 
     redirect(plan.request.sources, arguments);
     const Verification verification =
         plan.is_continuous() ? verify_continuous(plan, arguments.plan) : verify_choice(plan);
-    print(common.json ? io::to_json(verification, plan, arguments.plan)
-                      : fmt::format("{}: {}\n{}", arguments.plan,
-                                    describe_plan(plan, verification.candidate_count),
-                                    format_findings(verification.findings)));
+    if (common.json) {
+        print_document(io::to_json(verification, plan, arguments.plan));
+    } else {
+        print(fmt::format("{}: {}\n{}", detail::escape_controls(arguments.plan),
+                          describe_plan(plan, verification.candidate_count),
+                          format_findings(verification.findings)));
+    }
     conclude(arguments.plan, verification);
 }
 

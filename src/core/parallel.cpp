@@ -19,7 +19,12 @@ void set_thread_count(Index count) {
     omp_set_num_threads(static_cast<int>(count));
 }
 
-Index thread_count() { return omp_get_max_threads(); }
+Index asked_thread_count() { return omp_get_max_threads(); }
+
+Index thread_count() {
+    constexpr int most_each = 4;
+    return std::min(asked_thread_count(), static_cast<Index>(most_each * omp_get_num_procs()));
+}
 
 namespace detail {
 namespace {
@@ -53,7 +58,8 @@ class FirstFailure {
 void for_each_index(Index count, const std::function<void(Index)>& body) {
     if (count == 1) return body(0);
     FirstFailure failure(count);
-#pragma omp parallel for schedule(dynamic)
+    const int threads = static_cast<int>(thread_count());
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (Index i = 0; i < count; ++i) {
         if (failure.is_before(i)) continue;
         try {

@@ -253,6 +253,7 @@ Json estimate_to_json(const Calibration& calibration, const Provenance& made_fro
     const VectorXd sigmas = standard_deviations(estimate);
     Json document = detail::make_document("estimate", detail::estimate_format);
     document["campaign"] = campaign.name;
+    document["warnings"] = made_from.warnings;
     document["measurements"] = made_from.measurements;
     document["made_from"] = made_from_to_json(made_from);
     document["measured"] = measured_to_json(calibration.measured);
@@ -289,6 +290,7 @@ Json estimate_to_json(const Calibration& calibration, const Provenance& made_fro
     if (calibration.stated_spread) document["learned_sizes"] = sizes_to_json(calibration);
     document["assumes"] = detail::numbers_to_json(assumptions_of(campaign));
     document["doubts"] = detail::doubts_to_json(campaign, calibration.doubts);
+    document["cures"] = detail::cures_to_json(campaign, calibration.cures);
     return document;
 }
 

@@ -89,6 +89,7 @@ Json make_document(const std::string& kind, int format) {
     document["kind"] = "posewise " + kind;
     document["posewise_version"] = version;
     document["format"] = format;
+    document["warnings"] = Json::array();
     return document;
 }
 

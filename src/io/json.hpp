@@ -12,8 +12,9 @@ namespace posewise::detail {
 /// Keys stay in the order they were written, so equal content is equal bytes.
 using Json = nlohmann::ordered_json;
 
-/// The beginning of every document we write: what it is, which version wrote it, and the format of
-/// what follows, which grows by one when a key is renamed, removed or means something else.
+/// The beginning of every document we write: what it is, which version wrote it, the format of what
+/// follows, which grows by one when a key is renamed, removed or means something else, and no
+/// warnings.
 Json make_document(const std::string& kind, int format);
 
 /// The document as text, each number with as many digits as it takes to read it back exactly; what

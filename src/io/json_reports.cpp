@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "doubts_json.hpp"
 #include "json.hpp"
 #include "measurement_columns.hpp"
 #include "parameters_json.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 
 namespace posewise::io {
@@ -100,6 +102,15 @@ Json inspection_to_json(const Inspection& inspection) {
                                   {"rank", inspection.of_complete.kept.size()}};
     document["calibrated_parameter_count"] = parameter_count(campaign);
     document["least_pose_count"] = inspection.least_pose_count;
+    document["unknowable"] = {
+        {"parameters", inspection.unknowable.parameters},
+        {"cures", make_list(inspection.unknowable.cures, [](const KnownAxes& known) {
+             return Json{{"base", known.base}, {"targets", known.targets}};
+         })}};
+    document["on_axis"] = make_list(inspection.on_axis, [](const OnAxis& one) {
+        return Json{{"target", one.target + 1}, {"joint", one.joint}};
+    });
+    document["rounded_angle_count"] = inspection.rounded_angle_count;
     return document;
 }
 
@@ -160,7 +171,9 @@ Json study_row_to_json(const Study& study, const StudyRow& row, const StudyRow& 
     const auto quantile = [&](double p) {
         return detail::millimetres(held_out_quantile(row.random, p));
     };
+    const Index splits = study.splits > 0 ? split_count(row, study.criteria.size()) : 0;
     return {{"pose_count", row.pose_count},
+            {"splits", splits},
             {"planned", planned_to_json(study, row, first)},
             {"random",
              {{"subsets", row.random.size()},
@@ -240,16 +253,28 @@ Json read_back_to_json(const ReadBack& file) {
 
 }  // namespace
 
+std::string with_warnings(const std::string& document, const std::vector<std::string>& warnings) {
+    Json json = Json::parse(document, nullptr, false);
+    if (!json.is_object()) throw InputError("a document is not JSON; must be one of posewise");
+    json["warnings"] = warnings;
+    return detail::json_text(json);
+}
+
 std::string to_json(const Inspection& inspection) {
     return detail::json_text(inspection_to_json(inspection));
 }
 
-std::string to_json(const Inspection& inspection, const std::vector<JointDirections>& directions) {
+std::string to_json(const Inspection& inspection, const ReadingSearch& readings) {
     Json document = inspection_to_json(inspection);
-    document["joint_directions"] = make_list(directions, [](const JointDirections& tried) {
-        return Json{{"reversed", tried.reversed},
-                    {"distance_rms_mm", mm_per_m * tried.distance_rms}};
+    document["joint_directions"] = make_list(readings.tried, [](const TriedReading& tried) {
+        Json one{{"read_with", tried.words},
+                 {"reversed", tried.reversed},
+                 {"distance_rms_mm", mm_per_m * tried.misfit.distance_rms}};
+        const double angle = tried.misfit.orientation_rms;
+        if (angle > 0) one["orientation_rms_deg"] = to_degrees(angle);
+        return one;
     });
+    if (readings.better) document["better_reading"] = detail::reading_to_json(*readings.better);
     return detail::json_text(document);
 }
 
@@ -322,6 +347,10 @@ std::string to_json(const CorrectedPoses& poses, const Campaign& campaign) {
     document["campaign"] = campaign.name;
     document["uncorrected"] = pose_error_to_json(poses.corrections, &Correction::uncorrected);
     document["corrected"] = pose_error_to_json(poses.corrections, &Correction::residual);
+    document["not_brought_home"] = Json::array();
+    for (const Index i : poses.not_home) {
+        document["not_brought_home"].push_back(poses.ids[static_cast<std::size_t>(i)]);
+    }
     Json& list = document["configurations"] = Json::array();
     for (std::size_t i = 0; i < poses.ids.size(); ++i) {
         list.push_back(correction_to_json(poses.ids[i], poses.corrections[i], campaign));

@@ -287,8 +287,11 @@ Json page_to_json(const std::vector<PagePart>& parts) {
     return document;
 }
 
-std::string make_page(const std::vector<PagePart>& parts, const std::string& place) {
-    const std::string text = detail::json_line(page_to_json(parts), place);
+std::string make_page(const std::vector<PagePart>& parts, const std::vector<std::string>& warnings,
+                      const std::string& place) {
+    Json document = page_to_json(parts);
+    document["warnings"] = warnings;
+    const std::string text = detail::json_line(document, place);
     return fill_template(detail::page_template(), escape_for_script(text));
 }
 
@@ -308,10 +311,11 @@ std::string to_json(const std::vector<PagePart>& parts) {
     return detail::json_text(page_to_json(parts));
 }
 
-std::string to_page(const std::vector<PagePart>& parts) { return make_page(parts, "the page"); }
+std::string to_page(const std::vector<PagePart>& parts) { return make_page(parts, {}, "the page"); }
 
-void write_page(const std::string& path, const std::vector<PagePart>& parts) {
-    detail::write_file(path, make_page(parts, path));
+void write_page(const std::string& path, const std::vector<PagePart>& parts,
+                const std::vector<std::string>& warnings) {
+    detail::write_file(path, make_page(parts, warnings, path));
 }
 
 }  // namespace posewise::io

@@ -286,6 +286,11 @@ PlannedPose read_pose(const JsonValue& json) {
     }
     if (json.has("via") && !json["via"].is_null()) pose.via = read_configuration(json["via"]);
     if (json.has("way_is_blocked")) pose.is_blocked = json["way_is_blocked"].boolean();
+    if (json.has("clearance_m") && !json["clearance_m"].is_null()) {
+        const std::vector<std::string> bodies = json["nearest"].texts();
+        if (bodies.size() != 2) throw json["nearest"].error("must be two names");
+        pose.clearance = Clearance{json["clearance_m"].number(), bodies[0], bodies[1]};
+    }
     if (json.has("kept")) pose.is_kept = json["kept"].boolean();
     return pose;
 }
@@ -361,6 +366,7 @@ Plan read_plan(const std::string& path) {
     }
     plan.request.criterion = read_criterion(document["criterion"]);
     read_problem(document["problem"], path, plan);
+    if (document.has("cell_doubts")) plan.cell_doubts = document["cell_doubts"].texts();
     read_bounds(document, plan);
     read_search(document["search"], plan);
     if (plan.is_continuous()) read_prediction(document, json, plan);

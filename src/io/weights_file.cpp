@@ -44,8 +44,13 @@ std::string to_json(const ApproximateDesign& design) {
     return detail::json_text(design_to_json(design));
 }
 
-void write_weights(const std::string& path, const ApproximateDesign& design) {
-    if (path.ends_with(".json")) return detail::write_json(path, design_to_json(design));
+void write_weights(const std::string& path, const ApproximateDesign& design,
+                   const std::vector<std::string>& warnings) {
+    if (path.ends_with(".json")) {
+        Json document = design_to_json(design);
+        document["warnings"] = warnings;
+        return detail::write_json(path, document);
+    }
     if (!path.ends_with(".csv")) throw input_error_at({path}, "must end in .csv or .json");
     std::string text = "config,weight\n";
     for (const auto& [id, weight] : design.weights) {

@@ -73,7 +73,7 @@ function draw() {
   document.title = `posewise: ${[...new Set(parts.map((part) => part.robot))].join(', ')}`;
   document.body.append(
     el('a', { class: 'skip', href: '#verdict' }, 'Skip to the verdict'),
-    header(parts, drawn), el('main', {}, drawn), footer(page, source));
+    header(page, parts, drawn), el('main', {}, drawn), footer(page, source));
   watchTheme();
   document.documentElement.dataset.drawn = 'true';
 }

@@ -36,9 +36,10 @@ MatrixXd penalise(const MatrixXd& times) {
 /// Local search on one path.
 class Improver {
   public:
-    Improver(const MatrixXd& times, Path& path)
+    Improver(const MatrixXd& times, Path& path, const std::function<bool()>& is_over)
         : times_(times),
           path_(path),
+          is_over_(is_over),
           last_(static_cast<Index>(path.size()) - 1),
           least_gain_(rounding * std::max(1.0, longest(times))) {}
 
@@ -63,7 +64,7 @@ class Improver {
 
     /// 2-opt: the first reversal of positions i to j that shortens the path.
     bool reverse_something() {
-        for (Index i = 1; i < last_; ++i) {
+        for (Index i = 1; i < last_ && !is_over(); ++i) {
             for (Index j = i + 1; j <= last_; ++j) {
                 const double end = j < last_ ? times_(node(i), node(j + 1)) : 0;
                 const double change =
@@ -80,7 +81,7 @@ class Improver {
     /// position that shortens the path.
     bool move_something() {
         for (Index size = 1; size <= 3; ++size) {
-            for (Index i = 1; i + size - 1 <= last_; ++i) {
+            for (Index i = 1; i + size - 1 <= last_ && !is_over(); ++i) {
                 const Index j = i + size - 1;
                 const double bridge = j < last_ ? times_(node(i - 1), node(j + 1)) : 0;
                 const double gain = leg(i - 1, i) + leg(j, j + 1) - bridge;
@@ -111,8 +112,11 @@ class Improver {
         return true;
     }
 
+    bool is_over() const { return is_over_ && is_over_(); }
+
     const MatrixXd& times_;
     Path& path_;
+    const std::function<bool()>& is_over_;
     Index last_;
     double least_gain_;
 };
@@ -139,10 +143,11 @@ Path nearest_neighbour_path(const MatrixXd& times) {
     std::iota(path.begin(), path.end(), Index{0});
     for (std::size_t k = 1; k < count; ++k) {
         const auto rest = path.begin() + static_cast<std::ptrdiff_t>(k);
-        std::sort(rest, path.end());  // so that the first of equals is the first pose
         const Index here = path[k - 1];
         std::iter_swap(rest, std::min_element(rest, path.end(), [&](Index a, Index b) {
-                           return times(here, a) < times(here, b);
+                           const double to_a = times(a, here);
+                           const double to_b = times(b, here);
+                           return to_a != to_b ? to_a < to_b : a < b;  // of equals the first pose
                        }));
     }
     return path;
@@ -156,16 +161,6 @@ VisitingOrder to_order(const MatrixXd& times, const Path& path) {
 
 }  // namespace
 
-double order_time(const MatrixXd& times, const std::vector<Index>& poses) {
-    double time = 0;
-    Index here = 0;
-    for (const Index pose : poses) {
-        time += times(here, pose + 1);
-        here = pose + 1;
-    }
-    return time;
-}
-
 VisitingOrder nearest_neighbour_order(const MatrixXd& times) {
     check_times(times);
     return to_order(times, nearest_neighbour_path(times));
@@ -175,12 +170,13 @@ VisitingOrder shortest_order(const MatrixXd& times, const OrderOptions& options)
     check_times(times);
     const MatrixXd finite = penalise(times);
     Path best = nearest_neighbour_path(finite);
-    Improver(finite, best).run();
+    Improver(finite, best, options.is_over).run();
     double least = path_time(finite, best);
-    for (Index k = 0; k < options.kicks && best.size() > 4; ++k) {
+    const auto is_over = [&] { return options.is_over && options.is_over(); };
+    for (Index k = 0; k < options.kicks && best.size() > 4 && !is_over(); ++k) {
         RandomStream stream(options.seed, static_cast<std::uint64_t>(k));
         Path path = kick(best, stream);
-        Improver(finite, path).run();
+        Improver(finite, path, options.is_over).run();
         const double time = path_time(finite, path);
         if (time < least - 1e-12) {
             best = std::move(path);

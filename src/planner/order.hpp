@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "posewise/core/types.hpp"
@@ -11,6 +12,8 @@ struct OrderOptions {
     /// How often the best order is broken up at random and improved again.
     Index kicks = 200;
     std::uint64_t seed = 1;
+    /// Asked all the while; true: end with the best order so far. Empty: never.
+    std::function<bool()> is_over{};
 };
 
 /// An open path from a start through all poses.
@@ -19,11 +22,9 @@ struct VisitingOrder {
     double time = 0;           ///< infinite if the path needs a move that is impossible
 };
 
-/// Time of a path that starts at node 0 and visits the poses in this order. `times` is symmetric
-/// and has a row for the start and one for each pose; pose i is node i + 1; infinite: impossible.
-double order_time(const MatrixXd& times, const std::vector<Index>& poses);
-
-/// Always on to the nearest pose not yet visited; of several nearest ones, the first.
+/// Always on to the nearest pose not yet visited; of several nearest ones, the first. `times` is
+/// symmetric and has a row for the start, node 0, and one for each pose; pose i is node i + 1;
+/// infinite: impossible.
 VisitingOrder nearest_neighbour_order(const MatrixXd& times);
 
 /// A short path: nearest neighbour, improved by 2-opt and Or-opt, again after random double-bridge

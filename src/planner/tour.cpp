@@ -1,8 +1,11 @@
 #include "tour.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "../core/parallel.hpp"
 #include "posewise/core/errors.hpp"
@@ -25,11 +28,32 @@ std::vector<VectorXd> nodes_of(const VectorXd& start, const RowMatrixXd& poses) 
     return nodes;
 }
 
+/// A stop signal, and half a second more: what is planned must still be put in order.
+class Respite {
+  public:
+    explicit Respite(const StopSignal& stop) : stop_(stop) {}
+
+    bool is_over() const {
+        using Clock = std::chrono::steady_clock;
+        constexpr std::chrono::milliseconds length{500};
+        if (!stop_.is_set()) return false;
+        const Clock::duration now = Clock::now().time_since_epoch();
+        Clock::rep begin = 0;
+        if (begin_.compare_exchange_strong(begin, now.count())) return false;
+        return now - Clock::duration(begin) > length;
+    }
+
+  private:
+    const StopSignal& stop_;
+    mutable std::atomic<std::chrono::steady_clock::rep> begin_{0};  // 0: not set yet
+};
+
 /// Of straight moves between all nodes; 0 from a home that there is not.
-MatrixXd times_between(const VectorXd& speed, const std::vector<VectorXd>& nodes) {
+MatrixXd times_between(const VectorXd& speed, const std::vector<VectorXd>& nodes,
+                       const Respite& respite) {
     const auto count = static_cast<Index>(nodes.size());
     MatrixXd times = MatrixXd::Zero(count, count);
-    for (Index i = 1; i < count; ++i) {
+    for (Index i = 1; i < count && !respite.is_over(); ++i) {
         for (Index j = nodes[0].size() != 0 ? 0 : 1; j < i; ++j) {
             times(i, j) = times(j, i) = move_time(speed, nodes[static_cast<std::size_t>(i)],
                                                   nodes[static_cast<std::size_t>(j)]);
@@ -42,7 +66,10 @@ MatrixXd times_between(const VectorXd& speed, const std::vector<VectorXd>& nodes
 class Roadmap {
   public:
     Roadmap(const Constraints& constraints, const RowMatrixXd& poses, const TourOptions& options)
-        : constraints_(constraints), options_(options), speed_(speed_of(constraints)) {
+        : constraints_(constraints),
+          options_(options),
+          respite_(options.stop),
+          speed_(speed_of(constraints)) {
         const bool is_from_home = options.start.size() == 0;
         nodes_ = nodes_of(is_from_home ? constraints.cell().home : options.start, poses);
         for (const VectorXd& node : nodes_) {
@@ -51,13 +78,51 @@ class Roadmap {
             }
         }
         if (has_home() && is_from_home && constraints.collision_clearance(nodes_[0]) < 0) {
-            throw InputError("cell: home collides with a keep-out or the robot itself");
+            throw InputError("cell: home is not free: " +
+                             describe_clearance(constraints.nearest(nodes_[0]),
+                                                constraints.cell().safety_distance));
         }
-        straight_times_ = times_between(speed_, nodes_);
-        find_free_moves();
     }
 
+    bool is_over() const { return respite_.is_over(); }
     const MatrixXd& straight_times() const { return straight_times_; }
+    double straight_time(Index from, Index to) const {
+        return has_home() || from != 0 ? move_time(speed_, node(from), node(to)) : 0;
+    }
+
+    /// All straight times, and which moves are free; false if there was no time for it.
+    bool measure() {
+        straight_times_ = times_between(speed_, nodes_, respite_);
+        is_measured_ = !is_over() && find_free_moves();
+        return is_measured_;
+    }
+
+    /// On to the nearest each, without looking at what is in the way.
+    std::vector<Index> to_the_nearest() const {
+        const auto count = std::ssize(nodes_) - 1;
+        RowMatrixXd left(count, speed_.size());  // poses in s, those not yet visited first
+        std::vector<Index> order(static_cast<std::size_t>(count));
+        for (Index i = 0; i < count; ++i) {
+            left.row(i) = node(i + 1).cwiseQuotient(speed_);
+            order[static_cast<std::size_t>(i)] = i;
+        }
+        VectorXd here = has_home() ? VectorXd(nodes_[0].cwiseQuotient(speed_)) : VectorXd();
+        for (Index k = 0; k < count; ++k) {
+            Index nearest = 0;
+            if (here.size() > 0) {
+                (left.bottomRows(count - k).rowwise() - here.transpose())
+                    .cwiseAbs()
+                    .rowwise()
+                    .maxCoeff()
+                    .minCoeff(&nearest);
+            }
+            left.row(k).swap(left.row(k + nearest));
+            std::swap(order[static_cast<std::size_t>(k)],
+                      order[static_cast<std::size_t>(k + nearest)]);
+            here = left.row(k).transpose();
+        }
+        return order;
+    }
 
     /// Times with what is known: of free moves and of vias. Not free and not yet examined counts
     /// as longer than any tour of the others; found to be blocked, as infinite.
@@ -76,21 +141,28 @@ class Roadmap {
         return times;
     }
 
-    /// Looks for a via of a move that needs one; false if it needs none or that was done before.
+    /// Looks for a via of a move that needs one; false if it needs none, that was done before or
+    /// there is no time.
     bool examine(Index i, Index j) {
         if (i < j) std::swap(i, j);
-        if (is_free_(i, j) || detours_.count({i, j}) != 0) return false;
+        if (is_free_(i, j) || detours_.count({i, j}) != 0 || is_over()) return false;
         detours_[{i, j}] = find_detour(i, j);
         return true;
     }
 
     Visit visit(Index from, Index to) const {
         Visit visit{to - 1, std::nullopt, false};
+        if (is_free(from, to)) return visit;
         const auto found = detours_.find({std::max(from, to), std::min(from, to)});
-        if (found == detours_.end()) return visit;
-        visit.is_blocked = found->second.time == infinity;
+        visit.is_blocked = found == detours_.end() || found->second.time == infinity;
         if (!visit.is_blocked) visit.via = found->second.via;
         return visit;
+    }
+
+    double time_of(Index from, const Visit& visit) const {
+        const Index to = visit.pose + 1;
+        if (!visit.via) return straight_time(from, to);
+        return detours_.at({std::max(from, to), std::min(from, to)}).time;
     }
 
   private:
@@ -102,15 +174,23 @@ class Roadmap {
     bool has_home() const { return nodes_[0].size() != 0; }
     const VectorXd& node(Index i) const { return nodes_[static_cast<std::size_t>(i)]; }
 
-    void find_free_moves() {
+    bool is_free(Index from, Index to) const {
+        if (from == 0 && !has_home()) return true;
+        if (is_measured_) return is_free_(std::max(from, to), std::min(from, to)) != 0;
+        return is_move_free(constraints_, node(from), node(to), options_.resolution);
+    }
+
+    /// False if there was no time for it.
+    bool find_free_moves() {
         const auto count = static_cast<Index>(nodes_.size());
         is_free_ = Eigen::Matrix<char, Eigen::Dynamic, Eigen::Dynamic>::Ones(count, count);
         for_each_index(count, [&](Index i) {
-            for (Index j = has_home() ? 0 : 1; j < i; ++j) {
+            for (Index j = has_home() ? 0 : 1; j < i && !is_over(); ++j) {
                 is_free_(i, j) =
                     is_move_free(constraints_, node(i), node(j), options_.resolution) ? 1 : 0;
             }
         });
+        return !is_over();
     }
 
     /// The quickest of the free ways over home and over random points about the middle of the
@@ -148,11 +228,13 @@ class Roadmap {
 
     const Constraints& constraints_;
     const TourOptions& options_;
+    Respite respite_;
     VectorXd speed_;
     std::vector<VectorXd> nodes_;
     MatrixXd straight_times_;
     Eigen::Matrix<char, Eigen::Dynamic, Eigen::Dynamic> is_free_;  // lower triangle
-    std::map<std::pair<Index, Index>, Detour> detours_;            // larger index first
+    bool is_measured_ = false;
+    std::map<std::pair<Index, Index>, Detour> detours_;  // larger index first
 };
 
 /// Examines the moves of the order that are not free; false if there was nothing left to examine.
@@ -164,6 +246,26 @@ bool examine_moves(Roadmap& roadmap, const std::vector<Index>& poses) {
         here = pose + 1;
     }
     return is_new;
+}
+
+std::vector<Index> order_by_known_times(Roadmap& roadmap, OrderOptions options) {
+    options.is_over = [&roadmap] { return roadmap.is_over(); };
+    VisitingOrder order;
+    do {
+        order = shortest_order(roadmap.known_times(), options);
+    } while (examine_moves(roadmap, order.poses));
+    return order.poses;
+}
+
+/// Of straight moves, free or not, in this order.
+double straight_time_of(const Roadmap& roadmap, const std::vector<Index>& order) {
+    double time = 0;
+    Index here = 0;
+    for (const Index pose : order) {
+        time += roadmap.straight_time(here, pose + 1);
+        here = pose + 1;
+    }
+    return time;
 }
 
 }  // namespace
@@ -189,8 +291,9 @@ bool is_move_free(const Constraints& constraints, const VectorXd& a, const Vecto
 double straight_tour_time(const Constraints& constraints, const RowMatrixXd& poses) {
     OrderOptions options;
     options.kicks = 0;
-    return shortest_order(
-               times_between(speed_of(constraints), nodes_of(constraints.cell().home, poses)),
+    const StopSignal never;
+    return shortest_order(times_between(speed_of(constraints),
+                                        nodes_of(constraints.cell().home, poses), Respite(never)),
                options)
         .time;
 }
@@ -198,23 +301,24 @@ double straight_tour_time(const Constraints& constraints, const RowMatrixXd& pos
 Tour plan_tour(const Constraints& constraints, const RowMatrixXd& poses,
                const TourOptions& options) {
     Roadmap roadmap(constraints, poses, options);
-    VisitingOrder order;
-    do {
-        order = shortest_order(roadmap.known_times(), options.order);
-    } while (examine_moves(roadmap, order.poses));
+    const bool is_measured = roadmap.measure();
+    const std::vector<Index> nearest = is_measured
+                                           ? nearest_neighbour_order(roadmap.straight_times()).poses
+                                           : roadmap.to_the_nearest();
+    const std::vector<Index> order =
+        is_measured ? order_by_known_times(roadmap, options.order) : nearest;
+    std::vector<Index> given(order.size());
+    std::iota(given.begin(), given.end(), Index{0});
 
     Tour tour;
-    const MatrixXd known = roadmap.known_times();
-    const MatrixXd& straight = roadmap.straight_times();
-    std::vector<Index> given(static_cast<std::size_t>(poses.rows()));
-    for (std::size_t i = 0; i < given.size(); ++i) given[i] = static_cast<Index>(i);
-    tour.planning_order_time = order_time(straight, given);
-    tour.nearest_neighbour_time = nearest_neighbour_order(straight).time;
+    tour.is_cut_short = roadmap.is_over();
+    tour.planning_order_time = straight_time_of(roadmap, given);
+    tour.nearest_neighbour_time = straight_time_of(roadmap, nearest);
     Index here = 0;
-    for (const Index pose : order.poses) {
+    for (const Index pose : order) {
         const Visit visit = roadmap.visit(here, pose + 1);
         if (visit.is_blocked) ++tour.blocked_count;
-        tour.time += visit.is_blocked ? straight(here, pose + 1) : known(here, pose + 1);
+        tour.time += roadmap.time_of(here, visit);
         tour.visits.push_back(visit);
         here = pose + 1;
     }

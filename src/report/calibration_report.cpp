@@ -96,36 +96,27 @@ std::string describe_ending(const Calibration& calibration) {
                            : "1: noise and model error stated right");
 }
 
-/// What to do if residuals of a kind are not as large as stated.
+/// "the residuals in mm are 3 times what sigma and model error say".
 std::string judge_residuals(const Calibration& calibration, const ResidualDoubt& doubt) {
     const bool has_kinds = !calibration.estimate.variance_by_kind.empty();
     const std::string text =
-        fmt::format("the residuals{} are {} times what sigma and model error say: ",
+        fmt::format("the residuals{} are {} times what sigma and model error say",
                     !has_kinds       ? ""
                     : doubt.is_angle ? " in mrad"
                                      : " in mm",
                     detail::format_short(doubt.ratio, 2));
     const bool is_earlier = !calibration.held.empty();
-    if (doubt.ratio < 1 && is_model_error_found(calibration)) {
-        return text + "what is expected is rather too large\n";
-    }
-    const bool is_robust = calibration.estimate.loss.kind != LossKind::Squares;
-    if (is_earlier && doubt.ratio < 1) return text + "less than the earlier estimate left over\n";
     if (is_earlier) {
-        return text + "the robot may not be as the earlier estimate has it" +
-               (is_robust ? "\n" : ", or look for outliers with --loss\n");
+        return text + (doubt.ratio < 1 ? ", less than the earlier estimate left over\n"
+                                       : ": the robot may not be as the earlier estimate has it\n");
     }
-    const std::string key = fmt::format(
-        "{}{}", doubt.is_angle ? "model_error_orientation_mrad" : "model_error_mm",
-        doubt.fitting > 0
-            ? fmt::format(" ({} would fit)", detail::format_short(mm_per_m * doubt.fitting, 2))
-            : "");
-    if (doubt.ratio < 1) return text + "a smaller " + key + " or sigma would do\n";
-    const std::string terms =
-        fmt::format("add error terms ({})", detail::richer_errors(calibration.campaign.robot));
-    return text + "state a larger " + key +
-           (is_robust ? " or " + terms + '\n'
-                      : ", " + terms + " or look for outliers with --loss\n");
+    if (doubt.ratio > 1) return text + '\n';
+    if (is_model_error_found(calibration)) {
+        return text + ": what is expected is rather too large\n";
+    }
+    if (doubt.fitting == 0) return text + '\n';
+    return text + fmt::format(", as a model error of {} would leave\n",
+                              detail::format_error(doubt.fitting, doubt.is_angle));
 }
 
 std::string judge_residuals(const Calibration& calibration) {
@@ -140,9 +131,20 @@ std::string describe_missing_errors(const Calibration& calibration) {
     if (!calibration.doubts.missing_errors) return "";
     return fmt::format(
         "about {:.0f} % of the squares left over follow the joints' positions: joints bend or have "
-        "periodic errors that this model leaves out (add {})\n",
-        100 * *calibration.doubts.missing_errors,
-        detail::richer_errors(calibration.campaign.robot));
+        "periodic errors that this model leaves out\n",
+        100 * *calibration.doubts.missing_errors);
+}
+
+/// A line for each cure that was tried and helps, and one for the others.
+std::string describe_tried(const Calibration& calibration) {
+    std::string text;
+    for (const Cure& cure : calibration.cures.found) {
+        text += detail::describe(cure, calibration.campaign) + '\n';
+    }
+    const auto& others = calibration.cures.without_effect;
+    if (others.empty()) return text;
+    return text + fmt::format("tried, and held out no better: {}\n",
+                              detail::escape_controls(fmt::format("{}", fmt::join(others, ", "))));
 }
 
 /// "40 of 247 leave the joint ranges measured (q2, q3): what is expected there is extrapolated".
@@ -341,9 +343,9 @@ std::string format(const Calibration& calibration, bool has_all_parameters) {
     if (!calibration.is_identified()) return models + calibration.estimate.undetermined + '\n';
     return models + describe_starts(calibration) + describe_measured(calibration) +
            describe_ending(calibration) + judge_residuals(calibration) +
-           describe_missing_errors(calibration) + format_accuracy(calibration) +
-           format_outliers(calibration) + format_refitted(calibration) +
-           format_parameters(calibration, has_all_parameters);
+           describe_missing_errors(calibration) + describe_tried(calibration) +
+           format_accuracy(calibration) + format_outliers(calibration) +
+           format_refitted(calibration) + format_parameters(calibration, has_all_parameters);
 }
 
 std::string format(const ModelSelection& selection) {

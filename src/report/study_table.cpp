@@ -1,5 +1,7 @@
 #include "study_table.hpp"
 
+#include <algorithm>
+
 #include "../core/format.hpp"
 
 namespace posewise::detail {
@@ -25,6 +27,17 @@ void add_advantage(const std::optional<Advantage>& advantage, std::vector<std::s
     cells.push_back(interval_cell(advantage));
 }
 
+std::string split_cell(const Study& study, const StudyRow& row) {
+    return std::to_string(split_count(row, study.criteria.size()));
+}
+
+/// Some pose counts have fewer splits than were asked for.
+bool is_partial(const Study& study) {
+    return study.splits > 0 && std::ranges::any_of(study.rows, [&](const StudyRow& row) {
+               return split_count(row, study.criteria.size()) < study.splits;
+           });
+}
+
 std::vector<std::string> model_cells(const Study& study, const StudyRow& row,
                                      const StudyRow& first) {
     std::vector<std::string> cells{std::to_string(row.pose_count), study.model,
@@ -37,6 +50,7 @@ std::vector<std::string> model_cells(const Study& study, const StudyRow& row,
         cells.push_back(ratio_cell(planned_advantage(study, row, c, first)));
     }
     cells.push_back(unidentified_cell(row.random));
+    if (is_partial(study)) cells.push_back(split_cell(study, row));
     return cells;
 }
 
@@ -55,6 +69,7 @@ Table study_table(const Study& study) {
     for (const char* name : {"random 10 %/mm", "50 %/mm", "90 %/mm", "subsets", "unidentified"}) {
         table.header.emplace_back(name);
     }
+    if (is_partial(study)) table.header.emplace_back("splits");
     for (const StudyRow& row : study.rows) {
         std::vector<std::string> cells{std::to_string(row.pose_count)};
         for (std::size_t c = 0; c < study.criteria.size(); ++c) {
@@ -67,6 +82,7 @@ Table study_table(const Study& study) {
             cells.push_back(cell(held_out_quantile(row.random, p)));
         cells.push_back(std::to_string(row.random.size()));
         cells.push_back(unidentified_cell(row.random));
+        if (is_partial(study)) cells.push_back(split_cell(study, row));
         table.rows.push_back(std::move(cells));
     }
     return table;
@@ -85,6 +101,7 @@ Table models_table(const std::vector<Study>& studies) {
                              name + "/random " + (first.is_simulated ? "of first" : first.model)});
     }
     table.header.emplace_back("unidentified");
+    if (is_partial(first)) table.header.emplace_back("splits");
     for (std::size_t i = 0; i < first.rows.size(); ++i) {
         for (const Study& study : studies) {
             table.rows.push_back(model_cells(study, study.rows[i], first.rows[i]));

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "../core/progress_counter.hpp"
+#include "calibration_options.hpp"
+#include "data_faults.hpp"
 #include "earlier_estimate.hpp"
 #include "judgement.hpp"
 #include "moved.hpp"
@@ -49,47 +51,6 @@ struct Work {
         return method_options;
     }
 };
-
-void check_options(const CalibrationOptions& options) {
-    const bool is_joint = options.method == CalibrationMethod::Joint;
-    if (options.earlier && (!is_joint || options.learns_sizes || options.model_selection)) {
-        throw InputError(
-            "an earlier estimate needs the method lm, without model selection or learning sizes");
-    }
-    const auto count_refitted = [&](const char* name) {
-        return std::count(options.refitted.begin(), options.refitted.end(), name);
-    };
-    const auto base = count_refitted("base");
-    const auto targets = count_refitted("targets");
-    if (base + targets < std::ssize(options.refitted)) {
-        throw InputError("what is refitted for the validation must be base, targets or both");
-    }
-    const Campaign* const other = options.validation_campaign;
-    if (other != nullptr && (targets == 0 || (base == 0 && base_parameter_count(*other) > 0))) {
-        throw InputError("for a validation of another campaign both base and targets are refitted");
-    }
-    if (!is_joint && options.joint.loss.kind != LossKind::Squares) {
-        throw InputError("the loss is " + std::string(loss_name(options.joint.loss.kind)) +
-                         ", must be squares with the method " +
-                         std::string(method_name(options.method)));
-    }
-    if (options.model_selection && (!is_joint || options.folds == 0)) {
-        throw InputError("model selection needs the method lm, and groups to hold out");
-    }
-    for (const Index one : options.verification) {
-        if (options.used.empty() || std::ranges::count(options.used, one) > 0) {
-            throw InputError(
-                "poses to verify with must be others than those used, which must be "
-                "stated");
-        }
-    }
-    if (options.limit && !(*options.limit > 0)) {
-        throw InputError(fmt::format("the limit is {} m, must be above 0", *options.limit));
-    }
-    if (options.learns_sizes && !is_joint) {
-        throw InputError("learning the sizes of errors needs the method lm");
-    }
-}
 
 Index part_count(const Campaign& campaign, const CalibrationOptions& options, Index folds) {
     const auto sets = options.model_selection
@@ -188,6 +149,16 @@ std::map<std::string, double> sigmas_by_name(const Estimate& estimate) {
     return by_name;
 }
 
+/// At the residuals; not where it was stopped, since that takes fits.
+void look(const Work& work, Calibration& result) {
+    if (work.options.stop.is_set()) return;
+    Doubts& doubts = result.doubts;
+    doubts.look = look_at_residuals(work.campaign, work.used, result.estimate);
+    if (doubts.misfit || doubts.gross_error) {
+        doubts.look.shifted = find_shifted_rows(work.campaign, work.used);
+    }
+}
+
 /// All that `used` alone tell.
 void calibrate_with(Work& work, Calibration& result) {
     Registration registration = register_base_and_targets(work.campaign, work.used);
@@ -221,6 +192,9 @@ void calibrate_with(Work& work, Calibration& result) {
                     result.method == CalibrationMethod::Global ? ValueCheck::None
                                                                : ValueCheck::ByExpectedSizes);
     add_doubts(work.campaign, work.used, result.estimate, result.doubts);
+    look(work, result);
+    detail::judge_data({work.campaign, work.whole.robot, work.used, registered, work.beside()},
+                       work.options, result);
     if (work.options.learns_sizes) {
         result.doubts.held_back =
             find_held_back_size(result.campaign, *result.stated_spread, work.used,
@@ -324,7 +298,7 @@ void judge_others(const Work& work, const Measurements& all, Calibration& result
 
 Calibration calibrate(const Campaign& campaign, const Measurements& measurements,
                       const CalibrationOptions& options) {
-    check_options(options);
+    detail::check_options(options);
     const Measurements part =
         options.used.empty() ? Measurements{} : take(measurements, options.used);
     const Measurements& used = options.used.empty() ? measurements : part;

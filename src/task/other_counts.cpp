@@ -7,7 +7,7 @@
 
 namespace posewise {
 
-std::vector<CountAccuracy> predict_other_counts(const Planning& planning) {
+std::vector<CountAccuracy> predict_other_counts(const Planning& planning, const StopSignal& stop) {
     const Blocks& prediction = planning.errors.by_parameters;
     const detail::PoolChoices choices(planning.campaign, planning.pool,
                                       planning.plan.request.repeats, planning.search, prediction);
@@ -16,11 +16,14 @@ std::vector<CountAccuracy> predict_other_counts(const Planning& planning) {
         least_calibration_count(planning.campaign) - planning.search.held_pose_count;
     std::vector<CountAccuracy> rows;
     for (const Index k : std::set<Index>{std::max<Index>(1, count / 2), count, 2 * count}) {
-        rows.push_back({k, false, std::nullopt});
-        const auto chosen = k >= least ? choices.choose(k) : std::nullopt;
-        if (chosen) {
-            rows.back().accuracy = predict_accuracy(prediction, choices.information(*chosen),
-                                                    planning.campaign, choices.by_noise(*chosen));
+        const auto chosen = k >= least ? choices.choose(k, stop) : std::nullopt;
+        if (!stop.is_set()) {  // else it may be any choice
+            rows.push_back({k, false, std::nullopt});
+            if (chosen) {
+                rows.back().accuracy =
+                    predict_accuracy(prediction, choices.information(*chosen), planning.campaign,
+                                     choices.by_noise(*chosen));
+            }
         }
         if (k == count) rows.push_back({k, true, planning.plan.predicted});
     }

@@ -35,6 +35,7 @@ std::vector<PlannedPose> arrange(const PlanningProblem& problem, const RowMatrix
         } else {
             pose = pose_at(problem, ids.next(), poses.row(visit.pose).transpose());
         }
+        pose.clearance = least_clearance(problem, pose.configuration);
         pose.via = visit.via;
         pose.is_blocked = visit.is_blocked;
         arranged.push_back(std::move(pose));
@@ -62,9 +63,10 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.request.starts = planned.starts;
     plan.starts_at_best = planned.starts_at_best;
     plan.value_rms = value_rms_of(problem, plan.value);
-    plan.standard_deviations = detail::standard_deviations(campaign, planned.information);
     plan.visiting_time = tour.time;
     plan.assumptions = assumptions_of(campaign);
+    const std::string unchecked = describe_unchecked_bodies(campaign);
+    if (!unchecked.empty()) plan.cell_doubts.push_back(unchecked);
     return plan;
 }
 
@@ -140,7 +142,7 @@ Planning PlanMaker::make(Index pose_count,
     add_searched_bound(from.space, from.configurations, from.blocks, search, planned);
     planning.plan.searched_bound = planned.searched_bound;
     planning.plan.searched_efficiency = planned.efficiency;
-    planning.plan.ending = ending_of(planned);
+    if (!planning.tour.is_cut_short) planning.plan.ending = ending_of(planned);
     return planning;
 }
 
@@ -164,10 +166,12 @@ Ending PlanMaker::ending_of(const PlannedPoses& planned) const {
 Planning PlanMaker::finish(PlanOptions search, const PlannedPoses& planned) const {
     TourOptions tour_options;
     tour_options.order.seed = options_.seed;
+    tour_options.stop = options_.stop;
     Tour tour =
         plan_tour(problem_.constraints, all_poses(problem_, planned.configurations), tour_options);
     Plan plan = make_result(problem_, planned, pool_, tour);
-    plan.ending = ending_of(planned);
+    plan.ending =
+        tour.is_cut_short ? options_.stop.ending_or(Ending::TimeLimit) : ending_of(planned);
     search.progress = {};
     search.test_poses = nullptr;
     search.bound_iterations = problem_.search.bound_iterations;
@@ -180,7 +184,11 @@ Planning PlanMaker::finish(PlanOptions search, const PlannedPoses& planned) cons
     planning.campaign = problem_.campaign;
     planning.errors = problem_.errors;
     planning.search = std::move(search);
-    planning.information = planned.information;
+    // As verify() sums it, so that no digit depends on the order of the poses.
+    planning.information =
+        held_information(problem_) + information(blocks_of(problem_, planning.plan.poses));
+    planning.plan.standard_deviations =
+        standard_deviations(problem_.campaign, planning.information);
     conclude(planning, problem_, options_.drop_out_count);
     return planning;
 }

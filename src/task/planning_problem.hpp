@@ -46,6 +46,10 @@ void draw_workspace(PlanningProblem& problem, const PlanningOptions& options);
 /// A pose at a configuration, with the targets that are seen there.
 PlannedPose pose_at(const PlanningProblem& problem, std::string id, const VectorXd& configuration);
 
+/// PlannedPose::clearance.
+std::optional<Clearance> least_clearance(const PlanningProblem& problem,
+                                         const VectorXd& configuration);
+
 /// poses x targets.
 Seen seen_at(const std::vector<PlannedPose>& poses, Index target_count);
 

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <set>
 
 #include "../core/checksum.hpp"
+#include "calibration_options.hpp"
 #include "inputs.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
@@ -40,9 +39,9 @@ struct Setting {
 
 /// Why not even all configurations identify the model; empty: they do.
 std::string describe_undetermined(const Campaign& campaign, const Measurements& measurements,
-                                  const Registration& registration) {
+                                  const Registration& registration, const StudyOptions& options) {
     if (!registration.is_determined()) return registration.undetermined;
-    return identify(campaign, measurements, registration.parameters).undetermined;
+    return detail::judge_measured(campaign, measurements, options.judge, options.stop);
 }
 
 void check_options(const StudyOptions& options) {
@@ -211,7 +210,7 @@ Prepared prepare(Index least, const RobotModel& model, const Measurements& measu
     }
     Prepared prepared{{campaign, measurements, options, make_splits(all, split_count, options)},
                       {},
-                      describe_undetermined(campaign, measurements, registration)};
+                      describe_undetermined(campaign, measurements, registration, options)};
     std::vector<Split>& splits = prepared.setting.splits;
     const auto counts =
         choose_pose_counts(options.pose_counts, static_cast<Index>(splits.front().pool.size()),
@@ -237,19 +236,6 @@ Prepared prepare(Index least, const RobotModel& model, const Measurements& measu
     }
     cases.checksum = checksum_of(prepared.setting);
     return prepared;
-}
-
-/// Of studies that were stopped, those rows stay that are complete in all.
-void keep_common_rows(std::vector<Study>& studies) {
-    std::map<Index, std::set<const Study*>> having;
-    for (const Study& study : studies) {
-        for (const StudyRow& row : study.rows) having[row.pose_count].insert(&study);
-    }
-    for (Study& study : studies) {
-        std::erase_if(study.rows, [&](const StudyRow& row) {
-            return having[row.pose_count].size() < studies.size();
-        });
-    }
 }
 
 }  // namespace
@@ -290,7 +276,7 @@ std::vector<Study> compare_models(const std::vector<RobotModel>& models,
                                                       : Ending::NotIdentifiable;
         }
     });
-    if (options.stop.is_set()) keep_common_rows(studies);
+    if (options.stop.is_set() || options.shard.count > 1) keep_common(studies);
     return studies;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "../measurement/prior_rows.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -34,7 +35,7 @@ SelectOptions study_selection(const StudyOptions& options, const Campaign& campa
     selection.starts = options.starts;
     selection.kicks = kick_count(candidate_count);
     selection.proof = proof_seconds;
-    if (campaign.spread.is_prior) selection.held = prior_information(campaign);
+    if (campaign.spread.is_prior) selection.held_rows = detail::prior_rows(campaign);
     selection.least_distance = options.least_distance;
     selection.seed = options.seed;
     return selection;
@@ -85,6 +86,22 @@ std::vector<MeasuredCase> list_cases(const TrialSeries& series) {
     return cases;
 }
 
+namespace {
+
+/// Split after split, so that a study that is stopped has some of them for all pose counts.
+void order_by_split(const std::vector<TrialSeries>& series, std::vector<TrialId>& trials) {
+    std::vector<std::vector<MeasuredCase>> cases;
+    for (const TrialSeries& one : series) {
+        cases.push_back(one.is_simulated ? std::vector<MeasuredCase>() : list_cases(one));
+    }
+    std::ranges::stable_sort(trials, {}, [&](const TrialId& id) {
+        const auto& of_series = cases[static_cast<std::size_t>(id.series)];
+        return of_series.empty() ? 0 : of_series[static_cast<std::size_t>(id.number)].split;
+    });
+}
+
+}  // namespace
+
 TrialRuns::TrialRuns(const std::vector<TrialSeries>& series, const StudyOptions& options)
     : series_(series), options_(options) {
     const Shard& shard = options.shard;
@@ -119,13 +136,16 @@ void TrialRuns::run(const RunTrials& run_trials, const std::vector<Index>& count
     begin.done = begin.total - open_count;
     ProgressCounter counter(options_.progress, begin);
     std::vector<TrialId> open;
-    visit_open([&](const TrialId& id) {
-        open.push_back(id);
-        if (open.size() < most) return;
+    const auto run_open = [&] {
+        order_by_split(series_, open);
         run_some(run_trials, open, counter);
         open.clear();
+    };
+    visit_open([&](const TrialId& id) {
+        open.push_back(id);
+        if (open.size() == most) run_open();
     });
-    run_some(run_trials, open, counter);
+    run_open();
 }
 
 void TrialRuns::run_some(const RunTrials& run_trials, const std::vector<TrialId>& open,

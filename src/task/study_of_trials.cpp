@@ -23,32 +23,38 @@ std::vector<StudyRow> measured_rows(const TrialSeries& series, const TrialTable&
     const std::vector<MeasuredCase> cases = detail::list_cases(series);
     const auto splits = static_cast<std::size_t>(std::max<Index>(1, series.splits));
     struct Row {
-        std::vector<StudyCase> optimal, random;
-        std::size_t open = 0;
+        std::vector<StudyCase> optimal, random;  // in the order of their trials
+        std::vector<Index> open;                 // cases, of each split
     };
-    std::vector<Row> rows(series.pose_counts.size());
-    for (Row& row : rows) {
-        row.optimal.resize(series.criteria.size() * splits);
-        row.random.resize(static_cast<std::size_t>(series.random_subsets));
-        row.open = row.optimal.size() + row.random.size();
-    }
+    std::vector<Row> rows(series.pose_counts.size(), {{}, {}, std::vector<Index>(splits)});
+    std::size_t next = 0;
+    const auto take = [&](const MeasuredCase& one, const StudyCase& found) {
+        (one.is_random ? rows[one.row].random : rows[one.row].optimal).push_back(found);
+        (one.is_random ? rows[one.row].random : rows[one.row].optimal).back().split = one.split;
+    };
+    const auto take_open_before = [&](std::size_t number) {
+        for (; next < number; ++next) {
+            take(cases[next], {});
+            ++rows[cases[next].row].open[static_cast<std::size_t>(cases[next].split)];
+        }
+    };
     table.for_each([&](const Trial& trial) {
-        const MeasuredCase& one = cases[static_cast<std::size_t>(trial.number)];
-        Row& row = rows[one.row];
-        StudyCase& result =
-            one.is_random ? row.random[one.number]
-                          : row.optimal[one.number * splits + static_cast<std::size_t>(one.split)];
-        result = detail::read_case(trial.values.data(), trial.values.size());
-        result.split = one.split;
-        --row.open;
+        take_open_before(static_cast<std::size_t>(trial.number));
+        take(cases[next++], detail::read_case(trial.values.data(), trial.values.size()));
     });
-    std::vector<StudyRow> complete;
+    take_open_before(cases.size());
+    std::vector<StudyRow> finished;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (rows[i].open > 0) continue;
-        complete.push_back(
-            {series.pose_counts[i], std::move(rows[i].optimal), std::move(rows[i].random)});
+        auto& [optimal, random, open] = rows[i];
+        const auto is_open = [&](const StudyCase& one) {
+            return open[static_cast<std::size_t>(one.split)] > 0;
+        };
+        std::erase_if(optimal, is_open);
+        std::erase_if(random, is_open);
+        if (optimal.empty()) continue;
+        finished.push_back({series.pose_counts[i], std::move(optimal), std::move(random)});
     }
-    return complete;
+    return finished;
 }
 
 /// A split a trial.

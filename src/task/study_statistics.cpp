@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
+#include <set>
+#include <utility>
 
 #include "../core/statistics.hpp"
 #include "posewise/task/study.hpp"
@@ -27,6 +30,36 @@ std::optional<Advantage> detail::geometric_mean(const VisitNumbers& logarithms) 
 StudyCases::StudyCases(std::vector<StudyCase> cases) : size_(cases.size()) {
     const auto shared = std::make_shared<const std::vector<StudyCase>>(std::move(cases));
     read_ = [shared](std::size_t number) { return (*shared)[number]; };
+}
+
+Index split_count(const StudyRow& row, std::size_t criterion_count) {
+    return static_cast<Index>(row.optimal.size() / criterion_count);
+}
+
+void keep_common(std::vector<Study>& studies) {
+    using Place = std::pair<Index, Index>;  // pose count and split
+    std::map<Place, std::size_t> having;
+    for (const Study& study : studies) {
+        if (study.is_simulated) return;  // robots are drawn one by one, all pose counts of each
+        std::set<Place> places;
+        for (const StudyRow& row : study.rows) {
+            for (const StudyCase& one : row.optimal) places.insert({row.pose_count, one.split});
+        }
+        for (const Place& place : places) ++having[place];
+    }
+    for (Study& study : studies) {
+        for (StudyRow& row : study.rows) {
+            for (StudyCases* const cases : {&row.optimal, &row.random}) {
+                std::vector<StudyCase> common;
+                for (const StudyCase& one : *cases) {
+                    if (having[{row.pose_count, one.split}] == studies.size())
+                        common.push_back(one);
+                }
+                *cases = StudyCases(std::move(common));
+            }
+        }
+        std::erase_if(study.rows, [](const StudyRow& row) { return row.optimal.empty(); });
+    }
 }
 
 StudyCases planned_cases(const StudyRow& row, std::size_t criterion, std::size_t criterion_count) {

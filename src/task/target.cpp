@@ -135,13 +135,19 @@ class Search {
         return has_crossed(has_limit() ? judge(planning) : std::nullopt, planning.duration);
     }
 
-    const CountPrediction& choose(Index count) {
-        const auto [found, is_new] = chosen_.try_emplace(count);
-        CountPrediction& prediction = found->second;
-        if (!is_new) return prediction;
+    /// After a stop perhaps without an error; it is not kept then.
+    CountPrediction choose(Index count) {
+        const auto known = chosen_.find(count);
+        if (known != chosen_.end()) return known->second;
+        const CountPrediction prediction = predict(count);
+        if (!options_.stop.is_set()) chosen_[count] = prediction;
+        return prediction;
+    }
+    CountPrediction predict(Index count) const {
+        CountPrediction prediction;
         prediction.pose_count = count;
-        const auto chosen = choices_.choose(count);
-        if (!chosen) return prediction;
+        const auto chosen = choices_.choose(count, options_.stop);
+        if (!chosen || options_.stop.is_set()) return prediction;
         prediction.error = judge(choices_.information(*chosen), choices_.blocks(*chosen),
                                  choices_.by_noise(*chosen));
         const double samples = problem_.request.repeats * static_cast<double>(count);
@@ -154,7 +160,7 @@ class Search {
 
     bool is_crossed_by_choice(Index count) {
         check_stop();
-        const CountPrediction& prediction = choose(count);
+        const CountPrediction prediction = choose(count);
         return has_crossed(prediction.error, prediction.duration);
     }
     Index most_chosen() const { return std::min(most_, choices_.candidate_count()); }

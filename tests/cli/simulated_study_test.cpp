@@ -46,7 +46,7 @@ TEST_F(SimulatedStudies, OfMoreShardsThanTrialsEndWell) {
     const testing::Outcome outcome = run(study_ + "2 --store s3.sqlite --shard 3/3");
     EXPECT_EQ(outcome.code, 0);
     EXPECT_EQ(outcome.out, "");
-    EXPECT_NE(outcome.err.find("no pose count is complete by this shard"), std::string::npos);
+    EXPECT_NE(outcome.err.find("no split is finished by this shard"), std::string::npos);
     EXPECT_EQ(run_well("study --merge s1.sqlite s2.sqlite --store all.sqlite"), whole);
 }
 

@@ -57,6 +57,17 @@ bool is_permutation(std::vector<Index> poses, Index count) {
     return static_cast<Index>(poses.size()) == count;
 }
 
+/// Time of a path that starts at node 0 and visits the poses in this order.
+double order_time(const MatrixXd& times, const std::vector<Index>& poses) {
+    double time = 0;
+    Index here = 0;
+    for (const Index pose : poses) {
+        time += times(here, pose + 1);
+        here = pose + 1;
+    }
+    return time;
+}
+
 TEST(ShortestOrder, IsTheExactOneForFewPoses) {
     for (int i = 0; i < 30; ++i) {
         RandomStream stream(21, static_cast<std::uint64_t>(i));
@@ -72,7 +83,7 @@ TEST(ShortestOrder, IsNeverLongerThanNearestNeighbour) {
     for (int i = 0; i < 20; ++i) {
         RandomStream stream(22, static_cast<std::uint64_t>(i));
         const MatrixXd times = random_times(stream, stream.index(60));
-        const VisitingOrder order = shortest_order(times, {20, 1});
+        const VisitingOrder order = shortest_order(times, {20, 1, {}});
         EXPECT_TRUE(is_permutation(order.poses, times.rows() - 1));
         EXPECT_LE(order.time, nearest_neighbour_order(times).time + 1e-12);
     }

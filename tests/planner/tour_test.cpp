@@ -4,7 +4,7 @@
 
 #include "../../src/model/halton.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/planner/pool.hpp"
+#include "posewise/measurement/pool.hpp"
 #include "support/cells.hpp"
 #include "support/sweep.hpp"
 

@@ -16,6 +16,7 @@ struct Provenance {
     std::string campaign_checksum{};  ///< CampaignFile::checksum
     /// Of the command line: its name and what was said.
     std::vector<std::pair<std::string, std::vector<std::string>>> options{};
+    std::vector<std::string> warnings{};  ///< what was warned of, a sentence each
 };
 
 /// Tells whether measurements are the same: of configurations, their ids, what was observed there.
@@ -45,6 +46,7 @@ Estimate read_estimate(const std::string& path, const Campaign& campaign);
 struct EarlierFile : Earlier {
     /// Where the campaign's noise or expected sizes are others now: "sigma_m was 1e-05, is 2e-05".
     std::vector<std::string> changes;
+    std::vector<std::string> warnings;  ///< that were given when it was made, a sentence each
     /// Calibration::faults, where it was written all the same: it must not be used.
     std::vector<std::string> faults;
 };

@@ -52,7 +52,9 @@ std::string to_json(const std::vector<PagePart>& parts);
 /// The page, parts side by side. Throws InputError as to_json().
 std::string to_page(const std::vector<PagePart>& parts);
 
-/// Writes it, all or nothing. Throws InputError as to_page(), and if it cannot be written.
-void write_page(const std::string& path, const std::vector<PagePart>& parts);
+/// Writes it, all or nothing, with what was warned of while it was made. Throws InputError as
+/// to_page(), and if it cannot be written.
+void write_page(const std::string& path, const std::vector<PagePart>& parts,
+                const std::vector<std::string>& warnings = {});
 
 }  // namespace posewise::io

@@ -3,14 +3,14 @@
 #include <cstdint>
 #include <optional>
 
-#include "posewise/planner/pool.hpp"
+#include "posewise/measurement/pool.hpp"
 #include "posewise/selection/exchange.hpp"
 
 namespace posewise {
 
 /// What a plan has besides the poses that are refined: a prior, poses already measured, or both.
 struct HeldPoses {
-    MatrixXd information;        ///< parameters square; empty: none
+    RowMatrixXd rows;            ///< as SelectOptions::held_rows; empty: none
     RowMatrixXd configurations;  ///< poses x joints; for the least joint distance
 };
 
@@ -79,6 +79,8 @@ struct Tour {
     double planning_order_time = 0;  ///< of straight moves in the order the poses were given
     double nearest_neighbour_time = 0;  ///< of straight moves to the nearest pose each
     Index blocked_count = 0;
+    /// There was no time to look for the shortest one, nor for ways round what blocks a move.
+    bool is_cut_short = false;
 };
 
 }  // namespace posewise

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -61,6 +62,8 @@ struct CalibrationOptions {
     /// Replaces the expected sizes of the robot's errors by those they have, learn_sizes(); the
     /// groups held out are predicted with the same sizes. Needs Joint and a spread that is a prior.
     bool learns_sizes = false;
+    /// Where there are doubts: campaigns that richer errors would make, to try. Nothing: none.
+    std::function<std::vector<OtherCampaign>()> richer{};
     /// Ends the identification with the best so far; figures that are not complete are left out.
     StopSignal stop{};
     ProgressCallback progress{};  ///< of the identification, the groups held out and the sets
@@ -139,12 +142,21 @@ struct Calibration {
     std::optional<WithoutOutliers> without_outliers;  ///< if there are some
     std::optional<ModelSelection> selection;          ///< if asked for
     Doubts doubts;
-    /// What makes it none that may reach a robot, find_faults(); beside Global, which expects large
-    /// errors, values of any size are taken.
+    Cures cures;  ///< that were tried where there are doubts, of Joint
+    /// What makes it none that may reach a robot: find_faults(), a calibrated robot that predicts
+    /// others worse than the nominal one (or no better, with residuals far beyond those stated),
+    /// that leaves more over than a robot misses before it is calibrated, or ten times more than
+    /// without one configuration. Of Global, which expects large errors, values of any size are
+    /// taken.
     std::vector<std::string> faults;
 
     bool is_identified() const { return estimate.ending != Ending::NotIdentifiable; }
 };
+
+/// Looks at the calibration by all that was measured before something is built on it.
+using JudgeCalibration = std::function<void(const Calibration&)>;
+/// Throws InputError, with what is wrong, if it has faults.
+void refuse_faults(const Calibration& calibration);
 
 /// What is wrong with CalibrationOptions::validation, not with what is calibrated with.
 struct ValidationError : InputError {

@@ -9,6 +9,7 @@
 #include "posewise/core/progress.hpp"
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/measurement/measurements.hpp"
+#include "posewise/model/cell.hpp"
 #include "posewise/planner/prediction.hpp"
 #include "posewise/selection/choice.hpp"
 #include "posewise/task/earlier.hpp"
@@ -84,6 +85,8 @@ struct PlannedPose {
     std::optional<VectorXd> via = {};  ///< configuration to pass on the way there
     bool is_blocked = false;           ///< no free way there was found
     bool is_kept = false;              ///< of the plan that was repaired
+    /// Of continuous plans: the least there, at the nominal robot; nothing: not stated.
+    std::optional<Clearance> clearance = {};
 };
 
 /// A number by its name, which ends with its unit where it has one.
@@ -137,6 +140,10 @@ struct Plan {
     /// for where there are no more.
     std::vector<PlannedPose> verification;
     double verification_time = 0;  ///< s, of all moves to and between them
+
+    /// What of the robot is not kept off the cell's obstacles, and listed candidates that are not
+    /// allowed there, a sentence each.
+    std::vector<std::string> cell_doubts;
 
     /// Noise and scales it rests on: "sigma_m", "expected_error/dq2_rad". A NaN was no number.
     std::vector<NamedNumber> assumptions;

@@ -61,7 +61,9 @@ struct CountAccuracy {
     std::optional<PredictedAccuracy> accuracy;
 };
 
-/// Of half, as many and twice as many new poses as were planned, by count.
-std::vector<CountAccuracy> predict_other_counts(const Planning& planning);
+/// Of half, as many and twice as many new poses as were planned, by count; after a stop of those
+/// that are known by then.
+std::vector<CountAccuracy> predict_other_counts(const Planning& planning,
+                                                const StopSignal& stop = {});
 
 }  // namespace posewise

@@ -14,6 +14,7 @@
 #include "posewise/core/progress.hpp"
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/task/calibration.hpp"
 #include "posewise/task/trials.hpp"
 
 namespace posewise {
@@ -82,12 +83,14 @@ class StudyCases {
     Read read_;
 };
 
-/// All subsets of one size.
+/// All subsets of one size, of those splits that are finished.
 struct StudyRow {
     Index pose_count = 0;
     StudyCases optimal;  ///< of each asked criterion one for each split
     StudyCases random;   ///< in turn of each split
 };
+/// How many splits are finished, of a study of so many criteria; 1 if nothing is held out.
+Index split_count(const StudyRow& row, std::size_t criterion_count);
 
 struct StudyOptions {
     std::vector<Criterion> criteria{Criterion::D};
@@ -104,10 +107,12 @@ struct StudyOptions {
     double least_distance = 0;  ///< rad, of any two in a planned subset, as PlanRequest has it
     Index starts = 4;           ///< of the exchange
     std::uint64_t seed = 1;
+    /// Of measured configurations: what all of them calibrate, before any case is run.
+    JudgeCalibration judge = refuse_faults;
     TrialStore store{};               ///< of cases that are finished; none: they are run anew
     TrialCrew crew = run_on_threads;  ///< runs the cases
     Shard shard{};                    ///< of the cases that are run
-    StopSignal stop{};                ///< ends it with the pose counts that are complete
+    StopSignal stop{};                ///< ends it with the splits that are finished
     ProgressCallback progress{};      ///< of the cases
 };
 
@@ -129,16 +134,20 @@ struct Study {
 /// Chooses k of the measured configurations by each criterion and at random, calibrates with them
 /// from registration on, and judges on configurations held out: the same ones for all subsets of a
 /// split. The same result for any number of threads.
-/// Throws InputError for measurements of another robot (check_is_of_robot()), for a pose count that
+/// Throws InputError for measurements of another robot (check_is_of_robot()), for those that are no
+/// calibration (StudyOptions::judge), for a pose count that
 /// is not in [1, configurations], for a least distance that as many configurations do not keep, and
 /// for other options out of range.
 Study study(const Campaign& campaign, const Measurements& measurements,
             const StudyOptions& options = {});
 
 /// The study that the finished trials of a series make which a store has; they may be fewer than
-/// the series has. Pose counts of measured configurations that are not complete are left out.
-/// Throws InputError for trials that are none of it.
+/// the series has. Splits of measured configurations that are not finished are left out, and pose
+/// counts without any. Throws InputError for trials that are none of it.
 Study study_of_trials(const TrialSeries& series, const TrialStore& store);
+
+/// Leaves those pose counts and splits that all of the studies have.
+void keep_common(std::vector<Study>& studies);
 
 /// A robot with one of the error models to compare.
 struct RobotModel {
@@ -147,8 +156,7 @@ struct RobotModel {
 };
 /// The same study with each error model of one robot: the same splits and random subsets, and the
 /// same pose counts (by default from the largest of the models' least ones). One study each, in
-/// that order; if it is stopped, with the pose counts that are complete in all. Throws as study()
-/// does.
+/// that order; if it is stopped, with the splits that are finished in all. Throws as study() does.
 std::vector<Study> compare_models(const std::vector<RobotModel>& models,
                                   const Measurements& measurements,
                                   const StudyOptions& options = {});

@@ -1,13 +1,18 @@
 import { el, saveFile } from '../core/dom.js';
+import { warningsOf } from './warnings.js';
 
 const kinds = { plan: 'Plan', estimate: 'Calibration', study: 'Study', export: 'Export' };
 
-export function header(parts, sections) {
+/** What was warned of while the page was made and no part has. */
+const ownWarnings = (page, parts) => warningsOf(page).filter((text) => !parts.some((part) => warningsOf(part.document).includes(text)));
+
+export function header(page, parts, sections) {
   const names = [...new Set(parts.map((part) => part.robot))];
   const what = [...new Set(parts.map((part) => kinds[part.kind] ?? part.kind))].join(', ');
   return el('header', {},
     el('p', { class: 'kind' }, `posewise \u00b7 ${what}`),
     el('h1', {}, names.join(' \u00b7 ')),
+    ownWarnings(page, parts).map((text) => el('p', { class: 'warning', role: 'note' }, text)),
     el('nav', { 'aria-label': 'Sections' }, el('ul', {}, sections.map((section) =>
       el('li', {}, el('a', { href: `#${section.id}` }, section.querySelector('h2').textContent))))));
 }

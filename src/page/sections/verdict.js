@@ -15,5 +15,5 @@ const answers = { plan: answerPlan, estimate: answerEstimate, study: answerStudy
 export function render(part, parts) {
   const { sentence, rows, warnings } = answers[part.kind](part, parts);
   return el('div', {}, el('p', { class: 'verdict' }, sentence),
-    (warnings ?? []).map((text) => el('p', { class: 'warning', role: 'note' }, text)), facts(rows));
+    warnings.map((text) => el('p', { class: 'warning', role: 'note' }, text)), facts(rows));
 }

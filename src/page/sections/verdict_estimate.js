@@ -3,12 +3,14 @@ import { driftOf } from '../core/drift.js';
 import { factorOfRms, influence } from '../core/influence.js';
 import { rms } from '../core/statistics.js';
 import { limitOf } from './verdict_plan.js';
+import { warningsOfEstimate } from './warnings.js';
 
 /** What the calibration leaves where it was not measured: of what is known the most honest. */
 function errorOf({ accuracy }) {
   const unit = accuracy.fit.distance_rms_mm === undefined ? 'mrad' : 'mm';
   const pick = (metrics) => ({ rms: metrics[unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'], p95: metrics.distance_p95_mm, turn: unit === 'mm' ? metrics.orientation_rms_mrad : undefined, unit });
-  if (accuracy.validation) return { ...pick(accuracy.validation), where: 'on the measurements kept for validation', key: null };
+  const moved = accuracy.moved_before_validation ? `, before which ${accuracy.moved_before_validation.parts.join(' and ')} moved` : '';
+  if (accuracy.validation) return { ...pick(accuracy.validation), where: `on the measurements kept for validation${moved}`, key: null };
   if (accuracy.left_out) return { ...pick(accuracy.left_out), where: 'on configurations not in the plan', key: null };
   if (accuracy.held_out) return { ...pick(accuracy.held_out.samples), where: `on configurations not measured (held out, ${accuracy.held_out.folds} folds)`, key: 'held_out' };
   return { ...pick(accuracy.fit), where: 'on the measurements it was made from (nothing was held out)', key: 'residual' };
@@ -52,18 +54,6 @@ function moreOf(part) {
   return `About ${count(Math.ceil((now * parameters) / wanted - now), 'configuration')} more, if they tell as much as those measured.`;
 }
 
-const doubtTexts = {
-  missing_errors: (part) => `About ${(100 * part).toFixed(0)} % of the squares left over follow the joints' positions: joints bend or have periodic errors that this model leaves out.`,
-  gross_error_mm: (value) => `The nominal robot misses by ${short(value, 4)} mm: outliers, or a wrong robot?`,
-  lacks_length: () => 'No distance is stated: nothing says how large everything is.',
-  negative_compliances: (joints) => `Negative compliance of ${joints.join(', ')}: is the sign of the torques right?`,
-  misfit: (one) => `The nominal robot misses half of the points by at least ${short(one.distance_mm, 4)} mm.`,
-  small_residuals: () => 'Residuals are far smaller than stated: sigma or model error in another unit?',
-  residuals: (list) => list.map((one) => `Residuals are ${short(one.ratio, 2)} times what sigma and model error say.`).join(' '),
-  sizes: (list) => `Far above the expected size: ${list.map((one) => `${one.parameter} (${short(one.times_expected, 3)} times)`).join(', ')}.`,
-  scatter: (one) => `Repeats differ by ${short(one.ratio, 3)} times sigma${one.sample ? `; the farthest is ${one.sample}` : ''}.`,
-};
-
 /** What the parameters alone leave over the workspace, where these poses may not have told enough. */
 function workspaceOf(part) {
   const errors = part.error_map?.predicted_mm ?? [];
@@ -102,22 +92,16 @@ function limitOfEstimate(part) {
   return `Parameters are not known better: over the workspace ${mm(workspace.rms)} mm RMS by them, ${mm(left)} mm by what the model of the robot cannot express.`;
 }
 
-function doubtsOf(document) {
-  const texts = Object.entries(document.doubts ?? {}).filter(([key, value]) => key in doubtTexts && value !== false)
-    .map(([key, value]) => doubtTexts[key](value));
-  return [...[document.faults ?? []].flat().map(String), ...texts];
-}
-
 export function answerEstimate(part) {
   const { document } = part;
   const { accuracy } = document;
-  if (!accuracy?.fit) return { sentence: 'This calibration identified nothing.', rows: [] };
+  if (!accuracy?.fit) return { sentence: 'This calibration identified nothing.', warnings: warningsOfEstimate(document), rows: [] };
   const error = errorOf(document);
   const nominal = accuracy.nominal?.[error.unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'];
   const sure = part.residuals && error.key ? factorOfRms(part.residuals, error.key) : null;
   const interval = sure && { lower: error.rms / sure.factor, upper: error.rms * sure.factor, count: sure.count };
   const surprise = surpriseOf(document, error, sure);
-  const warnings = [...doubtsOf(document), surprise].filter(Boolean);
+  const warnings = [...warningsOfEstimate(document), surprise].filter(Boolean);
   const drift = part.residuals ? driftOf(part.residuals, part.scene?.joints) : null;
   const workspace = workspaceOf(part);
   if (error.unit === 'mm' && workspace?.rms > 2 * error.rms) {

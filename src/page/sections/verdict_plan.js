@@ -2,6 +2,7 @@ import { count, fixed, mm, short } from '../core/format.js';
 import { moreFor, plannedCurve } from '../core/curve.js';
 import { idsOf } from '../core/poses.js';
 import { budgetOf } from './budget.js';
+import { warningsOf } from './warnings.js';
 
 export const noDrift = 'Not known: drift shows in measurements only.';
 
@@ -84,7 +85,7 @@ export function answerPlan(part) {
   const sentence = found ? `Calibrated with these ${poses}${document.measured_count > 0 ? ` and ${document.measured_count} measured already` : ''}, the robot is expected to have a position error of ${mm(found.value)} mm ${found.name}${interval}${over}, ${found.isPartial ? 'without the model error' : 'model error included'}.`
     : `${poses} chosen for criterion ${document.criterion}: ${idsOf(document)}.`;
   const isRobot = document.candidates.kind !== 'blocks';
-  const warnings = [];
+  const warnings = [...warningsOf(document)];
   const limit = document.monte_carlo?.limit;
   if (limit === 'not kept') warnings.push(`The limit of ${short(document.target.limit_mm)} mm is not kept on robots that were drawn.`);
   if (document.search.stop_reason === 'interrupted' || document.search.stop_reason === 'time limit') warnings.push(`The search ended early (${document.search.stop_reason}): there may be better poses.`);

@@ -1,6 +1,7 @@
 import { count, fixed, mm } from '../core/format.js';
 import { moreFor } from '../core/curve.js';
 import { noDrift } from './verdict_plan.js';
+import { warningsOf } from './warnings.js';
 
 /** Where more poses stop paying, if they do: the least number within 10 % of the best found. */
 function enoughOf(points) {
@@ -42,16 +43,17 @@ function sentenceOf(points, what, trials) {
 export function answerStudy(part) {
   const { document } = part;
   const models = document.models.map((model) => ({ model, points: pointsOf(model, 0) })).filter(({ points }) => points.length > 0);
-  if (models.length === 0) return { sentence: 'No number of poses of this study identifies the model.', rows: [] };
+  if (models.length === 0) return { sentence: 'No number of poses of this study identifies the model.', warnings: warningsOf(document), rows: [] };
   const [{ model, points }, ...others] = models;
   const enough = enoughOf(points);
   const { one } = enough;
   const { criterion } = one;
   const what = document.simulated ? 'over the workspace' : 'on configurations held out';
   const ratio = one.against_random;
-  const trials = count(document.splits, document.simulated ? 'robot' : 'split');
+  const trials = count(enough.row.splits ?? document.splits, document.simulated ? 'robot' : 'split');
   return {
     sentence: `${model.name ? `${model.name}: ` : ''}${sentenceOf(points, what, trials)}`,
+    warnings: warningsOf(document),
     rows: [
       ['How accurate', `${mm(enough.value)} mm RMS ${what} with ${count(enough.count, 'pose')}${model.name ? ` (${model.name})` : ''}; the calibrations themselves expect ${mm(one.expected_rms_mm)} mm.`],
       ['How sure', ratio ? `Planned against random ${fixed(ratio.ratio, 2)}, with 95 % confidence ${fixed(ratio.lower, 2)} to ${fixed(ratio.upper, 2)}; medians over ${trials}, judged on ${count(document.judged_on, 'configuration')}.` : null],
