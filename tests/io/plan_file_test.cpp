@@ -148,12 +148,12 @@ TEST_F(PlanFileTest, KeepsPosesToVerifyApart) {
     EXPECT_NE(error.find("verification[1].id: 'dritte Stück' occurs before in poses[1]; keep one"),
               std::string::npos)
         << error;
-    const Campaign campaign = read_campaign(folder_.path("c.yaml"));
+    const CampaignFile campaign = read_campaign(folder_.path("c.yaml"));
     write_plan(path_, plan_, folder_.path("p.csv"), campaign);
     const std::string csv = read_file(folder_.path("p.csv"));
-    EXPECT_NE(csv.find(",visible_targets,purpose\n"), std::string::npos) << csv;
-    EXPECT_NE(csv.find(",calibrate\nv1,"), std::string::npos) << csv;
-    EXPECT_NE(csv.find(",1,verify\nv2,"), std::string::npos) << csv;
+    EXPECT_NE(csv.find(",visible_targets,purpose,way\n"), std::string::npos) << csv;
+    EXPECT_NE(csv.find(",calibrate,straight\nv1.via,"), std::string::npos) << csv;
+    EXPECT_NE(csv.find(",1,verify,straight\nv2,"), std::string::npos) << csv;
     EXPECT_EQ(read_configurations(folder_.path("p.csv"), campaign).ids.size(), 4U);
 }
 

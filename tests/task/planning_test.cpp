@@ -9,6 +9,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/task/verification.hpp"
 #include "support/cells.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace posewise {
 namespace {
