@@ -60,6 +60,11 @@ Json look_to_json(const ResidualLook& look, bool is_angle) {
                            {"effect" + error_suffix(is_angle), mm_per_m * rounded->effect},
                            {"held_out", change_to_json(rounded->held_out, is_angle)}};
     }
+    if (const auto& rounded = look.rounded_readings) {
+        json["rounded_readings"] = {{"step_mm", mm_per_m * rounded->step},
+                                    {"effect_mm", mm_per_m * rounded->effect},
+                                    {"left_mm", mm_per_m * rounded->left}};
+    }
     if (const auto& shifted = look.shifted) {
         json["shifted"] = {{"first", shifted->first},
                            {"shift", shifted->shift},

@@ -24,18 +24,16 @@ struct DrivenAxisName {
     int number = 1;    ///< which of that joint's axes
 };
 
-/// Whether what is next to this element on one side, up to another that joints drive, all has its
-/// axis (or is nothing): they are one axis, written in several elements.
+/// Whether right beside this element, on one side, joints drive another of its kind: one axis,
+/// written in two elements.
 bool is_one_with_next(const std::vector<Element>& elements, std::size_t k, std::ptrdiff_t step) {
-    const Axis axis = elements[k].axis;
-    for (std::size_t i = k + static_cast<std::size_t>(step); i < elements.size();
-         i += static_cast<std::size_t>(step)) {
-        const bool is_driven = !elements[i].joints.empty();
-        if (!is_driven && elements[i].value == 0) continue;
-        if (elements[i].axis != axis) return false;
-        if (is_driven) return true;
-    }
-    return false;
+    const auto is_nothing = [](const Element& element) {
+        return element.joints.empty() && element.value == 0;
+    };
+    std::size_t i = k + static_cast<std::size_t>(step);
+    while (i < elements.size() && is_nothing(elements[i])) i += static_cast<std::size_t>(step);
+    return i < elements.size() && !elements[i].joints.empty() &&
+           elements[i].motion == elements[k].motion && elements[i].axis == elements[k].axis;
 }
 
 /// For each element the axis whose errors follow it. One that only moves along with joints that

@@ -51,7 +51,8 @@ std::string describe(const SetUpChange& change, const Campaign& campaign) {
     if (change.rotation.norm() > 0) {
         text += fmt::format(" and {} mrad", describe_vector(change.rotation));
     }
-    const bool is_in_world = is_base || change.part.starts_with("socket");
+    const bool is_in_world =
+        is_base || change.part.starts_with("socket") || change.part.starts_with("readings");
     text += is_in_world ? " in the instrument's frame" : " in the flange's frame";
     if (!change.excluded.empty()) {
         return text + fmt::format("; with --exclude {}: {}", change.excluded,
@@ -90,10 +91,19 @@ std::string describe(const RoundedJoints& rounded, const Campaign& campaign) {
     const double degrees = to_degrees(rounded.step);
     return fmt::format(
         "all joint angles are multiples of {} deg, and rounding them so leaves {} {} by itself: "
-        "record more digits; with joint_repeatability_deg: {}: {}",
+        "record more digits; with repeatability_mrad: {} of each joint: {}",
         format_short(degrees, 2), format_short(1e3 * rounded.effect, 2),
-        units_of(!campaign.sensor->has_lengths()).error, format_short(degrees / std::sqrt(12.0), 2),
+        units_of(!campaign.sensor->has_lengths()).error,
+        format_short(1e3 * rounded.step / std::sqrt(12.0), 2),
         describe(rounded.held_out, campaign));
+}
+
+std::string describe(const RoundedReadings& rounded) {
+    return fmt::format(
+        "all lengths read are multiples of {} mm; rounding them so leaves {} mm by itself, the fit "
+        "leaves {} mm: record more digits",
+        format_short(1e3 * rounded.step, 2), format_short(1e3 * rounded.effect, 2),
+        format_short(1e3 * rounded.left, 2));
 }
 
 std::string describe(const ShiftedRows& shifted, const Campaign& campaign) {
@@ -115,6 +125,7 @@ std::vector<std::string> describe_look(const ResidualLook& look, const Campaign&
     if (look.lengths) sentences.push_back(describe(*look.lengths));
     for (const JointPattern& joint : look.joints) sentences.push_back(describe(joint, campaign));
     if (look.rounded) sentences.push_back(describe(*look.rounded, campaign));
+    if (look.rounded_readings) sentences.push_back(describe(*look.rounded_readings));
     return sentences;
 }
 

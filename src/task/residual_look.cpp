@@ -113,7 +113,8 @@ void look_for_patterns(const Fitted& fitted, ResidualLook& look) {
     const detail::PatternColumns columns(linearised, at);
     look.changes = find_set_up_changes(fitted, columns, *fit);
     look.joints = find_joint_patterns(fitted, columns, *fit);
-    if (!look.changes.empty()) return;
+    // A moved instrument, or a rail that is read wrong, is a factor in part.
+    if (!look.changes.empty() || !look.joints.empty()) return;
     const auto by_sizes = linear_fit(linearised.problem, at, detail::FitPrior::ExpectedSizes);
     if (by_sizes) look.lengths = find_length_factor(fitted, columns, *by_sizes);
 }
@@ -121,7 +122,8 @@ void look_for_patterns(const Fitted& fitted, ResidualLook& look) {
 }  // namespace
 
 bool ResidualLook::is_empty() const {
-    return !outlying && changes.empty() && !lengths && joints.empty() && !rounded && !shifted;
+    return !outlying && changes.empty() && !lengths && joints.empty() && !rounded &&
+           !rounded_readings && !shifted;
 }
 
 ResidualLook look_at_residuals(const Campaign& campaign, const Measurements& measurements,
@@ -134,6 +136,7 @@ ResidualLook look_at_residuals(const Campaign& campaign, const Measurements& mea
     }
     std::optional<Fitted> fitted(std::in_place, campaign, measurements, estimate);
     look.rounded = detail::find_rounded_joints(*fitted);
+    look.rounded_readings = detail::find_rounded_readings(*fitted);
     if (estimate.loss.kind == LossKind::Squares) look.outlying = take_out_outlying(fitted);
     look_for_patterns(*fitted, look);
     return look;

@@ -28,9 +28,9 @@ TwistMatrix twists_of(const Campaign& campaign, const Parameters& parameters, co
     return twists;
 }
 
-bool tells_lengths(const Sensor& sensor) { return sensor.has_lengths() && !sensor.has_contacts(); }
-
 }  // namespace
+
+bool tells_lengths(const Sensor& sensor) { return sensor.has_lengths() && !sensor.has_contacts(); }
 
 std::optional<Fitted> fit_again(const Campaign& campaign, const Measurements& measured,
                                 const Loss& loss) {
@@ -63,9 +63,9 @@ PatternColumns::PatternColumns(const FittedProblem& fitted, const Parameters& pa
     const Measurements& means = fitted.problem.means;
     first_unknown_ = base_columns + campaign.robot.joint_count();
     lengths_ = first_unknown_ + parameters.sensor.size();
-    const Index touched = sensor.has_contacts() ? 3 : 0;
+    const Index shifts = sensor.lengths_per_target() == 3 ? 3 : 0;
     FlangeMotion motion;
-    all_ = whitened_columns(fitted.problem, parameters, lengths_ + 1 + touched,
+    all_ = whitened_columns(fitted.problem, parameters, lengths_ + 1 + shifts,
                             [&](Index i, Eigen::Ref<RowMatrixXd> columns) {
                                 const VectorXd q = means.configurations.row(i).transpose();
                                 const TwistMatrix twists =
@@ -78,7 +78,8 @@ PatternColumns::PatternColumns(const FittedProblem& fitted, const Parameters& pa
                                         means.is_seen(i, row / sensor.rows_per_target())) {
                                         columns(row, lengths_) = means.observations(i, row);
                                     }
-                                    if (touched > 0) columns(row, lengths_ + 1 + row % 3) = -1;
+                                    const Index axis = row % sensor.rows_per_target();
+                                    if (axis < shifts) columns(row, lengths_ + 1 + axis) = 1;
                                 }
                             });
 }
@@ -103,18 +104,22 @@ std::optional<LengthFactor> find_length_factor(const Fitted& fitted, const Patte
         errors.size() == 0 ? 1 : times.squaredNorm() / static_cast<double>(errors.size());
     const Score found = score(fit, columns.lengths(), std::max(1.0, mean_square));
     if (!found.is_beyond(chance_of_factor)) return std::nullopt;
+    constexpr double another_unit = 0.2;  // or another robot
+    if (std::abs(found.effect[0]) > another_unit) return std::nullopt;
     return LengthFactor{found.effect[0], found.deviations[0]};
 }
 
 std::vector<JointPattern> find_joint_patterns(const Fitted& fitted, const PatternColumns& columns,
                                               const LinearFit& fit) {
+    // Errors of joints that turn, as bending, go with their value in part.
+    constexpr double plain = 0.5;
     const Chain& robot = fitted.campaign.robot;
     const RowMatrixXd& q = fitted.measured.configurations;
     const std::vector<Index> all = all_but(fit.count(), {});
     const double before = held_out_squares(fit, all);
     const double rms = held_out_rms(fitted);
     std::vector<JointPattern> patterns;
-    double best = material * before;
+    double best = before;
     const auto try_pattern = [&](Index j, JointPattern::Kind kind, const auto& amount) {
         RowMatrixXd X = columns.joint(j);
         for (Index i = 0; i < fit.count(); ++i) {
@@ -125,7 +130,9 @@ std::vector<JointPattern> find_joint_patterns(const Fitted& fitted, const Patter
             return;
         }
         const double after = held_out_squares(found.with, all);
-        if (after > best) return;
+        const bool turns = robot.joint(j).motion == Motion::Rotation;
+        const bool is_scale = kind == JointPattern::Kind::Scale;
+        if (after > best || after > (is_scale && turns ? plain : material) * before) return;
         best = after;
         const double sides = kind == JointPattern::Kind::Backlash ? 2 : 1;
         patterns = {{robot.joint(j).name,

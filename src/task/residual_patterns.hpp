@@ -45,13 +45,18 @@ class PatternColumns {
     RowMatrixXd joint(Index j) const { return all_.col(6 + j); }
     RowMatrixXd unknowns(const std::vector<Index>& which) const;
     RowMatrixXd lengths() const { return all_.col(lengths_); }
-    RowMatrixXd touched() const { return all_.rightCols(3); }  ///< of contacts: place of the socket
+    /// What three lengths of a target would all be off by, along the instrument's axes; none where
+    /// it reads others.
+    RowMatrixXd shift() const { return all_.rightCols(all_.cols() - lengths_ - 1); }
 
   private:
     Index first_unknown_;
     Index lengths_;
     RowMatrixXd all_;
 };
+
+/// Whether readings hold lengths, not only that something is touched.
+bool tells_lengths(const Sensor& sensor);
 
 /// Steps and drifts of base, targets and sockets; what is found is beside the parameters in `fit`
 /// from then on.
@@ -62,5 +67,6 @@ std::vector<JointPattern> find_joint_patterns(const Fitted& fitted, const Patter
 std::optional<LengthFactor> find_length_factor(const Fitted& fitted, const PatternColumns& columns,
                                                const LinearFit& fit);
 std::optional<RoundedJoints> find_rounded_joints(const Fitted& fitted);
+std::optional<RoundedReadings> find_rounded_readings(const Fitted& fitted);
 
 }  // namespace posewise::detail

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <vector>
 
 #include "posewise/core/units.hpp"
 #include "residual_patterns.hpp"
@@ -6,18 +7,24 @@
 namespace posewise::detail {
 namespace {
 
+bool are_multiples(const VectorXd& values, double step) {
+    constexpr double tolerance = 0.01;  // of a step
+    const VectorXd steps = values / step;
+    return (steps.array() - steps.array().round()).abs().maxCoeff() < tolerance;
+}
+
+/// Either may be so many times the other where rounding explains what is left over.
+constexpr double alike = 2;
+
 /// The largest of 1, 0.1 and 0.01 deg that all values of joints that turn and move are multiples
 /// of; 0: none.
 double common_step(const Chain& robot, const RowMatrixXd& q) {
-    constexpr double tolerance = 0.01;  // of a step
     for (const double degrees : {1.0, 0.1, 0.01}) {
         const double step = to_radians(degrees);
         bool is_common = false;
         for (Index j = 0; j < robot.joint_count(); ++j) {
             if (robot.joint(j).motion != Motion::Rotation) continue;
-            const VectorXd steps = q.col(j) / step;
-            const bool is_multiple =
-                (steps.array() - steps.array().round()).abs().maxCoeff() < tolerance;
+            const bool is_multiple = are_multiples(q.col(j), step);
             is_common = is_multiple;
             if (!is_multiple) break;
         }
@@ -57,7 +64,6 @@ double effect_of(const Campaign& campaign, const Measurements& measured,
 }  // namespace
 
 std::optional<RoundedJoints> find_rounded_joints(const Fitted& fitted) {
-    constexpr double alike = 2;  // effect and what is left over, either way
     const Campaign& campaign = fitted.campaign;
     const double step = common_step(campaign.robot, fitted.measured.configurations);
     if (step == 0) return std::nullopt;
@@ -82,6 +88,31 @@ std::optional<RoundedJoints> find_rounded_joints(const Fitted& fitted) {
     rounded.held_out.after = held_out_rms(*cured);
     if (!(rounded.held_out.after < rounded.held_out.before)) return std::nullopt;
     return rounded;
+}
+
+std::optional<RoundedReadings> find_rounded_readings(const Fitted& fitted) {
+    const Sensor& sensor = *fitted.campaign.sensor;
+    if (!tells_lengths(sensor)) return std::nullopt;
+    std::vector<double> lengths;
+    const Measurements& measured = fitted.measured;
+    for (Index sample = 0; sample < measured.observations.rows(); ++sample) {
+        for (Index row = 0; row < measured.observations.cols(); ++row) {
+            if (sensor.is_angle(row)) continue;
+            if (!measured.is_seen(sample, row / sensor.rows_per_target())) continue;
+            lengths.push_back(measured.observations(sample, row));
+        }
+    }
+    const auto all = Eigen::Map<const VectorXd>(lengths.data(), std::ssize(lengths));
+    for (const double step : {1e-2, 1e-3, 1e-4}) {
+        if (!are_multiples(all, step)) continue;
+        const double deviation = step / std::sqrt(12.0);
+        const auto numbers = static_cast<double>(sensor.lengths_per_target());
+        RoundedReadings rounded{step, std::sqrt(numbers) * deviation,
+                                fitted.estimate.fit.distance_rms};
+        if (rounded.effect * alike < rounded.left) return std::nullopt;
+        return rounded;
+    }
+    return std::nullopt;
 }
 
 }  // namespace posewise::detail

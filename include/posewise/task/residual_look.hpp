@@ -29,11 +29,12 @@ struct OutlyingConfigurations {
 
 /// A part of the set-up that is not where it was for all configurations.
 struct SetUpChange {
-    std::string part;         ///< "base" (or the instrument), "target2", "tool", "socket s3"
+    /// "base" (or the instrument), "target2", "tool", "socket s3", "readings of target2"
+    std::string part;
     bool is_gradual = false;  ///< drifts from the first to the last, else one step
     std::string last_before;  ///< ids of the configurations that it happens between
     std::string first_after;
-    /// The second part less the first, or over all configurations: of the base and of a socket in
+    /// The second part less the first, or over all configurations: of base, sockets and readings in
     /// the instrument's axes (of the base its origin), else in the flange's; m.
     Vector3d translation = Vector3d::Zero();
     Vector3d rotation = Vector3d::Zero();  ///< rad; 0 where that is within chance
@@ -70,6 +71,13 @@ struct RoundedJoints {
     HeldOutChange held_out;  ///< with the rounding stated as the joints' repeatability
 };
 
+/// All lengths read are multiples of a step that explains what is left over.
+struct RoundedReadings {
+    double step = 0;    ///< m
+    double effect = 0;  ///< that rounding alone has on distances (RMS, m)
+    double left = 0;    ///< that the fit leaves (RMS, m)
+};
+
 /// Rows of the file that belong to others.
 struct ShiftedRows {
     std::string first;  ///< configuration from which on
@@ -86,6 +94,7 @@ struct ResidualLook {
     std::optional<LengthFactor> lengths;
     std::vector<JointPattern> joints;
     std::optional<RoundedJoints> rounded;
+    std::optional<RoundedReadings> rounded_readings;
     std::optional<ShiftedRows> shifted;
 
     bool is_empty() const;
