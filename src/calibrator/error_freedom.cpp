@@ -8,111 +8,152 @@
 namespace posewise {
 namespace {
 
-/// Sums over configurations of what their squared errors are: those of all samples together, m^2.
-struct SquaresSum {
-    double mean = 0;
-    double mean_squared = 0;
-    double variance = 0;     ///< of normal errors
-    MatrixXd parameters_in;  ///< J^T J of all samples
-    double numbers = 0;      ///< of the targets seen, one sample each
+/// One configuration's lengths (or angles, where none is measured) of the targets it shows.
+struct Visit {
+    VectorXd times;      ///< samples that show each, a number a row
+    VectorXd residuals;  ///< of the means, m or rad
+    MatrixXd known;      ///< covariance of one sample by the parameters and by noise
 };
 
-/// The rows of one configuration: lengths (or angles) of the targets it shows.
-class Rows {
+/// What single samples at measured configurations are off by, by the estimate.
+class Visits {
   public:
-    Rows(const Campaign& campaign, const Estimate& estimate)
-        : campaign_(campaign),
-          estimate_(estimate),
-          without_(campaign),
-          is_angle_(!campaign.sensor->has_lengths()),
-          J_(campaign.sensor->row_count(), parameter_count(campaign)) {
-        without_.model_error = without_.model_error_orientation = 0;
+    Visits(const Campaign& campaign, const Estimate& estimate, const Measurements& measured)
+        : is_angle_(!campaign.sensor->has_lengths()),
+          count_(is_angle_ ? campaign.sensor->rows_per_target()
+                           : campaign.sensor->lengths_per_target()),
+          // Without priors the noise is that stated times the variance factor, as in the
+          // covariance.
+          factor_(campaign.spread.is_prior ? 1 : estimate.variance_of(is_angle_).factor),
+          shared_(MatrixXd::Zero(parameter_count(campaign), parameter_count(campaign))) {
+        const double model = is_angle_ ? estimate.model_error_orientation : estimate.model_error;
+        left_over_ = factor_ * model * model;
+        collect(campaign, estimate, measured);
+        find_common_part();
     }
 
-    void add_to(SquaresSum& sum, const VectorXd& q, const VectorXd& times) {
-        const Sensor& sensor = *campaign_.sensor;
-        const Index width = sensor.rows_per_target();
-        const Index begin = is_angle_ ? sensor.lengths_per_target() : 0;  // lengths come first
-        const Index count = is_angle_ ? width - begin : sensor.lengths_per_target();
-        differentiate_pose(campaign_, estimate_.parameters, q, motion_, J_);
-        const VectorXd once = (times.array() > 0).cast<double>();
-        const MatrixXd noise =
-            detail::mean_covariance(without_, motion_, estimate_.parameters.sensor, once);
-        const std::vector<Index> seen = seen_rows(times.array() > 0, width);
-        std::vector<Index> kept;  // of the rows seen
-        for (Index k = 0; k < std::ssize(seen); ++k) {
-            if (k % width >= begin && k % width < begin + count) kept.push_back(k);
+    ErrorFreedom freedom() const {
+        double mean = 0;
+        double mean_squared = 0;
+        double variance = 0;
+        double numbers = 0;
+        for (const Visit& visit : visits_) {
+            const MatrixXd all = weighted_covariance(visit);
+            mean += all.trace();
+            mean_squared += all.trace() * all.trace();
+            variance += 2 * all.squaredNorm();
+            numbers += static_cast<double>(all.rows());
         }
-        VectorXd weights(std::ssize(kept));
-        RowMatrixXd J(weights.size(), J_.cols());
-        for (Index k = 0; k < weights.size(); ++k) {
-            const Index row = seen[static_cast<std::size_t>(kept[static_cast<std::size_t>(k)])];
-            weights[k] = std::sqrt(times[row / width]);
-            J.row(k) = weights[k] * J_.row(row);
-        }
-        const MatrixXd of_visit = factor() * (noise(kept, kept) + left_over(weights.size(), count));
-        add(sum, J, weights.asDiagonal() * of_visit * weights.asDiagonal());
+        const auto count = static_cast<double>(visits_.size());
+        mean /= count;
+        if (!(mean > 0)) return {numbers, numbers};
+        // Of one configuration's sum: by its errors, and by where it is.
+        const double by_place = count > 1 ? (mean_squared - count * mean * mean) / (count - 1) : 0;
+        const double shared = 2 * shared_.cwiseProduct(shared_.transpose()).sum();
+        const double of_visits = std::max(variance / count + by_place - shared, 0.0) / count;
+        const auto of_variance = [&](double of_mean) {
+            return std::min(2 * mean * mean / of_mean, numbers);
+        };
+        return {of_variance(of_visits), of_variance(of_visits + shared)};
     }
 
   private:
-    /// Without priors the noise is that stated times the variance factor, as in the covariance.
-    double factor() const {
-        return campaign_.spread.is_prior ? 1 : estimate_.variance_of(is_angle_).factor;
+    void collect(const Campaign& campaign, const Estimate& estimate, const Measurements& measured) {
+        const Sensor& sensor = *campaign.sensor;
+        Campaign without = campaign;
+        without.model_error = without.model_error_orientation = 0;
+        const RowMatrixXd times = times_seen(measured);
+        const RowMatrixXd residuals = mean_residuals(campaign, estimate.parameters, measured);
+        FlangeMotion motion;
+        RowMatrixXd J(sensor.row_count(), parameter_count(campaign));
+        Index first = 0;  // of the residuals, which have a row a target
+        for (Index i = 0; i < measured.configuration_count(); ++i) {
+            const VectorXd seen = (times.row(i).transpose().array() > 0).cast<double>();
+            if (seen.sum() == 0) continue;
+            const VectorXd q = measured.configurations.row(i).transpose();
+            differentiate_pose(campaign, estimate.parameters, q, motion, J);
+            const MatrixXd noise =
+                detail::mean_covariance(without, motion, estimate.parameters.sensor, seen);
+            add(sensor, times.row(i).transpose(), J, factor_ * noise, estimate.covariance,
+                residuals.middleRows(first, static_cast<Index>(seen.sum())));
+            first += static_cast<Index>(seen.sum());
+        }
+        shared_ = (estimate.covariance * shared_ / static_cast<double>(visits_.size())).eval();
     }
 
-    /// What the model lacks moves the flange, so that all targets are off alike; lengths in one
-    /// direction each are not.
-    MatrixXd left_over(Index rows, Index count) const {
-        const double model = is_angle_ ? estimate_.model_error_orientation : estimate_.model_error;
-        MatrixXd covariance = MatrixXd::Zero(rows, rows);
-        for (Index a = 0; a < rows; ++a) {
-            for (Index b = 0; b < rows; ++b) {
-                if (count == 1 ? a == b : a % count == b % count) covariance(a, b) = model * model;
+    /// `noise` and `residuals` are of the targets seen.
+    void add(const Sensor& sensor, const VectorXd& times, const RowMatrixXd& J,
+             const MatrixXd& noise, const MatrixXd& covariance, const RowMatrixXd& residuals) {
+        const Index width = sensor.rows_per_target();
+        std::vector<Index> rows;  // of a whole observation
+        std::vector<Index> kept;  // of those seen
+        const std::vector<Index> seen = seen_rows(times.array() > 0, width);
+        for (Index k = 0; k < std::ssize(seen); ++k) {
+            if (k % width >= count_) continue;  // lengths come first
+            rows.push_back(seen[static_cast<std::size_t>(k)]);
+            kept.push_back(k);
+        }
+        Visit& visit = visits_.emplace_back();
+        const Index size = std::ssize(rows);
+        visit.times.resize(size);
+        visit.residuals.resize(size);
+        for (Index k = 0; k < size; ++k) {
+            visit.times[k] = times[rows[static_cast<std::size_t>(k)] / width];
+            visit.residuals[k] = residuals(k / count_, k % count_);
+        }
+        const RowMatrixXd J_seen = J(rows, Eigen::all);
+        visit.known = J_seen * covariance * J_seen.transpose() + noise(kept, kept);
+        shared_ += J_seen.transpose() * visit.times.asDiagonal() * J_seen;
+    }
+
+    /// Calls visit(a, b) with the numbers of two targets in the same direction. Where each target
+    /// has one length there are none: it has its own direction.
+    template <typename Action>
+    void for_each_pair(const Visit& visit, const Action& action) const {
+        if (count_ == 1) return;
+        for (Index a = 0; a < visit.times.size(); ++a) {
+            for (Index b = a % count_; b < visit.times.size(); b += count_) {
+                if (a != b) action(a, b);
             }
         }
-        return covariance;
     }
 
-    void add(SquaresSum& sum, const RowMatrixXd& J, const MatrixXd& of_visit) const {
-        const MatrixXd all = J * estimate_.covariance * J.transpose() + of_visit;
-        sum.mean += all.trace();
-        sum.mean_squared += all.trace() * all.trace();
-        sum.variance += 2 * all.squaredNorm();
-        sum.parameters_in += J.transpose() * J;
-        sum.numbers += static_cast<double>(J.rows());
+    /// How much of what the model leaves over moves the flange, so that all targets are off alike.
+    void find_common_part() {
+        double found = 0;
+        double pairs = 0;
+        for (const Visit& visit : visits_) {
+            for_each_pair(visit, [&](Index a, Index b) {
+                found += visit.residuals[a] * visit.residuals[b] - visit.known(a, b);
+                ++pairs;
+            });
+        }
+        if (pairs * left_over_ > 0) common_ = std::clamp(found / (pairs * left_over_), 0.0, 1.0);
     }
 
-    const Campaign& campaign_;
-    const Estimate& estimate_;
-    Campaign without_;  ///< a model error
+    /// Of all samples of a configuration, whose squares add up.
+    MatrixXd weighted_covariance(const Visit& visit) const {
+        MatrixXd all = visit.known;
+        all.diagonal().array() += left_over_;
+        for_each_pair(visit, [&](Index a, Index b) { all(a, b) += common_ * left_over_; });
+        const VectorXd weights = visit.times.cwiseSqrt();
+        return weights.asDiagonal() * all * weights.asDiagonal();
+    }
+
     bool is_angle_;
-    FlangeMotion motion_;
-    RowMatrixXd J_;
+    Index count_;  ///< numbers a target
+    double factor_;
+    double left_over_ = 0;  ///< variance by the model error
+    double common_ = 0;     ///< part of it
+    std::vector<Visit> visits_;
+    MatrixXd shared_;  ///< covariance of the parameters times the mean J^T J of a configuration
 };
 
 }  // namespace
 
 ErrorFreedom error_freedom(const Campaign& campaign, const Estimate& estimate,
                            const Measurements& measured) {
-    SquaresSum sum;
-    sum.parameters_in.setZero(parameter_count(campaign), parameter_count(campaign));
-    const RowMatrixXd times = times_seen(measured);
-    Rows rows(campaign, estimate);
-    for (Index i = 0; i < measured.configuration_count(); ++i) {
-        rows.add_to(sum, measured.configurations.row(i).transpose(), times.row(i).transpose());
-    }
-    const auto count = static_cast<double>(measured.configuration_count());
-    const double mean = sum.mean / count;
-    if (!(mean > 0)) return {sum.numbers, sum.numbers};
-    // Of one configuration's sum: by its errors, and by where it is.
-    const double by_place = count > 1 ? (sum.mean_squared - count * mean * mean) / (count - 1) : 0;
-    const MatrixXd shared_errors = estimate.covariance * sum.parameters_in / count;
-    const double shared = 2 * shared_errors.cwiseProduct(shared_errors.transpose()).sum();
-    const double of_visits = std::max(sum.variance / count + by_place - shared, 0.0) / count;
-    const auto freedom = [&](double variance) {
-        return std::min(2 * mean * mean / variance, sum.numbers);
-    };
-    return {freedom(of_visits), freedom(of_visits + shared)};
+    return Visits(campaign, estimate, measured).freedom();
 }
 
 }  // namespace posewise

@@ -44,8 +44,8 @@ With --plan the calibration sees only the plan's configurations. It is judged on
 has to verify (plan --verification), as far as they were measured, and on the others, each by itself.
 Where it is judged, and on those of --validate, poses are told apart: new ones, ones beyond the joint
 ranges calibrated with, and ones calibrated with, which say nothing about others. Each group has its
-RMS and where that of all such poses is with 95 % (chi-squared; by configurations, since samples and
-targets of one share its error). --limit-mm 0.2 says of each pass, fail or undecided: whether that
+RMS and where that of all such poses is with 95 % (chi-squared; by configurations, since samples of
+one share its error, and its targets as far as their residuals are alike). --limit-mm 0.2 says of each pass, fail or undecided: whether that
 whole interval is at or below the limit, or above it. The exit code is 0 in any case.
 With --predict it says what to expect at configurations that need not be measured, as one reading
 there would find it: RMS, 95 %, and each one's in --predict-out (config,parameters_mm,left_over_mm,

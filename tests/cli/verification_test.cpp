@@ -34,11 +34,11 @@ TEST_F(VerificationPoses, AreMarkedInThePlanAndItsCsv) {
     std::istringstream csv(text_of("p.csv"));
     std::string line;
     std::getline(csv, line);
-    EXPECT_TRUE(line.ends_with(",visible_targets,purpose")) << line;
+    EXPECT_TRUE(line.ends_with(",visible_targets,purpose,way")) << line;
     int verify = 0;
     for (int row = 0; std::getline(csv, line); ++row) {
         EXPECT_EQ(line.front(), row < 14 ? 'p' : 'v') << line;
-        EXPECT_TRUE(line.ends_with(row < 14 ? ",calibrate" : ",verify")) << line;
+        EXPECT_TRUE(line.ends_with(row < 14 ? ",calibrate,straight" : ",verify,straight")) << line;
         verify += row < 14 ? 0 : 1;
     }
     EXPECT_EQ(verify, 6);

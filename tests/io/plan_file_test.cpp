@@ -151,8 +151,8 @@ TEST_F(PlanFileTest, KeepsPosesToVerifyApart) {
     const CampaignFile campaign = read_campaign(folder_.path("c.yaml"));
     write_plan(path_, plan_, folder_.path("p.csv"), campaign);
     const std::string csv = read_file(folder_.path("p.csv"));
-    EXPECT_NE(csv.find(",visible_targets,purpose,way"), std::string::npos) << csv;
-    EXPECT_NE(csv.find(",calibrate,straight\nv1,"), std::string::npos) << csv;
+    EXPECT_NE(csv.find(",visible_targets,purpose,way\n"), std::string::npos) << csv;
+    EXPECT_NE(csv.find(",calibrate,straight\nv1.via,"), std::string::npos) << csv;
     EXPECT_NE(csv.find(",1,verify,straight\nv2,"), std::string::npos) << csv;
     EXPECT_EQ(read_configurations(folder_.path("p.csv"), campaign).ids.size(), 4U);
 }

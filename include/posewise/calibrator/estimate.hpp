@@ -129,8 +129,9 @@ ExpectedError expected_sample_error(const Campaign& campaign, const Estimate& es
 
 /// Of how many independent numbers the mean square of all samples at measured configurations is as
 /// sure: chi-squared of the same mean and variance [Satterthwaite 1946]. All samples of a
-/// configuration share its errors, and its targets what the model leaves over, so that there are
-/// hardly more than three numbers a configuration.
+/// configuration share its errors, and its targets as much of what the model leaves over as their
+/// residuals show: with points three numbers a configuration at least, if errors are alike in all
+/// directions and everywhere.
 struct ErrorFreedom {
     /// For the mean over all poses of this robot: other configurations might have been measured.
     double of_poses = 0;

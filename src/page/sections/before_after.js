@@ -13,7 +13,7 @@ export const isShown = (part) => part.kind === 'estimate' && Boolean(part.docume
 const columnsOf = (accuracy) => [
   ['nominal', accuracy.nominal], ['calibrated', accuracy.fit], ['means', accuracy.fit_means],
   ['held out', accuracy.held_out?.samples], ['held-out means', accuracy.held_out?.means],
-  ['not in plan', accuracy.left_out], ['validation', accuracy.validation],
+  ['verification', accuracy.verification], ['not in plan', accuracy.left_out], ['validation', accuracy.validation],
 ].filter(([, metrics]) => metrics);
 
 const metricRows = [

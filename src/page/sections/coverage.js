@@ -16,6 +16,7 @@ function pairsOf({ accuracy }) {
   return [
     ['calibrated, at the poses measured', expected.at_measured?.total_mm, of(accuracy?.fit_means ?? accuracy?.fit)],
     ['held out', expected.at_measured?.total_mm, of(accuracy?.held_out?.means ?? accuracy?.held_out?.samples)],
+    ['verification', expected.at_verification?.total_mm, of(accuracy?.verification)],
     ['not in plan', expected.at_left_out?.total_mm, of(accuracy?.left_out)],
     ['validation', expected.at_validation?.total_mm, of(accuracy?.validation)],
   ].filter(([, predicted, found]) => isNumber(predicted) && isNumber(found)).map(([name, predicted, found]) => ({ name, predicted, found }));

@@ -5,13 +5,31 @@ import { rms } from '../core/statistics.js';
 import { limitOf } from './verdict_plan.js';
 import { warningsOfEstimate } from './warnings.js';
 
+/** The poses that it was judged on and not made with, those most like the workspace first: ones calibrated with say nothing. */
+function judgedOf({ judged }, unit) {
+  const names = { validation: 'of the validation', verification: 'that the plan has to verify', left_out: 'not in the plan' };
+  for (const [group, which] of [['new', 'new'], ['beyond', 'beyond the joint ranges calibrated with']]) {
+    for (const [poses, name] of Object.entries(names)) {
+      const one = judged?.find((judgement) => judgement.poses === poses && judgement.group === group);
+      if (!one) continue;
+      const poseCount = one.configuration_count;
+      const interval = one[`lower_${unit}`] === null ? null : { lower: one[`lower_${unit}`], upper: one[`upper_${unit}`], count: poseCount };
+      return { rms: one[`rms_${unit}`], unit, interval, where: `on ${count(poseCount, 'pose')} ${name}, ${which}`, key: null };
+    }
+  }
+  return null;
+}
+
 /** What the calibration leaves where it was not measured: of what is known the most honest. */
 function errorOf({ accuracy }) {
   const unit = accuracy.fit.distance_rms_mm === undefined ? 'mrad' : 'mm';
   const pick = (metrics) => ({ rms: metrics[unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'], p95: metrics.distance_p95_mm, turn: unit === 'mm' ? metrics.orientation_rms_mrad : undefined, unit });
   const moved = accuracy.moved_before_validation ? `, before which ${accuracy.moved_before_validation.parts.join(' and ')} moved` : '';
-  if (accuracy.validation) return { ...pick(accuracy.validation), where: `on the measurements kept for validation${moved}`, key: null };
-  if (accuracy.left_out) return { ...pick(accuracy.left_out), where: 'on configurations not in the plan', key: null };
+  const judged = judgedOf(accuracy, unit);
+  if (judged) return { ...judged, where: `${judged.where}${accuracy.validation ? moved : ''}` };
+  const isOld = !accuracy.judged;  // of a file that tells no groups of poses apart
+  if (isOld && accuracy.validation) return { ...pick(accuracy.validation), where: `on the measurements kept for validation${moved}`, key: null };
+  if (isOld && accuracy.left_out) return { ...pick(accuracy.left_out), where: 'on configurations not in the plan', key: null };
   if (accuracy.held_out) return { ...pick(accuracy.held_out.samples), where: `on configurations not measured (held out, ${accuracy.held_out.folds} folds)`, key: 'held_out' };
   return { ...pick(accuracy.fit), where: 'on the measurements it was made from (nothing was held out)', key: 'residual' };
 }
@@ -99,7 +117,7 @@ export function answerEstimate(part) {
   const error = errorOf(document);
   const nominal = accuracy.nominal?.[error.unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'];
   const sure = part.residuals && error.key ? factorOfRms(part.residuals, error.key) : null;
-  const interval = sure && { lower: error.rms / sure.factor, upper: error.rms * sure.factor, count: sure.count };
+  const interval = error.interval ?? (sure && { lower: error.rms / sure.factor, upper: error.rms * sure.factor, count: sure.count });
   const surprise = surpriseOf(document, error, sure);
   const warnings = [...warningsOfEstimate(document), surprise].filter(Boolean);
   const drift = part.residuals ? driftOf(part.residuals, part.scene?.joints) : null;
