@@ -208,7 +208,7 @@ def check_relax():
 
 
 def check_plan():
-    document, text = both("plan", CELL, "-k", 12, "--pool", 400, "--starts", 2)
+    document, text = both("plan", CELL, "-k", 12, "--pool", 400, "--starts", 2, "--verification", 3)
     file = json.loads(pathlib.Path("campaign.poses.json").read_text())
     expect({key: document[key] for key in file} == file, "plan: not what the plan file holds")
     expect(close(document["accuracy"]["rms_mm"], number_behind(text, "position error"), 4), "plan: rms")
@@ -247,12 +247,17 @@ def check_verify():
 def check_calibrate():
     options = ["--loss", "cauchy", "--plan", "s.plan.json", "--predict", "s.csv", "--folds", 4]
     run("simulate", FANUC, "--truth", 7, "--seed", 9, "-k", 9, "-o", "v.csv")
-    document, text = both("calibrate", FANUC, "-m", "s.csv", "-o", "e.json", "--validate", "v.csv", *options)
+    document, text = both("calibrate", FANUC, "-m", "s.csv", "-o", "e.json", "--validate", "v.csv", "--limit-mm", 0.2,
+                          *options)
     expect(json.loads(pathlib.Path("e.json").read_text()) == document, "calibrate: not what --out wrote")
     expect(close(document["accuracy"]["nominal"]["distance_rms_mm"],
                  number_behind(text, "distance RMS"), 4), "calibrate: nominal")
     expect(close(document["accuracy"]["expected"]["at_left_out"]["total_mm"],
                  number_behind(text, "expected not in plan:"), 4), "calibrate: expected")
+    for group in document["accuracy"]["judged"]:
+        expect(group["lower_mm"] < group["rms_mm"] < group["upper_mm"] and group["limit"] in text, "calibrate: judged")
+        expect(close(group["rms_mm"], number_behind(text, "validation, 9 new poses: RMS"), 4)
+               or group["poses"] != "validation", "calibrate: validation")
     both("calibrate", FANUC, "-m", "s.csv", "--model-selection", "--folds", 4)
     both("calibrate", FANUC, "-m", "s.csv", "--prior", "--learn-sizes")
     run("calibrate", FANUC, "-m", "s.csv", "--folds", 0, "-o", "f.json")

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -18,9 +19,23 @@ using detail::LinearisedSystem;
 using detail::Metric;
 using detail::NormalEquations;
 
-std::vector<Index> fold_members(Index count, Index folds, Index fold) {
-    std::vector<Index> members;
-    for (Index i = fold; i < count; i += folds) members.push_back(i);
+/// The configurations that are held out together: one after the other in turn, but those with the
+/// same joint values together, so that none is judged by a robot identified from it. Fewer than so
+/// many folds where fewer differ.
+std::vector<std::vector<Index>> make_folds(const Measurements& measurements, Index joints,
+                                           Index folds) {
+    constexpr double tolerance = 1e-6;  // rad or m, as within one configuration
+    const auto q = measurements.configurations.leftCols(joints);  // torques follow
+    std::map<std::vector<double>, std::size_t> fold_of;
+    std::vector<std::vector<Index>> members;
+    for (Index i = 0; i < q.rows(); ++i) {
+        const RowMatrixXd rounded = (q.row(i) / tolerance).array().round();
+        const std::size_t next = fold_of.size() % static_cast<std::size_t>(folds);
+        const std::vector<double> values(rounded.data(), rounded.data() + rounded.size());
+        const std::size_t fold = fold_of.emplace(values, next).first->second;
+        if (fold == members.size()) members.emplace_back();
+        members[fold].push_back(i);
+    }
     return members;
 }
 
@@ -136,16 +151,16 @@ std::vector<Index> first_residuals(const Measurements& measurements) {
 
 /// Rows of the configurations held out in each fold, in the measurements' order.
 RowMatrixXd order_residuals(const Measurements& measurements, Index width,
+                            const std::vector<std::vector<Index>>& folds,
                             const std::vector<RowMatrixXd>& by_fold) {
     const std::vector<Index> first = first_residuals(measurements);
-    const auto folds = std::ssize(by_fold);
     RowMatrixXd ordered =
         RowMatrixXd::Constant(first.back(), width, std::numeric_limits<double>::quiet_NaN());
-    for (Index fold = 0; fold < folds; ++fold) {
-        const RowMatrixXd& rows = by_fold[static_cast<std::size_t>(fold)];
+    for (std::size_t fold = 0; fold < folds.size(); ++fold) {
+        const RowMatrixXd& rows = by_fold[fold];
         if (rows.rows() == 0) continue;  // a fold that failed
         Index row = 0;
-        for (const Index i : fold_members(measurements.configuration_count(), folds, fold)) {
+        for (const Index i : folds[fold]) {
             const auto k = static_cast<std::size_t>(i);
             const Index count = first[k + 1] - first[k];
             ordered.middleRows(first[k], count) = rows.middleRows(row, count);
@@ -166,17 +181,22 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
         throw InputError("folds is " + std::to_string(folds) + ", must be 2 to the number of " +
                          "configurations, " + std::to_string(count));
     }
-    const auto fold_count = static_cast<std::size_t>(folds);
-    std::vector<RowMatrixXd> samples(fold_count);
-    std::vector<RowMatrixXd> means(fold_count);
+    const std::vector<std::vector<Index>> members =
+        make_folds(measurements, campaign.robot.joint_count(), folds);
+    if (members.size() < 2) {
+        throw InputError("all configurations have the same joint values; none can be held out");
+    }
+    std::vector<RowMatrixXd> samples(members.size());
+    std::vector<RowMatrixXd> means(members.size());
     RowMatrixXd distances = RowMatrixXd::Zero(count, measurements.is_seen.cols());
     RowMatrixXd angles = distances;
-    std::vector<std::string> failures(fold_count);
+    std::vector<std::string> failures(members.size());
     detail::ProgressCounter counter(progress, folds);
+    for (Index k = std::ssize(members); k < folds; ++k) counter.count();
     const Folds identifications(campaign, measurements, start, options);
-    detail::for_each_index(folds, [&](Index fold) {
+    detail::for_each_index(std::ssize(members), [&](Index fold) {
         const auto f = static_cast<std::size_t>(fold);
-        const auto held_out = fold_members(count, folds, fold);
+        const std::vector<Index>& held_out = members[f];
         const Estimate estimate = identifications.identify_without(held_out);
         if (estimate.ending == Ending::NotIdentifiable) {
             failures[f] = "fold " + std::to_string(fold + 1) + ": " + estimate.undetermined;
@@ -199,8 +219,10 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
         }
         return make_metrics(all, campaign.sensor->lengths_per_target());
     };
-    CrossValidation result{folds, join(samples), join(means), distances, angles, {}, {}};
-    result.residuals = order_residuals(measurements, campaign.sensor->rows_per_target(), samples);
+    CrossValidation result{
+        std::ssize(members), join(samples), join(means), distances, angles, {}, {}};
+    result.residuals =
+        order_residuals(measurements, campaign.sensor->rows_per_target(), members, samples);
     std::copy_if(failures.begin(), failures.end(), std::back_inserter(result.failures),
                  [](const std::string& failure) { return !failure.empty(); });
     return result;

@@ -29,6 +29,11 @@ class Steps {
                          : equations_.g.dot(metric_.solve(equations_.g));
     }
 
+    /// Half of what the sum of squares falls by per part of this step, where it begins.
+    double slope(const VectorXd& step) const {
+        return triangle_ ? triangle_->c.dot(triangle_->R * step) : equations_.g.dot(step);
+    }
+
     /// The step of minimal |J d - r|^2 + damping |D d|^2, D the column norms [Marquardt 1963].
     VectorXd damped(double damping) const {
         if (!triangle_) {
@@ -54,7 +59,7 @@ class Steps {
 
 struct LevenbergMarquardt {
     detail::IdentificationProblem& problem;
-    const LevenbergMarquardtOptions& options;
+    double relative_tolerance;
     Estimate& estimate;
     std::optional<detail::LinearisedSystem> system{};  ///< at the estimate, if it is known
     double cost = total_loss(problem, estimate.parameters);
@@ -73,27 +78,50 @@ struct LevenbergMarquardt {
         cost = total_loss(problem, estimate.parameters);
     }
 
+    /// A step by some part of it.
+    struct Trial {
+        Parameters moved;
+        double cost;
+    };
+    /// Where noise depends on the pose a step is judged with that before it: the fixed point of
+    /// reweighted least squares is where no such step is left.
+    Trial try_step(const VectorXd& step) const {
+        Parameters moved = advance(problem.campaign, estimate.parameters, problem.units.step(step));
+        const double moved_cost =
+            total_loss(problem, moved, has_constant_noise ? nullptr : &estimate.parameters);
+        return {std::move(moved), moved_cost};
+    }
+
+    /// To where a parabola through the cost along the step is least, if the step gained far less or
+    /// far more than expected and that is better: large residuals bend the cost in directions that
+    /// hardly anything but the prior holds, so that steps would go to and fro, or creep.
+    void stretch(const VectorXd& step, double slope, Trial& trial) const {
+        const double part = (cost - trial.cost) / slope;  // 1 where the system is exact
+        if (std::abs(part - 1) <= 0.25) return;
+        const double curvature = trial.cost - cost + 2 * slope;
+        const double best = curvature > 0 ? std::clamp(slope / curvature, 0.1, 10.0) : 10.0;
+        Trial other = try_step(best * step);
+        if (other.cost < trial.cost) trial = std::move(other);
+    }
+
     /// One accepted step, or an ending.
     void iterate() {
         if (deviations_open > 0) follow_deviation();
         system = linearise(problem, estimate.parameters);
         const Steps steps(problem, *system);
         const double gain = steps.gain();
-        if (gain <= converged_below(problem, options.relative_tolerance, cost)) {
+        if (gain <= converged_below(problem, relative_tolerance, cost)) {
             if (deviations_open == 0) estimate.ending = Ending::Converged;
             return;
         }
         for (; damping < 1e12; damping *= 10) {
-            const Parameters moved = advance(problem.campaign, estimate.parameters,
-                                             problem.units.step(steps.damped(damping)));
-            // Where noise depends on the pose a step is judged with that before it: the fixed
-            // point of reweighted least squares is where no such step is left.
-            const double moved_cost =
-                total_loss(problem, moved, has_constant_noise ? nullptr : &estimate.parameters);
-            if (moved_cost < cost) {
-                estimate.parameters = moved;
+            const VectorXd step = steps.damped(damping);
+            Trial trial = try_step(step);
+            stretch(step, steps.slope(step), trial);
+            if (trial.cost < cost) {
+                estimate.parameters = trial.moved;
                 system.reset();
-                cost = has_constant_noise ? moved_cost : total_loss(problem, moved);
+                cost = has_constant_noise ? trial.cost : total_loss(problem, trial.moved);
                 damping = std::max(damping / 100, 1e-15);
                 return;
             }
@@ -103,10 +131,17 @@ struct LevenbergMarquardt {
     }
 };
 
-/// The system where it ends.
+/// The system where it ends. A search for a model error to be found from it may be `rough`: that
+/// follows the root of the cost, and is found at the optimum of the linearised system. Farther than
+/// that many small steps may lead: beside a few gross errors, of thousands of deviations by the
+/// error expected, directions that only the prior holds are curved more by their residuals than by
+/// the prior.
 detail::LinearisedSystem search(detail::IdentificationProblem& problem,
-                                const LevenbergMarquardtOptions& options, Estimate& estimate) {
-    LevenbergMarquardt steps{problem, options, estimate};
+                                const LevenbergMarquardtOptions& options, Estimate& estimate,
+                                bool is_rough) {
+    constexpr double rough = 1e-3;
+    const double tolerance = options.relative_tolerance;
+    LevenbergMarquardt steps{problem, is_rough ? std::max(rough, tolerance) : tolerance, estimate};
     while (estimate.ending == Ending::NotRun) {
         if (estimate.iterations >= options.iteration_limit) {
             estimate.ending = Ending::IterationLimit;
@@ -136,15 +171,18 @@ Estimate identify(const Campaign& campaign, const Measurements& measurements,
     Estimate estimate = begin_estimate(problem, start);
     problem.loss = detail::complete_loss(options.loss, campaign);
     if (estimate.ending == Ending::NotIdentifiable) return estimate;
-    detail::LinearisedSystem system = search(problem, options, estimate);
-    if (options.finds_model_error && detail::is_model_error_open(campaign)) {
+    const bool is_open = options.finds_model_error && detail::is_model_error_open(campaign);
+    detail::LinearisedSystem system = search(problem, options, estimate, is_open);
+    if (is_open) {
+        constexpr int rounds = 4;
         bool stays = false;
-        for (int round = 0; round < 4 && !stays && estimate.ending == Ending::Converged; ++round) {
+        for (int round = 1; round <= rounds && !stays && estimate.ending == Ending::Converged;
+             ++round) {
             const Campaign better = find_model_error(problem, estimate.parameters, campaign);
             stays = is_alike(found, better);
             found = better;  // problem refers to it
             estimate.ending = Ending::NotRun;
-            system = search(problem, options, estimate);
+            system = search(problem, options, estimate, !stays && round < rounds);
         }
     }
     finish(problem, system, estimate);

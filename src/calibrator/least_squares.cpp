@@ -61,18 +61,17 @@ class Configurations {
         go_to(i);
         differentiate_pose(problem_.campaign, parameters, q_, motion_,
                            all.leftCols(all.cols() - 1));
-        // The residual is whitened with the Jacobian.
-        all.rightCols(1) = deviate(i, parameters);
-        const Index rows = noise_.whiten_seen(motion_, parameters.sensor, repeats_, all);
-        if (problem_.loss.kind == LossKind::Squares) return rows;
-        for (Index row = 0; row < rows; row += width_) {
-            auto of_target = all.middleRows(row, width_);
-            const double length = of_target.rightCols(1).norm();
-            of_target *= std::sqrt(problem_.loss.weight(length / problem_.deviation));
-        }
-        return rows;
+        return finish(i, parameters, all);
     }
 
+    /// The same with other columns in the place of J.
+    Index state_columns(Index i, const Parameters& parameters, const FillColumns& fill,
+                        Eigen::Ref<RowMatrixXd> all) {
+        go_to(i);
+        place_flange(parameters);
+        fill(i, all.leftCols(all.cols() - 1));
+        return finish(i, parameters, all);
+    }
     /// Lengths of the whitened residuals, of one target seen after another, to the front of
     /// `lengths`; returns how many they are.
     Index measure(Index i, const Parameters& parameters, const Parameters& of_noise,
@@ -90,6 +89,19 @@ class Configurations {
     }
 
   private:
+    /// Adds the residual to `all`, whitens both and weighs them; returns how many rows are seen.
+    Index finish(Index i, const Parameters& parameters, Eigen::Ref<RowMatrixXd> all) {
+        all.rightCols(1) = deviate(i, parameters);
+        const Index rows = noise_.whiten_seen(motion_, parameters.sensor, repeats_, all);
+        if (problem_.loss.kind == LossKind::Squares) return rows;
+        for (Index row = 0; row < rows; row += width_) {
+            auto of_target = all.middleRows(row, width_);
+            const double length = of_target.rightCols(1).norm();
+            of_target *= std::sqrt(problem_.loss.weight(length / problem_.deviation));
+        }
+        return rows;
+    }
+
     void go_to(Index i) {
         q_ = problem_.means.configurations.row(i).transpose();
         repeats_ = problem_.repeats.row(i).transpose();
@@ -242,6 +254,20 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
         prior.col(size) = -problem.units.prior_coordinates(campaign, parameters);
     }
     return system;
+}
+
+RowMatrixXd whitened_columns(const IdentificationProblem& problem, const Parameters& parameters,
+                             Index count, const FillColumns& fill) {
+    RowMatrixXd columns(problem.observation_count(), count);
+    RowMatrixXd of_configuration(problem.campaign.sensor->row_count(), count + 1);
+    Configurations configurations(problem);
+    Index row = 0;
+    for (Index i = 0; i < configurations.count(); ++i) {
+        const Index rows = configurations.state_columns(i, parameters, fill, of_configuration);
+        columns.middleRows(row, rows) = of_configuration.topLeftCorner(rows, count);
+        row += rows;
+    }
+    return columns;
 }
 
 VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters& parameters,

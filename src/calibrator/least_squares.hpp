@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "loss.hpp"
 #include "posewise/calibrator/estimate.hpp"
 
@@ -73,6 +75,13 @@ std::string describe_unseen_target(const Campaign& campaign, const Measurements&
 std::string describe_missing_equations(const IdentificationProblem& problem);
 
 LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters);
+
+/// Writes columns of one configuration: all rows of an observation, in m or rad.
+using FillColumns = std::function<void(Index configuration, Eigen::Ref<RowMatrixXd> columns)>;
+/// The same rows of `count` columns that are no parameter's: of the targets seen, whitened and
+/// weighted as linearise() does it.
+RowMatrixXd whitened_columns(const IdentificationProblem& problem, const Parameters& parameters,
+                             Index count, const FillColumns& fill);
 
 /// Length of the whitened mean residual of each target seen, one configuration after another: in
 /// standard deviations of one coordinate, as stated. Where errors of the joints correlate targets,

@@ -10,6 +10,7 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identifiability.hpp"
+#include "posewise/jacobian/unknowable.hpp"
 #include "posewise/measurement/simulation.hpp"
 
 namespace posewise {
@@ -86,12 +87,15 @@ std::string describe_shortage(const Campaign& campaign, const Measurements& mean
                                   ? ""
                                   : fmt::format(" (the effects of {} cannot be told apart)",
                                                 detail::name_parameters(campaign, confused));
-    return fmt::format(
-        "{} {} not determine base and {}{}; more configurations that turn the tool in different "
-        "ways are needed or, where all axes are parallel (SCARA), base or {} known along them, "
-        "like known: [z], keys {}",
-        what, count == 1 ? "does" : "do", place, alike, place,
-        detail::list_words(sensor.words().known));
+    const Unknowable unknowable = find_unknowable(campaign);
+    const std::string cure =
+        unknowable.parameters.empty()
+            ? "more configurations that turn the tool in different ways are needed"
+            : fmt::format("no number of them tells {}; what is known must be stated, like {}",
+                          detail::list_words(unknowable.parameters),
+                          describe_cures(unknowable, campaign));
+    return fmt::format("{} {} not determine base and {}{}; {}", what, count == 1 ? "does" : "do",
+                       place, alike, cure);
 }
 
 /// Base and sensor's unknowns that solve the linear equations, the base a rotation.

@@ -34,10 +34,19 @@ readings) from nothing, then identifies all parameters together, and prints
   - the noise floor, from the repeats: no calibration gets below it;
   - every parameter with its standard deviation, the base as position and rotation vector;
   - the strongest correlations: what these poses can hardly tell apart.
-What did not converge, or has errors a hundred times their expected size, or residuals of hundreds of
-standard deviations, is printed and not written, with exit code 3; --force writes it, marked.
+What did not converge, has errors a hundred times their expected size or a joint offset beyond 10 deg,
+leaves more over than a robot misses before it is calibrated, is spoilt by one configuration, or
+predicts poses that were held out worse than the nominal robot does, is printed and not written, with
+exit code 3; --force writes it, marked. Where something is doubtful, robust losses, --exclude,
+--learn-sizes and richer errors are tried, and those that help are named with the error held out.
 With --exclude it leaves out configurations by their ids and samples (7:2), and the estimate records it.
-With --plan the calibration sees only the plan's configurations and is judged on the others too.
+With --plan the calibration sees only the plan's configurations. It is judged on those that the plan
+has to verify (plan --verification), as far as they were measured, and on the others, each by itself.
+Where it is judged, and on those of --validate, poses are told apart: new ones, ones beyond the joint
+ranges calibrated with, and ones calibrated with, which say nothing about others. Each group has its
+RMS and where that of all such poses is with 95 % (chi-squared; by configurations, since samples and
+targets of one share its error). --limit-mm 0.2 says of each pass, fail or undecided: whether that
+whole interval is at or below the limit, or above it. The exit code is 0 in any case.
 With --predict it says what to expect at configurations that need not be measured, as one reading
 there would find it: RMS, 95 %, and each one's in --predict-out (config,parameters_mm,left_over_mm,
 noise_mm,total_mm,p95_mm; orientations likewise in mrad). Each row is one, the same pose as often as
@@ -80,11 +89,32 @@ CalibrationOptions make_options(const CalibrateArguments& arguments, std::uint64
     options.global.search = start_searches.at(arguments.search);
     options.global.length_share = arguments.length_error_percent / 100;
     options.global.angle = to_radians(arguments.angle_error_deg);
+    if (arguments.limit_mm) options.limit = *arguments.limit_mm / mm_per_m;
     for (Index* const limit : {&options.joint.iteration_limit, &options.two_step.iteration_limit,
                                &options.global.start_options.iteration_limit}) {
         *limit = arguments.iteration_limit.value_or(*limit);
     }
     return options;
+}
+
+/// The campaign with a richer error model than it has, to try.
+std::vector<OtherCampaign> richer_campaigns(const io::CampaignFile& file,
+                                            const std::optional<bool>& prior) {
+    std::vector<OtherCampaign> campaigns;
+    const auto add = [&](io::ErrorModel model) {
+        if (model <= file.error_model) return;
+        try {
+            io::CampaignFile other = io::read_campaign(file.path, {model}).front();
+            io::set_prior(other, prior.value_or(other.spread.is_prior));
+            campaigns.push_back(
+                {"errors: " + std::string(io::error_model_name(model)), std::move(other)});
+        } catch (const InputError&) {  // not of this robot
+        }
+    };
+    if (file.error_model == io::ErrorModel::Stated) add(io::ErrorModel::Complete);
+    // Without a prior it has more errors than most poses tell apart.
+    if (prior.value_or(true)) add(io::ErrorModel::Full);
+    return campaigns;
 }
 
 /// The library knows groups, the message the option that asks for them.
@@ -168,11 +198,12 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     if (!earlier.from.empty()) {
         options.earlier = read_usable_earlier(earlier.from, file, earlier.use(), earlier.is_forced);
     }
-    if (!arguments.plan.empty())
-        options.used = find_planned(file, measured, arguments.plan, options.excluded);
+    if (!arguments.plan.empty()) use_plan(arguments.plan, file, measured, options);
     warn_of_no_validation(arguments, validation, made_from);
     options.validation = validation.measured ? &*validation.measured : nullptr;
     options.validation_campaign = validation.campaign ? &*validation.campaign : nullptr;
+    check_limit(arguments, file, measured, options);
+    options.richer = [&] { return richer_campaigns(file, arguments.prior); };
     io::Configurations predicted;
     if (!arguments.predict.empty()) predicted = read_unlimited(arguments.predict, file);
     options.predicted = predicted.joints;

@@ -9,7 +9,10 @@ namespace posewise::cli {
 
 void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     CalibrationOptions& options = arguments.options;
-    command.add_option("--plan", arguments.plan, "Use only the configurations of this plan file")
+    command
+        .add_option("--plan", arguments.plan,
+                    "Use only the configurations of this plan file, judge on "
+                    "those it has to verify and on the others")
         ->check(file_name());
     add_exclude_option(command, options.excluded);
     command.add_option("--method", arguments.method, "lm, two-step or global")
@@ -43,9 +46,16 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
         ->check(whole_number(1, 1000000))
         ->capture_default_str();
     command
-        .add_option("--validate", arguments.validate,
-                    "Second measurement file, to judge the result on")
+        .add_option(
+            "--validate", arguments.validate,
+            "Second measurement file, to judge the result on: poses that are new, beyond the "
+            "ranges calibrated with, and repeated, each group by itself")
         ->check(file_name());
+    command
+        .add_option("--limit-mm", arguments.limit_mm,
+                    "RMS of distances to keep at the poses it is judged on: pass, fail or "
+                    "undecided, with 95 %")
+        ->check(real_number(1e-6, 1e6));
     CLI::Option* const predict =
         command
             .add_option("--predict", arguments.predict,

@@ -15,6 +15,7 @@ struct CalibrateArguments {
     InputPaths paths;
     std::string plan;
     std::string validate;
+    std::optional<double> limit_mm;
     std::string predict;
     std::string predict_out;
     std::string out;

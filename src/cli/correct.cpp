@@ -34,7 +34,10 @@ measurement tells from theirs, so the error without correction is that of these 
 
 With six joints or more position and orientation are both brought to zero, by the smallest change
 of joints if there are several ways. With fewer the sum of squares is least, in which 1 mrad counts as
---mm-per-mrad; at 0 only the position of --tool-mm counts.)";
+--mm-per-mrad; at 0 only the position of --tool-mm counts.
+
+Where joints are held in most configurations and over half of their error is left, nothing is written
+and the exit code is 3; --force writes it all the same.)";
 
 struct CorrectArguments {
     InputPaths paths;
@@ -58,6 +61,21 @@ CorrectionOptions correction_options(const CorrectArguments& arguments) {
     return options;
 }
 
+/// Throws NoCalibration where most configurations are not brought home, unless it is forced; warns
+/// of some.
+void check_corrected(const CorrectArguments& arguments, const CorrectedPoses& corrected) {
+    const auto count = corrected.not_home.size();
+    if (count == 0) return;
+    const std::string words = fmt::format(
+        "{}: {} of {} configurations are not brought home, the first is {}: over half of their "
+        "error is left",
+        arguments.poses, count, corrected.corrections.size(),
+        detail::quote(corrected.ids[static_cast<std::size_t>(corrected.not_home.front())]));
+    if (corrected.are_usable() || arguments.is_forced) return print_warning(words);
+    throw NoCalibration(fmt::format("{}; {}--force corrects them all the same", words,
+                                    arguments.out.empty() ? "" : "nothing was written, "));
+}
+
 void correct(const CorrectArguments& arguments, const CommonOptions& common) {
     const io::CampaignFile file = io::read_campaign(arguments.paths.campaign);
     check_outputs({&file}, {arguments.estimate, arguments.poses}, {arguments.out}, common);
@@ -75,8 +93,13 @@ void correct(const CorrectArguments& arguments, const CommonOptions& common) {
         return correct_poses(file, found, poses.joints, poses.ids, base,
                              correction_options(arguments));
     });
+    check_corrected(arguments, corrected);
+    if (!corrected.collisions.empty()) {
+        print_warning(arguments.poses + ": " + corrected.collisions);
+    }
     if (!arguments.out.empty()) {
-        io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections);
+        io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections,
+                                  poses.purposes);
     }
     if (common.json) return print_document(io::to_json(corrected, file));
     print(fmt::format("{}: {} corrected{}\n", file.name,

@@ -3,17 +3,21 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <memory>
+#include <set>
 #include <tuple>
 
 #include "../core/text.hpp"
 #include "../task/earlier_estimate.hpp"
 #include "common.hpp"
+#include "crew.hpp"
 #include "files.hpp"
 #include "measured.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/io/estimate_file.hpp"
+#include "posewise/report/reports.hpp"
 #include "posewise/task/doubts.hpp"
 
 namespace posewise::cli {
@@ -29,6 +33,9 @@ void check_usable(const std::string& path, const Campaign& campaign, const io::E
     if (!earlier.changes.empty()) {
         print_warning(path + ": the campaign file said otherwise when it was made: " +
                       join_some(earlier.changes));
+    }
+    for (const std::string& warning : earlier.warnings) {
+        print_warning(path + ": was warned of when it was made: " + warning);
     }
     Campaign judged = campaign;
     if (earlier.spread) judged.spread = *earlier.spread;
@@ -58,6 +65,21 @@ void check_prior(const std::string& path, const Campaign& expected) {
 CLI::Option* add_force_option(CLI::App& command, bool& is_forced) {
     return command.add_flag("--force", is_forced,
                      "Take an estimate that did not converge or has values no robot has");
+}
+
+JudgeCalibration judge_of(const std::string& measurements, bool is_forced) {
+    const auto warned = std::make_shared<std::set<std::string>>();
+    return [=](const Calibration& calibration) {
+        if (!leads_crew()) return;
+        for (const std::string& sentence : describe_doubts(calibration, measurements)) {
+            if (warned->insert(sentence).second) print_warning(sentence);
+        }
+        if (calibration.faults.empty()) return;
+        const std::string words =
+            measurements + ": this is no calibration: " + join_some(calibration.faults);
+        if (!is_forced) throw NoCalibration(words + "; --force takes it all the same");
+        print_warning(words);
+    };
 }
 
 std::string join_some(const std::vector<std::string>& texts) {

@@ -9,6 +9,7 @@
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/estimate_file.hpp"
+#include "posewise/task/calibration.hpp"
 #include "posewise/task/earlier.hpp"
 #include "posewise/task/plan.hpp"
 
@@ -23,6 +24,10 @@ class NoCalibration : public std::runtime_error {
 
 /// --force: an estimate with faults is taken all the same.
 CLI::Option* add_force_option(CLI::App& command, bool& is_forced);
+
+/// For what is built on measurements: warns of the doubts about what those in a file calibrate,
+/// once each. With faults it throws NoCalibration, or warns if it is forced.
+JudgeCalibration judge_of(const std::string& measurements, bool is_forced);
 
 /// "it did not converge (iteration limit); ...", the first few.
 std::string join_some(const std::vector<std::string>& texts);

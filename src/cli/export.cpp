@@ -42,7 +42,7 @@ offset d where the next axis is nearly parallel (Hayati).
 
 --ur-kinematics writes a robot of six joints that turn as the file of kinematics that ur_description
 and the ROS drivers of Universal Robots read. It begins at what they call base_link_inertia and ends
-at tool0. The driver will say that its hash is not the controller's: that has the factory's.)";
+at tool0; of a robot that begins at base_link the half turn between the two is left out. The driver will say that its hash is not the controller's: that has the factory's.)";
 
 struct ExportArguments {
     std::string campaign;

@@ -107,6 +107,9 @@ void print_frames(const io::CampaignFile& file, const std::string& path) {
         fmt::format("{}: the calibrated robot as kinematics of ur_description, from its "
                     "base_link_inertia to its tool0, is in {}\n",
                     file.name, detail::escape_controls(path)));
+    const Chain& robot = file.declared_robot;
+    if (without_half_turn(robot).elements().size() == robot.elements().size()) return;
+    print("the half turn from base_link to base_link_inertia is not in it, as ROS has it itself\n");
 }
 
 }  // namespace
@@ -118,11 +121,6 @@ void warn_of(const io::ExportedRobot& robot, const ExportPaths& paths) {
         if (offset < far) continue;
         print_warning(fmt::format("{}: row {} has an offset of {} m; do not round it", paths.dh,
                                   k + 1, detail::format_short(offset, 4)));
-    }
-    if (robot.frames && robot.frames->front()(0, 0) < 0) {
-        print_warning(paths.ur_kinematics +
-                      ": the shoulder is turned by more than 90 deg; the robot must begin at "
-                      "base_link_inertia, not at base_link");
     }
 }
 

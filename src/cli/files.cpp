@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "../io/atomic_file.hpp"
 #include "../io/text.hpp"
 #include "posewise/io/trial_store.hpp"
 
@@ -33,19 +34,18 @@ bool is_standard_output(const std::string& path) {
            (!S_ISCHR(out.st_mode) || isatty(STDOUT_FILENO) == 1);
 }
 
+/// Whole, and where writing to it would lead, that of a dangling link, too.
+fs::path follow_links(const std::string& path) {
+    const std::string target = detail::follow_link(path);
+    std::error_code error;
+    fs::path whole = fs::weakly_canonical(fs::absolute(target, error), error);
+    return error ? fs::path(target) : whole;
+}
+
 bool is_same_file(const std::string& a, const std::string& b) {
     std::error_code error;
     if (fs::equivalent(a, b, error) && !error) return true;
-    const fs::path whole_a = fs::weakly_canonical(fs::absolute(a, error), error);
-    if (error) return a == b;
-    const fs::path whole_b = fs::weakly_canonical(fs::absolute(b, error), error);
-    return error ? a == b : whole_a == whole_b;
-}
-
-fs::path follow_links(const std::string& path) {
-    std::error_code error;
-    fs::path whole = fs::weakly_canonical(path, error);
-    return error ? fs::path(path) : whole;
+    return follow_links(a) == follow_links(b);
 }
 
 /// What SQLite keeps beside a store of trials may hold the latest of them.

@@ -6,7 +6,7 @@
 
 #include "../core/text.hpp"
 #include "../io/atomic_file.hpp"
-#include "../report/joint_directions.hpp"
+#include "../report/readings_report.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "estimates.hpp"
@@ -38,12 +38,15 @@ compare with the formula for what is identifiable; a stated set that spans less 
 real robot uncorrected. A warning tells where there is no clear gap between what is identifiable and
 what is not, as of harmonics of high order on a joint that turns little.
 
-With --measurements the directions of the joints are checked, too: the robot is registered (base and
-targets fitted, nothing else) with every choice of joints reversed. The right one misses the points by
-what the robot's errors are, any other by far more; with --from, by what an earlier estimate left.
+With --measurements their meaning is checked, too: the robot is registered (base and targets fitted,
+nothing else) with every choice of joints reversed, two joints exchanged, a joint coupled to its
+neighbour (j3 - j2), another unit or zero of a joint, points in mm, inches or feet, a left-handed
+instrument, other senses of orientations. The right one misses the points by what the robot's errors
+are, any other by far more; with --from, by what an earlier estimate left.
 
 A robot can be inspected before there is a campaign, straight from its URDF; --write-campaign then
-makes a file to begin with, which says what is left to fill in.)";
+makes a file to begin with, which says what is left to fill in. Its cell.links are capsules around the
+URDF's collision shapes (boxes, cylinders, spheres, capsules); a warning names the links of meshes.)";
 
 struct InspectArguments {
     std::string file;  ///< campaign or URDF
@@ -53,22 +56,6 @@ struct InspectArguments {
     std::string measurements;
     EarlierArguments earlier;
 };
-
-/// The choices of joint directions that were tried, by the names of the joints.
-std::vector<io::JointDirections> name_directions(const Chain& robot,
-                                                 const std::vector<detail::SignPattern>& patterns) {
-    std::vector<io::JointDirections> directions;
-    for (const detail::SignPattern& pattern : patterns) {
-        directions.push_back({detail::reversed_joints(robot, pattern), pattern.distance_rms});
-    }
-    return directions;
-}
-
-/// How to reverse joints where the campaign's robot comes from.
-std::string advise_reversal(const io::CampaignFile& file) {
-    if (file.urdf) return "turn their axes round in " + detail::escape_controls(file.urdf->path);
-    return "write each with the opposite sign (-q for q) wherever it stands in the campaign file";
-}
 
 void print_head(const io::CampaignFile& file) {
     print(fmt::format("{}\nsensor: {}; model error {}\n", file.name, file.sensor->words().sentence,
@@ -80,21 +67,22 @@ void print_head(const io::CampaignFile& file) {
     }
 }
 
-/// With the joint directions that were tried, if there are some.
-void print_campaign(const io::CampaignFile& file, const std::vector<detail::SignPattern>& patterns,
+/// With the readings of measurements that were tried, if there are some.
+void print_campaign(const io::CampaignFile& file, const ReadingSearch& readings,
                     const CommonOptions& common) {
-    const bool is_stated = file.error_model == io::ErrorModel::Stated;
-    const Inspection inspection = posewise::inspect(file, file.declared_robot, is_stated);
+    const bool is_stated =
+        file.error_model == io::ErrorModel::Stated || file.error_model == io::ErrorModel::Offsets;
+    Inspection inspection = posewise::inspect(file, file.declared_robot, is_stated);
+    inspection.rounded_angle_count = file.rounded_angle_count;
     const std::string gap = describe_gap(inspection);
     if (!gap.empty()) print_warning(file.path + ": " + gap);
     if (common.json) {
-        return print_document(patterns.empty()
-                                  ? io::to_json(inspection)
-                                  : io::to_json(inspection, name_directions(file.robot, patterns)));
+        return print_document(readings.tried.empty() ? io::to_json(inspection)
+                                                     : io::to_json(inspection, readings));
     }
     print_head(file);
     print(format(inspection) + describe_unused_planning(file));
-    if (!patterns.empty()) print(describe_joint_directions(file, patterns, advise_reversal(file)));
+    if (!readings.tried.empty()) print(detail::describe_readings(file, readings));
 }
 
 bool is_urdf(const InspectArguments& arguments) {
@@ -119,7 +107,10 @@ void inspect_urdf(const InspectArguments& arguments, const CommonOptions& common
     const std::string path = written.empty() ? urdf : written;
     const std::string text = io::make_campaign_text(robot, path);
     const io::CampaignFile file = io::parse_campaign(text, path);
-    if (!written.empty()) detail::write_file(written, text);
+    if (!written.empty()) {
+        std::ranges::for_each(io::read_urdf_bodies(robot).skipped, print_warning);
+        detail::write_file(written, text);
+    }
     print_campaign(file, {}, common);
     if (!written.empty() && !common.json) {
         print(fmt::format("\nThe campaign is in {}; fill in what is marked there.\n",
@@ -131,7 +122,7 @@ void inspect_urdf(const InspectArguments& arguments, const CommonOptions& common
 void warn_of_places(const std::string& path, const io::CampaignFile& file,
                     const Measurements& measurements) {
     const Parameters registered = register_base_and_targets(file, measurements).parameters;
-    if (find_misfit(file, measurements, registered)) return;  // that is said of the directions
+    if (find_misfit(file, measurements, registered)) return;  // that is said of the readings
     const std::string words = describe_places(find_place_doubts(file, registered));
     if (!words.empty()) print_warning(path + ": " + words);
 }
@@ -141,17 +132,17 @@ void inspect(const InspectArguments& arguments, const CommonOptions& common) {
     io::CampaignFile file = io::read_campaign(arguments.file);
     std::ranges::for_each(file.warnings, print_warning);
     expect_earlier(file, arguments.earlier);
-    std::vector<detail::SignPattern> patterns;
+    ReadingSearch readings;
     if (!arguments.measurements.empty()) {
         const Measurements measurements = io::read_measurements(arguments.measurements, file);
-        patterns = compute_from(arguments.measurements, [&] {
-            detail::JointSigns signs = detail::fit_joint_signs(file, measurements);
-            if (!signs.undetermined.empty()) throw InputError(signs.undetermined);
-            return std::move(signs.patterns);
+        readings = compute_from(arguments.measurements, [&] {
+            ReadingSearch search = search_readings(file, measurements);
+            if (!search.undetermined.empty()) throw InputError(search.undetermined);
+            return search;
         });
         warn_of_places(arguments.measurements, file, measurements);
     }
-    print_campaign(file, patterns, common);
+    print_campaign(file, readings, common);
 }
 
 }  // namespace
@@ -178,7 +169,7 @@ void add_inspect(CLI::App& program, const CommonOptions& common) {
         ->check(file_name());
     command
         ->add_option("-m,--measurements", arguments->measurements,
-                     "Measured configurations (CSV, or MATLAB .mat): check the joints' directions")
+                     "Measured configurations (CSV, or MATLAB .mat): check how they are meant")
         ->check(file_name());
     add_from_option(*command, arguments->earlier);
     command->footer(inspect_footer);

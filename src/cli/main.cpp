@@ -45,7 +45,7 @@ Start with:
 posewise COMMAND --help explains each with an example. With --json each prints one JSON document, which
 designs/json.md explains, and nothing else.
 Exit code: 0 good, 1 unusable input (the last line on standard error), 2 wrong usage,
-3 a calibration that must not be used (calibrate), 70 internal error, a bug of posewise.)";
+3 a calibration that must not be used, 70 internal error, a bug of posewise.)";
 
 /// The end of good work, if all of its output went out.
 ProgramEnd finish() {

@@ -6,6 +6,7 @@
 #include "files.hpp"
 #include "options.hpp"
 #include "posewise/measurement/exclusion.hpp"
+#include "posewise/measurement/pool.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
@@ -62,9 +63,22 @@ Measurements read_measured_without(const std::vector<std::string>& excluded,
 
 void add_exclude_option(CLI::App& command, std::vector<std::string>& excluded) {
     add_ids_option(command, "--exclude", excluded,
-                   "Leave out these configurations (ids, by commas) and samples (7:2 has 7 in the "
-                   "column config and 2 in the column sample; without such a column it is the "
-                   "second sample of 7)");
+                   "Leave out these configurations (ids, by commas; 7-12 are all from 7 to 12 in the "
+                   "file's order) and samples (7:2 has 7 in the column config and 2 in the column "
+                   "sample; without such a column it is the second sample of 7)");
+}
+
+void warn_of_unchecked_bodies(const io::CampaignFile& file) {
+    const std::string unchecked = describe_unchecked_bodies(file);
+    if (!unchecked.empty()) print_warning(unchecked);
+}
+
+void warn_of_violations(const std::string& path, const io::CampaignFile& file,
+                        const io::Configurations& configurations) {
+    const Constraints constraints(file, file.cell, false);
+    const std::string words =
+        describe(find_violations(constraints, configurations.joints), configurations.ids);
+    if (!words.empty()) print_warning(path + ": " + words);
 }
 
 io::Configurations read_unlimited(const std::string& path, const io::CampaignFile& file) {

@@ -32,7 +32,14 @@ Measurements read_measured_without(const std::vector<std::string>& excluded,
 /// --exclude, as leave_out() takes it.
 void add_exclude_option(CLI::App& command, std::vector<std::string>& excluded);
 
-/// io::read_program(), with the same warning.
+/// Warns of describe_unchecked_bodies().
+void warn_of_unchecked_bodies(const io::CampaignFile& file);
+
+/// Warns of configurations of a file that the campaign's cell does not allow.
+void warn_of_violations(const std::string& path, const io::CampaignFile& file,
+                        const io::Configurations& configurations);
+
+/// io::read_program(), with the warning of read_measured().
 io::Configurations read_unlimited(const std::string& path, const io::CampaignFile& file);
 
 }  // namespace posewise::cli

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -19,7 +22,10 @@
 #include "plan_target.hpp"
 #include "plan_verification.hpp"
 #include "plot.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/io/plan_file.hpp"
+#include "posewise/report/reports.hpp"
+#include "posewise/task/inspection.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -27,6 +33,7 @@ namespace {
 constexpr const char* plan_footer = R"(
 Example:
   posewise plan campaign.yaml --poses 24 --out plan.json --csv poses.csv --report plan.html
+  posewise plan campaign.yaml --poses 24 --verification 15 --out plan.json --csv poses.csv
   posewise plan campaign.yaml --target-mm 0.2 --assurance 0.95 --verify
   posewise plan campaign.yaml --poses 12 --augment measured.csv --criterion d
   posewise plan campaign.yaml --plan plan.json --drop p7,p12 --out repaired.json
@@ -44,6 +51,8 @@ joint steps until the ball sits in one: state where ball and sockets are, or use
   searched     no plan at all has a larger value, if the search met the best poses; not a proof
   order        time at the joints' speeds, from the cell's home; a via point where the straight
                way is not free, BLOCKED where none was found
+  nearest      of each pose the two bodies that come nearest to each other: links, obstacles, and
+               the balls at the targets (radius_mm)
   missing      RMS without the pose that hurts most, or without as many as --robust-to says
 and tables of the poses, of the accuracy for other numbers of poses, and of how sure each parameter
 will be. The workspace is drawn within the limits and the cell's target boxes, collisions excluded,
@@ -55,7 +64,12 @@ many poses are missing. "enough" says how far that number may be off: which ones
 and with 95 % probability. Where none does, it says what is left at best and why: exit code 1, no plan.
 --minutes takes as many as fit; with --target-mm it says whether both can be kept.
 
---verify checks what is predicted: robots are drawn, measured at the poses, calibrated and judged at
+--verification adds poses to judge the calibration on (v1, v2, ...): random in the workspace, visited
+after the others, so that these stay as they are without it. --minutes is without them. Measure them
+into the same file: calibrate --plan calibrates without them and judges on them; 29 of them and no
+error above X say that 90 % of the workspace is below X with 95 % confidence, 59 that 95 % are.
+
+--verify checks what is predicted, before anything is measured: robots are drawn, measured at the poses, calibrated and judged at
 other places, block by block, until what it finds is sure; a limit that is not kept then is said.
 
 --from plans for the robot as an earlier calibration found it, --as-prior for what that left open;
@@ -73,6 +87,7 @@ struct PlanArguments : RequestArguments {
     TargetArguments target;
     VerificationArguments verification;
     std::string csv;
+    bool is_strict = false;
     std::string page;
     std::string plot;
 };
@@ -105,6 +120,35 @@ TargetPlanning plan_with_progress(const io::CampaignFile& campaign, PlanningOpti
     return made;
 }
 
+/// Where there were not as many poses to verify as were asked for.
+void warn_of_few(const Plan& plan) {
+    const Index asked_for = plan.request.verification_count;
+    const Index count = std::ssize(plan.verification);
+    if (count == asked_for) return;
+    print_warning(fmt::format(
+        "--verification is {}, only {} poses are feasible and far enough from all others; raise {}",
+        asked_for, count, plan.request.workspace_box_mm.empty() ? "--pool" : "--workspace-poses"));
+}
+
+/// Moves for which no free way was found, the ids that they lead to; with --strict an InputError.
+void warn_of_cell(const Plan& plan, bool is_strict) {
+    std::ranges::for_each(plan.cell_doubts, print_warning);
+    std::vector<std::string> blocked;
+    for (const auto* poses : {&plan.poses, &plan.verification}) {
+        for (const PlannedPose& pose : *poses) {
+            if (pose.is_blocked) blocked.push_back(pose.id);
+        }
+    }
+    if (blocked.empty()) return;
+    const std::string text = fmt::format("no free way was found to {}", fmt::join(blocked, ", "));
+    if (is_strict) {
+        throw InputError(text +
+                         "; nothing is written. Leave them out (--plan with --drop), state another "
+                         "home_deg, or plan without --strict and find the ways by hand");
+    }
+    print_warning(text + ": find one by hand before a robot is sent there; marked BLOCKED");
+}
+
 void plan(const PlanArguments& arguments, const CommonOptions& common) {
     check_plan_usage(arguments);
     if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
@@ -118,6 +162,7 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
                   {arguments.earlier.from, sources.augment, sources.repaired, sources.workspace},
                   {out, arguments.csv, arguments.page, arguments.plot}, common);
     const PlanRequest request = make_request(arguments, &campaign, Criterion::V);
+    for (const OnAxis& one : find_on_axis(campaign)) print_warning(describe(one));
     PlanningOptions options = read_planning_inputs(request, campaign);
     check_verification(arguments.verification, campaign, options);
     if (!sources.repaired.empty()) options.repaired = io::read_plan(sources.repaired);
@@ -125,6 +170,8 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     const auto read = std::chrono::steady_clock::now();
     const TargetPlanning made = plan_with_progress(campaign, options, arguments);
     if (!arguments.verification.is_wanted) note_overtime(request.time_limit, stop, read, "plan");
+    warn_of_few(made.planning->plan);
+    warn_of_cell(made.planning->plan, arguments.is_strict);
     io::write_plan(out, made.planning->plan, arguments.csv, made.planning->campaign,
                    given_warnings());
     const auto simulated = verify_made(arguments.verification, made, options, arguments.progress);
@@ -160,6 +207,11 @@ void add_plan_problem(CLI::App& command, PlanArguments& problem) {
     add_ids_option(command, "--drop", request.dropped, "Ids of its poses to replace, by commas");
     add_prior_option(command, problem.prior, "; --poses may then be below what identifies");
     add_earlier_options(command, problem.earlier);
+    command
+        .add_option("--verification", request.verification_count,
+                    "Poses to add that judge the calibration and are not calibrated with: random "
+                    "and feasible, 5 deg or more from all others (with --plan: all together)")
+        ->check(whole_number(1, 10000));
     command.add_option("--repeats", request.repeats, "Samples of each configuration")
         ->check(real_number(1, 1e9))
         ->default_val(1.0);
@@ -177,8 +229,12 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
     add_search_options(command, arguments, "Of all draws (default: the campaign's)",
                        "<campaign>.poses.json");
     add_verification_options(command, arguments.verification);
-    command.add_option("--csv", arguments.csv, "Write the configurations as CSV, too")
+    command
+        .add_option("--csv", arguments.csv,
+                    "Write the configurations as CSV, too, with the points to pass on the way")
         ->check(file_name());
+    command.add_flag("--strict", arguments.is_strict,
+                     "Refuse a plan with a move for which no free way was found (exit code 1)");
     add_report_option(command, arguments.page);
     add_plot_option(command, arguments.plot, "Draw the poses from the side and from above");
     add_progress_flag(command, arguments);

@@ -30,8 +30,9 @@ Candidates read_candidates(const std::string& path, CandidateKind kind,
     if (kind == CandidateKind::Measurements) {
         return measured_candidates(read_measured_without({}, path, campaign, {}));
     }
-    auto [ids, joints, is_seen] = io::read_configurations(path, campaign);
-    return {kind, std::move(ids), std::move(joints), is_seen.cast<double>(), std::nullopt};
+    io::Configurations read = io::read_configurations(path, campaign);
+    return {kind, std::move(read.ids), std::move(read.joints), read.is_seen.cast<double>(),
+            std::nullopt};
 }
 
 void read_plain(ChoiceInputs& inputs) {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -44,8 +45,10 @@ calibrate --plan and verify, prints the chosen ids, the criterion's value and wh
 Measurements register the base and the targets; other candidates need them in the campaign file (or
 measured poses, --augment), or from an earlier estimate, --from, which tells the robot's errors, too. A candidate file has the columns config,q1_deg,... and perhaps
 visible_targets (as plan --csv writes it), or is a measurement file; --random draws a scrambled Halton
-sequence within the joint limits. A file of blocks has a row of numbers a line (or is a MATLAB
-matrix), each --rows of them one candidate, named 0, 1, ... One of --groups: columns config,group.
+sequence of what the joint limits and the campaign's cell allow; listed candidates that the cell does
+not allow are not chosen, a warning names them. A file of blocks has a row of numbers a line (or is a
+MATLAB matrix), each --rows of them one candidate, named 0, 1, ... One of --groups: columns
+config,group.
 
 --relax chooses nothing: it weights the candidates (an approximate design), 0 to --repeat-limit each and
 -k in sum, by what an experiment that could be split at will would take of each, and proves the bound.
@@ -141,6 +144,7 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     ChoiceInputs inputs =
         read_choice_inputs(request, kind_of(arguments), arguments.random, std::move(file));
     inputs.options.stop = stop;
+    inputs.options.judge = judge_of(sources.candidates, arguments.earlier.is_forced);
     const auto read = std::chrono::steady_clock::now();
     if (arguments.relaxes) {
         const ApproximateDesign design =
@@ -161,6 +165,7 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
             : choose(std::move(inputs.blocks), inputs.options);
     note_overtime(request.time_limit, stop, read, "choose");
     warn_of_few(plan.candidate_count, arguments.random);
+    std::ranges::for_each(plan.cell_doubts, print_warning);
     io::write_plan(out, plan, given_warnings());
     interrupted.reset();
     print_plan(plan, arguments, inputs, out, common);

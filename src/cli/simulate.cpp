@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
+#include "measured.hpp"
 #include "options.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/io/json_reports.hpp"
@@ -22,8 +23,9 @@ Example:
   posewise simulate campaign.yaml --configurations poses.csv --out simulated.csv
 
 Draws a robot with errors of the campaign's spread (by the seed --truth), sends it to random
-configurations within the joint limits, or to those of a file, and measures with the sensor's noise,
-and with the model error and repeatability that the campaign expects.
+configurations that the joint limits and the campaign's cell allow, or to those of a file (a warning
+says which of them the cell does not allow), and measures with the sensor's noise, and with the model
+error and repeatability that the campaign expects.
 In the column visible_targets that file may list which targets each configuration shows ("1 3"), as
 plan --csv writes it; the cells of the others stay empty. With sockets it has a column socket, and
 joints are those with which the ball sits in it. The file written starts with comment lines
@@ -56,6 +58,7 @@ std::vector<std::string> make_comments(const SimulateArguments& arguments,
 Simulation simulate_as_asked(const SimulateArguments& arguments, const io::CampaignFile& file) {
     if (arguments.configurations.empty()) return simulate(file, arguments.options);
     const auto asked = io::read_configurations(arguments.configurations, file);
+    warn_of_violations(arguments.configurations, file, asked);
     Simulation simulation = simulate(file, asked.joints, asked.is_seen, arguments.options);
     simulation.measurements.ids = asked.ids;
     return simulation;
@@ -66,6 +69,7 @@ void run_simulation(SimulateArguments arguments, const CommonOptions& common) {
     check_outputs({&file}, {arguments.configurations}, {arguments.out}, common);
     arguments.options.seed = arguments.seed.value_or(file.seed);
     const Simulation simulation = simulate_as_asked(arguments, file);
+    warn_of_unchecked_bodies(file);
     io::write_measurements_csv(arguments.out, file, simulation.measurements,
                                make_comments(arguments, file));
     if (common.json) return print_document(io::to_json(simulation, file));

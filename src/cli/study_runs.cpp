@@ -144,6 +144,7 @@ std::vector<Study> study_measured(const StudyArguments& arguments, const CommonO
     StudyOptions options = arguments.options;
     options.random_subsets = arguments.random_subsets.value_or(StudyOptions().random_subsets);
     complete_options(options, arguments, file, stop);
+    options.judge = judge_of(paths.measurements, arguments.earlier.is_forced);
     ProgressLine line("calibrating", arguments.progress);
     options.progress = [&](const Progress& progress) { line(progress); };
     extras.notes = describe_earlier(arguments.earlier) + describe_unused_planning(file);
@@ -169,6 +170,7 @@ std::vector<Study> study_simulated(const StudyArguments& arguments, const Common
                                    const StopSignal& stop, StudyExtras& extras) {
     io::CampaignFile file = read_with_prior(arguments.paths.campaign, arguments.prior, stop);
     expect_earlier(file, arguments.earlier);
+    warn_of_unchecked_bodies(file);
     check_study_outputs(arguments, {&file}, {arguments.truth, arguments.earlier.from}, common);
     SimulatedStudyOptions options = arguments.options;
     options.random_subsets = arguments.random_subsets.value_or(options.random_subsets);

@@ -4,7 +4,10 @@
 
 #include "../io/robot_statement.hpp"
 #include "common.hpp"
+#include "files.hpp"
 #include "measured.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/io/plan_file.hpp"
 
 namespace posewise::cli {
 
@@ -34,6 +37,30 @@ void warn_of_no_validation(const CalibrateArguments& arguments, const Validation
     print_warning(fmt::format("{}: {} from these very measurements; to validate takes others",
                               arguments.validate,
                               is_of_earlier ? earlier.from + " was made" : "it is calibrated"));
+}
+
+void use_plan(const std::string& path, const Campaign& campaign, const Measurements& measured,
+              CalibrationOptions& options) {
+    const Plan plan = io::read_plan(path);
+    compute_from(path, [&] {
+        options.used = find_planned(plan, campaign, measured, options.excluded);
+        options.verification = find_verification(plan, campaign, measured, options.excluded);
+    });
+}
+
+void check_limit(const CalibrateArguments& arguments, const Campaign& campaign,
+                 const Measurements& measured, const CalibrationOptions& options) {
+    if (!arguments.limit_mm) return;
+    if (!campaign.sensor->has_lengths()) {
+        throw input_error_at({arguments.paths.campaign},
+                             "the sensor measures no length, so that --limit-mm has no meaning");
+    }
+    const bool has_others =
+        !options.used.empty() && std::ssize(options.used) < measured.configuration_count();
+    if (options.validation != nullptr || has_others) return;
+    throw input_error_at({arguments.paths.measurements},
+                         "--limit-mm needs poses that are not calibrated with: --validate, or "
+                         "--plan with a plan that has some to verify or leaves some out");
 }
 
 }  // namespace posewise::cli

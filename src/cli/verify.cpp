@@ -127,7 +127,7 @@ void verify_file(const VerifyArguments& arguments, const CommonOptions& common) 
     if (common.json) {
         print_document(io::to_json(verification, plan, arguments.plan));
     } else {
-        print(fmt::format("{}: {}\n{}", arguments.plan,
+        print(fmt::format("{}: {}\n{}", detail::escape_controls(arguments.plan),
                           describe_plan(plan, verification.candidate_count),
                           format_findings(verification.findings)));
     }

@@ -1,7 +1,12 @@
 #include "decompositions.hpp"
 
 #include <Eigen/QR>
+#include <Eigen/SVD>
 #include <algorithm>
+#include <vector>
+
+#include "parallel.hpp"
+#include "products.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -14,6 +19,65 @@ MatrixXd triangular_factor(MatrixXd A) {
     Eigen::Ref<MatrixXd> in_place(A);
     const HouseholderInPlace qr(in_place);
     return A.topRows(std::min(A.rows(), A.cols())).triangularView<Eigen::Upper>();
+}
+
+MatrixXd triangular_factor_of_many(const RowMatrixXd& A) {
+    const Index at_once = std::max<Index>(1024, 4 * A.cols());
+    if (A.rows() <= 2 * at_once) return triangular_factor(A);
+    const Index parts = (A.rows() + at_once - 1) / at_once;
+    std::vector<MatrixXd> factors(static_cast<std::size_t>(parts));
+    for_each_index(parts, [&](Index i) {
+        const Index first = i * at_once;
+        factors[static_cast<std::size_t>(i)] =
+            triangular_factor(A.middleRows(first, std::min(at_once, A.rows() - first)));
+    });
+    Index rows = 0;
+    for (const MatrixXd& factor : factors) rows += factor.rows();
+    RowMatrixXd stacked(rows, A.cols());
+    Index row = 0;
+    for (const MatrixXd& factor : factors) {
+        stacked.middleRows(row, factor.rows()) = factor;
+        row += factor.rows();
+    }
+    return triangular_factor_of_many(stacked);
+}
+
+RowMatrixXd stack(const RowMatrixXd& above, const RowMatrixXd& below) {
+    if (above.rows() == 0) return below;
+    if (below.rows() == 0) return above;
+    RowMatrixXd stacked(above.rows() + below.rows(), above.cols());
+    stacked << above, below;
+    return stacked;
+}
+
+MatrixXd information_of(const RowMatrixXd& rows, Index parameter_count) {
+    if (rows.rows() == 0) return MatrixXd::Zero(parameter_count, parameter_count);
+    return symmetric_gram(rows);
+}
+
+MatrixXd with_columns_of_norm_one(const MatrixXd& A) {
+    MatrixXd scaled = A;
+    for (auto column : scaled.colwise()) {
+        const double norm = column.stableNorm();
+        if (norm > 0) column /= norm;
+    }
+    return scaled;
+}
+
+SingularDirections singular_directions(const MatrixXd& A) {
+    MatrixXd square = MatrixXd::Zero(A.cols(), A.cols());
+    const MatrixXd R = triangular_factor_of_many(A);
+    square.topRows(R.rows()) = R;
+    const Eigen::JacobiSVD<MatrixXd> svd(square, Eigen::ComputeFullV);
+    return {svd.singularValues(), svd.matrixV()};
+}
+
+Index count_independent_columns(const MatrixXd& A) {
+    constexpr double least_left = 1e-10;
+    const Index most = std::min(A.rows(), A.cols());
+    if (most == 0 || !A.allFinite()) return 0;
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(with_columns_of_norm_one(A));
+    return (qr.matrixQR().diagonal().head(most).cwiseAbs().array() > least_left).count();
 }
 
 VectorXd solve_least_squares(MatrixXd A, const VectorXd& b) {
@@ -36,8 +100,11 @@ MatrixXd root_of(const MatrixXd& C) {
     return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
-MatrixXd lower_root_of(const MatrixXd& C) {
-    return triangular_factor(root_of(C).transpose()).transpose();
+MatrixXd lower_root_of_gram(const RowMatrixXd& A) {
+    const MatrixXd R = triangular_factor_of_many(A);
+    MatrixXd T = MatrixXd::Zero(R.cols(), R.cols());
+    T.leftCols(R.rows()) = R.transpose();
+    return T;
 }
 
 }  // namespace posewise::detail

@@ -11,6 +11,32 @@ namespace posewise::detail {
 /// The R of A = Q R by reflections [Householder 1958], min(rows, cols) x cols.
 MatrixXd triangular_factor(MatrixXd A);
 
+/// The same of many rows, some at a time, up to the signs of its rows.
+MatrixXd triangular_factor_of_many(const RowMatrixXd& A);
+
+/// Rows below rows; either may be empty.
+RowMatrixXd stack(const RowMatrixXd& above, const RowMatrixXd& below);
+
+/// The information R^T R of rows, `parameter_count` square; zeros without rows.
+MatrixXd information_of(const RowMatrixXd& rows, Index parameter_count);
+
+/// The columns of A, each over its norm; those of zeros as they are.
+MatrixXd with_columns_of_norm_one(const MatrixXd& A);
+
+/// Singular values of A, largest first, one for each column (zero beyond the rows), and the
+/// directions they are of, in the columns of V.
+struct SingularDirections {
+    VectorXd values;
+    MatrixXd V;
+};
+SingularDirections singular_directions(const MatrixXd& A);
+
+/// How many columns of A are independent, of norm 1 each: what is left of one beside those before
+/// it, pivoted by reflections, exceeds 1e-10, well above rounding (about 1e-14) and free of units.
+/// The rule for rows of an identification Jacobian: an information matrix A^T A, whose rounding is
+/// that of the square, cannot tell.
+Index count_independent_columns(const MatrixXd& A);
+
 /// The X of least |A X - B|^2, for an A of full column rank.
 VectorXd solve_least_squares(MatrixXd A, const VectorXd& b);
 MatrixXd solve_least_squares(MatrixXd A, const MatrixXd& B);
@@ -22,7 +48,7 @@ Eigen::SelfAdjointEigenSolver<MatrixXd> eigen_decomposition(
 /// F with C = F F^T, for a positive semidefinite C.
 MatrixXd root_of(const MatrixXd& C);
 
-/// The same, lower triangular.
-MatrixXd lower_root_of(const MatrixXd& C);
+/// The lower triangular T with A^T A = T T^T, by the rows of A.
+MatrixXd lower_root_of_gram(const RowMatrixXd& A);
 
 }  // namespace posewise::detail

@@ -105,13 +105,8 @@ VectorXd quadratic_forms(const RowMatrixXd& rows, const MatrixXd& lower, bool is
     return forms;
 }
 
-}  // namespace
-
-VectorXd sensitivities(const Blocks& candidates, const MatrixXd& Z) {
-    const Eigen::LLT<MatrixXd> cholesky(Z);
-    const bool is_root = cholesky.info() == Eigen::Success;
-    MatrixXd lower = is_root ? MatrixXd(cholesky.matrixL()) : MatrixXd(2 * Z);
-    if (!is_root) lower.diagonal() = Z.diagonal();
+/// Of all candidates, see QuadraticForms.
+VectorXd sum_forms(const Blocks& candidates, const MatrixXd& lower, bool is_root) {
     const VectorXd forms = quadratic_forms(candidates.matrix, lower, is_root);
     VectorXd result(candidates.count());
     for (Index i = 0; i < candidates.count(); ++i) {
@@ -119,6 +114,22 @@ VectorXd sensitivities(const Blocks& candidates, const MatrixXd& Z) {
         result[i] = forms.segment(first, candidates[i].rows()).sum();
     }
     return result;
+}
+
+}  // namespace
+
+VectorXd sensitivities(const Blocks& candidates, const MatrixXd& Z) {
+    const Eigen::LLT<MatrixXd> cholesky(Z);
+    if (cholesky.info() == Eigen::Success) {
+        return root_sensitivities(candidates, cholesky.matrixL());
+    }
+    MatrixXd lower = 2 * Z;
+    lower.diagonal() = Z.diagonal();
+    return sum_forms(candidates, lower, false);
+}
+
+VectorXd root_sensitivities(const Blocks& candidates, const MatrixXd& F) {
+    return sum_forms(candidates, F, true);
 }
 
 }  // namespace posewise::detail

@@ -8,4 +8,7 @@ namespace posewise::detail {
 /// candidate's sensitivity.
 VectorXd sensitivities(const Blocks& candidates, const MatrixXd& Z);
 
+/// The same by a lower triangular root F of Z = F F^T.
+VectorXd root_sensitivities(const Blocks& candidates, const MatrixXd& F);
+
 }  // namespace posewise::detail

@@ -9,6 +9,7 @@
 #include "../core/decompositions.hpp"
 #include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
+#include "row_value.hpp"
 #include "spectral.hpp"
 
 namespace posewise {
@@ -65,6 +66,11 @@ double evaluate(Criterion criterion, const VectorXd& singular_values, Index pose
         return -std::numeric_limits<double>::infinity();
     }
     return spectral_criterion(objective, s.square().reverse().matrix()).value;
+}
+
+double evaluate_rows(Criterion criterion, const RowMatrixXd& stacked, Index pose_count,
+                     const Blocks* test_poses) {
+    return evaluate_rows(detail::make_objective(criterion, pose_count, test_poses), stacked);
 }
 
 double evaluate(Criterion criterion, const MatrixXd& M, Index pose_count,

@@ -33,10 +33,10 @@ double information_slope(const Objective& objective, double value, Index paramet
 MatrixXd supporting_matrix_of_worst_prediction(const Objective& objective, const MatrixXd& M) {
     const Eigen::LLT<MatrixXd> cholesky(M);
     const VectorXd slope = worst_variance(objective, cholesky).slope;
-    const MatrixXd C = weighted_information(*objective.test_poses, slope / slope.sum());
-    const MatrixXd W = inverse(cholesky);
-    const double trace = C.cwiseProduct(W).sum();
-    return W * C * W / (trace * trace);
+    const RowMatrixXd weighted = weighted_rows(*objective.test_poses, slope / slope.sum());
+    const RowMatrixXd by_rows = weighted * inverse(cholesky);
+    const double trace = by_rows.cwiseProduct(weighted).sum();
+    return symmetric_gram(by_rows) / (trace * trace);  // which keeps more digits than W C W
 }
 
 }  // namespace

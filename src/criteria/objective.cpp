@@ -25,15 +25,19 @@ Objective without_nuisance(Objective objective) {
     return objective;
 }
 
-/// 1 / trace(C M^-1), W = M^-1; C = I where it is null.
-double inverse_trace(const MatrixXd* C, const MatrixXd& W, MatrixXd* slope) {
-    const double value = 1 / (C == nullptr ? W.trace() : C->cwiseProduct(W).sum());
-    if (slope == nullptr) return value;
-    if (C == nullptr) {
-        *slope = value * value * symmetric_gram(W);
-    } else {
-        *slope = value * value * transposed_product(W, transposed_product(*C, W));
-    }
+/// 1 / trace(M^-1), W = M^-1.
+double inverse_trace(const MatrixXd& W, MatrixXd* slope) {
+    const double value = 1 / W.trace();
+    if (slope != nullptr) *slope = value * value * symmetric_gram(W);
+    return value;
+}
+
+/// 1 / trace(T^T M^-1 T), W = M^-1. Only as a square of W T does the slope keep the digits that W
+/// has: they are lost in (W T T^T) W, where T sees little of what W is large in.
+double mean_prediction(const MatrixXd& T, const MatrixXd& W, MatrixXd* slope) {
+    const RowMatrixXd TW = transposed_product(T, W);
+    const double value = 1 / TW.cwiseProduct(T.transpose()).sum();
+    if (slope != nullptr) *slope = value * value * symmetric_gram(TW);
     return value;
 }
 
@@ -43,7 +47,8 @@ double worst_prediction(const Objective& objective, const Eigen::LLT<MatrixXd>& 
     const double value = 1 / worst.value;
     if (slope == nullptr) return value;
     const MatrixXd W = inverse(cholesky);
-    *slope = value * value * W * weighted_information(*objective.test_poses, worst.slope) * W;
+    const RowMatrixXd weighted = weighted_rows(*objective.test_poses, worst.slope);
+    *slope = value * value * symmetric_gram(weighted * W);  // see mean_prediction()
     return value;
 }
 
@@ -75,9 +80,9 @@ double evaluate_regular(const Objective& objective, const MatrixXd& M,
             return value;
         }
         case Criterion::A:
-            return inverse_trace(nullptr, inverse(cholesky), slope);
+            return inverse_trace(inverse(cholesky), slope);
         case Criterion::V:
-            return inverse_trace(&objective.mean_test_information, inverse(cholesky), slope);
+            return mean_prediction(objective.mean_test_root, inverse(cholesky), slope);
         case Criterion::G:
             return worst_prediction(objective, cholesky, slope);
         default:
@@ -101,9 +106,8 @@ Objective make_objective(Criterion criterion, Index pose_count, const Blocks* te
     }
     objective.test_poses = test_poses;
     if (criterion == Criterion::V) {
-        objective.mean_test_information =
-            information(*test_poses) / static_cast<double>(test_poses->count());
-        objective.mean_test_root = lower_root_of(objective.mean_test_information);
+        objective.mean_test_root = lower_root_of_gram(test_poses->matrix) /
+                                   std::sqrt(static_cast<double>(test_poses->count()));
     }
     return objective;
 }

@@ -11,8 +11,8 @@ struct Objective {
     Criterion criterion = Criterion::D;
     Index pose_count = 1;                ///< m, for O1
     const Blocks* test_poses = nullptr;  ///< for G; the caller keeps them alive
-    MatrixXd mean_test_information;      ///< mean of B0^T B0 over the test poses, for V
-    MatrixXd mean_test_root;             ///< lower triangular T, that mean is T T^T
+    /// Lower triangular T with the mean of B0^T B0 over the test poses = T T^T, for V.
+    MatrixXd mean_test_root;
     /// Parameters estimated along but of no interest (ascending): the criterion is that of the
     /// Schur complement of their block, so D becomes Ds.
     std::vector<Index> nuisance;

@@ -12,7 +12,7 @@ Sloped worst_variance(const Objective& objective, const Eigen::LLT<MatrixXd>& ch
     return soft_largest(variances, objective.sharpness);
 }
 
-MatrixXd weighted_information(const Blocks& blocks, const VectorXd& weights) {
+RowMatrixXd weighted_rows(const Blocks& blocks, const VectorXd& weights) {
     const double negligible = 1e-18 * weights.maxCoeff();  // most of them for a sharp objective
     RowMatrixXd scaled(blocks.matrix.rows(), blocks.parameter_count());
     Index rows = 0;
@@ -22,10 +22,7 @@ MatrixXd weighted_information(const Blocks& blocks, const VectorXd& weights) {
         scaled.middleRows(rows, block.rows()) = std::sqrt(weights[i]) * block;
         rows += block.rows();
     }
-    MatrixXd M = MatrixXd::Zero(blocks.parameter_count(), blocks.parameter_count());
-    M.selfadjointView<Eigen::Lower>().rankUpdate(scaled.topRows(rows).transpose());
-    M.triangularView<Eigen::StrictlyUpper>() = M.transpose();
-    return M;
+    return scaled.topRows(rows);
 }
 
 }  // namespace posewise::detail

@@ -10,7 +10,7 @@ namespace posewise::detail {
 /// its slope by each of them.
 Sloped worst_variance(const Objective& objective, const Eigen::LLT<MatrixXd>& cholesky);
 
-/// sum_i weight_i B_i^T B_i.
-MatrixXd weighted_information(const Blocks& blocks, const VectorXd& weights);
+/// The rows of sqrt(weight_i) B_i, without those of negligible weight.
+RowMatrixXd weighted_rows(const Blocks& blocks, const VectorXd& weights);
 
 }  // namespace posewise::detail

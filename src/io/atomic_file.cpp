@@ -90,21 +90,6 @@ std::string temporary_name(const std::string& path) {
     return (fs::path(path).parent_path() / name).string();
 }
 
-/// Where a path leads: a link is followed, so that the file it names is replaced, not the link.
-std::string follow_link(const std::string& path) {
-    std::error_code error;
-    if (!fs::is_symlink(path, error)) return path;
-    const fs::file_status status = fs::status(path, error);
-    if (fs::exists(status)) {
-        const fs::path whole = fs::canonical(path, error);
-        return error ? path : whole.string();  // "pipe:[...]" is no place
-    }
-    if (status.type() != fs::file_type::not_found) {
-        throw input_error_at({path}, "is a link that leads nowhere: " + error.message());
-    }
-    return follow_link((fs::path(path).parent_path() / fs::read_symlink(path)).string());
-}
-
 /// A file on its way to its place: written beside it and, unless it is put there, gone again.
 class PendingFile {
   public:
@@ -205,6 +190,20 @@ void replace(const std::vector<FileContent>& files, std::vector<const FileConten
 }
 
 }  // namespace
+
+std::string follow_link(const std::string& path) {
+    std::error_code error;
+    if (!fs::is_symlink(path, error)) return path;
+    const fs::file_status status = fs::status(path, error);
+    if (fs::exists(status)) {
+        const fs::path whole = fs::canonical(path, error);
+        return error ? path : whole.string();  // "pipe:[...]" is no place
+    }
+    if (status.type() != fs::file_type::not_found) {
+        throw input_error_at({path}, "is a link that leads nowhere: " + error.message());
+    }
+    return follow_link((fs::path(path).parent_path() / fs::read_symlink(path)).string());
+}
 
 void write_files(const std::vector<FileContent>& files) {
     std::vector<const FileContent*> special;

@@ -21,6 +21,10 @@ struct FileContent {
     TextParts more = {};  ///< after the content; if it throws, the file is not written
 };
 
+/// Where a file of this path would be written: a link is followed, dangling or not, so that the
+/// file it names is replaced, not the link. Throws InputError for a link that leads nowhere.
+std::string follow_link(const std::string& path);
+
 /// Writes whole files, all or none: each to a temporary beside it, then all are renamed. A link is
 /// followed, a file that is replaced keeps its permissions. Throws InputError if a place cannot be
 /// written or, a pipe or a device, not be checked, and what a check throws.

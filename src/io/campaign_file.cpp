@@ -6,6 +6,7 @@
 
 #include "../core/checksum.hpp"
 #include "../model/complete_model.hpp"
+#include "../model/exact_angles.hpp"
 #include "../model/joint_limits.hpp"
 #include "../model/sampling.hpp"
 #include "atomic_file.hpp"
@@ -152,9 +153,12 @@ Criterion read_criterion(const YamlValue& value) {
     }
 }
 
-Campaign make_complete(const Campaign& campaign, const YamlValue& robot, const StopSignal& stop) {
+Campaign make_irreducible(const Campaign& campaign, ErrorModel model, const YamlValue& robot,
+                          const StopSignal& stop) {
     try {
-        return with_robot(campaign, irreducible_model(campaign, stop));
+        return with_robot(campaign, model == ErrorModel::Offsets
+                                        ? irreducible_offsets(campaign, stop)
+                                        : irreducible_model(campaign, stop));
     } catch (const InputError& problem) {
         throw robot.error(std::string("no irreducible model was found: ") + problem.what());
     }
@@ -193,7 +197,10 @@ CampaignFile parse(const std::string& content, const std::string& path,
     Campaign& campaign = file;
     campaign.name = read_name(map.require("name"));
 
-    const detail::RobotSection robot = read_robot(map.require("robot"), errors);
+    detail::RobotSection robot = read_robot(map.require("robot"), errors);
+    detail::ExactAngles exact = detail::with_exact_angles(robot.declared);
+    robot.declared = std::move(exact.chain);
+    file.rounded_angle_count = exact.count;
     file.declared_robot = robot.declared;
     file.error_model = robot.error_model;
     file.urdf = robot.urdf;
@@ -206,8 +213,8 @@ CampaignFile parse(const std::string& content, const std::string& path,
     read_base(map, sensor.is_in_base_frame, campaign);
     campaign = with_robot(campaign, robot.declared);
     if (!sensor.reached.empty()) place_within_reach(sensor.reached, campaign);
-    if (robot.error_model == ErrorModel::Complete) {
-        campaign = make_complete(campaign, map.require("robot"), stop);
+    if (robot.error_model == ErrorModel::Complete || robot.error_model == ErrorModel::Offsets) {
+        campaign = make_irreducible(campaign, robot.error_model, map.require("robot"), stop);
     }
     if (robot.error_model == ErrorModel::Full) {
         const Chain full = detail::full_model(robot.declared, robot.gravity);
@@ -241,13 +248,15 @@ CampaignFile parse(const std::string& content, const std::string& path,
 
 std::string_view error_model_name(ErrorModel model) {
     if (model == ErrorModel::Stated) return "stated";
+    if (model == ErrorModel::Offsets) return "offsets";
     return model == ErrorModel::Complete ? "geometric" : "full";
 }
 
 ErrorModel parse_error_model(const std::string& name) {
     if (name == "complete") return ErrorModel::Complete;
     std::vector<std::string> names;
-    for (const auto model : {ErrorModel::Full, ErrorModel::Complete, ErrorModel::Stated}) {
+    for (const auto model :
+         {ErrorModel::Full, ErrorModel::Complete, ErrorModel::Offsets, ErrorModel::Stated}) {
         names.emplace_back(error_model_name(model));
         if (names.back() == name) return model;
     }

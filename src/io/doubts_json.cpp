@@ -4,37 +4,10 @@
 #include <cmath>
 
 #include "posewise/core/units.hpp"
+#include "residual_look_json.hpp"
 
 namespace posewise::detail {
 namespace {
-
-const char* unit_name(UnitDoubt unit) {
-    switch (unit) {
-        case UnitDoubt::None:
-            break;
-        case UnitDoubt::JointsInDegrees:
-            return "joints in deg";
-        case UnitDoubt::JointsInRadians:
-            return "joints in rad";
-        case UnitDoubt::PointsInMillimetres:
-            return "points in mm";
-        case UnitDoubt::PointsInMetres:
-            return "points in m";
-    }
-    return "none";
-}
-
-const char* sense_name(OrientationSense sense) {
-    switch (sense) {
-        case OrientationSense::AsRead:
-            break;
-        case OrientationSense::Inverted:
-            return "inverted";
-        case OrientationSense::RealPartLast:
-            return "real part last";
-    }
-    return "as read";
-}
 
 /// Numbers of the planes, from 1.
 Json planes_to_json(const std::vector<PlaneDoubt>& planes) {
@@ -92,23 +65,35 @@ Json residuals_to_json(const std::vector<ResidualDoubt>& residuals) {
 
 }  // namespace
 
+Json reading_to_json(const BetterReading& reading) {
+    Json json{{"read_with", reading.words},
+              {"cure", reading.cure},
+              {"as_well", reading.as_well},
+              {"rms_mm", mm_per_m * reading.misfit.distance_rms},
+              {"as_stated_rms_mm", mm_per_m * reading.as_stated.distance_rms}};
+    if (reading.as_stated.orientation_rms > 0) {
+        json["rms_deg"] = to_degrees(reading.misfit.orientation_rms);
+        json["as_stated_rms_deg"] = to_degrees(reading.as_stated.orientation_rms);
+    }
+    return json;
+}
+
 Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
     Json json = Json::object();
     if (const auto& misfit = doubts.misfit) {
         json["misfit"] = {{"distance_mm", mm_per_m * misfit->distance},
                           {"expected_mm", mm_per_m * misfit->expected},
-                          {"unit", unit_name(misfit->unit)},
-                          {"planes", planes_to_json(misfit->planes)},
-                          {"reversed", misfit->reversed},
-                          {"other_choices", misfit->other_choices}};
+                          {"planes", planes_to_json(misfit->planes)}};
+        if (const auto& reading = misfit->reading) {
+            json["misfit"]["reversed"] = reading->reversed;
+            json["misfit"]["reading"] = reading_to_json(*reading);
+        }
     }
     if (!doubts.planes.empty()) json["planes"] = planes_to_json(doubts.planes);
     if (!doubts.places.empty()) json["places"] = places_to_json(doubts.places);
     if (doubts.gross_error) json["gross_error_mm"] = mm_per_m * *doubts.gross_error;
-    if (const auto& doubt = doubts.orientations) {
-        json["orientations"] = {{"rms_deg", to_degrees(doubt->rms)},
-                                {"sense", sense_name(doubt->sense)},
-                                {"rms_in_sense_deg", to_degrees(doubt->rms_in_sense)}};
+    if (doubts.orientations) {
+        json["orientations"] = {{"rms_deg", to_degrees(*doubts.orientations)}};
     }
     if (!doubts.sizes.empty()) json["sizes"] = sizes_to_json(doubts.sizes);
     if (!doubts.model_errors.empty()) {
@@ -130,6 +115,12 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
                                   {"learned" + unit, mm_per_m * size->held.size},
                                   {"fitting" + unit, mm_per_m * size->fitting}};
     }
+    if (const auto& held_out = doubts.held_out) {
+        const std::string unit = error_suffix(!campaign.sensor->has_lengths());
+        json["held_out"] = {{"calibrated" + unit, mm_per_m * held_out->calibrated},
+                            {"nominal" + unit, mm_per_m * held_out->nominal},
+                            {"rank_deviations", held_out->rank_deviations}};
+    }
     if (!doubts.residuals.empty()) {
         const auto farthest = std::ranges::max(
             doubts.residuals, {},
@@ -142,7 +133,21 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
     for (const Index joint : doubts.negative_compliances) {
         json["negative_compliances"].push_back(campaign.robot.joint(joint).name);
     }
+    if (!doubts.look.is_empty()) {
+        json["look"] = look_to_json(doubts.look, !campaign.sensor->has_lengths());
+    }
     return json;
+}
+
+Json cures_to_json(const Campaign& campaign, const Cures& cures) {
+    const std::string unit = error_suffix(!campaign.sensor->has_lengths());
+    Json found = Json::array();
+    for (const Cure& cure : cures.found) {
+        found.push_back({{"option", cure.option},
+                         {"held_out" + unit, mm_per_m * cure.after},
+                         {"held_out_before" + unit, mm_per_m * cure.before}});
+    }
+    return {{"found", std::move(found)}, {"without_effect", cures.without_effect}};
 }
 
 }  // namespace posewise::detail

@@ -10,6 +10,7 @@
 #include "doubts_json.hpp"
 #include "estimate_format.hpp"
 #include "json.hpp"
+#include "judgement_json.hpp"
 #include "parameters_json.hpp"
 #include "posewise/io/json_reports.hpp"
 #include "robot_statement.hpp"
@@ -20,28 +21,6 @@ namespace {
 using detail::Json;
 
 constexpr double mm = 1e3;
-
-Json metrics_to_json(const Metrics& metrics) {
-    const auto millimetres = [](const std::array<double, 3>& xyz) {
-        return Json{{"x", mm * xyz[0]}, {"y", mm * xyz[1]}, {"z", mm * xyz[2]}};
-    };
-    Json json = {{"point_count", metrics.point_count}};
-    if (metrics.coordinate_count > 0) {
-        json["distance_rms_mm"] = mm * metrics.distance_rms;
-        json["distance_max_mm"] = mm * metrics.distance_max;
-        json["distance_mean_mm"] = mm * metrics.distance_mean;
-        json["distance_p95_mm"] = mm * metrics.distance_p95;
-    }
-    if (metrics.coordinate_count == 3) {
-        json["coordinate_rms_mm"] = millimetres(metrics.coordinate_rms);
-        json["coordinate_max_mm"] = millimetres(metrics.coordinate_max);
-    }
-    if (metrics.has_orientation) {
-        json["orientation_rms_mrad"] = 1e3 * metrics.orientation_rms;
-        json["orientation_max_mrad"] = 1e3 * metrics.orientation_max;
-    }
-    return json;
-}
 
 /// Standard deviations of base and targets, by parameter name and unit.
 Json other_sigmas_to_json(const Campaign& campaign, const Estimate& estimate,
@@ -80,8 +59,8 @@ Json correlations_to_json(const Estimate& estimate) {
 
 Json held_out_to_json(const CrossValidation& held_out) {
     return {{"folds", held_out.folds},
-            {"samples", metrics_to_json(held_out.samples)},
-            {"means", metrics_to_json(held_out.means)},
+            {"samples", detail::metrics_to_json(held_out.samples)},
+            {"means", detail::metrics_to_json(held_out.means)},
             {"failures", held_out.failures}};
 }
 
@@ -115,8 +94,12 @@ Json expected_to_json(const Calibration& calibration) {
     };
     Json json = {{"at_measured", one(calibration.expected)}};
     if (const auto& error = calibration.expected_workspace) json["over_workspace"] = one(*error);
-    if (const auto& error = calibration.expected_left_out) json["at_left_out"] = one(*error);
-    if (const auto& error = calibration.expected_validation) json["at_validation"] = one(*error);
+    const auto add = [&](const std::optional<Judgement>& judged, const char* where) {
+        if (judged && judged->expected) json[where] = one(*judged->expected);
+    };
+    add(calibration.verification, "at_verification");
+    add(calibration.left_out, "at_left_out");
+    add(calibration.validation, "at_validation");
     return json;
 }
 
@@ -136,9 +119,9 @@ Json moved_to_json(const Moved& moved) {
 }
 
 Json accuracy_to_json(const Calibration& calibration) {
-    Json accuracy = {{"nominal", metrics_to_json(calibration.nominal)},
-                     {"fit", metrics_to_json(calibration.estimate.fit)},
-                     {"fit_means", metrics_to_json(calibration.estimate.fit_means)}};
+    Json accuracy = {{"nominal", detail::metrics_to_json(calibration.nominal)},
+                     {"fit", detail::metrics_to_json(calibration.estimate.fit)},
+                     {"fit_means", detail::metrics_to_json(calibration.estimate.fit_means)}};
     if (calibration.repeatability) {
         accuracy["repeatability_mm"] = mm * calibration.repeatability->length;
         if (calibration.nominal.has_orientation) {
@@ -147,8 +130,7 @@ Json accuracy_to_json(const Calibration& calibration) {
     }
     if (calibration.held_out) accuracy["held_out"] = held_out_to_json(*calibration.held_out);
     accuracy["expected"] = expected_to_json(calibration);
-    if (calibration.left_out) accuracy["left_out"] = metrics_to_json(*calibration.left_out);
-    if (calibration.validation) accuracy["validation"] = metrics_to_json(*calibration.validation);
+    detail::add_judgements(accuracy, calibration);
     if (calibration.moved) {
         accuracy["moved_before_validation"] = moved_to_json(*calibration.moved);
     }
@@ -308,6 +290,7 @@ Json estimate_to_json(const Calibration& calibration, const Provenance& made_fro
     if (calibration.stated_spread) document["learned_sizes"] = sizes_to_json(calibration);
     document["assumes"] = detail::numbers_to_json(assumptions_of(campaign));
     document["doubts"] = detail::doubts_to_json(campaign, calibration.doubts);
+    document["cures"] = detail::cures_to_json(campaign, calibration.cures);
     return document;
 }
 

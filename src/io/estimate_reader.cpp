@@ -249,6 +249,7 @@ EarlierFile read_earlier(const std::string& path, const Campaign& campaign, cons
     earlier.estimate = read_estimate_of(root, campaign, use);
     if (use.is_prior) detail::check_definite(root, earlier.estimate.covariance);
     earlier.use = use;
+    if (root.has("warnings")) earlier.warnings = root["warnings"].texts();
     if (root.has("faults")) earlier.faults = root["faults"].texts();
     const bool has_learned = root.has("learned_sizes");
     if (has_learned) earlier.spread = read_learned_sizes(root["learned_sizes"], campaign);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "doubts_json.hpp"
 #include "json.hpp"
 #include "measurement_columns.hpp"
 #include "parameters_json.hpp"
@@ -101,6 +102,15 @@ Json inspection_to_json(const Inspection& inspection) {
                                   {"rank", inspection.of_complete.kept.size()}};
     document["calibrated_parameter_count"] = parameter_count(campaign);
     document["least_pose_count"] = inspection.least_pose_count;
+    document["unknowable"] = {
+        {"parameters", inspection.unknowable.parameters},
+        {"cures", make_list(inspection.unknowable.cures, [](const KnownAxes& known) {
+             return Json{{"base", known.base}, {"targets", known.targets}};
+         })}};
+    document["on_axis"] = make_list(inspection.on_axis, [](const OnAxis& one) {
+        return Json{{"target", one.target + 1}, {"joint", one.joint}};
+    });
+    document["rounded_angle_count"] = inspection.rounded_angle_count;
     return document;
 }
 
@@ -254,12 +264,17 @@ std::string to_json(const Inspection& inspection) {
     return detail::json_text(inspection_to_json(inspection));
 }
 
-std::string to_json(const Inspection& inspection, const std::vector<JointDirections>& directions) {
+std::string to_json(const Inspection& inspection, const ReadingSearch& readings) {
     Json document = inspection_to_json(inspection);
-    document["joint_directions"] = make_list(directions, [](const JointDirections& tried) {
-        return Json{{"reversed", tried.reversed},
-                    {"distance_rms_mm", mm_per_m * tried.distance_rms}};
+    document["joint_directions"] = make_list(readings.tried, [](const TriedReading& tried) {
+        Json one{{"read_with", tried.words},
+                 {"reversed", tried.reversed},
+                 {"distance_rms_mm", mm_per_m * tried.misfit.distance_rms}};
+        const double angle = tried.misfit.orientation_rms;
+        if (angle > 0) one["orientation_rms_deg"] = to_degrees(angle);
+        return one;
     });
+    if (readings.better) document["better_reading"] = detail::reading_to_json(*readings.better);
     return detail::json_text(document);
 }
 
@@ -332,6 +347,10 @@ std::string to_json(const CorrectedPoses& poses, const Campaign& campaign) {
     document["campaign"] = campaign.name;
     document["uncorrected"] = pose_error_to_json(poses.corrections, &Correction::uncorrected);
     document["corrected"] = pose_error_to_json(poses.corrections, &Correction::residual);
+    document["not_brought_home"] = Json::array();
+    for (const Index i : poses.not_home) {
+        document["not_brought_home"].push_back(poses.ids[static_cast<std::size_t>(i)]);
+    }
     Json& list = document["configurations"] = Json::array();
     for (std::size_t i = 0; i < poses.ids.size(); ++i) {
         list.push_back(correction_to_json(poses.ids[i], poses.corrections[i], campaign));

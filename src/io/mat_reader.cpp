@@ -49,6 +49,11 @@ std::string find_misfit(const matvar_t& variable) {
     return "";
 }
 
+/// Measured numbers are packed to a tenth at best; a matrix of one number a thousandfold.
+constexpr std::size_t most_packed = 50;
+/// Smaller ones are read however they are packed.
+constexpr std::size_t small_byte_count = std::size_t{1} << 23;
+
 constexpr std::size_t header_size = 128;
 
 /// Whether the header is that of MATLAB 5 to 7 (version 1) or 7.3 (version 2). Whatever else it is
@@ -153,6 +158,12 @@ MatrixXd MatReader::read_unchecked(const std::string& name, std::optional<Index>
     // Compression gains at most a factor of about 1030, so a larger size is damage.
     const bool is_plausible = rows <= std::min<std::size_t>(2000 * byte_count_ / width, INT_MAX);
     if (!is_plausible) throw variable_error(path_, name, damaged);
+    const std::size_t unpacked = rows * width * sizeof(double);
+    if (unpacked > std::max(small_byte_count, most_packed * byte_count_)) {
+        throw variable_error(path_, name,
+                             "is " + std::to_string(rows) + " x " + std::to_string(width) +
+                                 ", packed more than fiftyfold; must be saved unpacked (-v6)");
+    }
     // What a damaged file lacks stays infinite: the library leaves it alone and does not tell.
     MatrixXd values =
         MatrixXd::Constant(static_cast<Index>(rows), static_cast<Index>(width), INFINITY);

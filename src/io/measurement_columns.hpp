@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/seen.hpp"
 #include "units.hpp"
 
@@ -18,6 +19,17 @@ inline constexpr std::string_view visible_targets = "visible_targets";
 /// has_contacts(); it stands for the columns observed, and for visible_targets.
 inline constexpr std::string_view contact = "socket";
 
+/// Of a row of configurations: what the robot is sent there for.
+inline constexpr std::string_view purpose_column = "purpose";
+inline constexpr std::string_view to_calibrate = "calibrate";
+inline constexpr std::string_view to_verify = "verify";
+inline constexpr std::string_view on_the_way = "via";  ///< nothing is measured there
+
+/// What plan writes beside the configurations: it is not read.
+inline constexpr std::string_view way_column = "way";
+inline constexpr std::string_view clearance_column = "clearance_mm";
+inline constexpr std::string_view nearest_column = "nearest";
+
 /// What correct writes beside the joints, and configurations may hold: it is not read.
 inline constexpr std::array<std::string_view, 5> correction_columns{
     "residual_mm", "residual_mrad", "uncorrected_mm", "uncorrected_mrad", "note"};
@@ -26,11 +38,12 @@ enum class Role {
     Configuration,
     Sample,
     VisibleTargets,
+    Purpose,
     Contact,
     Joint,  ///< or a measured torque: a number of the configuration
     Observation,
     Orientation,
-    Unused,  ///< torque that the campaign makes no use of, or one of correction_columns
+    Unused,  ///< torque that the campaign makes no use of, or what plan and correct write beside
 };
 
 /// Other columns for an orientation than its rotation vector: a quaternion without units, or turns
@@ -38,9 +51,11 @@ enum class Role {
 struct OrientationForm {
     std::vector<std::string> stems;
     bool has_unit;
+    OrientationNotation notation;
 };
 inline const std::array<OrientationForm, 2> orientation_forms{
-    {{{"qw", "qx", "qy", "qz"}, false}, {{"roll", "pitch", "yaw"}, true}}};
+    {{{"qw", "qx", "qy", "qz"}, false, OrientationNotation::Quaternion},
+     {{"roll", "pitch", "yaw"}, true, OrientationNotation::RollPitchYaw}}};
 
 /// A column with a unit that a campaign's measurements must have.
 struct WantedColumn {

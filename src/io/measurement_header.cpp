@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 #include "text.hpp"
@@ -88,6 +89,7 @@ class HeaderReader {
         if (name == "config") return {Role::Configuration, 0, nullptr};
         if (name == "sample") return {Role::Sample, 0, nullptr};
         if (name == visible_targets && !has_contact_) return {Role::VisibleTargets, 0, nullptr};
+        if (name == purpose_column) return {Role::Purpose, 0, nullptr};
         if (name == contact && has_contact_) return {Role::Contact, 0, nullptr};
         const NameWithUnit with_unit = split_unit(name);
         const auto found = std::find_if(wanted_.begin(), wanted_.end(), [&](const auto& column) {
@@ -98,7 +100,7 @@ class HeaderReader {
         }
         if (found == wanted_.end()) {
             auto unused = find_unused_torque(with_unit);
-            if (!unused) unused = find_correction(name);
+            if (!unused) unused = find_written(name);
             if (!unused) throw unknown(field);
             return {Role::Unused, *unused, with_unit.unit};
         }
@@ -120,18 +122,22 @@ class HeaderReader {
         return found == joints_.end() ? std::nullopt : std::optional(found - joints_.begin());
     }
 
-    /// The number of what correct writes beside the joints, counted behind these.
-    std::optional<Index> find_correction(std::string_view name) const {
+    /// The number of what plan or correct writes beside the joints, counted behind these.
+    std::optional<Index> find_written(std::string_view name) const {
+        constexpr std::array by_plan{way_column, clearance_column, nearest_column};
+        const auto planned = std::find(by_plan.begin(), by_plan.end(), name);
+        Index number = std::ssize(joints_) + (planned - by_plan.begin());
+        if (planned != by_plan.end()) return number;
         if (content_ == Content::JointsAndObservations) return std::nullopt;
         const auto found = std::find(correction_columns.begin(), correction_columns.end(), name);
         if (found == correction_columns.end()) return std::nullopt;
-        return std::ssize(joints_) + (found - correction_columns.begin());
+        return number + (found - correction_columns.begin());
     }
 
     /// A column of another form of an orientation.
     std::optional<Column> find_orientation(std::size_t field, const NameWithUnit& name) const {
         for (std::size_t form = 0; form < orientation_forms.size(); ++form) {
-            const auto& [stems, has_unit] = orientation_forms[form];
+            const auto& [stems, has_unit, notation] = orientation_forms[form];
             const auto found = std::find(stems.begin(), stems.end(), name.stem);
             if (found == stems.end()) continue;
             const bool is_angle = name.unit != nullptr && name.unit->quantity == Quantity::Angle;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <unordered_set>
 
 #include "csv_reader.hpp"
@@ -38,6 +40,7 @@ class RowReader {
                            })) {
         for (std::size_t field = 0; field < columns_.size(); ++field) {
             const auto index = static_cast<std::size_t>(columns_[field].index);
+            if (columns_[field].role == Role::Purpose) field_of_purpose_ = field;
             if (columns_[field].role == Role::Joint) field_of_joint_[index] = field;
             if (columns_[field].role == Role::Observation) field_of_observation_[index] = field;
             if (columns_[field].role == Role::Orientation) {
@@ -50,12 +53,15 @@ class RowReader {
         row_.joints.resize(campaign.robot.configuration_size());
         row_.is_seen.setConstant(campaign.sensor->target_count(), true);
         if (content == Content::JointsAndObservations) {
-            row_.observation.setZero(campaign.sensor->row_count());
+            const Index beside = notation() == OrientationNotation::RollPitchYaw ? 3 : 0;
+            row_.observation.setZero(campaign.sensor->row_count() + beside);
         }
     }
 
     void add_to(detail::SampleCollector& samples) {
         check_width();
+        is_via_ = read_purpose() == detail::on_the_way;
+        if (is_via_ && content_ != Content::Program) return;  // nothing is measured there
         row_.name.clear();
         for (std::size_t field = 0; field < columns_.size(); ++field) read_field(field);
         if (content_ == Content::JointsAndObservations && contacts_.empty()) read_targets();
@@ -64,7 +70,15 @@ class RowReader {
             return csv_.locate(field_of_joint_[static_cast<std::size_t>(joint)]);
         };
         samples.add(row_, locate, is_each_row_one_);
+        if (field_of_purpose_ && is_each_row_one_) purposes_.emplace_back(read_purpose());
     }
+
+    OrientationNotation notation() const {
+        if (orientation_fields_.empty()) return OrientationNotation::RotationVector;
+        return detail::orientation_forms[columns_[orientation_fields_.front()].form].notation;
+    }
+    /// Of each row that is a configuration by itself, where the file says it.
+    const std::vector<std::string>& purposes() const { return purposes_; }
 
   private:
     void check_width() const {
@@ -74,6 +88,20 @@ class RowReader {
             csv_.locate(std::min(count, columns_.size())),
             fmt::format("row has {} fields; must have {} as the header{}", count, columns_.size(),
                         count > columns_.size() ? "; are there decimal commas?" : ""));
+    }
+
+    /// What the robot is sent there for; empty where the file does not say.
+    std::string_view read_purpose() const {
+        if (!field_of_purpose_) return "";
+        const std::string_view text = csv_.fields()[*field_of_purpose_];
+        if (text == detail::to_calibrate || text == detail::to_verify ||
+            text == detail::on_the_way) {
+            return text;
+        }
+        throw input_error_at(csv_.locate(*field_of_purpose_),
+                             fmt::format("{} is {}; must be {}, {} or {}", detail::purpose_column,
+                                         detail::quote(text), detail::to_calibrate,
+                                         detail::to_verify, detail::on_the_way));
     }
 
     void read_field(std::size_t field) {
@@ -91,10 +119,15 @@ class RowReader {
                 return;
             case Role::VisibleTargets:
                 // What was planned; what was measured tells by itself what was seen.
-                if (content_ != Content::JointsAndObservations) read_visible(field);
+                if (content_ == Content::JointsAndObservations) return;
+                if (is_via_) {
+                    row_.is_seen.setConstant(true);
+                } else {
+                    read_visible(field);
+                }
                 return;
             case Role::Contact:
-                read_contact(field);
+                if (!is_via_) read_contact(field);
                 return;
             case Role::Joint:
                 row_.joints[column.index] = read_number(field);
@@ -106,7 +139,8 @@ class RowReader {
                 return;
             case Role::Observation:
             case Role::Orientation:
-                return;  // by read_targets()
+                return;          // by read_targets()
+            case Role::Purpose:  // by read_purpose()
             case Role::Unused:
                 return;
         }
@@ -174,6 +208,12 @@ class RowReader {
                              "the sample shows no target; must show one at least, or be left out");
     }
 
+    /// Programs write nothing, or "nan", of what was not seen.
+    static bool is_nothing(std::string_view text) {
+        return text.empty() || (text.size() == 3 && (text[0] | 0x20) == 'n' &&
+                                (text[1] | 0x20) == 'a' && (text[2] | 0x20) == 'n');
+    }
+
     /// The cells of a target that was not seen are empty, all of them.
     void read_target(Index target) {
         const auto width = orientation_fields_.empty()
@@ -184,22 +224,23 @@ class RowReader {
         for (std::size_t k = first; k < first + width; ++k) {
             fields.push_back(field_of_observation_[k]);
         }
-        const auto is_empty = [&](std::size_t field) { return csv_.fields()[field].empty(); };
+        const auto is_empty = [&](std::size_t field) { return is_nothing(csv_.fields()[field]); };
         row_.is_seen[target] = !std::all_of(fields.begin(), fields.end(), is_empty);
         if (!row_.is_seen[target]) return;
         const auto gap = std::find_if(fields.begin(), fields.end(), is_empty);
         if (gap != fields.end()) {
             throw input_error_at(
                 csv_.locate(*gap),
-                fmt::format("{} is empty, but not all cells of target {} are; must be a "
+                fmt::format("{} is {}, but not all cells of target {} are; must be a "
                             "number, or all empty if it was not seen",
-                            name_of(*gap), target + 1));
+                            name_of(*gap), csv_.fields()[*gap].empty() ? "empty" : "not a number",
+                            target + 1));
         }
         for (std::size_t k = first; k < first + width; ++k) {
             row_.observation[static_cast<Index>(k)] = read_number(field_of_observation_[k]);
             check_distance(k);
         }
-        if (!orientation_fields_.empty()) row_.observation.tail<3>() = read_orientation();
+        if (!orientation_fields_.empty()) row_.observation.segment<3>(3) = read_orientation();
     }
 
     /// No target is at its anchor, or behind it.
@@ -222,12 +263,16 @@ class RowReader {
     }
 
     /// The rotation vector of an orientation in another form.
-    Vector3d read_orientation() const {
+    Vector3d read_orientation() {
         VectorXd values(static_cast<Index>(orientation_fields_.size()));
         for (Index k = 0; k < values.size(); ++k) {
             values[k] = read_number(orientation_fields_[static_cast<std::size_t>(k)]);
         }
-        if (values.size() == 3) return vector_from_rotation(rotation_from_rpy(values));
+        if (values.size() == 3) {
+            check_turns(values);
+            row_.observation.tail<3>() = values;
+            return vector_from_rotation(rotation_from_rpy(values));
+        }
         constexpr double tolerance = 1e-3;
         const Eigen::Quaterniond q(values[0], values[1], values[2], values[3]);
         if (!(std::abs(q.norm() - 1) <= tolerance)) {
@@ -236,6 +281,18 @@ class RowReader {
                 fmt::format("the quaternion has length {:g}; must be 1 within 0.001", q.norm()));
         }
         return vector_from_rotation(q.normalized().toRotationMatrix());
+    }
+
+    /// Roll, pitch and yaw of degrees under rad turn round and round.
+    void check_turns(const Vector3d& rpy) const {
+        constexpr double impossible = 4 * std::numbers::pi;
+        Index k = 0;
+        if (rpy.cwiseAbs().maxCoeff(&k) <= impossible) return;
+        const std::size_t field = orientation_fields_[static_cast<std::size_t>(k)];
+        throw input_error_at(csv_.locate(field),
+                             fmt::format("{} is {:g} rad, more than two turns, and looks like "
+                                         "degrees; state degrees as such",
+                                         name_of(field), rpy[k]));
     }
 
     /// The same sample of the same configuration twice is a file joined with itself.
@@ -253,13 +310,21 @@ class RowReader {
     std::vector<std::string> contacts_;
     std::vector<std::size_t> field_of_joint_;
     std::vector<std::size_t> field_of_observation_;
+    std::optional<std::size_t> field_of_purpose_;
+    bool is_via_ = false;  ///< the row at hand
+    std::vector<std::string> purposes_;
     bool is_each_row_one_;                         ///< a configuration by itself
     std::vector<std::size_t> orientation_fields_;  ///< if it is not a rotation vector
     std::unordered_set<std::string> seen_;
     detail::Sample row_;
 };
 
-Measurements read_csv(const std::string& path, const Campaign& campaign, Content content) {
+struct ReadFile {
+    Measurements samples;
+    std::vector<std::string> purposes;
+};
+
+ReadFile read_csv(const std::string& path, const Campaign& campaign, Content content) {
     detail::CsvReader csv(path);
     if (!csv.next_row()) {
         throw input_error_at({path}, std::string("is empty; must begin with a header like ") +
@@ -270,19 +335,27 @@ Measurements read_csv(const std::string& path, const Campaign& campaign, Content
     RowReader row(csv, campaign, content, read_header(csv, campaign, content));
     detail::SampleCollector samples(campaign);
     while (csv.next_row()) row.add_to(samples);
-    return samples.finish(path, content == Content::Program);
+    Measurements measurements = samples.finish(path);
+    measurements.notation = row.notation();
+    if (measurements.notation == OrientationNotation::RollPitchYaw &&
+        measurements.observations.cols() > 0) {
+        measurements.roll_pitch_yaw = measurements.observations.rightCols(3);
+        measurements.observations.conservativeResize(Eigen::NoChange, campaign.sensor->row_count());
+    }
+    return {std::move(measurements), row.purposes()};
 }
 
 Configurations read_unmeasured(const std::string& path, const Campaign& campaign, Content content) {
-    Measurements read = read_csv(path, campaign, content);
+    auto [read, purposes] = read_csv(path, campaign, content);
     const RowMatrixXd visible = times_seen(read);
-    return {std::move(read.ids), std::move(read.configurations), visible.array() > 0};
+    return {std::move(read.ids), std::move(read.configurations), visible.array() > 0,
+            std::move(purposes)};
 }
 
 }  // namespace
 
 Measurements read_measurements_csv(const std::string& path, const Campaign& campaign) {
-    return read_csv(path, campaign, Content::JointsAndObservations);
+    return read_csv(path, campaign, Content::JointsAndObservations).samples;
 }
 
 Configurations read_configurations_csv(const std::string& path, const Campaign& campaign) {

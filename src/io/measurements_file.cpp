@@ -12,8 +12,10 @@ bool is_matlab(const std::string& path) { return path.ends_with(".mat") || path.
 Configurations read_matlab(const std::string& path, const CampaignFile& file) {
     Measurements read = read_measurements_mat(path, file, file.mat);
     const Index count = read.configuration_count();
-    return {std::move(read.ids), std::move(read.configurations),
-            all_seen(count, file.sensor->target_count())};
+    return {std::move(read.ids),
+            std::move(read.configurations),
+            all_seen(count, file.sensor->target_count()),
+            {}};
 }
 
 }  // namespace

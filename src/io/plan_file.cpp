@@ -68,6 +68,7 @@ Json problem_to_json(const Plan& plan, const std::string& plan_path) {
         json["workspace_poses"] = request.workspace_count;
         json["workspace_box_mm"] = request.workspace_box_mm;
         json["workspace_target"] = request.workspace_target;
+        json["verification_count"] = request.verification_count;
         json["time_limit_s"] = request.time_limit;
     } else {
         json["test_poses"] = detail::path_to_json(request.sources.test_poses, plan_path);
@@ -144,20 +145,61 @@ Json pose_to_json(const Plan& plan, const PlannedPose& pose) {
     if (!plan.is_continuous()) return json;
     json["via"] = pose.via ? configuration_to_json(plan.columns, *pose.via) : Json(nullptr);
     json["way_is_blocked"] = pose.is_blocked;
+    json["clearance_m"] = pose.clearance ? Json(pose.clearance->distance) : Json(nullptr);
+    json["nearest"] = Json::array();
+    if (pose.clearance) json["nearest"] = {pose.clearance->body, pose.clearance->other};
     json["kept"] = pose.is_kept;
     return json;
 }
 
-std::string configurations_text(const Campaign& campaign, const std::vector<PlannedPose>& poses) {
-    std::string text =
-        fmt::format("config{},{}\n", detail::joint_header(campaign), detail::seen_header(campaign));
+/// The cells of a row beside its configuration: what is seen, what for, how it is reached.
+std::string configuration_row(const Campaign& campaign, const std::string& id, const VectorXd& q,
+                              const std::string& rest) {
+    return fmt::format("{}{},{}\n", detail::csv_field(id), detail::joint_cells(campaign, q), rest);
+}
+
+/// How near the robot comes to something, where that is known.
+std::string clearance_cells(const PlannedPose& pose) {
+    if (!pose.clearance) return ",,";
+    const auto& [distance, body, other] = *pose.clearance;
+    return fmt::format(",{:.2f},{}", mm_per_m * distance, detail::csv_field(body + " to " + other));
+}
+
+bool have_clearance(const std::vector<PlannedPose>& poses) {
+    return std::ranges::any_of(poses, [](const auto& pose) { return pose.clearance.has_value(); });
+}
+
+std::string rows_of(const Campaign& campaign, const std::vector<PlannedPose>& poses,
+                    std::string_view purpose, bool has_clearance) {
     const Index targets = campaign.sensor->target_count();
+    std::string text;
     for (const PlannedPose& pose : poses) {
-        fmt::format_to(std::back_inserter(text), "{}{},{}\n", detail::csv_field(pose.id),
-                       detail::joint_cells(campaign, pose.configuration),
-                       detail::seen_cell(campaign, seen_targets(pose.targets, targets)));
+        if (pose.via) {
+            text += configuration_row(
+                campaign, pose.id + ".via", *pose.via,
+                fmt::format(",{},straight{}", detail::on_the_way, has_clearance ? ",," : ""));
+        }
+        text += configuration_row(
+            campaign, pose.id, pose.configuration,
+            fmt::format("{},{},{}{}",
+                        detail::seen_cell(campaign, seen_targets(pose.targets, targets)), purpose,
+                        pose.is_blocked ? "BLOCKED" : "straight",
+                        has_clearance ? clearance_cells(pose) : ""));
     }
     return text;
+}
+
+std::string configurations_text(const Campaign& campaign, const std::vector<PlannedPose>& poses,
+                                const std::vector<PlannedPose>& verification = {}) {
+    const bool has_clearance = have_clearance(poses) || have_clearance(verification);
+    std::string text =
+        fmt::format("config{},{},{},{}", detail::joint_header(campaign),
+                    detail::seen_header(campaign), detail::purpose_column, detail::way_column);
+    if (has_clearance) {
+        text += fmt::format(",{},{}", detail::clearance_column, detail::nearest_column);
+    }
+    return text + '\n' + rows_of(campaign, poses, detail::to_calibrate, has_clearance) +
+           rows_of(campaign, verification, detail::to_verify, has_clearance);
 }
 
 std::string plan_text(const Plan& plan, const std::string& path,
@@ -177,7 +219,8 @@ void write_plan(const std::string& path, const Plan& plan,
 void write_plan(const std::string& path, const Plan& plan, const std::string& csv_path,
                 const Campaign& campaign, const std::vector<std::string>& warnings) {
     std::vector<detail::FileContent> files{{path, plan_text(plan, path, warnings)}};
-    if (!csv_path.empty()) files.push_back({csv_path, configurations_text(campaign, plan.poses)});
+    if (!csv_path.empty())
+        files.push_back({csv_path, configurations_text(campaign, plan.poses, plan.verification)});
     detail::write_files(files);
 }
 
@@ -205,9 +248,17 @@ Json plan_to_json(const Plan& plan, const std::string& path) {
     if (plan.tried > 0) document["search"]["tried"] = plan.tried;
     if (plan.request.proof) document["search"]["proof_s"] = *plan.request.proof;
     io::add_prediction(document, plan);
+    if (!plan.cell_doubts.empty()) document["cell_doubts"] = plan.cell_doubts;
     if (!plan.assumptions.empty()) document["assumes"] = numbers_to_json(plan.assumptions);
     Json& poses = document["poses"] = Json::array();
     for (const PlannedPose& pose : plan.poses) poses.push_back(io::pose_to_json(plan, pose));
+    if (!plan.verification.empty()) {
+        Json& others = document["verification"] = Json::array();
+        for (const PlannedPose& pose : plan.verification) {
+            others.push_back(io::pose_to_json(plan, pose));
+        }
+        document["verification_time_s"] = plan.verification_time;
+    }
     if (!plan.is_continuous()) document["certificate"] = io::certificate_to_json(plan.certificate);
     return document;
 }

@@ -95,6 +95,9 @@ void read_workspace(const JsonValue& problem, const std::string& path, PlanReque
     }
     request.workspace_target = problem["workspace_target"].count(0, most_targets);
     request.time_limit = read_not_negative(problem["time_limit_s"]);
+    if (problem.has("verification_count")) {
+        request.verification_count = problem["verification_count"].count(0, most_continuous_poses);
+    }
 }
 
 double read_drift(const JsonValue& json) {
@@ -283,39 +286,59 @@ PlannedPose read_pose(const JsonValue& json) {
     }
     if (json.has("via") && !json["via"].is_null()) pose.via = read_configuration(json["via"]);
     if (json.has("way_is_blocked")) pose.is_blocked = json["way_is_blocked"].boolean();
+    if (json.has("clearance_m") && !json["clearance_m"].is_null()) {
+        const std::vector<std::string> bodies = json["nearest"].texts();
+        if (bodies.size() != 2) throw json["nearest"].error("must be two names");
+        pose.clearance = Clearance{json["clearance_m"].number(), bodies[0], bodies[1]};
+    }
     if (json.has("kept")) pose.is_kept = json["kept"].boolean();
     return pose;
 }
 
-/// The poses, each with its proper id, none twice, all with the same joints.
-void read_poses(const Json& document, const std::string& path, Plan& plan) {
+/// Where each id was read.
+using Places = std::map<std::string, std::string>;
+
+/// Poses of one list of a plan, each with its proper id, none twice, all with the same joints.
+std::vector<PlannedPose> read_poses(const Json& list, const std::string& path, const char* key,
+                                    Places& places, Plan& plan) {
+    std::vector<PlannedPose> poses;
+    for (const JsonValue& json : JsonValue(list, path, key).list()) {
+        PlannedPose pose = read_pose(json);
+        const auto [first, is_new] =
+            places.emplace(pose.id, fmt::format("{}[{}]", key, poses.size()));
+        if (!is_new) {
+            throw json["id"].error(detail::quote(pose.id) + " occurs before in " + first->second +
+                                   "; keep one");
+        }
+        const Json& read = list[poses.size()];
+        if (json.has("joints")) {
+            const auto columns = keys_of(read["joints"]);
+            if (places.size() == 1) plan.columns = columns;
+            if (columns != plan.columns) throw json["joints"].error("differ from poses[0].joints");
+        }
+        if (pose.via && keys_of(read["via"]) != plan.columns) {
+            throw json["via"].error("has other joints than poses[0].joints; must have the same");
+        }
+        poses.push_back(std::move(pose));
+    }
+    return poses;
+}
+
+void read_all_poses(const Json& document, const std::string& path, Plan& plan) {
     const auto found = document.find("poses");
     if (found == document.end() || !found->is_array() || found->empty()) {
         throw input_error_at({path}, "poses: must be a list of at least one pose");
     }
-    std::map<std::string, std::size_t> places;
-    for (const JsonValue& json : JsonValue(*found, path, "poses").list()) {
-        PlannedPose pose = read_pose(json);
-        const auto [first, is_new] = places.emplace(pose.id, plan.poses.size());
-        if (!is_new) {
-            throw json["id"].error(detail::quote(pose.id) + " occurs before in poses[" +
-                                   std::to_string(first->second) + "]; keep one");
-        }
-        if (json.has("joints")) {
-            const auto columns = keys_of((*found)[plan.poses.size()]["joints"]);
-            if (plan.poses.empty()) plan.columns = columns;
-            if (columns != plan.columns) throw json["joints"].error("differ from poses[0].joints");
-        }
-        if (pose.via && keys_of((*found)[plan.poses.size()]["via"]) != plan.columns) {
-            throw json["via"].error("has other joints than poses[0].joints; must have the same");
-        }
-        plan.poses.push_back(std::move(pose));
-    }
+    Places places;
+    plan.poses = read_poses(*found, path, "poses", places, plan);
+    const auto others = document.find("verification");
+    if (others == document.end()) return;
+    plan.verification = read_poses(*others, path, "verification", places, plan);
 }
 
 /// What stands with every pose of a plan of this kind.
-void check_poses(const JsonValue& document, const Plan& plan) {
-    for (const JsonValue& pose : document["poses"].list()) {
+void check_poses(const JsonValue& list, const Plan& plan) {
+    for (const JsonValue& pose : list.list()) {
         const Index times = pose["times"].count(1);
         if (plan.kind != CandidateKind::Blocks) pose["joints"].values();
         if (!plan.is_continuous()) continue;
@@ -334,11 +357,16 @@ Plan read_plan(const std::string& path) {
     const Json json = detail::read_plan_document(path);
     const JsonValue document(json, path);
     Plan plan;
-    read_poses(json, path, plan);
+    read_all_poses(json, path, plan);
     read_candidates(document["candidates"], path, plan);
-    check_poses(document, plan);
+    check_poses(document["poses"], plan);
+    if (document.has("verification")) {
+        check_poses(document["verification"], plan);
+        plan.verification_time = document["verification_time_s"].number_or(infinity);
+    }
     plan.request.criterion = read_criterion(document["criterion"]);
     read_problem(document["problem"], path, plan);
+    if (document.has("cell_doubts")) plan.cell_doubts = document["cell_doubts"].texts();
     read_bounds(document, plan);
     read_search(document["search"], plan);
     if (plan.is_continuous()) read_prediction(document, json, plan);

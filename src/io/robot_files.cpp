@@ -112,7 +112,7 @@ FlangeDifference write_ur_kinematics(const std::string& path, const std::string&
     const auto read = [&](const std::string& written) {
         return ur_chain(read_ur_kinematics(written), robot.joints());
     };
-    return write_robot(path, ur_text(escape_controls(title), frames), robot,
+    return write_robot(path, ur_text(escape_controls(title), frames), without_half_turn(robot),
                        without(robot, errors, {}), read,
                        {ur_rounding.position + 1e-9, ur_rounding.orientation + 1e-9});
 }

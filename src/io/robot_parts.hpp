@@ -10,7 +10,7 @@
 namespace posewise::detail {
 
 /// Either way: no robot's joint turns farther.
-inline constexpr double most_turns = 5;
+inline constexpr double most_turns = 3;
 
 // Far above any robot: what is more is no robot, and would only take memory and time.
 inline constexpr std::size_t most_joints = 100;

@@ -47,7 +47,7 @@ void check_turns(const YamlMeasure& limits, const VectorXd& values) {
     const double turns = values.cwiseAbs().maxCoeff() / full_turn;
     if (turns <= most_turns) return;
     throw limits.value.error(fmt::format(
-        "reaches {:.3g} turns; must be within five either way{}", turns,
+        "reaches {:.3g} turns; must be within three either way{}", turns,
         limits.unit->name == "rad" ? ": are they degrees? Then the key is limits_deg" : ""));
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 
@@ -88,30 +89,42 @@ void SampleCollector::check_torques(const VectorXd& configuration,
     }
 }
 
-void SampleCollector::check_all_different() const {
-    std::vector<std::size_t> order(ids_.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto& q = configurations_;
-    std::stable_sort(order.begin(), order.end(), [&q](std::size_t a, std::size_t b) {
-        return std::lexicographical_compare(q[a].begin(), q[a].end(), q[b].begin(), q[b].end());
-    });
-    for (std::size_t k = 1; k < order.size(); ++k) {
-        const std::size_t first = order[k - 1];
-        const std::size_t second = order[k];
-        if (q[first] != q[second]) continue;
-        throw input_error_at(
-            first_places_[second],
-            fmt::format("configuration {} has the same joint values as {}{}; samples of one "
-                        "configuration must have the same id",
-                        quote(ids_[second]), quote(ids_[first]), in_line(first_places_[first])));
+void SampleCollector::check_not_copied(const Measurements& measurements) const {
+    if (measurements.observations.cols() == 0 || campaign_.sensor->has_contacts()) return;
+    std::map<std::vector<double>, Index> first_of;
+    Index copies = 0;
+    Index first = 0;
+    Index copy = 0;
+    for (Index i = 0; i < measurements.configuration_count(); ++i) {
+        std::vector<double> numbers;
+        const auto add = [&](const auto& row) {
+            numbers.insert(numbers.end(), row.begin(), row.end());
+        };
+        add(measurements.configurations.row(i));
+        const Index begin = measurements.first_sample[static_cast<std::size_t>(i)];
+        for (Index k = begin; k < begin + measurements.sample_count(i); ++k) {
+            add(measurements.observations.row(k));
+        }
+        const auto [found, is_new] = first_of.emplace(std::move(numbers), i);
+        if (is_new || ++copies > 1) continue;
+        first = found->second;
+        copy = i;
     }
+    if (copies == 0 || 2 * copies < measurements.configuration_count()) return;
+    const auto f = static_cast<std::size_t>(first);
+    const auto c = static_cast<std::size_t>(copy);
+    throw input_error_at(
+        first_places_[c],
+        fmt::format("configuration {} has the same joint values and readings as {}{}, and {} of {} "
+                    "are such copies; every reading must be in the file once",
+                    quote(ids_[c]), quote(ids_[f]), in_line(first_places_[f]), copies,
+                    measurements.configuration_count()));
 }
 
-Measurements SampleCollector::finish(const std::string& path, bool may_repeat) const {
+Measurements SampleCollector::finish(const std::string& path) const {
     if (ids_.empty()) {
         throw input_error_at({path}, "has a header but no rows; must have at least one row");
     }
-    if (!may_repeat) check_all_different();
     Measurements measurements;
     measurements.ids = ids_;
     const Chain& robot = campaign_.robot;
@@ -143,19 +156,21 @@ Measurements SampleCollector::finish(const std::string& path, bool may_repeat) c
         measurements.sample_names[static_cast<std::size_t>(row)] =
             names_[static_cast<std::size_t>(sample)];
     }
+    check_not_copied(measurements);
     return measurements;
 }
 
 void check_not_degrees(const Chain& robot, Index joint, double value,
                        const std::function<FileLocation()>& locate) {
     const Joint& limits = robot.joints()[static_cast<std::size_t>(joint)];
-    constexpr double turn = 2 * std::numbers::pi;
+    // A campaign's limits may be narrower than the robot's: what is a little beyond them is taken.
+    constexpr double impossible = 4 * 2 * std::numbers::pi;
     if (robot.joint(joint).motion != Motion::Rotation ||
-        (value >= limits.lower - turn && value <= limits.upper + turn)) {
+        (value >= limits.lower - impossible && value <= limits.upper + impossible)) {
         return;
     }
     throw input_error_at(
-        locate(), fmt::format("{} = {:g} rad is more than a full turn beyond its limits ({:g} to "
+        locate(), fmt::format("{} = {:g} rad is more than four turns beyond its limits ({:g} to "
                               "{:g} rad) and looks like degrees; state degrees as such",
                               limits.name, value, limits.lower, limits.upper));
 }

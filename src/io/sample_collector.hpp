@@ -34,10 +34,10 @@ class SampleCollector {
     /// apart is a configuration by itself, whatever its id.
     void add(const Sample& sample, const LocateJoint& locate, bool is_apart = false);
 
-    /// Samples grouped by configuration, in the order the configurations first occurred. Throws
-    /// InputError if there are none or, unless they may, if two configurations have the same joint
-    /// values.
-    Measurements finish(const std::string& path, bool may_repeat = false) const;
+    /// Samples grouped by configuration, in the order the configurations first occurred; the robot
+    /// may come back to a pose under another id. Throws InputError if there are none or if half of
+    /// the configurations are others once more, with the same readings.
+    Measurements finish(const std::string& path) const;
 
   private:
     void check_same_joints(Index configuration, const VectorXd& joints,
@@ -45,7 +45,7 @@ class SampleCollector {
     void check_same_contact(Index configuration, const SeenTargets& is_seen,
                             const FileLocation& location) const;
     void check_torques(const VectorXd& configuration, const LocateJoint& locate) const;
-    void check_all_different() const;
+    void check_not_copied(const Measurements& measurements) const;
 
     const Campaign& campaign_;
     std::unordered_map<std::string, Index> configuration_of_id_;
@@ -59,8 +59,8 @@ class SampleCollector {
     std::vector<SeenTargets> is_seen_;        // of each sample
 };
 
-/// Throws InputError (at `locate()`) if a revolute joint's value, read in rad, lies over a full
-/// turn beyond its limits: as degrees do.
+/// Throws InputError (at `locate()`) if a revolute joint's value, read in rad, lies over four turns
+/// beyond its limits: as degrees do.
 void check_not_degrees(const Chain& robot, Index joint, double value,
                        const std::function<FileLocation()>& locate);
 

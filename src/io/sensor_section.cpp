@@ -112,8 +112,13 @@ std::array<bool, 3> read_known_axes(const std::optional<YamlValue>& known) {
     return {marks[0], marks[1], marks[2]};
 }
 
-TargetsSection read_targets(const YamlValue& value) {
-    const YamlMap targets(value, {"count", "position_<length>", "known"});
+/// How large the balls at the targets are, where they are balls.
+enum class Body { Ball, None };
+
+TargetsSection read_targets(const YamlValue& value, Body body) {
+    std::vector<std::string> keys{"count", "position_<length>", "known"};
+    if (body == Body::Ball) keys.emplace_back("radius_<length>");
+    const YamlMap targets(value, keys);
     const auto positions = targets.find_measure("position");
     const auto count = targets.find("count");
     if (positions.has_value() == count.has_value()) {
@@ -127,6 +132,10 @@ TargetsSection read_targets(const YamlValue& value) {
     const std::vector<Vector3d> nominal =
         positions ? stated_positions(*positions, "target") : generic_targets(*count);
     Targets found(nominal, std::vector<std::array<bool, 3>>(nominal.size(), is_known));
+    if (const auto radius = body == Body::Ball ? targets.find_measure("radius") : std::nullopt) {
+        constexpr double largest = 1;  // m
+        found = found.with_radius(read_positive(*radius, true, largest));
+    }
     VectorXd unknowns(found.unknown_count());
     for (Index j = 0; j < found.count(); ++j) {
         for (Index axis = 0; axis < 3; ++axis) {
@@ -142,7 +151,7 @@ TargetsSection read_targets(const YamlValue& value) {
 SensorSection read_points(const YamlValue& value) {
     const YamlMap sensor(value, {"kind", "sigma_<length>", "noise", "targets"});
     const PointNoise noise = read_noise(value, sensor);
-    TargetsSection targets = read_targets(sensor.require("targets"));
+    TargetsSection targets = read_targets(sensor.require("targets"), Body::Ball);
     return {std::make_shared<PointSensor>(std::move(targets.targets), noise), targets.unknowns,
             targets.has_positions};
 }
@@ -179,7 +188,7 @@ SensorSection read_distances(const YamlValue& value) {
     const YamlMap anchors(sensor.require("anchors"), {"position_<length>", "known"});
     const std::vector<Vector3d> positions =
         stated_positions(anchors.require_measure("position"), "anchor");
-    TargetsSection targets = read_targets(sensor.require("targets"));
+    TargetsSection targets = read_targets(sensor.require("targets"), Body::Ball);
     VectorXd own(is_true(anchors, "known") ? 0 : 3 * static_cast<Index>(positions.size()));
     for (Index k = 0; k < own.size(); ++k)
         own[k] = positions[static_cast<std::size_t>(k / 3)][k % 3];
@@ -224,7 +233,7 @@ SensorSection read_planes(const YamlValue& value) {
         if (!planes.back().offset_is_known) own.push_back(planes.back().offset);
     }
     if (planes.empty()) throw list.error("is empty; must list at least one plane");
-    TargetsSection targets = read_targets(sensor.require("targets"));
+    TargetsSection targets = read_targets(sensor.require("targets"), Body::None);
     const Eigen::Map<const VectorXd> unknowns(own.data(), std::ssize(own));
     return {std::make_shared<PlaneSensor>(std::move(targets.targets), planes, read_sigma(sensor)),
             join(targets.unknowns, unknowns), targets.has_positions};
@@ -328,7 +337,7 @@ SensorSection read_sockets(const YamlValue& value) {
         check_socket_place(list.list()[k], section, k, are_known ? exactly : roughly);
     }
     const YamlValue targets_value = sensor.require("targets");
-    TargetsSection targets = read_targets(targets_value);
+    TargetsSection targets = read_targets(targets_value, Body::None);
     if (targets.targets.count() != 1) {
         throw targets_value.error(
             fmt::format("are {}; must be one, the ball", targets.targets.count()));

@@ -5,6 +5,7 @@
 
 #include "../core/text.hpp"
 #include "json.hpp"
+#include "posewise/core/units.hpp"
 #include "posewise/io/urdf_file.hpp"
 
 namespace posewise::io {
@@ -51,6 +52,35 @@ std::string joint_line(const UrdfJoint& joint) {
                                        : "");
 }
 
+/// A list as YAML has it, in mm.
+std::string millimetres_list(const Vector3d& point) {
+    const Vector3d mm = mm_per_m * point;
+    return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", mm.x(), mm.y(), mm.z());
+}
+
+/// The cell, as far as a URDF knows it: the robot's own solids.
+std::string cell_text(const UrdfRobot& robot) {
+    const UrdfBodies bodies = read_urdf_bodies(robot);
+    if (bodies.links.empty() && bodies.skipped.empty()) return "";
+    std::vector<std::string> frames{"base"};
+    for (const UrdfJoint& joint : robot.joints) {
+        if (is_driven(joint)) frames.push_back(chain_joint_name(joint.name));
+    }
+    std::string text = "\n# FILL IN: obstacles (keep_out), the floor, what the instrument sees.\n";
+    text += bodies.links.empty()
+                ? "# cell:\n"
+                : "cell:\n  links:  # capsules around the URDF's collision shapes\n";
+    for (const Link& link : bodies.links) {
+        text += fmt::format(
+            "    - {{name: {}, after: {}, from_mm: {}, to_mm: {}, radius_mm: {:.6g}}}\n",
+            quote_for_yaml(link.name, robot.source.path),
+            frames[static_cast<std::size_t>(link.frame)], millimetres_list(link.solid.from),
+            millimetres_list(link.solid.to), mm_per_m * link.solid.radius);
+    }
+    for (const std::string& sentence : bodies.skipped) text += "  # " + sentence + '\n';
+    return text;
+}
+
 constexpr const char* rest = R"(
 sensor:
   kind: points           # the instrument returns the positions of targets fixed to the tip link
@@ -87,7 +117,7 @@ std::string make_campaign_text(const UrdfRobot& robot, const std::string& path) 
     for (const UrdfJoint& joint : robot.joints) {
         if (is_driven(joint)) text += joint_line(joint);
     }
-    return text + rest;
+    return text + rest + cell_text(robot);
 }
 
 }  // namespace posewise::io

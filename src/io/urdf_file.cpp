@@ -110,8 +110,8 @@ UrdfRobot read_urdf(const UrdfSource& source) {
     for (const xml_node joint : path.joints) {
         robot.joints.push_back(read_urdf_joint(document, joint));
     }
-    check_joint_count(robot);
     check_mimics(robot);
+    check_joint_count(robot);
     limit_by_mimics(robot);
     return robot;
 }

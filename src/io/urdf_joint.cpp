@@ -46,6 +46,7 @@ class JointReader {
         for (const xml_node child : element_.children()) {
             if (child.type() != pugi::node_element) continue;
             const std::string name = child.name();
+            if (is_foreign(name)) continue;
             if (std::find(known.begin(), known.end(), name) != known.end()) continue;
             const std::string advice = suggest(name, known);
             if (!advice.starts_with("did you mean")) continue;
@@ -53,12 +54,14 @@ class JointReader {
         }
     }
 
-    /// Throws for an unknown attribute; where `warnings` are taken only for a misspelt one.
+    /// Throws for an unknown attribute of the format's own; where `warnings` are taken only for a
+    /// misspelt one.
     xml_node find(const char* name, const std::vector<std::string>& attributes,
                   std::vector<std::string>* warnings = nullptr) const {
         const xml_node found = find_child(document_, element_, name);
         for (const pugi::xml_attribute attribute : found.attributes()) {
             const std::string stated = attribute.name();
+            if (is_foreign(stated)) continue;
             if (std::find(attributes.begin(), attributes.end(), stated) != attributes.end()) {
                 continue;
             }
@@ -154,7 +157,7 @@ class JointReader {
         if (joint.kind == io::UrdfJointKind::Continuous) {
             joint.limits = Interval{-std::numbers::pi, std::numbers::pi};
         } else if (is_revolute && largest > most_turns * 2 * std::numbers::pi) {
-            throw error(limit, "has limits beyond five turns; must be rad: are they degrees?");
+            throw error(limit, "has limits beyond three turns; must be rad: are they degrees?");
         } else if (stated.lower < stated.upper && largest <= none) {
             joint.limits = stated;
         }

@@ -159,10 +159,27 @@ class Tree {
     std::multimap<std::string, std::string> children_;
 };
 
+/// Whether something in it, at most `depth` levels down, stands for what xacro would make of it.
+void refuse_template(const XmlDocument& document, xml_node parent, int depth) {
+    for (const xml_node element : parent.children()) {
+        if (std::string_view(element.name()).starts_with("xacro:")) {
+            throw document.error(element,
+                                 "is a template for xacro; must be what xacro makes of it");
+        }
+        if (depth > 1) refuse_template(document, element, depth - 1);
+    }
+}
+
+/// A template may stand for links, joints or parts of them; in what a link looks like it is of no
+/// matter here.
 void refuse_template(const XmlDocument& document) {
-    for (const xml_node element : document.elements()) {
-        if (!std::string_view(element.name()).starts_with("xacro:")) continue;
-        throw document.error(element, "is a template for xacro; must be what xacro makes of it");
+    refuse_template(document, document.root(), 1);
+    for (const xml_node joint : document.root().children("joint")) {
+        refuse_template(document, joint, 2);
+    }
+    for (const xml_node link : document.root().children("link")) {
+        refuse_template(document, link, 1);
+        refuse_template(document, link.child("inertial"), 1);
     }
 }
 

@@ -26,7 +26,6 @@ class XmlDocument {
     const std::string& content() const { return content_; }
     pugi::xml_node root() const { return document_.document_element(); }
     /// In the order of the file.
-    const std::vector<pugi::xml_node>& elements() const { return elements_; }
 
     StartTag start_tag(pugi::xml_node element) const;
     /// Where the element begins.

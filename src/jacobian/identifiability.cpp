@@ -11,18 +11,12 @@
 #include <utility>
 
 #include "../core/decompositions.hpp"
-#include "../measurement/contact.hpp"
 #include "../model/complete_model.hpp"
 #include "../model/sampling.hpp"
-#include "posewise/jacobian/identification.hpp"
+#include "nominal_factor.hpp"
 
 namespace posewise {
 namespace {
-
-constexpr std::uint64_t configuration_seed = 20151;  // any: it only has to be the same every time
-
-/// A column below this share of the largest is rounding: the parameter moves nothing.
-constexpr double negligible_share = 1e-12;
 
 /// The part of `column` outside the span of the orthonormal columns of Q; twice, so that rounding
 /// of the first pass is gone.
@@ -50,45 +44,6 @@ std::vector<Index> make_priority(const Campaign& campaign) {
     return priority;
 }
 
-/// Beside these values rank is nearly lost only.
-Parameters nominal_of(const Campaign& campaign) {
-    Parameters nominal = campaign.nominal;
-    nominal.robot.setZero(campaign.robot.parameter_count());
-    return nominal;
-}
-
-detail::ShownPoses draw_poses(const Campaign& campaign, Index count) {
-    return detail::random_poses(campaign, nominal_of(campaign), count, configuration_seed);
-}
-
-MatrixXd stack_at_nominal(const Campaign& campaign, const detail::ShownPoses& poses, Index first,
-                          Index count) {
-    return make_plain_blocks(campaign, nominal_of(campaign),
-                             poses.configurations.middleRows(first, count),
-                             times_seen(poses.is_seen.middleRows(first, count), 1))
-        .matrix;
-}
-
-/// The triangular factor of the Jacobian over as many poses as twice the parameters, which is made
-/// in parts: all that tells how columns depend on each other, and no more rows than columns.
-MatrixXd factor_at_nominal(const Campaign& campaign, const StopSignal& stop) {
-    constexpr Index least_part = 1'000'000;  // numbers; less takes no time
-    const Index L = parameter_count(campaign);
-    const detail::ShownPoses poses = draw_poses(campaign, 2 * L);
-    const Index rows = std::max(4 * L, least_part / std::max<Index>(1, L));
-    const Index at_once = std::max<Index>(1, rows / campaign.sensor->row_count());
-    MatrixXd R(0, L);
-    for (Index first = 0; first < poses.configurations.rows(); first += at_once) {
-        if (first > 0) stop.check(fmt::format("finding what is identifiable of {} parameters", L));
-        const Index count = std::min(at_once, poses.configurations.rows() - first);
-        const MatrixXd part = stack_at_nominal(campaign, poses, first, count);
-        MatrixXd both(R.rows() + part.rows(), L);
-        both << R, part;
-        R = detail::triangular_factor(std::move(both));
-    }
-    return R;
-}
-
 /// How the dropped columns follow from the kept ones: kept x dropped, in the columns' own units.
 MatrixXd express_dropped(const MatrixXd& J, const Identifiability& result) {
     MatrixXd kept(J.rows(), static_cast<Index>(result.kept.size()));
@@ -108,7 +63,8 @@ MatrixXd express_dropped(const MatrixXd& J, const Identifiability& result) {
 }  // namespace
 
 Identifiability find_independent_columns(const MatrixXd& J, const std::vector<Index>& priority,
-                                         double tolerance, const StopSignal& stop) {
+                                         double tolerance, const StopSignal& stop,
+                                         double least_share) {
     const double largest = J.colwise().norm().maxCoeff();
     Identifiability result;
     MatrixXd Q(J.rows(), std::min(J.rows(), J.cols()));
@@ -121,18 +77,19 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
         for (const Index k : open) {
             if (rank >= quick) stop.check(fmt::format("telling {} parameters apart", J.cols()));
             const double norm = J.col(k).norm();
-            const VectorXd residual = norm > negligible_share * largest
+            const VectorXd residual = norm > least_share * largest
                                           ? residual_outside(Q.leftCols(rank), J.col(k) / norm)
                                           : VectorXd::Zero(J.rows());
             const double residual_norm = residual.norm();
-            if (residual_norm > least && rank < Q.cols()) {
+            const double share = residual_norm * norm / largest;
+            if (residual_norm > least && share > least_share && rank < Q.cols()) {
                 Q.col(rank++) = residual / residual_norm;
                 result.kept.push_back(k);
                 result.least_kept_residual = std::min(result.least_kept_residual, residual_norm);
             } else {
                 rest.push_back(k);
                 result.largest_dropped_residual =
-                    std::max(result.largest_dropped_residual, residual_norm);
+                    std::max(result.largest_dropped_residual, std::min(residual_norm, share));
             }
         }
         open = std::move(rest);
@@ -145,11 +102,12 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
     const MatrixXd combination = express_dropped(J, result);
     for (std::size_t d = 0; d < result.dropped.size(); ++d) {
         const double norm = J.col(result.dropped[d].parameter).norm();
-        if (norm <= negligible_share * largest) continue;
+        if (norm <= least_share * largest) continue;
         for (std::size_t k = 0; k < result.kept.size(); ++k) {
             const double coefficient = combination(static_cast<Index>(k), static_cast<Index>(d));
-            // What is less than 1e-7 of the dropped column is rounding.
-            if (std::abs(coefficient) * J.col(result.kept[k]).norm() > 1e-7 * norm) {
+            // What is less of the dropped column is rounding.
+            const double part = std::abs(coefficient) * J.col(result.kept[k]).norm();
+            if (part > std::max(1e-7, least_share) * norm) {
                 result.dropped[d].absorbed_by.push_back({result.kept[k], coefficient});
             }
         }
@@ -158,8 +116,16 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
 }
 
 Identifiability find_identifiable(const Campaign& campaign, const StopSignal& stop) {
-    return find_independent_columns(factor_at_nominal(campaign, stop), make_priority(campaign),
-                                    least_residual, stop);
+    Identifiability found =
+        find_independent_columns(detail::factor_at_nominal(campaign, stop), make_priority(campaign),
+                                 least_residual, stop, detail::least_visible);
+    const VectorXd sizes = detail::sizes_of(campaign);
+    for (DroppedParameter& dropped : found.dropped) {
+        for (ParameterTerm& term : dropped.absorbed_by) {
+            term.coefficient *= sizes[term.parameter] / sizes[dropped.parameter];
+        }
+    }
+    return found;
 }
 
 bool has_clear_gap(const Identifiability& found) {
@@ -168,7 +134,7 @@ bool has_clear_gap(const Identifiability& found) {
 
 std::vector<Index> weakest_kept(const Campaign& campaign, const Identifiability& found,
                                 Index count) {
-    MatrixXd kept = factor_at_nominal(campaign, {})(Eigen::all, found.kept);
+    MatrixXd kept = detail::factor_at_nominal(campaign, {})(Eigen::all, found.kept);
     kept.colwise().normalize();
     std::vector<Index> parameters;
     const std::vector<WeakDirection> weakest = weakest_directions(kept, 1, count);
@@ -196,7 +162,7 @@ Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names)
 
 Chain without_errors_of_base(const Chain& chain) {
     constexpr double rounding = 1e-9;  // of twists, rad per rad and m per rad
-    const RowMatrixXd drawn = detail::random_configurations(chain, 2, configuration_seed);
+    const RowMatrixXd drawn = detail::random_configurations(chain, 2, detail::configuration_seed);
     std::array<FlangeMotion, 2> motions;
     for (std::size_t i = 0; i < motions.size(); ++i) {
         chain.differentiate(Isometry3d::Identity(), drawn.row(static_cast<Index>(i)).transpose(),
@@ -214,14 +180,35 @@ Chain without_errors_of_base(const Chain& chain) {
     return keep_parameters(chain, kept);
 }
 
-Chain irreducible_model(const Campaign& campaign, const StopSignal& stop) {
-    const Campaign complete = with_robot(campaign, detail::complete_model(campaign.robot));
-    const auto names = parameter_names(complete);
+namespace {
+
+/// The robot with those of its error parameters alone that can be told apart.
+Chain reduce(const Campaign& campaign, const StopSignal& stop) {
+    const auto names = parameter_names(campaign);
     std::vector<std::string> kept;
-    for (const Index k : find_identifiable(complete, stop).kept) {
+    for (const Index k : find_identifiable(campaign, stop).kept) {
         kept.push_back(names[static_cast<std::size_t>(k)]);
     }
-    return keep_parameters(complete.robot, kept);
+    return keep_parameters(campaign.robot, kept);
+}
+
+}  // namespace
+
+Chain irreducible_model(const Campaign& campaign, const StopSignal& stop) {
+    return reduce(with_robot(campaign, detail::complete_model(campaign.robot)), stop);
+}
+
+Chain irreducible_offsets(const Campaign& campaign, const StopSignal& stop) {
+    const Chain complete = detail::complete_model(campaign.robot);
+    const auto names = complete.parameter_names();
+    std::vector<std::string> offsets;
+    for (Index k = 0; k < complete.parameter_count(); ++k) {
+        if (complete.parameter_term(k) == nullptr && complete.parameter_element(k).joints.empty()) {
+            continue;
+        }
+        offsets.push_back(names[static_cast<std::size_t>(k)]);
+    }
+    return reduce(with_robot(campaign, keep_parameters(complete, offsets)), stop);
 }
 
 Index least_pose_count(const Campaign& stated, const StopSignal& stop) {
@@ -230,12 +217,16 @@ Index least_pose_count(const Campaign& stated, const StopSignal& stop) {
         stated.spread.is_prior ? with_robot(stated, without_parameters(stated.robot)) : stated;
     const Identifiability all = find_identifiable(campaign, stop);
     const auto rank = static_cast<Index>(all.kept.size());
-    const Index rows = campaign.sensor->rows_per_target() * campaign.sensor->seen_at_once();
-    const detail::ShownPoses poses = draw_poses(campaign, 2 * parameter_count(campaign));
+    const detail::ShownPoses poses =
+        detail::poses_to_judge(campaign, 2 * parameter_count(campaign));
+    const Index seen_at_once = poses.is_seen.rowwise().count().maxCoeff();
+    const Index rows = campaign.sensor->rows_per_target() * seen_at_once;
+    const VectorXd sizes = detail::sizes_of(campaign);
     const auto suffices = [&](Index count) {
         if (count >= poses.configurations.rows()) return true;
-        const MatrixXd J = stack_at_nominal(campaign, poses, 0, count);
-        const auto some = find_independent_columns(J, all.kept, least_residual, stop);
+        const MatrixXd J = detail::stack_at_nominal(campaign, poses, 0, count) * sizes.asDiagonal();
+        const auto some =
+            find_independent_columns(J, all.kept, least_residual, stop, detail::least_visible);
         return static_cast<Index>(some.kept.size()) == rank;
     };
     Index least = (rank + rows - 1) / rows;  // nothing less can

@@ -41,18 +41,24 @@ PoseInformation::PoseInformation(const Campaign& campaign, Parameters parameters
     }
 }
 
-MatrixXd PoseInformation::evaluate(const VectorXd& q, const SeenTargets& is_seen) const {
-    if (is_blind(is_seen)) return MatrixXd::Zero(parameter_count(), parameter_count());
-    const std::vector<Index> rows = rows_shown(*campaign_.sensor, is_seen);
+RowMatrixXd PoseInformation::rows(const VectorXd& q, const SeenTargets& is_seen) const {
+    if (is_blind(is_seen)) return RowMatrixXd::Zero(0, parameter_count());
+    const std::vector<Index> shown = rows_shown(*campaign_.sensor, is_seen);
     FlangeMotion motion;
     RowMatrixXd B(campaign_.sensor->row_count(), parameter_count());
     differentiate_pose(campaign_, parameters_, q, motion, B);
     MatrixXd S = mean_covariance(campaign_, motion, parameters_.sensor, repeats_);
-    keep_rows(rows, B);
-    keep_rows_and_columns(rows, S);
+    keep_rows(shown, B);
+    keep_rows_and_columns(shown, S);
     whiten(S, B);
     B *= scale_.asDiagonal();
+    return B;
+}
+
+MatrixXd PoseInformation::evaluate(const VectorXd& q, const SeenTargets& is_seen) const {
+    const RowMatrixXd B = rows(q, is_seen);
     MatrixXd M = MatrixXd::Zero(B.cols(), B.cols());
+    if (B.rows() == 0) return M;
     M.selfadjointView<Eigen::Lower>().rankUpdate(B.transpose());
     M.triangularView<Eigen::StrictlyUpper>() = M.transpose();
     return M;

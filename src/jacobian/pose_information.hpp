@@ -17,8 +17,11 @@ class PoseInformation {
     Index joint_count() const { return campaign_.robot.joint_count(); }
     Index parameter_count() const { return scale_.size(); }
 
-    /// B^T B: parameter_count() square, without units. `is_seen` are the targets that the pose
-    /// shows; empty: all.
+    /// The block B: rows of the targets shown x parameter_count(), without units. `is_seen` are the
+    /// targets that the pose shows; empty: all.
+    RowMatrixXd rows(const VectorXd& q, const SeenTargets& is_seen = {}) const;
+
+    /// B^T B: parameter_count() square, without units.
     MatrixXd evaluate(const VectorXd& q, const SeenTargets& is_seen = {}) const;
 
     /// Derivative of trace(Z B^T B) by the joints, for a symmetric Z (per rad or m). With Z the

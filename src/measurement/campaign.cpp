@@ -1,6 +1,5 @@
 #include "posewise/measurement/campaign.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -148,25 +147,6 @@ Index prior_count(const Campaign& campaign) {
                           ? parameter_count(campaign)
                           : base_parameter_count(campaign) + campaign.robot.parameter_count();
     return end - prior_begin(campaign);
-}
-
-MatrixXd prior_information(const Campaign& campaign) {
-    const Index size = parameter_count(campaign);
-    MatrixXd information = MatrixXd::Zero(size, size);
-    const Index begin = prior_begin(campaign);
-    const Index count = prior_count(campaign);
-    auto known = information.block(begin, begin, count, count);
-    known.setIdentity();
-    if (!campaign.prior) return information;
-    const VectorXd scale = parameter_scale(campaign).segment(begin, count);
-    const Eigen::LLT<MatrixXd> root(campaign.prior->covariance);
-    if (root.info() != Eigen::Success || root.cols() != count) {
-        throw InputError(
-            "the prior is of other parameters, or its covariance not positive definite");
-    }
-    const MatrixXd inverse = root.solve(MatrixXd::Identity(count, count));
-    known = scale.asDiagonal() * inverse * scale.asDiagonal();
-    return information;
 }
 
 Parameters advance(const Campaign& campaign, const Parameters& parameters, const VectorXd& step) {

@@ -52,11 +52,12 @@ std::optional<VectorXd> bring_to_contact(const Campaign& campaign, const Paramet
     return std::nullopt;
 }
 
-ShownPoses bring_to_contacts(const Campaign& campaign, const Parameters& parameters,
-                             const RowMatrixXd& candidates, Index first, const JointRange& range) {
+namespace {
+
+ShownPoses touch_in_turn(const Campaign& campaign, const Parameters& parameters,
+                         const RowMatrixXd& candidates, Index first, const JointRange& range) {
     const Sensor& sensor = *campaign.sensor;
     const Index targets = sensor.target_count();
-    if (!sensor.has_contacts()) return {candidates, all_seen(candidates.rows(), targets)};
     const VectorXd touching = VectorXd::Zero(sensor.rows_per_target());
     ShownPoses poses{RowMatrixXd(candidates.rows(), candidates.cols()),
                      Seen::Constant(candidates.rows(), targets, false)};
@@ -72,6 +73,32 @@ ShownPoses bring_to_contacts(const Campaign& campaign, const Parameters& paramet
     }
     poses.configurations.conservativeResize(count, Eigen::NoChange);
     poses.is_seen.conservativeResize(count, Eigen::NoChange);
+    return poses;
+}
+
+}  // namespace
+
+ShownPoses bring_to_contacts(const Campaign& campaign, const Parameters& parameters,
+                             const RowMatrixXd& candidates, Index first, const JointRange& range) {
+    const Sensor& sensor = *campaign.sensor;
+    if (sensor.has_contacts()) return touch_in_turn(campaign, parameters, candidates, first, range);
+    return {candidates, all_seen(candidates.rows(), sensor.target_count())};
+}
+
+std::optional<ShownPoses> touching_poses(const Campaign& campaign, const Parameters& parameters,
+                                         Index count, std::uint64_t seed) {
+    const Sensor& sensor = *campaign.sensor;
+    const bool is_stated = campaign.has_nominal_base && campaign.has_nominal_targets;
+    if (!sensor.touches() || sensor.has_contacts() || !is_stated) return std::nullopt;
+    constexpr Index drawn_for_one = 4;
+    const Index drawn = drawn_for_one * std::max(count, sensor.target_count());
+    ShownPoses poses =
+        touch_in_turn(campaign, parameters, random_configurations(campaign.robot, drawn, seed), 0,
+                      limits_of(campaign.robot));
+    if (poses.configurations.rows() < count) return std::nullopt;
+    poses.configurations.conservativeResize(count, Eigen::NoChange);
+    poses.is_seen.conservativeResize(count, Eigen::NoChange);
+    if (!poses.is_seen.colwise().any().all()) return std::nullopt;
     return poses;
 }
 

@@ -32,6 +32,11 @@ ShownPoses bring_to_contacts(const Campaign& campaign, const Parameters& paramet
 ShownPoses draw_poses(const Campaign& campaign, const Parameters& parameters, Index count,
                       const std::function<RowMatrixXd(Index count)>& draw);
 
+/// Of random_configurations(), each touching one of what the sensor touches, in turn; nothing if it
+/// touches none, or poses within the limits hardly reach them all.
+std::optional<ShownPoses> touching_poses(const Campaign& campaign, const Parameters& parameters,
+                                         Index count, std::uint64_t seed);
+
 /// Of random_configurations().
 ShownPoses random_poses(const Campaign& campaign, const Parameters& parameters, Index count,
                         std::uint64_t seed);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
@@ -27,13 +28,20 @@ class Exclusion {
         if (const auto i = find(name)) {
             return drop(name, first_sample(*i), measurements_.sample_count(*i));
         }
+        if (const auto range = find_range(name)) {
+            for (Index i = range->first; i <= range->second; ++i) {
+                drop(name, first_sample(i), measurements_.sample_count(i));
+            }
+            return;
+        }
         const std::size_t colon = name.rfind(':');
         const auto i = colon == std::string::npos ? std::nullopt : find(name.substr(0, colon));
         if (!i) {
             throw InputError(fmt::format(
-                "excluded configuration {} is not among the measured ones; must be an id, or one "
-                "and the number of a sample like {}:2",
-                detail::quote(name), measurements_.ids.front()));
+                "excluded configuration {} is not among the measured ones; must be an id, one and "
+                "the number of a sample like {}:2, or the first and last of several like {}-{}",
+                detail::quote(name), measurements_.ids.front(), measurements_.ids.front(),
+                measurements_.ids.back()));
         }
         for (Index k = first_sample(*i); k < first_sample(*i + 1); ++k) {
             if (measurements_.sample_name(*i, k) == name) return drop(name, k, 1);
@@ -50,6 +58,7 @@ class Exclusion {
         std::vector<Index> samples;
         std::vector<Index> configurations;
         Measurements rest;
+        rest.notation = measurements_.notation;
         for (Index i = 0; i < measurements_.configuration_count(); ++i) {
             const auto before = samples.size();
             for (Index k = first_sample(i); k < first_sample(i + 1); ++k) {
@@ -64,6 +73,9 @@ class Exclusion {
         rest.configurations = measurements_.configurations(configurations, Eigen::all);
         rest.observations = measurements_.observations(samples, Eigen::all);
         rest.is_seen = measurements_.is_seen(samples, Eigen::all);
+        if (measurements_.roll_pitch_yaw.rows() > 0) {
+            rest.roll_pitch_yaw = measurements_.roll_pitch_yaw(samples, Eigen::all);
+        }
         if (measurements_.sample_names.empty()) return rest;
         for (const Index k : samples) {
             rest.sample_names.push_back(measurements_.sample_names[static_cast<std::size_t>(k)]);
@@ -76,6 +88,17 @@ class Exclusion {
         const auto found = configuration_of_id_.find(id);
         if (found == configuration_of_id_.end()) return std::nullopt;
         return found->second;
+    }
+
+    /// "7-12": both ids, the first no later than the last.
+    std::optional<std::pair<Index, Index>> find_range(const std::string& name) const {
+        for (std::size_t dash = name.find('-'); dash != std::string::npos;
+             dash = name.find('-', dash + 1)) {
+            const auto first = find(name.substr(0, dash));
+            const auto last = find(name.substr(dash + 1));
+            if (first && last && *first <= *last) return {{*first, *last}};
+        }
+        return std::nullopt;
     }
 
     Index first_sample(Index configuration) const {

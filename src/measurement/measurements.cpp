@@ -51,6 +51,7 @@ Measurements mean_measurements(const Sensor& sensor, const Measurements& measure
     const RowMatrixXd times = times_seen(measurements);
     Measurements means{measurements.configurations, measurements.ids, {}, times.array() > 0, {0}};
     means.observations.setZero(times.rows(), measurements.observations.cols());
+    means.notation = measurements.notation;
     const Index width = sensor.rows_per_target();
     // Whole observations, of which only one target's part means anything.
     VectorXd deviation(means.observations.cols());
@@ -85,6 +86,7 @@ std::string Measurements::sample_name(Index configuration, Index sample) const {
 
 Measurements take(const Measurements& measurements, const std::vector<Index>& configurations) {
     Measurements taken;
+    taken.notation = measurements.notation;
     taken.configurations.resize(static_cast<Index>(configurations.size()),
                                 measurements.configurations.cols());
     for (const Index i : configurations) {
@@ -102,6 +104,11 @@ Measurements take(const Measurements& measurements, const std::vector<Index>& co
             measurements.observations.middleRows(first, count);
         taken.is_seen.middleRows(taken.first_sample[k], count) =
             measurements.is_seen.middleRows(first, count);
+        if (measurements.roll_pitch_yaw.rows() > 0) {
+            taken.roll_pitch_yaw.conservativeResize(taken.first_sample[k] + count, 3);
+            taken.roll_pitch_yaw.bottomRows(count) =
+                measurements.roll_pitch_yaw.middleRows(first, count);
+        }
         if (measurements.sample_names.empty()) continue;
         const auto begin = measurements.sample_names.begin() + first;
         taken.sample_names.insert(taken.sample_names.end(), begin, begin + count);

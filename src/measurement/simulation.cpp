@@ -8,8 +8,11 @@
 
 #include "../core/elementary.hpp"
 #include "../core/normals.hpp"
+#include "../model/sampling.hpp"
 #include "contact.hpp"
+#include "feasible.hpp"
 #include "noise.hpp"
+#include "places.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/model/error_terms.hpp"
@@ -66,6 +69,13 @@ std::string missing_places(const Campaign& campaign) {
     if (campaign.has_nominal_targets) return "where the base is, too (key 'base')";
     return fmt::format("where base and {} are (keys 'base' and '{}')", is_pose ? "tool" : "targets",
                        key);
+}
+
+void check_places_stated(const Campaign& campaign) {
+    if (!campaign.has_nominal_base || !campaign.has_nominal_targets) {
+        throw InputError("to simulate, the campaign must state " + missing_places(campaign));
+    }
+    detail::check_places(campaign);
 }
 
 /// Parameters as an earlier calibration tells, give or take so many times its covariance's
@@ -187,10 +197,13 @@ Simulation simulate(const Campaign& campaign, const SimulateOptions& options) {
     if (options.pose_count < 1) {
         throw InputError("poses must be at least 1, are " + std::to_string(options.pose_count));
     }
+    check_places_stated(campaign);
     // Configurations and noise come from different streams of one seed.
     const std::uint64_t configuration_seed = ~options.seed;
     const detail::ShownPoses poses =
-        detail::random_poses(campaign, campaign.nominal, options.pose_count, configuration_seed);
+        detail::draw_feasible(campaign, options.pose_count, [&](const Chain& robot, Index drawn) {
+            return detail::random_configurations(robot, drawn, configuration_seed);
+        });
     return simulate(campaign, poses.configurations, poses.is_seen, options);
 }
 
@@ -199,9 +212,7 @@ Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
     if (options.repeats < 1) {
         throw InputError("repeats must be at least 1, are " + std::to_string(options.repeats));
     }
-    if (!campaign.has_nominal_base || !campaign.has_nominal_targets) {
-        throw InputError("to simulate, the campaign must state " + missing_places(campaign));
-    }
+    check_places_stated(campaign);
     if (is_seen.rows() != configurations.rows() ||
         is_seen.cols() != campaign.sensor->target_count()) {
         throw InputError("visibility is stated for " + std::to_string(is_seen.rows()) + " x " +

@@ -98,6 +98,17 @@ std::vector<std::string> Targets::unknown_names() const {
     return names;
 }
 
+Targets Targets::with_radius(double radius) const {
+    constexpr double largest = 1;  // m
+    if (!(radius >= 0 && radius <= largest)) {
+        throw InputError(
+            fmt::format("the targets' radius is {:g} m, must be from 0 to 1 m", radius));
+    }
+    Targets balls = *this;
+    balls.radius_ = radius;
+    return balls;
+}
+
 bool Targets::is_known(Index target) const {
     const auto& indices = unknown_index_[static_cast<std::size_t>(target)];
     return std::all_of(indices.begin(), indices.end(), [](Index index) { return index < 0; });

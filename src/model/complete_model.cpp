@@ -1,5 +1,9 @@
 #include "complete_model.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "posewise/model/error_terms.hpp"
 
 namespace posewise::detail {
@@ -14,20 +18,68 @@ std::string suffix(const std::string& joint) {
     return numbered ? joint.substr(1) : '_' + joint;
 }
 
+/// An axis that joints drive.
+struct DrivenAxisName {
+    Index joint = -1;  ///< that carries its errors; -1: it has none of its own
+    int number = 1;    ///< which of that joint's axes
+};
+
+/// Whether right beside this element, on one side, joints drive another of its kind: one axis,
+/// written in two elements.
+bool is_one_with_next(const std::vector<Element>& elements, std::size_t k, std::ptrdiff_t step) {
+    const auto is_nothing = [](const Element& element) {
+        return element.joints.empty() && element.value == 0;
+    };
+    std::size_t i = k + static_cast<std::size_t>(step);
+    while (i < elements.size() && is_nothing(elements[i])) i += static_cast<std::size_t>(step);
+    return i < elements.size() && !elements[i].joints.empty() &&
+           elements[i].motion == elements[k].motion && elements[i].axis == elements[k].axis;
+}
+
+/// For each element the axis whose errors follow it. One that only moves along with joints that
+/// move others, too, as a mimic, is an axis of its own all the same.
+std::vector<DrivenAxisName> name_axes(const Chain& chain) {
+    const std::vector<Element>& elements = chain.elements();
+    const std::vector<Index> owners = element_owners(chain);
+    std::vector<int> counts(chain.joints().size(), 1);
+    std::vector<DrivenAxisName> axes;
+    for (std::size_t k = 0; k < elements.size(); ++k) {
+        axes.push_back({owners[k]});
+        const bool is_coupled = owners[k] < 0 && !elements[k].joints.empty();
+        if (!is_coupled || is_one_with_next(elements, k, 1) || is_one_with_next(elements, k, -1)) {
+            continue;
+        }
+        const Index joint = elements[k].joints.front().joint;
+        axes.back() = {joint, ++counts[static_cast<std::size_t>(joint)]};
+    }
+    return axes;
+}
+
+/// "q2", of its second axis "q2_2", unless another joint has that name.
+std::string axis_name(const Chain& chain, const DrivenAxisName& axis) {
+    const std::string& name = chain.joint(axis.joint).name;
+    if (axis.number == 1) return name;
+    std::string numbered = fmt::format("{}_{}", name, axis.number);
+    const auto is_taken = [&] {
+        return std::ranges::find(chain.joints(), numbered, &Joint::name) != chain.joints().end();
+    };
+    while (is_taken()) numbered += '_';
+    return numbered;
+}
+
 }  // namespace
 
 Chain complete_model(const Chain& chain) {
     std::vector<Element> elements;
-    const std::vector<Index> owners = element_owners(chain);
-    for (std::size_t k = 0; k < owners.size(); ++k) {
+    const std::vector<DrivenAxisName> axes = name_axes(chain);
+    for (std::size_t k = 0; k < axes.size(); ++k) {
         Element element = chain.elements()[k];
         element.parameter.clear();
-        const Index owner = owners[k];
-        if (owner < 0) {
+        if (axes[k].joint < 0) {
             elements.push_back(element);
             continue;
         }
-        const std::string name = chain.joints()[static_cast<std::size_t>(owner)].name;
+        const std::string name = axis_name(chain, axes[k]);
         element.parameter = "d" + (name[0] == 'q' ? name : "_" + name);
         elements.push_back(element);
         for (const Motion motion : {Motion::Translation, Motion::Rotation}) {

@@ -4,12 +4,13 @@
 
 namespace posewise::detail {
 
-/// The chain with every geometric error a rigid link can have: after each joint element its own
-/// offset, and translations along and rotations about the two other axes. Own constant errors of
-/// the chain are dropped, its error terms stay; the new ones are named after the driving joint:
-/// `dq2`, `Tx2`, `Rz2`, with axes of the frame right after the joint. It has 5 parameters a joint
-/// element and is redundant on purpose: find_identifiable() says which of them (with base and
-/// targets) can be told apart.
+/// The chain with every geometric error a rigid link can have: after each axis that joints drive
+/// its own offset, and translations along and rotations about the two other axes. Own constant
+/// errors of the chain are dropped, its error terms stay; the new ones are named after the driving
+/// joint: `dq2`, `Tx2`, `Rz2`, with axes of the frame right after the joint. An axis that only
+/// moves along with joints of other axes, as a mimic, has errors of its own, too, named after the
+/// first of these joints: `dq2_2`, `Tx_q2_2`. It has 5 parameters an axis and is redundant on
+/// purpose: find_identifiable() says which of them (with base and targets) can be told apart.
 Chain complete_model(const Chain& chain);
 
 /// complete_model() with the errors that depend on the configuration, too: those of joints that

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "driven_axes.hpp"
 #include "posewise/core/errors.hpp"
@@ -28,6 +29,16 @@ void check_joints(const Chain& chain, const std::vector<DrivenAxis>& axes) {
     throw InputError(
         "frames of a UR are those of six joints that turn, each about one axis and in their order, "
         "neither geared nor coupled; this robot has others");
+}
+
+/// A UR's own turns by what its errors are. One that begins a half turn before does not fit the
+/// links that ROS puts in front of it.
+void check_shoulder(const Isometry3d& shoulder) {
+    if (shoulder(0, 0) >= 0) return;
+    throw InputError(fmt::format(
+        "the shoulder is turned by {:.1f} deg about the base's z axis; kinematics of a UR begin at "
+        "base_link_inertia: state that as base_link, or a base that is half a turn from it",
+        to_degrees(std::abs(std::atan2(shoulder(1, 0), shoulder(0, 0))))));
 }
 
 /// Right before a driven element, turned so that z is what its joint turns about.
@@ -85,7 +96,21 @@ Isometry3d flange_on_axis(const Isometry3d& flange, const Isometry3d& last,
 
 }  // namespace
 
-UrFrames ur_frames(const Chain& chain, const VectorXd& parameters) {
+Chain without_half_turn(const Chain& chain) {
+    std::vector<Element> elements = chain.elements();
+    if (elements.empty()) return chain;
+    const Element& first = elements.front();
+    const bool is_half_turn =
+        first.motion == Motion::Rotation && first.axis == Axis::Z && first.joints.empty() &&
+        first.parameter.empty() && !first.has_functions() &&
+        std::abs(std::abs(first.value) - std::numbers::pi) <= ur_rounding.orientation;
+    if (!is_half_turn) return chain;
+    elements.erase(elements.begin());
+    return chain.with_elements(std::move(elements));
+}
+
+UrFrames ur_frames(const Chain& stated, const VectorXd& parameters) {
+    const Chain chain = without_half_turn(stated);
     const auto [axes, flange] = find_driven_axes(chain, parameters);
     check_joints(chain, axes);
     std::array<Isometry3d, ur_joint_count> frames;  // in the base
@@ -96,6 +121,7 @@ UrFrames ur_frames(const Chain& chain, const VectorXd& parameters) {
     UrFrames relative = frames;
     for (std::size_t k = 1; k < ur_joint_count; ++k)
         relative[k] = frames[k - 1].inverse() * frames[k];
+    check_shoulder(relative.front());
     return relative;
 }
 

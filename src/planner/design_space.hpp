@@ -6,7 +6,8 @@
 
 #include "posewise/core/blocks.hpp"
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/planner/constraints.hpp"
+#include "posewise/measurement/constraints.hpp"
+#include "posewise/planner/planning.hpp"
 
 namespace posewise::detail {
 
@@ -17,7 +18,9 @@ struct DesignSpace {
     VectorXd lower;  ///< of each joint, rad or m
     VectorXd upper;  ///< equal to lower: that joint stays
     Index parameter_count = 0;
-    /// Information of one pose, parameter_count square.
+    /// The block of one pose, without units, parameter_count wide.
+    std::function<RowMatrixXd(const VectorXd& q)> rows;
+    /// Its information rows(q)^T rows(q), parameter_count square.
     std::function<MatrixXd(const VectorXd& q)> information;
     /// Derivative of trace(Z information(q)) by q, for symmetric Z.
     std::function<VectorXd(const VectorXd& q, const MatrixXd& Z)> information_gradient;
@@ -42,17 +45,20 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
 /// Poses of a space met by a search, to choose from.
 struct Support {
     RowMatrixXd poses;
-    Blocks blocks;  ///< with the information of each pose, and no more rows than that needs
+    Blocks blocks;
 
     /// Adds some poses.
     void add(const DesignSpace& space, const RowMatrixXd& added);
 };
 
+/// Rows held, and below them those of poses.
+RowMatrixXd rows_of(const DesignSpace& space, const HeldPoses& held, const RowMatrixXd& poses);
+
 /// Whether q differs from each of the poses by so much in some joint (rad or m).
 bool is_apart(const RowMatrixXd& poses, const Eigen::RowVectorXd& q, double distance);
 
-/// Throws InputError that names a parameter direction which M sees by rounding only, or much less
-/// than is expected of its errors; a criterion's value does not tell.
-void check_all_is_seen(const DesignSpace& space, const MatrixXd& M);
+/// Throws InputError that names a parameter direction which rows do not see, or much less than is
+/// expected of its errors; a criterion's value does not tell.
+void check_all_is_seen(const DesignSpace& space, const RowMatrixXd& rows);
 
 }  // namespace posewise::detail

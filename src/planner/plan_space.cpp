@@ -7,8 +7,10 @@
 #include <limits>
 #include <numeric>
 
+#include "../core/decompositions.hpp"
 #include "../core/parallel.hpp"
 #include "../core/progress_counter.hpp"
+#include "../criteria/row_value.hpp"
 #include "../selection/bound.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
@@ -53,7 +55,7 @@ SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
     select.pose_count = options.pose_count;
     select.test_poses = options.test_poses;
     select.nuisance = options.nuisance;
-    select.held = options.held.information;
+    select.held_rows = options.held.rows;
     select.held_pose_count = options.held_pose_count;
     select.column_names = space.parameter_names;
     select.seed = options.seed;
@@ -145,10 +147,20 @@ bool is_agreed(const std::vector<Refinement>& results, const PlanOptions& option
 /// Information of held and planned poses.
 MatrixXd information_of(const Problem& problem, const RowMatrixXd& plan) {
     const DesignSpace& space = problem.space;
-    MatrixXd M = problem.options.held.information;
-    if (M.size() == 0) M.setZero(space.parameter_count, space.parameter_count);
+    MatrixXd M = detail::information_of(problem.options.held.rows, space.parameter_count);
     for (Index i = 0; i < plan.rows(); ++i) M += space.information(plan.row(i).transpose());
     return M;
+}
+
+/// What is stated of the plan at last: its value, by its rows as verify() has it. Throws InputError
+/// where they do not identify the parameters.
+void conclude(const Problem& problem, const RowMatrixXd& configurations, PlannedPoses& planned) {
+    const RowMatrixXd rows = rows_of(problem.space, problem.options.held, configurations);
+    check_all_is_seen(problem.space, rows);
+    planned.configurations = configurations;
+    planned.value = evaluate_rows(problem.objective, rows);
+    planned.information = information_of(problem, configurations);
+    planned.is_interrupted = problem.options.stop.is_set();
 }
 
 /// The choice from the whole pool, which becomes `pool_choice`, and the refinements of all starts,
@@ -304,13 +316,9 @@ PlannedPoses choose_only(const Problem& problem, const SelectOptions& select) {
     planned.criterion = problem.options.criterion;
     planned.seed = problem.options.seed;
     planned.pool_choice = determined(select_poses(problem.blocks, select));
-    planned.configurations = problem.pool(planned.pool_choice.poses, Eigen::all);
-    planned.value = planned.pool_choice.value;
-    planned.information = information_of(problem, planned.configurations);
-    check_all_is_seen(problem.space, planned.information);
     planned.starts = planned.pool_choice.starts;
     planned.starts_at_best = planned.pool_choice.starts_at_best;
-    planned.is_interrupted = problem.options.stop.is_set();
+    conclude(problem, problem.pool(planned.pool_choice.poses, Eigen::all), planned);
     return planned;
 }
 
@@ -361,12 +369,8 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     finish.stop = problem.options.stop;
     finish.sharpness = {256};
     best = refine_poses(space, problem.objective, options.held, best.configurations, finish);
-    planned.value = best.value;
-    planned.configurations = best.configurations;
-    planned.information = information_of(problem, best.configurations);
-    check_all_is_seen(space, planned.information);
+    conclude(problem, best.configurations, planned);
     add_searched_bound(space, pool, blocks, options, planned);
-    planned.is_interrupted = problem.options.stop.is_set();
     return planned;
 }
 
@@ -375,8 +379,9 @@ void add_searched_bound(const DesignSpace& space, const RowMatrixXd& pool, const
     if (space.is_pool_only || options.bound_iterations == 0) return;
     const SelectOptions select = select_options(space, pool, options);
     const Objective objective = make_objective(blocks, select);
-    planned.searched_bound = search_bound(space, objective, select, planned.configurations, pool,
-                                          blocks, options.bound_iterations, options.stop);
+    planned.searched_bound =
+        std::max(planned.value, search_bound(space, objective, select, planned.configurations, pool,
+                                             blocks, options.bound_iterations, options.stop));
     planned.efficiency =
         efficiency(options.criterion, planned.value, planned.searched_bound,
                    space.parameter_count - static_cast<Index>(options.nuisance.size()));

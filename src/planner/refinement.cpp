@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/decompositions.hpp"
 #include "../core/elementary.hpp"
 #include "../core/nlopt_adapter.hpp"
 #include "posewise/core/errors.hpp"
@@ -36,7 +37,11 @@ class Refiner {
   public:
     Refiner(const DesignSpace& space, const HeldPoses& held, const RowMatrixXd& start,
             const RefineOptions& options)
-        : space_(space), held_(held), options_(options), poses_(start) {
+        : space_(space),
+          held_(held),
+          held_information_(information_of(held.rows, space.parameter_count)),
+          options_(options),
+          poses_(start) {
         for (Index i = 0; i < start.rows(); ++i) informations_.push_back(information(pose(i)));
     }
 
@@ -47,8 +52,7 @@ class Refiner {
     /// Held information and that of all poses but one; -1: of all. Summed anew each time, so that
     /// rounding does not pile up.
     MatrixXd information_without(Index skipped) const {
-        MatrixXd M = held_.information;
-        if (M.size() == 0) M.setZero(space_.parameter_count, space_.parameter_count);
+        MatrixXd M = held_information_;
         for (std::size_t i = 0; i < informations_.size(); ++i) {
             if (static_cast<Index>(i) != skipped) M += informations_[i];
         }
@@ -174,15 +178,11 @@ class Refiner {
     void move_together(const Objective& objective) {
         const Index m = poses_.rows();
         const Index n = poses_.cols();
-        const MatrixXd rest =
-            held_.information.size() > 0
-                ? held_.information
-                : MatrixXd(MatrixXd::Zero(space_.parameter_count, space_.parameter_count));
         BoxProblem problem;
         problem.lower = space_.lower.replicate(m, 1);
         problem.upper = space_.upper.replicate(m, 1);
         problem.value = [&](const VectorXd& x, VectorXd* slope) {
-            MatrixXd M = rest;
+            MatrixXd M = held_information_;
             for (Index i = 0; i < m; ++i) M += information(x.segment(n * i, n));
             if (slope == nullptr) return merit(objective, M);
             const SlopedMerit sloped = sloped_merit(objective, M);
@@ -207,6 +207,7 @@ class Refiner {
 
     const DesignSpace& space_;
     const HeldPoses& held_;
+    MatrixXd held_information_;
     const RefineOptions& options_;
     RowMatrixXd poses_;
     std::vector<MatrixXd> informations_;
@@ -276,7 +277,7 @@ Refinement refine_poses(const DesignSpace& space, const Objective& objective, co
     result.configurations = start;
     result.start_value = result.value = value_of(objective, refiner.current(objective));
     if (!std::isfinite(result.value)) {
-        check_all_is_seen(space, refiner.information_without(-1));
+        check_all_is_seen(space, rows_of(space, held, start));
         throw InputError("the plan to refine does not identify all parameters");
     }
     if (!is_smooth(objective.criterion)) {

@@ -8,6 +8,7 @@
 #include "../core/parallel.hpp"
 #include "../core/sensitivities.hpp"
 #include "../criteria/information_function.hpp"
+#include "../selection/objective_bound.hpp"
 #include "../selection/relaxation.hpp"
 
 namespace posewise::detail {
@@ -102,7 +103,7 @@ double search_bound(const DesignSpace& space, const Objective& objective,
         const double inside = sensitivities(support.blocks, Z).maxCoeff();
         const std::vector<Maximum> maxima = search_maxima(space, Z, pool, blocks, support, stop);
         if (stop.is_set()) break;
-        const double held = options.held.size() > 0 ? Z.cwiseProduct(options.held).sum() : 0;
+        const double held = Z.cwiseProduct(held_information(blocks, options)).sum();
         double largest = inside;
         for (const Maximum& maximum : maxima) {
             largest = std::max(largest, maximum.value);
@@ -110,7 +111,9 @@ double search_bound(const DesignSpace& space, const Objective& objective,
                                 is_apart(support.poses, maximum.x.transpose(), 1e-4);
             if (is_new) support.add(space, maximum.x.transpose());
         }
-        bound = std::min(bound, value_of_information(objective, held + K * largest, Z.rows()));
+        const double phi =
+            (1 + bound_rounding(objective.criterion, relaxed.M)) * (held + K * largest);
+        bound = std::min(bound, value_of_information(objective, phi, Z.rows()));
         const double excess = largest / inside - 1;
         if (excess <= 1e-4 && anywhere.gap <= least_gap) break;
         anywhere.gap = std::clamp(0.1 * excess, least_gap, anywhere.gap);

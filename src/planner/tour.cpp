@@ -21,9 +21,9 @@ VectorXd speed_of(const Constraints& constraints) {
     return speed.size() > 0 ? speed : VectorXd::Ones(constraints.robot().joint_count());
 }
 
-/// Home (the first, if it is not empty) and poses.
-std::vector<VectorXd> nodes_of(const Constraints& constraints, const RowMatrixXd& poses) {
-    std::vector<VectorXd> nodes{constraints.cell().home};
+/// Where the tour begins (the first, if it is not empty) and poses.
+std::vector<VectorXd> nodes_of(const VectorXd& start, const RowMatrixXd& poses) {
+    std::vector<VectorXd> nodes{start};
     for (Index i = 0; i < poses.rows(); ++i) nodes.push_back(poses.row(i).transpose());
     return nodes;
 }
@@ -70,14 +70,17 @@ class Roadmap {
           options_(options),
           respite_(options.stop),
           speed_(speed_of(constraints)) {
-        nodes_ = nodes_of(constraints, poses);
+        const bool is_from_home = options.start.size() == 0;
+        nodes_ = nodes_of(is_from_home ? constraints.cell().home : options.start, poses);
         for (const VectorXd& node : nodes_) {
             if (node.size() != 0 || &node != &nodes_[0]) {
                 constraints.robot().check_configuration(node);
             }
         }
-        if (has_home() && constraints.collision_clearance(nodes_[0]) < 0) {
-            throw InputError("cell: home collides with a keep-out or the robot itself");
+        if (has_home() && is_from_home && constraints.collision_clearance(nodes_[0]) < 0) {
+            throw InputError("cell: home is not free: " +
+                             describe_clearance(constraints.nearest(nodes_[0]),
+                                                constraints.cell().safety_distance));
         }
     }
 
@@ -289,8 +292,8 @@ double straight_tour_time(const Constraints& constraints, const RowMatrixXd& pos
     OrderOptions options;
     options.kicks = 0;
     const StopSignal never;
-    return shortest_order(
-               times_between(speed_of(constraints), nodes_of(constraints, poses), Respite(never)),
+    return shortest_order(times_between(speed_of(constraints),
+                                        nodes_of(constraints.cell().home, poses), Respite(never)),
                options)
         .time;
 }

@@ -25,13 +25,14 @@ struct TourOptions {
     Index via_attempts = 200;
     double resolution = 1e-3;  ///< of is_move_free(), m
     StopSignal stop{};         ///< from then on it takes half a second, and what it has then
+    VectorXd start{};          ///< where the robot is, instead of the cell's home; empty: home
 };
 
-/// The shortest tour found from the cell's home (or from anywhere, if it has none) through all
-/// poses (K x joints). A straight move that is not free is avoided by another order or, where that
-/// is shorter or inevitable, given a via point; what is left, or was not looked at before the stop,
-/// is marked as blocked. Throws
-/// InputError if the home is not free or a pose has the wrong size.
+/// The shortest tour found from the start or the cell's home (from anywhere, if it has none)
+/// through all poses (K x joints). A straight move that is not free is avoided by another order or,
+/// where that is shorter or inevitable, given a via point; what is left, or was not looked at
+/// before the stop, is marked as blocked. Throws InputError if the home is not free or a pose has
+/// the wrong size.
 Tour plan_tour(const Constraints& constraints, const RowMatrixXd& poses,
                const TourOptions& options = {});
 

@@ -8,6 +8,7 @@
 #include "../core/text.hpp"
 #include "calibration_tables.hpp"
 #include "error_classes.hpp"
+#include "judgement_report.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/report/reports.hpp"
 #include "sentences.hpp"
@@ -95,36 +96,27 @@ std::string describe_ending(const Calibration& calibration) {
                            : "1: noise and model error stated right");
 }
 
-/// What to do if residuals of a kind are not as large as stated.
+/// "the residuals in mm are 3 times what sigma and model error say".
 std::string judge_residuals(const Calibration& calibration, const ResidualDoubt& doubt) {
     const bool has_kinds = !calibration.estimate.variance_by_kind.empty();
     const std::string text =
-        fmt::format("the residuals{} are {} times what sigma and model error say: ",
+        fmt::format("the residuals{} are {} times what sigma and model error say",
                     !has_kinds       ? ""
                     : doubt.is_angle ? " in mrad"
                                      : " in mm",
                     detail::format_short(doubt.ratio, 2));
     const bool is_earlier = !calibration.held.empty();
-    if (doubt.ratio < 1 && is_model_error_found(calibration)) {
-        return text + "what is expected is rather too large\n";
-    }
-    const bool is_robust = calibration.estimate.loss.kind != LossKind::Squares;
-    if (is_earlier && doubt.ratio < 1) return text + "less than the earlier estimate left over\n";
     if (is_earlier) {
-        return text + "the robot may not be as the earlier estimate has it" +
-               (is_robust ? "\n" : ", or look for outliers with --loss\n");
+        return text + (doubt.ratio < 1 ? ", less than the earlier estimate left over\n"
+                                       : ": the robot may not be as the earlier estimate has it\n");
     }
-    const std::string key = fmt::format(
-        "{}{}", doubt.is_angle ? "model_error_orientation_mrad" : "model_error_mm",
-        doubt.fitting > 0
-            ? fmt::format(" ({} would fit)", detail::format_short(mm_per_m * doubt.fitting, 2))
-            : "");
-    if (doubt.ratio < 1) return text + "a smaller " + key + " or sigma would do\n";
-    const std::string terms =
-        fmt::format("add error terms ({})", detail::richer_errors(calibration.campaign.robot));
-    return text + "state a larger " + key +
-           (is_robust ? " or " + terms + '\n'
-                      : ", " + terms + " or look for outliers with --loss\n");
+    if (doubt.ratio > 1) return text + '\n';
+    if (is_model_error_found(calibration)) {
+        return text + ": what is expected is rather too large\n";
+    }
+    if (doubt.fitting == 0) return text + '\n';
+    return text + fmt::format(", as a model error of {} would leave\n",
+                              detail::format_error(doubt.fitting, doubt.is_angle));
 }
 
 std::string judge_residuals(const Calibration& calibration) {
@@ -139,9 +131,20 @@ std::string describe_missing_errors(const Calibration& calibration) {
     if (!calibration.doubts.missing_errors) return "";
     return fmt::format(
         "about {:.0f} % of the squares left over follow the joints' positions: joints bend or have "
-        "periodic errors that this model leaves out (add {})\n",
-        100 * *calibration.doubts.missing_errors,
-        detail::richer_errors(calibration.campaign.robot));
+        "periodic errors that this model leaves out\n",
+        100 * *calibration.doubts.missing_errors);
+}
+
+/// A line for each cure that was tried and helps, and one for the others.
+std::string describe_tried(const Calibration& calibration) {
+    std::string text;
+    for (const Cure& cure : calibration.cures.found) {
+        text += detail::describe(cure, calibration.campaign) + '\n';
+    }
+    const auto& others = calibration.cures.without_effect;
+    if (others.empty()) return text;
+    return text + fmt::format("tried, and held out no better: {}\n",
+                              detail::escape_controls(fmt::format("{}", fmt::join(others, ", "))));
 }
 
 /// "40 of 247 leave the joint ranges measured (q2, q3): what is expected there is extrapolated".
@@ -151,38 +154,6 @@ std::string describe(const std::optional<BeyondMeasured>& beyond, const char* wh
         "{} of {} {} leave the range measured of {}: what is expected there is extrapolated and "
         "often too small\n",
         beyond->count, detail::count_of(beyond->of, "pose"), what, fmt::join(beyond->joints, ", "));
-}
-
-/// Whether what was found on the validation is what was expected there, by chance: of so many
-/// numbers, and of the model error, which is known within a factor.
-std::string judge_validation(const Calibration& calibration) {
-    if (!calibration.validation || !calibration.expected_validation) return "";
-    constexpr double deviations = 2;
-    constexpr double tolerated = 1.25;
-    const Metrics& found = *calibration.validation;
-    const Estimate& estimate = calibration.estimate;
-    const double ratio = found.rms() / calibration.expected_validation->total();
-    const double numbers =
-        static_cast<double>(found.point_count * std::max<Index>(1, found.coordinate_count));
-    const double freedom = std::max<double>(1, static_cast<double>(estimate.degrees_of_freedom));
-    const double within = calibration.campaign.spread.is_prior
-                              ? std::log(estimate.model_error_within)
-                              : std::sqrt(0.5 / freedom);
-    const double chance =
-        std::max(tolerated, std::exp(deviations * std::hypot(within, std::sqrt(0.5 / numbers))));
-    const std::string times = detail::format_short(ratio, 3);
-    if (!(ratio <= chance)) {
-        return fmt::format(
-            "the validation is off by {} times what is expected, beyond chance (up to {}): {}\n",
-            times, detail::format_short(chance, 3),
-            calibration.moved ? "it was measured with another set-up (--refit)"
-            : calibration.validation_beyond
-                ? "calibrate with poses like those, too"
-                : "the robot has changed, or its errors there are unlike those calibrated with");
-    }
-    return fmt::format("the validation is off by {} times what is expected, {}\n", times,
-                       ratio * chance >= 1 ? "within chance: the calibration holds there"
-                                           : "less than chance would have it: it holds there");
 }
 
 /// Base and targets that the validation was judged with.
@@ -223,14 +194,13 @@ std::string describe_expected(const Calibration& calibration) {
         text +=
             "expected over the workspace: not known; the joint limits or the cell leave no poses\n";
     }
-    if (calibration.expected_left_out) {
-        text += describe(*calibration.expected_left_out, "not in plan", is_angle) + '\n';
-    }
-    if (calibration.expected_validation) {
-        text += describe(*calibration.expected_validation, "at the validation", is_angle) + '\n';
-    }
-    text += judge_validation(calibration) +
-            describe(calibration.validation_beyond, "of the validation");
+    const auto add = [&](const std::optional<Judgement>& judged, const char* where) {
+        if (judged && judged->expected) text += describe(*judged->expected, where, is_angle) + '\n';
+    };
+    add(calibration.verification, "at the verification");
+    add(calibration.left_out, "not in plan");
+    add(calibration.validation, "at the validation");
+    text += detail::describe_judgements(calibration);
     for (const ErrorPrediction& prediction : calibration.predicted) {
         const auto where =
             fmt::format("at the {} to predict",
@@ -254,8 +224,12 @@ std::string format_accuracy(const Calibration& calibration) {
         columns.emplace_back("held out", calibration.held_out->samples);
         columns.emplace_back("held-out means", calibration.held_out->means);
     }
-    if (calibration.left_out) columns.emplace_back("not in plan", *calibration.left_out);
-    if (calibration.validation) columns.emplace_back("validation", *calibration.validation);
+    const auto add = [&](const std::optional<Judgement>& judged, const char* name) {
+        if (judged) columns.emplace_back(name, judged->found);
+    };
+    add(calibration.verification, "verification");
+    add(calibration.left_out, "not in plan");
+    add(calibration.validation, "validation");
     std::string text = format_section("Accuracy", detail::metrics_table(columns)) + '\n';
     if (calibration.held_out) {
         text += fmt::format(
@@ -369,9 +343,9 @@ std::string format(const Calibration& calibration, bool has_all_parameters) {
     if (!calibration.is_identified()) return models + calibration.estimate.undetermined + '\n';
     return models + describe_starts(calibration) + describe_measured(calibration) +
            describe_ending(calibration) + judge_residuals(calibration) +
-           describe_missing_errors(calibration) + format_accuracy(calibration) +
-           format_outliers(calibration) + format_refitted(calibration) +
-           format_parameters(calibration, has_all_parameters);
+           describe_missing_errors(calibration) + describe_tried(calibration) +
+           format_accuracy(calibration) + format_outliers(calibration) +
+           format_refitted(calibration) + format_parameters(calibration, has_all_parameters);
 }
 
 std::string format(const ModelSelection& selection) {

@@ -3,68 +3,19 @@
 
 #include <algorithm>
 #include <functional>
-#include <set>
 
 #include "../core/format.hpp"
 #include "../core/text.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/report/reports.hpp"
+#include "residual_look_report.hpp"
 #include "sentences.hpp"
 
 namespace posewise {
 namespace {
 
-const char* advise(OrientationSense sense) {
-    switch (sense) {
-        case OrientationSense::AsRead:
-            break;
-        case OrientationSense::Inverted:
-            return "inverted: the quaternions look conjugate, turn round the signs of qx, qy and "
-                   "qz";
-        case OrientationSense::RealPartLast:
-            return "with the last number of each quaternion as its real part: name the columns qx, "
-                   "qy, qz, qw";
-    }
-    return "";
-}
-
-std::string describe_orientations(const OrientationDoubt& doubt) {
-    const std::string text =
-        fmt::format("the nominal robot misses the orientations by {} deg (RMS)",
-                    detail::format_short(to_degrees(doubt.rms), 3));
-    if (doubt.sense == OrientationSense::AsRead) {
-        return text +
-               "; is qw the real part of the quaternion, are roll, pitch and yaw about the fixed "
-               "axes x, y and z?";
-    }
-    return text + fmt::format(", but by {} deg {}",
-                              detail::format_short(to_degrees(doubt.rms_in_sense), 2),
-                              advise(doubt.sense));
-}
-
-/// Where the campaign states the expected sizes of these: "spread.gravity_mrad (0.7 now)".
-std::string list_size_keys(const Campaign& campaign, const std::vector<SizeDoubt>& sizes) {
-    const std::vector<std::string> names = campaign.robot.parameter_names();
-    const std::vector<SharedSize> shared = shared_sizes(campaign.spread, campaign.robot);
-    std::set<std::string> keys;
-    for (const SizeDoubt& size : sizes) {
-        std::string key = "spread.parameters." + size.parameter;
-        for (const SharedSize& one : shared) {
-            const bool has_it = std::ranges::any_of(one.members, [&](Index k) {
-                return names[static_cast<std::size_t>(k)] == size.parameter;
-            });
-            if (!has_it) continue;
-            key = fmt::format("spread.{}_{} ({} now)", one.key, units_of(one.is_angle).error,
-                              detail::format_short(1e3 * one.size, 3));
-        }
-        keys.insert(key);
-    }
-    return fmt::format("{}", fmt::join(keys, " and "));
-}
-
 /// A prior holds values back.
-std::string describe_sizes(const Campaign& campaign, const std::vector<SizeDoubt>& sizes) {
-    const bool has_prior = campaign.spread.is_prior;
+std::string describe_sizes(bool has_prior, const std::vector<SizeDoubt>& sizes) {
     constexpr std::size_t shown = 5;
     std::vector<SizeDoubt> largest = sizes;
     std::ranges::stable_sort(largest, std::greater{}, &SizeDoubt::times);
@@ -80,14 +31,13 @@ std::string describe_sizes(const Campaign& campaign, const std::vector<SizeDoubt
     const std::string question = are_terms
                                      ? "does the robot give way that much"
                                      : "are sign, unit and nominal value in the campaign right";
-    return fmt::format("{}: {}; {}{}? If so, state a larger size in {}",
+    return fmt::format("{}: {}; {}{}?",
                        has_prior ? "beyond three times the expected size, which holds them back"
                                  : "far above the expected size",
-                       words, question, has_prior ? "" : ", and do the poses tell them apart",
-                       list_size_keys(campaign, sizes));
+                       words, question, has_prior ? "" : ", and do the poses tell them apart");
 }
 
-std::string describe_model_errors(const Chain& robot, const std::vector<ModelErrorDoubt>& errors) {
+std::string describe_model_errors(const std::vector<ModelErrorDoubt>& errors) {
     std::string words;
     for (const ModelErrorDoubt& error : errors) {
         words += fmt::format("{}{}, {} times what is expected", words.empty() ? "" : " and ",
@@ -95,9 +45,9 @@ std::string describe_model_errors(const Chain& robot, const std::vector<ModelErr
                              detail::format_short(error.times, 3));
     }
     return fmt::format(
-        "the model error found is {}: error terms are missing (add {}), the nominal robot is "
-        "another, or points are grossly wrong (try --loss cauchy)",
-        words, detail::richer_errors(robot));
+        "the model error found is {}: error terms are missing, the nominal robot is another, or "
+        "points are grossly wrong",
+        words);
 }
 
 /// "base 200 mm and targets 3 mm from where EARLIER: OPTION base,targets identifies them anew".
@@ -115,9 +65,9 @@ std::string describe_moved(const Moved& moved, const char* earlier, const char* 
 
 std::string describe_scatter(const ScatterDoubt& scatter) {
     return fmt::format(
-        "repeated samples scatter {} times as much as sigma says, {} most: is it grossly wrong "
-        "(--exclude {}, --loss cauchy), or sigma stated too small?",
-        detail::format_short(scatter.ratio, 2), detail::quote(scatter.sample), scatter.sample);
+        "repeated samples scatter {} times as much as sigma says, {} most: is it grossly wrong, or "
+        "sigma stated too small?",
+        detail::format_short(scatter.ratio, 2), detail::quote(scatter.sample));
 }
 
 std::string describe_distance(const DistanceDoubt& distance) {
@@ -127,9 +77,16 @@ std::string describe_distance(const DistanceDoubt& distance) {
         detail::quote(distance.from), detail::format_short(mm_per_m * distance.found, 4));
 }
 
-constexpr const char* no_length =
-    "no length is stated: how large the robot is follows from its nominal lengths alone; state the "
-    "distance of two sockets of one body, keys from and distance_mm";
+std::string describe_no_length(const Sensor& sensor) {
+    return fmt::format(
+        "no length is stated: how large the robot is follows from its nominal lengths alone; state "
+        "{}",
+        sensor.has_contacts()
+            ? "the distance of two sockets of one body, keys from and distance_mm"
+            : "how far a plane is from the base, which must be known (known: [offset], of one not "
+              "through the base itself), or where the target is on the flange "
+              "(sensor.targets.known)");
+}
 
 std::string describe_held_back(const HeldBackSize& size) {
     const bool is_angle = size.held.is_angle;
@@ -139,6 +96,15 @@ std::string describe_held_back(const HeldBackSize& size) {
         "{} would fit",
         size.held.key, units_of(is_angle).error, detail::format_error(size.held.size, is_angle),
         detail::format_error(size.fitting, is_angle));
+}
+
+std::string describe_held_out(const Campaign& campaign, const HeldOutComparison& held_out) {
+    const bool is_angle = !campaign.sensor->has_lengths();
+    return fmt::format(
+        "poses that were held out are missed by {}, by the nominal robot by {}: the calibration is "
+        "not shown to be better than none",
+        detail::format_error(held_out.calibrated, is_angle),
+        detail::format_error(held_out.nominal, is_angle));
 }
 
 }  // namespace
@@ -156,25 +122,30 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     if (!doubts.places.empty() && !has_moved)
         sentences.push_back(at + describe_places(doubts.places));
     if (doubts.gross_error && !has_moved) {
-        sentences.push_back(fmt::format(
-            "{}the nominal robot misses the {} by {} m (RMS); if some are grossly wrong, try "
-            "--loss cauchy",
-            at, calibration.campaign.sensor->words().readings,
-            detail::format_short(*doubts.gross_error, 3)));
+        sentences.push_back(fmt::format("{}the nominal robot misses the {} by {} m (RMS)", at,
+                                        calibration.campaign.sensor->words().readings,
+                                        detail::format_short(*doubts.gross_error, 3)));
     }
-    if (doubts.orientations) sentences.push_back(at + describe_orientations(*doubts.orientations));
+    if (doubts.orientations) {
+        sentences.push_back(fmt::format(
+            "{}the nominal robot misses the orientations by {} deg (RMS){}", at,
+            detail::format_short(to_degrees(*doubts.orientations), 3),
+            doubts.misfit && doubts.misfit->reading
+                ? ""
+                : "; in no other sense of their columns that was tried by clearly less"));
+    }
     if (calibration.moved_since) {
         sentences.push_back(at + "measured with another set-up than the earlier estimate, " +
                             describe_moved(*calibration.moved_since, "that found it", "--moved"));
     }
     if (!doubts.sizes.empty() && !has_moved) {
-        sentences.push_back(describe_sizes(calibration.campaign, doubts.sizes));
+        sentences.push_back(describe_sizes(calibration.campaign.spread.is_prior, doubts.sizes));
     }
     if (!doubts.model_errors.empty() && !has_moved) {
-        sentences.push_back(describe_model_errors(calibration.campaign.robot, doubts.model_errors));
+        sentences.push_back(describe_model_errors(doubts.model_errors));
     }
     if (doubts.scatter) sentences.push_back(at + describe_scatter(*doubts.scatter));
-    if (doubts.lacks_length) sentences.push_back(no_length);
+    if (doubts.lacks_length) sentences.push_back(describe_no_length(*calibration.campaign.sensor));
     if (doubts.distance) sentences.push_back(at + describe_distance(*doubts.distance));
     if (doubts.small_residuals) {
         sentences.push_back(
@@ -187,7 +158,17 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
             "the validation was measured with another set-up, " +
             describe_moved(*calibration.moved, "the calibration has it", "--refit"));
     }
+    for (const std::string& sentence : detail::describe_look(doubts.look, calibration.campaign)) {
+        sentences.push_back(at + sentence);
+    }
     if (doubts.held_back) sentences.push_back(describe_held_back(*doubts.held_back));
+    if (doubts.held_out) {
+        sentences.push_back(at + describe_held_out(calibration.campaign, *doubts.held_out));
+    }
+    if (sentences.empty() && calibration.faults.empty()) return sentences;
+    for (const Cure& cure : calibration.cures.found) {
+        sentences.push_back(at + detail::describe(cure, calibration.campaign));
+    }
     return sentences;
 }
 

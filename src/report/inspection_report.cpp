@@ -68,10 +68,11 @@ std::string describe_formula(const Campaign& campaign) {
     const auto [letters, unknowns] = count_unknowns(campaign);
     if (unknowns == 0) return "";
     Index revolute = 0;
-    for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
-        revolute += campaign.robot.joint(j).motion == Motion::Rotation ? 1 : 0;
+    Index prismatic = 0;
+    for (const Element& element : campaign.robot.elements()) {
+        if (element.joints.empty() || element.parameter.empty()) continue;
+        ++(element.motion == Motion::Rotation ? revolute : prismatic);
     }
-    const Index prismatic = campaign.robot.joint_count() - revolute;
     Index terms = 0;
     for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
         terms += campaign.robot.parameter_term(k) != nullptr ? 1 : 0;
@@ -149,23 +150,36 @@ const Identifiability& identifiability_of(const Inspection& inspection) {
 
 /// Says which of base and sensor no number of poses tells; nothing can be calibrated beside them.
 std::string describe_unknowable(const Inspection& inspection) {
-    const Campaign& campaign = inspection.stated ? inspection.campaign : inspection.complete;
-    const Identifiability& found = identifiability_of(inspection);
-    const auto names = parameter_names(campaign);
-    const Index robot_begin = base_parameter_count(campaign);
-    const Index robot_end = robot_begin + campaign.robot.parameter_count();
-    std::vector<std::string> unknowable;
-    for (const DroppedParameter& dropped : found.dropped) {
-        if (dropped.parameter >= robot_begin && dropped.parameter < robot_end) continue;
-        unknowable.push_back(names[static_cast<std::size_t>(dropped.parameter)]);
-    }
-    if (unknowable.empty()) return "";
-    return fmt::format("No number of poses tells {}; calibrate needs what is known stated: {}\n",
-                       detail::list_words(unknowable),
-                       detail::list_words(campaign.sensor->words().known));
+    const std::vector<std::string>& parameters = inspection.unknowable.parameters;
+    if (parameters.empty()) return "";
+    return fmt::format(
+        "No number of poses tells {}; calibrate needs what is known stated: {}\nEnough is {}.\n",
+        detail::list_words(parameters),
+        detail::list_words(inspection.campaign.sensor->words().known),
+        describe_cures(inspection.unknowable, inspection.campaign));
+}
+
+std::string on_axis_lines(const std::vector<OnAxis>& on_axis) {
+    std::string text;
+    for (const OnAxis& one : on_axis) text += describe(one) + '\n';
+    return text;
+}
+
+std::string describe_rounded(Index count) {
+    if (count == 0) return "";
+    return fmt::format("{} of the robot within 1e-6 rad of a multiple of 90 deg taken as that\n",
+                       count == 1 ? "1 angle" : fmt::format("{} angles", count));
 }
 
 }  // namespace
+
+std::string describe(const OnAxis& on_axis) {
+    return fmt::format(
+        "target {} lies on the axis of {}, which does not move it: no pose tells that joint's "
+        "zero, "
+        "nor what turns the target about itself; place it beside the axis",
+        on_axis.target + 1, on_axis.joint);
+}
 
 std::string format_robot(const Chain& robot) {
     return format_section("Elements, base to flange", detail::element_table(robot)) +
@@ -181,6 +195,7 @@ std::string format(const Inspection& inspection) {
                 ? format_stated(inspection, *inspection.stated)
                 : format_reduced(inspection) + format_calibrated(inspection.campaign)) +
            describe_compliances(robot) + describe_unknowable(inspection) +
+           on_axis_lines(inspection.on_axis) + describe_rounded(inspection.rounded_angle_count) +
            fmt::format("least number of poses: {}\n", inspection.least_pose_count);
 }
 

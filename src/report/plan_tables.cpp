@@ -179,19 +179,41 @@ std::string format_pose_value(const Planning& planning, std::size_t pose) {
     return std::isfinite(rms) ? detail::format_mm(rms - planning.plan.predicted->rms) : "needed";
 }
 
+/// "31.20 target 1 to fence left": the least clearance; empty if none is stated.
+std::string describe_nearest(const PlannedPose& pose) {
+    if (!pose.clearance) return "";
+    const auto& [distance, body, other] = *pose.clearance;
+    return detail::escape_controls(detail::format_mm(distance, 2) + ' ' + body + " to " + other);
+}
+
+/// What is not kept off obstacles, a line each.
+std::string describe_cell_doubts(const Plan& plan) {
+    std::string text;
+    for (const std::string& doubt : plan.cell_doubts) {
+        text += fmt::format("{:<13}{}\n", "cell:", detail::escape_controls(doubt));
+    }
+    return text;
+}
+
 /// What each pose shows is a number of a target, or the name of what it touches.
-Table pose_table(const Planning& planning) {
+/// Those to verify have no value.
+Table pose_table(const Planning& planning, const std::vector<PlannedPose>& poses) {
     const Plan& plan = planning.plan;
+    const bool has_values = &poses == &plan.poses;
     const std::vector<std::string> contacts = planning.campaign.sensor->contact_names();
     Table table{{"pose"}, {}};
     for (const std::string& text : plan.columns) {
         const Column column(text);
         table.header.push_back(fmt::format("{}/{}", column.name, column.units.reading));
     }
+    if (has_values) table.header.emplace_back("value/mm");
     table.header.insert(table.header.end(),
-                        {"value/mm", contacts.empty() ? "targets seen" : "socket", "way there"});
-    for (std::size_t i = 0; i < plan.poses.size(); ++i) {
-        const PlannedPose& pose = plan.poses[i];
+                        {contacts.empty() ? "targets seen" : "socket", "way there"});
+    const bool has_clearance = std::ranges::any_of(
+        poses, [](const PlannedPose& pose) { return pose.clearance.has_value(); });
+    if (has_clearance) table.header.emplace_back("nearest/mm");
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const PlannedPose& pose = poses[i];
         std::vector<std::string> row{pose.id};
         for (Index j = 0; j < pose.configuration.size(); ++j) {
             row.push_back(
@@ -203,10 +225,23 @@ Table pose_table(const Planning& planning) {
                                                      ? std::to_string(target + 1)
                                                      : contacts[static_cast<std::size_t>(target)]);
         }
-        row.insert(row.end(), {format_pose_value(planning, i), seen, describe_way(plan, pose)});
+        if (has_values) row.push_back(format_pose_value(planning, i));
+        row.insert(row.end(), {seen, describe_way(plan, pose)});
+        if (has_clearance) row.push_back(describe_nearest(pose));
         table.rows.push_back(std::move(row));
     }
     return table;
+}
+
+/// How many poses were drawn to judge the calibration on, and how long they take.
+std::string describe_verification(const Plan& plan) {
+    const Index asked_for = plan.request.verification_count;
+    if (asked_for == 0) return "";
+    const Index count = std::ssize(plan.verification);
+    return fmt::format("verify:      {}{} drawn to judge the calibration on, {} s of moves more\n",
+                       count < asked_for ? fmt::format("only {} of ", count) : "",
+                       detail::count_of(asked_for, "pose"),
+                       detail::format_fixed(plan.verification_time, 1));
 }
 
 std::string describe_ids(const Plan& plan) {
@@ -254,11 +289,11 @@ std::string describe_ending(const Plan& plan) {
 std::string format_choice(const Plan& plan, int digits) {
     return fmt::format(
         "chosen:     {}\ncriterion:  {}\nvalue:      {}\nbound:      {}\n"
-        "efficiency: {} proven\nstarts:     {}, {}\n{}{}",
+        "efficiency: {} proven\nstarts:     {}, {}\n{}{}{}",
         describe_ids(plan), criterion_name(plan.request.criterion), describe_value(plan, digits),
         format_value(plan, plan.bound, digits), detail::format_fixed(plan.efficiency, 4),
         describe_starts(plan, "here"), describe_ending(plan), describe_proof(plan),
-        describe_prediction(plan));
+        describe_prediction(plan), describe_cell_doubts(plan));
 }
 
 std::string format(const ApproximateDesign& design, int digits) {
@@ -304,8 +339,13 @@ std::string format_planning(const Planning& planning) {
     text += fmt::format("searched:    {}\nstarts:      {}\norder:       {}\n",
                         describe_searched_bound(plan), describe_starts(plan, "at the best"),
                         describe_order(planning.tour));
+    text += describe_cell_doubts(plan);
     text += detail::describe_duration(planning) + detail::describe_drop_outs(planning);
-    return text + format_section("Poses, in the order to visit them", pose_table(planning));
+    text += describe_verification(plan);
+    text += format_section("Poses, in the order to visit them", pose_table(planning, plan.poses));
+    if (plan.verification.empty()) return text;
+    return text + format_section("Poses to judge the calibration on, visited after these",
+                                 pose_table(planning, plan.verification));
 }
 
 std::string format_other_counts(const std::vector<CountAccuracy>& counts,

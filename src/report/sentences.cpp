@@ -80,16 +80,11 @@ std::string describe_looseness(double efficiency, Index starts_at_best, Index st
         starts_at_best, starts);
 }
 
-std::string richer_errors(const Chain& robot) {
-    bool bends = false;
-    bool has_harmonics = false;
-    for (Index k = 0; k < robot.parameter_count(); ++k) {
-        const ErrorTerm* const term = robot.parameter_term(k);
-        if (term == nullptr) continue;
-        has_harmonics = has_harmonics || term->kind == TermKind::Harmonic;
-        bends = bends || term->kind == TermKind::Torque || term->kind == TermKind::Gravity;
-    }
-    return bends && has_harmonics ? "axis_tilt or more harmonics" : "errors: full";
+std::string describe(const Cure& cure, const Campaign& campaign) {
+    const bool is_angle = !campaign.sensor->has_lengths();
+    return fmt::format("with {}: {} instead of {} {} held out", cure.option,
+                       format_short(1e3 * cure.after, 3), format_short(1e3 * cure.before, 3),
+                       units_of(is_angle).error);
 }
 
 std::string format_error(double value, bool is_angle) {

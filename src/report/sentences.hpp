@@ -3,6 +3,7 @@
 #include <string>
 
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/task/held_out.hpp"
 
 /// Sentences about a campaign and about results, as reports and messages use them.
 namespace posewise::detail {
@@ -16,8 +17,8 @@ std::string describe_scaling(const Campaign& campaign, double repeats);
 /// Says, where little is proven about a choice, what tells more; empty where it is nearly optimal.
 std::string describe_looseness(double efficiency, Index starts_at_best, Index starts);
 
-/// What to add to the campaign where error terms are missing: "errors: full" unless it has them.
-std::string richer_errors(const Chain& robot);
+/// "with --exclude 5: 0.16 instead of 38 mm held out".
+std::string describe(const Cure& cure, const Campaign& campaign);
 
 /// "1 mm", "-0.5 mrad": a small error with its unit.
 std::string format_error(double value, bool is_angle);

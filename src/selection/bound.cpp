@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/decompositions.hpp"
 #include "../core/elementary.hpp"
 #include "../core/sensitivities.hpp"
 #include "../criteria/information_function.hpp"
+#include "../criteria/regular.hpp"
+#include "../criteria/row_value.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -16,9 +19,7 @@ OpenChoices all_open(const Blocks& candidates, const SelectOptions& options, con
 }
 
 MatrixXd held_information(const Blocks& candidates, const SelectOptions& options) {
-    if (options.held.size() > 0) return options.held;
-    const Index L = candidates.parameter_count();
-    return MatrixXd::Zero(L, L);
+    return information_of(options.held_rows, candidates.parameter_count());
 }
 
 Objective make_objective(const Blocks& candidates, const SelectOptions& options) {
@@ -47,10 +48,14 @@ Objective make_objective(const Blocks& candidates, const SelectOptions& options)
     return objective;
 }
 
+double choice_value(const Objective& objective, const Blocks& candidates,
+                    const SelectOptions& options, const std::vector<Index>& poses) {
+    return evaluate_rows(objective, stack(options.held_rows, take(candidates, poses).matrix));
+}
+
 double choice_value(const Blocks& candidates, const SelectOptions& options,
                     const std::vector<Index>& poses) {
-    return evaluate(make_objective(candidates, options),
-                    held_information(candidates, options) + information(candidates, poses));
+    return choice_value(make_objective(candidates, options), candidates, options, poses);
 }
 
 double upper_bound(const Objective& objective, const Blocks& candidates,
@@ -64,6 +69,18 @@ double upper_bound(const Blocks& candidates, const SelectOptions& options,
     Objective objective = make_objective(candidates, options);
     objective.sharpness = certificate.sharpness;
     return upper_bound(objective, candidates, options, certificate.M);
+}
+
+double bound_rounding(Criterion criterion, const MatrixXd& M) {
+    constexpr double each = 4 * std::numeric_limits<double>::epsilon();
+    const Eigen::LLT<MatrixXd> cholesky(M);
+    if (!is_regular(cholesky, M)) return std::numeric_limits<double>::infinity();
+    const VectorXd variances = inverse(cholesky).diagonal();
+    const bool is_of_eigenvalues = !is_smooth(criterion) || criterion == Criterion::O5;
+    if (is_of_eigenvalues && !needs_test_poses(criterion)) {
+        return each * M.trace() * variances.sum();
+    }
+    return each * static_cast<double>(M.rows()) * M.diagonal().dot(variances);
 }
 
 double efficiency(Criterion criterion, double value, double bound, Index parameter_count) {

@@ -171,8 +171,7 @@ Proof prove_choice(const Blocks& candidates, const SelectOptions& options,
     const Objective objective = make_objective(candidates, options);
     const MatrixXd held = held_information(candidates, options);
     const SearchProblem problem{candidates, options, objective, held, ridge_of(candidates)};
-    const ScoredPoses choice{poses, problem.score(problem.regularised_information(poses))};
-    return prove(problem, certificate, choice,
+    return prove(problem, certificate, judge(problem, {poses, {}}),
                  {.seconds = 10 * options.proof.value_or(usual_proof), .bound = bound});
 }
 

@@ -146,12 +146,13 @@ std::vector<double> polar_factor(const MatrixXd& M, Index first) {
     return result;
 }
 
-/// Mean information of the test poses, the more of each the worse it is predicted from M.
-MatrixXd worst_information(const Objective& objective, const MatrixXd& M) {
+/// The lower root of the mean information of the test poses, the more of each the worse it is
+/// predicted from M.
+MatrixXd worst_root(const Objective& objective, const MatrixXd& M) {
     Objective softened = objective;
     softened.sharpness = witness_sharpness;
     const VectorXd weights = worst_variance(softened, Eigen::LLT<MatrixXd>(M)).slope;
-    return weighted_information(*objective.test_poses, weights) / weights.sum();
+    return lower_root_of_gram(weighted_rows(*objective.test_poses, weights / weights.sum()));
 }
 
 }  // namespace
@@ -182,7 +183,7 @@ ChoiceFilter::ChoiceFilter(const Objective& objective, const MatrixXd& M)
             T = objective.mean_test_root;
             break;
         case Criterion::G:
-            T = lower_root_of(worst_information(objective, M));
+            T = worst_root(objective, M);
             break;
         case Criterion::O5:
             test_ = Test::Nuclear;
@@ -220,6 +221,16 @@ void ChoiceFilter::add(const double* a, const double* b, Batch& batch) const {
     const auto at = static_cast<std::size_t>(batch.count++);
     for (Index k = 0; k < packed_size_; ++k) {
         batch.M[static_cast<std::size_t>(k)].of[at] = a[k] + b[k];
+    }
+}
+
+/// The factors are those of M up to L eps of its diagonal, in each entry.
+void ChoiceFilter::raise(Batch& batch) const {
+    const auto L = static_cast<Index>(order_.size());
+    const double factor =
+        1 + 2 * static_cast<double>(L * L) * std::numeric_limits<double>::epsilon();
+    for (Index i = 0; i < L; ++i) {
+        for (double& one : batch.M[static_cast<std::size_t>(packed(i, i))].of) one *= factor;
     }
 }
 
@@ -261,6 +272,7 @@ bool ChoiceFilter::may_reach(double value, double sum) const {
 
 std::array<bool, lane_width> ChoiceFilter::may_reach(double value, Batch& batch) const {
     const auto L = static_cast<Index>(order_.size());
+    raise(batch);
     if (test_ == Test::Shift) subtract_shift(value, batch);
     Lane least;
     Lane sum;

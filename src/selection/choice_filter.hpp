@@ -10,7 +10,8 @@ namespace posewise::detail {
 /// are traces of the inverse (G that of a mean over its test poses, which is no less than G); E,
 /// O3, O2 and O4 exceed a value only if M less a multiple of the identity has positive pivots; O5
 /// is the inverse of the nuclear norm of R = D^-1/2 L^-1, which is no less than trace(Q^T R) for
-/// any orthogonal Q (that of the good choice's R), nor than its moments say.
+/// any orthogonal Q (that of the good choice's R), nor than its moments say. M is raised by what
+/// rounding may take from it first: no criterion is less for it, however near M is to singular.
 class ChoiceFilter {
   public:
     /// M: information of a good choice, where test poses and the largest eigenvalue are looked for.
@@ -36,6 +37,7 @@ class ChoiceFilter {
   private:
     enum class Test { Determinant, Trace, Nuclear, Shift };
 
+    void raise(Batch& batch) const;
     void subtract_shift(double value, Batch& batch) const;
     void invert_pivots(Batch& batch) const;
     bool may_reach(double value, double sum) const;

@@ -62,10 +62,7 @@ bool Enumerator::run(const std::vector<Index>& taken, const PricedChoices& choic
 }
 
 void Enumerator::try_choice(std::vector<Index> poses) {
-    std::sort(poses.begin(), poses.end());
-    ScoredPoses choice{std::move(poses), {}};
-    choice.score = setting_.problem.score(setting_.problem.regularised_information(choice.poses));
-    keep_better(choice, best_);
+    keep_better(judge(setting_.problem, {std::move(poses), {}}), best_);
     ++scored_;
 }
 

@@ -217,11 +217,12 @@ ScoredPoses sweep_all(const SearchProblem& problem, ScoredPoses choice) {
     return choice;
 }
 
+/// What a start ends at, judged by its rows.
 ScoredPoses search_from(const SearchProblem& problem, const Shortlist& shortlist,
                         const ScoredPoses& start, RandomStream& random) {
-    return sweep_all(
-        problem, improve_with_kicks(problem, shortlist,
-                                    make_identifying(problem, shortlist, start, random), random));
+    const ScoredPoses improved = improve_with_kicks(
+        problem, shortlist, make_identifying(problem, shortlist, start, random), random);
+    return judge(problem, sweep_all(problem, improved));
 }
 
 /// What the start of the relaxation ends at.
@@ -301,8 +302,10 @@ Outcome search(SearchProblem problem, const Relaxation& relaxation) {
     const detail::Score tried = outcome.best.score;
     run_starts(problem, relaxation, shortlist, starts, first, outcome);
     if (count_at_best(outcome.starts, outcome.best.score.value) < enough) {
-        outcome.best =
-            sweep_all(problem, detail::recombine(problem, shortlist, outcome.best, outcome.starts));
+        const ScoredPoses crossed =
+            judge(problem, sweep_all(problem, detail::recombine(problem, shortlist, outcome.best,
+                                                                outcome.starts)));
+        if (is_better(crossed.score, outcome.best.score)) outcome.best = crossed;
     }
     if (!problem.options.stop.is_set() && (asked || is_better(outcome.best.score, tried))) {
         prove(problem, relaxation, {.seconds = asked.value_or(usual), .is_only_if_likely = !asked},
@@ -327,8 +330,8 @@ Choice determined(Choice choice) {
 
 Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     detail::validate(candidates, options);
-    const std::string unseen = detail::describe_unseen(candidates, options);
-    if (!unseen.empty()) return unidentified(unseen);
+    const std::string reason = detail::describe_unidentified(candidates, options);
+    if (!reason.empty()) return unidentified(reason);
     const detail::Objective objective = detail::make_objective(candidates, options);
     const SearchProblem problem{candidates, options, objective,
                                 detail::held_information(candidates, options),
@@ -342,7 +345,7 @@ Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
                         "ask for more {}{}",
                         options.pose_count, candidates.parameter_count(),
                         options.stop.is_set() ? "time, poses" : "poses",
-                        options.held.size() == 0 ? " or state a prior" : ""));
+                        options.held_rows.rows() == 0 ? " or state a prior" : ""));
     }
     Choice plan;
     plan.starts = static_cast<Index>(outcome.starts.size());
@@ -352,7 +355,7 @@ Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     plan.poses = best.poses;
     std::sort(plan.poses.begin(), plan.poses.end());
     plan.criterion = options.criterion;
-    plan.value = detail::choice_value(candidates, options, plan.poses);
+    plan.value = best.score.value;
     plan.bound = outcome.is_optimal
                      ? plan.value
                      : std::max(std::min(relaxation.bound, outcome.bound), plan.value);

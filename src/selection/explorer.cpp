@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/decompositions.hpp"
 #include "../core/elementary.hpp"
 #include "../criteria/information_function.hpp"
 #include "projected_gradient.hpp"
@@ -119,9 +120,6 @@ void Explorer::relax(Part& part) {
     const double bound = part.pricing.bound;
     const double slack = std::max(1e-4, log_ratio(objective, bound, value(), L));
     Pricing best;
-    // Where no weights identify the parameters no choice does.
-    best.held = -std::numeric_limits<double>::infinity();
-    best.prices = VectorXd::Zero(set.size());
     for (Index steps = 0; steps < most_steps; steps += steps_at_once) {
         const WeightSearch search =
             ascend(weighing, part.weights, 0.05 * slack, steps_at_once, problem.options.stop);
@@ -140,8 +138,22 @@ void Explorer::relax(Part& part) {
             break;
         }
     }
+    if (best.prices.size() == 0) {
+        if (!may_identify(part)) part.pricing.held = -std::numeric_limits<double>::infinity();
+        return;
+    }
     part.pricing = std::move(best);
     part.pricing.bound = std::min(part.pricing.bound, bound);
+}
+
+/// Whether all that is open identifies the parameters; else no choice of it does.
+bool Explorer::may_identify(const Part& part) {
+    const SearchProblem& problem = setting_.problem;
+    std::vector<Index> all = setting_.candidates(part.taken);
+    for (const Index candidate : setting_.candidates(part.open)) all.push_back(candidate);
+    const RowMatrixXd rows = stack(problem.options.held_rows, take(problem.candidates, all).matrix);
+    operations_ += 2 * static_cast<double>(rows.rows() * rows.cols() * rows.cols());
+    return count_independent_columns(triangular_factor_of_many(rows)) == rows.cols();
 }
 
 }  // namespace posewise::detail

@@ -24,6 +24,7 @@ class Explorer {
     bool close(Part& part);
     bool try_few(const Part& part);
     void relax(Part& part);
+    bool may_identify(const Part& part);
     double value() const { return best().score.value; }
 
     const PartSetting& setting_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "../core/products.hpp"
+#include "objective_bound.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -192,6 +193,14 @@ Score SearchProblem::score(const MatrixXd& regularised) const {
     const double value = evaluate(objective, M);
     if (std::isfinite(value)) return {true, value};
     return {false, evaluate(objective, regularised)};
+}
+
+ScoredPoses judge(const SearchProblem& problem, ScoredPoses choice) {
+    std::sort(choice.poses.begin(), choice.poses.end());
+    const double value =
+        choice_value(problem.objective, problem.candidates, problem.options, choice.poses);
+    choice.score = {std::isfinite(value), value};
+    return choice;
 }
 
 std::vector<Index> take_in_order(const SearchProblem& problem, const std::vector<Index>& order) {

@@ -6,7 +6,8 @@
 namespace posewise::detail {
 
 /// How good a choice is: first whether it identifies the parameters, then the objective, of the
-/// regularised information matrix if it does not.
+/// regularised information matrix if it does not. While a search goes on both are by information
+/// matrices, which is quick; judge() is by the rows.
 struct Score {
     bool identifies = false;
     double value = -std::numeric_limits<double>::infinity();
@@ -28,6 +29,16 @@ struct SearchProblem {
     Score score(const MatrixXd& regularised) const;
 };
 
+/// A choice of candidates in the search, and how good it is.
+struct ScoredPoses {
+    std::vector<Index> poses;
+    Score score;
+};
+
+/// The same poses, ascending, scored by choice_value(): what is compared at the end, with what is
+/// stated.
+ScoredPoses judge(const SearchProblem& problem, ScoredPoses choice);
+
 /// Of a SearchProblem: far below what candidates tell.
 double ridge_of(const Blocks& candidates);
 
@@ -36,12 +47,6 @@ double mean_rows(const Blocks& candidates);
 /// Of a SearchProblem, by the parameters that poses like those of the shortlist tell beyond what is
 /// held: tr((H + M)^-1 M), all without a prior.
 double ruggedness(const SearchProblem& problem, const Shortlist& shortlist);
-
-/// A choice of candidates in the search, and how good it is.
-struct ScoredPoses {
-    std::vector<Index> poses;
-    Score score;
-};
 
 /// K poses in the given order, as the limits allow; rounds repeat it for repeated poses. Fewer
 /// where the limits leave no more.

@@ -5,11 +5,15 @@
 
 namespace posewise::detail {
 
-/// options.held, or zeros.
+/// The information of options.held_rows; zeros without.
 MatrixXd held_information(const Blocks& candidates, const SelectOptions& options);
 
 /// All choices that the options allow; holds references.
 OpenChoices all_open(const Blocks& candidates, const SelectOptions& options, const MatrixXd& held);
+
+/// choice_value() with the objective made once for many choices.
+double choice_value(const Objective& objective, const Blocks& candidates,
+                    const SelectOptions& options, const std::vector<Index>& poses);
 
 /// upper_bound() with the objective made once for many M.
 double upper_bound(const Objective& objective, const Blocks& candidates,

@@ -110,8 +110,9 @@ double spare_price(const Pricing& pricing, const std::vector<Taken>& dearest) {
 
 Left reduce(const PartSetting& setting, double value, Part& part) {
     if (has_information_function(setting.objective.criterion)) {
-        part.pricing.needed = needed_information(setting.objective, value,
-                                                 setting.problem.candidates.parameter_count());
+        part.pricing.needed =
+            needed_information(setting.objective, value,
+                               setting.problem.candidates.parameter_count(), part.pricing.rounding);
     }
     bool has_taken = true;
     while (has_taken) {

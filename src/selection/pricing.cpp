@@ -6,12 +6,14 @@
 #include "../core/decompositions.hpp"
 #include "../criteria/information_function.hpp"
 #include "../criteria/spectral.hpp"
+#include "bound.hpp"
 
 namespace posewise::detail {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double rounding = 1e-9;  // of values that are compared
+constexpr double least_rounding = 1e-9;  // of values that are compared
+constexpr double most_rounding = 0.1;    // beyond it nothing is proven
 
 /// Sums of two kinds of prices over a choice: it has at most `least` as its least eigenvalue, and
 /// at least `largest` as its largest.
@@ -147,19 +149,20 @@ void price_extremes(const Objective& objective, const ExtremePrices& prices, dou
     if (objective.criterion == Criterion::O4) {
         const double low = prices.with_least_largest().largest;
         const double most = prices.farthest(0).least / value;
-        const double high = std::max(
-            low, std::min(prices.with_largest_largest().largest, most * most * (1 + rounding)));
+        const double high = std::max(low, std::min(prices.with_largest_largest().largest,
+                                                   most * most * (1 + pricing.rounding)));
         slope = value / (std::sqrt(high) + std::sqrt(low));
         offset = value * std::sqrt(low) - slope * low;
     }
     pricing.prices = prices.least - slope * prices.largest;
     pricing.held = prices.held.least - slope * prices.held.largest;
-    pricing.needed = offset - rounding * prices.farthest(0).least;
+    pricing.needed = offset - pricing.rounding * prices.farthest(0).least;
 }
 
 }  // namespace
 
-double needed_information(const Objective& objective, double value, Index parameter_count) {
+double needed_information(const Objective& objective, double value, Index parameter_count,
+                          double rounding) {
     return (1 - rounding) * information_of_value(objective, value, parameter_count);
 }
 
@@ -174,12 +177,15 @@ double sum_of(const VectorXd& values, const std::vector<Taken>& taken) {
 Pricing price(const Objective& objective, const MatrixXd& M, const OpenChoices& open,
               double value) {
     Pricing pricing;
-    if (!std::isfinite(evaluate(objective, M))) return pricing;
+    const double rounding = bound_rounding(objective.criterion, M);
+    if (!(rounding < most_rounding) || !std::isfinite(evaluate(objective, M))) return pricing;
+    pricing.rounding = std::max(rounding, least_rounding);
     if (!has_information_function(objective.criterion)) {
         const ExtremePrices prices(M, objective.sharpness, open);
-        pricing.bound = objective.criterion == Criterion::O2
-                            ? std::min(1.0, std::sqrt(largest_ratio(prices)))
-                            : std::sqrt(LargestSquare(prices).find());
+        const double bound = objective.criterion == Criterion::O2
+                                 ? std::min(1.0, std::sqrt(largest_ratio(prices)))
+                                 : std::sqrt(LargestSquare(prices).find());
+        pricing.bound = (1 + rounding) * bound;
         price_extremes(objective, prices, value, pricing);
         return pricing;
     }
@@ -187,8 +193,8 @@ Pricing price(const Objective& objective, const MatrixXd& M, const OpenChoices& 
     pricing.prices = open.sensitivities(Z);
     pricing.held = Z.cwiseProduct(open.held).sum();
     const double phi = pricing.held + sum_of(pricing.prices, open.most_valuable(pricing.prices));
-    pricing.bound = value_of_information(objective, phi, M.rows());
-    pricing.needed = needed_information(objective, value, M.rows());
+    pricing.bound = value_of_information(objective, (1 + rounding) * phi, M.rows());
+    pricing.needed = needed_information(objective, value, M.rows(), pricing.rounding);
     return pricing;
 }
 

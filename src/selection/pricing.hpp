@@ -25,17 +25,21 @@ struct Pricing {
     VectorXd prices;
     double held = 0;
     double needed = -std::numeric_limits<double>::infinity();
+    double rounding = 0;  ///< relative, that bound and needed allow for
 };
 
 /// With phi the information function of the criterion and Z = supporting_matrix(M),
 ///     phi(M*) <= trace(Z M*) = trace(Z H) + sum of trace(B_i Z B_i^T).
 /// For D this is Kiefer's log det M + L log(S / L), for A T^2 / S. O2 and O4 are bounded by the
 /// largest a / b and a / sqrt(b) over all (a, b) = (trace(Z M*), trace(Y M*)) with Z and Y those of
-/// M's (softened) extreme eigenvalues. The bound is infinite if M is not positive definite.
+/// M's (softened) extreme eigenvalues. Bound and needed allow for bound_rounding(); the bound is
+/// infinite, and there are no prices, if M is not positive definite beyond that.
 Pricing price(const Objective& objective, const MatrixXd& M, const OpenChoices& open, double value);
 
-/// What the information function must reach for a choice to be as good as `value`.
-double needed_information(const Objective& objective, double value, Index parameter_count);
+/// What the information function must reach for a choice to be as good as `value`, less its
+/// relative rounding.
+double needed_information(const Objective& objective, double value, Index parameter_count,
+                          double rounding);
 
 double sum_of(const VectorXd& values, const std::vector<Taken>& taken);
 

@@ -100,7 +100,8 @@ ScoredPoses recombine(const SearchProblem& problem, const Shortlist& shortlist,
             if (static_cast<Index>(poses.size()) < options.pose_count) return;
             const Score score = problem.score(problem.regularised_information(poses));
             ScoredPoses improved = improve(problem, known, {std::move(poses), score});
-            born[static_cast<std::size_t>(child)] = improve(problem, shortlist, improved);
+            born[static_cast<std::size_t>(child)] =
+                judge(problem, improve(problem, shortlist, improved));
         });
         bool is_changed = false;
         for (ScoredPoses& child : born) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "../core/decompositions.hpp"
 #include "../core/text.hpp"
@@ -48,19 +49,13 @@ void validate_limits(const Blocks& candidates, const SelectOptions& options) {
 }
 
 void validate_held(const SelectOptions& options, Index L) {
-    if (options.held.size() == 0) return;
-    const bool has_shape = options.held.rows() == L && options.held.cols() == L;
-    if (!has_shape || !options.held.allFinite() ||
-        !options.held.isApprox(options.held.transpose())) {
-        throw InputError("held information is " + std::to_string(options.held.rows()) + " x " +
-                         std::to_string(options.held.cols()) +
-                         ", must be a finite symmetric matrix, " + std::to_string(L) + " square");
+    if (options.held_rows.rows() == 0) return;
+    if (options.held_rows.cols() != L) {
+        throw InputError(fmt::format("held rows have {} columns, must have {} as the candidates",
+                                     options.held_rows.cols(), L));
     }
-    const auto eigen = eigen_decomposition(options.held, Eigen::EigenvaluesOnly);
-    if (eigen.eigenvalues()[0] < -1e-9 * std::abs(eigen.eigenvalues()[L - 1])) {
-        throw InputError(fmt::format(
-            "held information has the negative eigenvalue {:g}, must be positive semidefinite",
-            eigen.eigenvalues()[0]));
+    if (!options.held_rows.allFinite()) {
+        throw InputError("held rows have a value that is not a finite number");
     }
 }
 
@@ -76,6 +71,60 @@ MatrixXd separate(MatrixXd V) {
         }
     }
     return V;
+}
+
+/// Which directions all candidates together leave unseen; empty: none. Their information matrix
+/// only tells where there is no doubt; else the rows themselves do.
+std::string describe_unseen(const Blocks& candidates, const SelectOptions& options) {
+    constexpr double doubt = 1e-8;
+    const MatrixXd M = held_information(candidates, options) + information(candidates);
+    const Index L = M.rows();
+    const VectorXd scale = M.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const MatrixXd normalised = scale.asDiagonal() * M * scale.asDiagonal();
+    if (eigen_decomposition(normalised, Eigen::EigenvaluesOnly).eigenvalues()[0] > doubt) return "";
+    const MatrixXd R = triangular_factor_of_many(stack(options.held_rows, candidates.matrix));
+    const Index missing = L - count_independent_columns(R);
+    if (missing == 0) return "";
+    const MatrixXd V = singular_directions(with_columns_of_norm_one(R)).V;
+    const MatrixXd unseen = scale.asDiagonal() * separate(V.rightCols(missing));
+    std::string directions;
+    for (Index k = 0; k < std::min<Index>(missing, 3); ++k) {
+        directions += (k > 0 ? "; " : "") +
+                      describe_combination(unseen.col(k).stableNormalized(), options.column_names);
+    }
+    return "all " + std::to_string(candidates.count()) + " candidates together leave " +
+           std::to_string(missing) + " of " + std::to_string(L) + " parameter directions unseen (" +
+           directions + (missing > 3 ? "; ..." : "") + "); drop redundant parameters" +
+           (options.held_rows.rows() == 0 ? ", add poses or state a prior" : " or add poses");
+}
+
+/// That K candidates have fewer rows than there are parameters that held rows do not tell; empty:
+/// enough. A candidate that is taken again tells nothing new.
+std::string describe_too_few(const Blocks& candidates, const SelectOptions& options) {
+    const Index L = candidates.parameter_count();
+    const RowMatrixXd& beside = options.held_rows;
+    const Index held =
+        beside.rows() == 0 ? 0 : count_independent_columns(triangular_factor_of_many(beside));
+    const std::vector<Index> capacity = capacities(candidates.count(), options);
+    std::vector<Index> heights;
+    for (Index i = 0; i < candidates.count(); ++i) {
+        if (capacity[static_cast<std::size_t>(i)] > 0) heights.push_back(candidates[i].rows());
+    }
+    std::sort(heights.begin(), heights.end(), std::greater<>());
+    Index rows = 0;
+    Index counted = 0;
+    Index least = 0;
+    for (; least < std::ssize(heights) && held + rows < L; ++least) {
+        rows += heights[static_cast<std::size_t>(least)];
+        if (least < options.pose_count) counted = rows;
+    }
+    if (least <= options.pose_count) return "";
+    return fmt::format(
+        "pose count is {}, must be at least {}: {} {} {} rows{}, fewer than the {} parameters{}",
+        options.pose_count, least, count_of(options.pose_count, "pose"),
+        options.pose_count == 1 ? "has" : "have", counted,
+        held > 0 ? fmt::format(" beside {} held", held) : "", L,
+        held == 0 ? "; or state a prior" : "");
 }
 
 }  // namespace
@@ -120,24 +169,9 @@ void validate(const Blocks& candidates, const SelectOptions& options) {
     }
 }
 
-std::string describe_unseen(const Blocks& candidates, const SelectOptions& options) {
-    const MatrixXd M = held_information(candidates, options) + information(candidates);
-    const VectorXd scale = M.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const MatrixXd normalised = scale.asDiagonal() * M * scale.asDiagonal();
-    const auto eigen = eigen_decomposition(normalised);
-    const Index L = M.rows();
-    const Index missing = (eigen.eigenvalues().array() <= 1e-12).count();
-    if (missing == 0) return "";
-    const MatrixXd unseen = scale.asDiagonal() * separate(eigen.eigenvectors().leftCols(missing));
-    std::string directions;
-    for (Index k = 0; k < std::min<Index>(missing, 3); ++k) {
-        directions += (k > 0 ? "; " : "") +
-                      describe_combination(unseen.col(k).stableNormalized(), options.column_names);
-    }
-    return "all " + std::to_string(candidates.count()) + " candidates together leave " +
-           std::to_string(missing) + " of " + std::to_string(L) + " parameter directions unseen (" +
-           directions + (missing > 3 ? "; ..." : "") + "); drop redundant parameters" +
-           (options.held.size() == 0 ? ", add poses or state a prior" : " or add poses");
+std::string describe_unidentified(const Blocks& candidates, const SelectOptions& options) {
+    const std::string unseen = describe_unseen(candidates, options);
+    return unseen.empty() ? describe_too_few(candidates, options) : unseen;
 }
 
 }  // namespace posewise::detail

@@ -7,8 +7,9 @@ namespace posewise::detail {
 /// Throws InputError for options that contradict the candidates or each other.
 void validate(const Blocks& candidates, const SelectOptions& options);
 
-/// Which directions of parameter space all candidates together (with the held information) leave
-/// unseen, as a sentence; empty: none.
-std::string describe_unseen(const Blocks& candidates, const SelectOptions& options);
+/// Why no choice of K candidates (with the rows held) can identify the parameters, as far as that
+/// is known before any is tried, as a sentence: directions of parameter space that all candidates
+/// together leave unseen, or fewer rows than parameters. Empty: one may.
+std::string describe_unidentified(const Blocks& candidates, const SelectOptions& options);
 
 }  // namespace posewise::detail

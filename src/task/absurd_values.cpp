@@ -2,18 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../core/format.hpp"
+#include "../measurement/places.hpp"
 #include "posewise/core/units.hpp"
 
 namespace posewise::detail {
 namespace {
 
 constexpr double largest_model_error = 0.1;  // m, rad
-constexpr double farthest_base = 1e3;        // m
-constexpr double farthest_target = 10;       // m
-constexpr double nearest_targets = 1e-3;     // m: no two reflectors fit into that
 /// m^2, rad^2, or a variance factor: measurements without any noise leave 1e-34 and less, since
 /// numbers have 16 digits.
 constexpr double least_variance = 1e-42;
@@ -85,6 +84,24 @@ void add_variance_factor(const Estimate& estimate, std::vector<std::string>& fau
 }
 
 }  // namespace
+
+double times_stated(const Campaign& stated, const Estimate& estimate) {
+    constexpr double beyond = 2;
+    double largest = std::sqrt(estimate.variance_factor);
+    const auto add = [&](bool is_angle, double found, double expected) {
+        const double ratio = std::sqrt(estimate.variance_of(is_angle).factor);
+        largest = std::max(largest, ratio);
+        if (ratio > beyond && found > expected && expected > 0) {
+            largest = std::max(largest, found / expected * ratio);
+        }
+    };
+    const Sensor& sensor = *stated.sensor;
+    if (sensor.has_lengths()) add(false, estimate.model_error, stated.model_error);
+    if (sensor.has_angles()) {
+        add(true, estimate.model_error_orientation, stated.model_error_orientation);
+    }
+    return largest;
+}
 
 void add_absurd_values(const Campaign& campaign, const Estimate& estimate,
                        std::vector<std::string>& faults) {

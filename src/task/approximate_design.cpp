@@ -4,12 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "../core/decompositions.hpp"
 #include "../criteria/prediction.hpp"
+#include "../criteria/row_value.hpp"
 #include "../selection/bound.hpp"
-#include "../selection/objective_bound.hpp"
 #include "../selection/relaxation.hpp"
 #include "../selection/validation.hpp"
 #include "choice_problem.hpp"
+#include "inputs.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise {
@@ -36,17 +38,17 @@ ApproximateDesign weigh(ChoiceProblem& problem, const ChoiceOptions& options) {
     SelectOptions& stated = problem.options;
     stated.stop = options.stop;
     detail::validate(problem.blocks, stated);
-    const std::string unseen = detail::describe_unseen(problem.blocks, stated);
-    if (!unseen.empty()) throw InputError(unseen);
+    const std::string reason = detail::describe_unidentified(problem.blocks, stated);
+    if (!reason.empty()) throw InputError(reason);
     const detail::Objective objective = detail::make_objective(problem.blocks, stated);
     const detail::Relaxation relaxation = relax(objective, problem.blocks, stated);
     ApproximateDesign design;
     design.request = problem.request;
     design.candidate_count = problem.blocks.count();
     design.weights = list_weights(problem, relaxation.weights);
-    design.value =
-        evaluate(objective, detail::held_information(problem.blocks, stated) +
-                                detail::weighted_information(problem.blocks, relaxation.weights));
+    design.value = evaluate_rows(
+        objective,
+        detail::stack(stated.held_rows, detail::weighted_rows(problem.blocks, relaxation.weights)));
     if (!std::isfinite(design.value)) {
         throw InputError(fmt::format(
             "no weights were found that identify all {} parameters; scale columns to about one "
@@ -65,16 +67,20 @@ ApproximateDesign weigh(ChoiceProblem& problem, const ChoiceOptions& options) {
 
 ApproximateDesign relax_choice(const Campaign& campaign, Candidates candidates,
                                const ChoiceOptions& options) {
+    const std::optional<Measurements> measured = candidates.measured;
     ChoiceProblem problem = detail::state_choice(campaign, std::move(candidates), options,
                                                  options.stop.with_half_the_time());
-    ApproximateDesign design = weigh(problem, options);
+    detail::judge_candidates(campaign, measured, options);
+    ApproximateDesign design = detail::compute_from(detail::name_of(problem.request.sources),
+                                                    [&] { return weigh(problem, options); });
     design.campaign = campaign.name;
     return design;
 }
 
 ApproximateDesign relax_choice(Blocks candidates, const ChoiceOptions& options) {
     ChoiceProblem problem = detail::state_choice(std::move(candidates), options);
-    return weigh(problem, options);
+    return detail::compute_from(detail::name_of(problem.request.sources),
+                                [&] { return weigh(problem, options); });
 }
 
 }  // namespace posewise

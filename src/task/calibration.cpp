@@ -8,7 +8,11 @@
 #include <utility>
 
 #include "../core/progress_counter.hpp"
+#include "calibration_options.hpp"
+#include "data_faults.hpp"
 #include "earlier_estimate.hpp"
+#include "judgement.hpp"
+#include "moved.hpp"
 #include "nominal_residuals.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
@@ -37,6 +41,9 @@ struct Work {
         beside.loss = options.joint.loss;
         return stopped(beside);
     }
+    detail::Refitting refitting() const {
+        return {beside(), options.validation_campaign != nullptr};
+    }
     /// A method's options, ended by what ends the calibration.
     template <class MethodOptions>
     MethodOptions stopped(MethodOptions method_options) const {
@@ -44,37 +51,6 @@ struct Work {
         return method_options;
     }
 };
-
-void check_options(const CalibrationOptions& options) {
-    const bool is_joint = options.method == CalibrationMethod::Joint;
-    if (options.earlier && (!is_joint || options.learns_sizes || options.model_selection)) {
-        throw InputError(
-            "an earlier estimate needs the method lm, without model selection or learning sizes");
-    }
-    const auto count_refitted = [&](const char* name) {
-        return std::count(options.refitted.begin(), options.refitted.end(), name);
-    };
-    const auto base = count_refitted("base");
-    const auto targets = count_refitted("targets");
-    if (base + targets < std::ssize(options.refitted)) {
-        throw InputError("what is refitted for the validation must be base, targets or both");
-    }
-    const Campaign* const other = options.validation_campaign;
-    if (other != nullptr && (targets == 0 || (base == 0 && base_parameter_count(*other) > 0))) {
-        throw InputError("for a validation of another campaign both base and targets are refitted");
-    }
-    if (!is_joint && options.joint.loss.kind != LossKind::Squares) {
-        throw InputError("the loss is " + std::string(loss_name(options.joint.loss.kind)) +
-                         ", must be squares with the method " +
-                         std::string(method_name(options.method)));
-    }
-    if (options.model_selection && (!is_joint || options.folds == 0)) {
-        throw InputError("model selection needs the method lm, and groups to hold out");
-    }
-    if (options.learns_sizes && !is_joint) {
-        throw InputError("learning the sizes of errors needs the method lm");
-    }
-}
 
 Index part_count(const Campaign& campaign, const CalibrationOptions& options, Index folds) {
     const auto sets = options.model_selection
@@ -117,11 +93,6 @@ void identify_by_method(const Work& work, const Parameters& registered, Calibrat
     result.estimate = std::move(found.estimate);
     result.starts = found.starts;
     result.starts_at_best = found.starts_at_best;
-}
-
-Metrics judge(const Campaign& campaign, const Parameters& parameters, const Measurements& others) {
-    return make_metrics(residuals(campaign, parameters, others),
-                        campaign.sensor->lengths_per_target());
 }
 
 /// Nothing if it was stopped on the way.
@@ -178,6 +149,16 @@ std::map<std::string, double> sigmas_by_name(const Estimate& estimate) {
     return by_name;
 }
 
+/// At the residuals; not where it was stopped, since that takes fits.
+void look(const Work& work, Calibration& result) {
+    if (work.options.stop.is_set()) return;
+    Doubts& doubts = result.doubts;
+    doubts.look = look_at_residuals(work.campaign, work.used, result.estimate);
+    if (doubts.misfit || doubts.gross_error) {
+        doubts.look.shifted = find_shifted_rows(work.campaign, work.used);
+    }
+}
+
 /// All that `used` alone tell.
 void calibrate_with(Work& work, Calibration& result) {
     Registration registration = register_base_and_targets(work.campaign, work.used);
@@ -211,6 +192,9 @@ void calibrate_with(Work& work, Calibration& result) {
                     result.method == CalibrationMethod::Global ? ValueCheck::None
                                                                : ValueCheck::ByExpectedSizes);
     add_doubts(work.campaign, work.used, result.estimate, result.doubts);
+    look(work, result);
+    detail::judge_data({work.campaign, work.whole.robot, work.used, registered, work.beside()},
+                       work.options, result);
     if (work.options.learns_sizes) {
         result.doubts.held_back =
             find_held_back_size(result.campaign, *result.stated_spread, work.used,
@@ -226,27 +210,14 @@ void calibrate_with(Work& work, Calibration& result) {
     result.expected_workspace = detail::expected_workspace_error(result.campaign, result.estimate);
 }
 
-/// The estimate with these parts of it identified anew by others' measurements.
-Estimate find_refit(const Work& work, const Campaign& campaign, const Estimate& before,
-                    const Measurements& others, const std::vector<std::string>& parts) {
-    const detail::KnownParameters known = detail::known_parameters(campaign, parts);
-    Campaign held = detail::with_known(campaign, known, before.parameters);
-    if (known.base && !held.has_nominal_targets) {  // these alone have to begin somewhere
-        held.nominal.sensor = before.parameters.sensor;
-        held.has_nominal_targets = true;
+/// How many numbers of base and targets.
+Index refitted_count(const std::vector<std::string>& parts, const Campaign& campaign) {
+    Index count = 0;
+    for (const std::string& part : parts) {
+        count += part == "base" ? base_parameter_count(campaign)
+                                : std::ssize(campaign.sensor->unknown_names());
     }
-    const Registration registration = register_base_and_targets(held, others);
-    Estimate found;
-    found.undetermined = registration.undetermined;
-    if (!registration.is_determined()) return found;
-    found = identify(held, others, registration.parameters, work.beside());
-    if (!found.undetermined.empty()) return found;
-    // Of another campaign it has no covariance that tells of all its parameters.
-    if (work.options.validation_campaign == nullptr) {
-        return detail::complete(campaign, before, known, held, others, found);
-    }
-    found.parameters = detail::complete(known, before.parameters, found.parameters);
-    return found;
+    return count;
 }
 
 Estimate refit(const Work& work, const Calibration& result, const Campaign& campaign) {
@@ -254,57 +225,15 @@ Estimate refit(const Work& work, const Calibration& result, const Campaign& camp
     Estimate before = result.estimate;
     VectorXd& robot = before.parameters.robot;
     robot = errors_under_loads(result.campaign.robot, robot, campaign.robot);
-    Estimate found = find_refit(work, campaign, before, *work.options.validation, refitted);
+    Estimate found =
+        detail::refit_parts(work.refitting(), campaign, before, *work.options.validation, refitted);
     found.variance_factor = before.variance_factor;  // what is expected there is not learned there
     found.variance_by_kind = before.variance_by_kind;
+    found.degrees_of_freedom = before.degrees_of_freedom;
+    found.model_error_within = before.model_error_within;
     if (found.undetermined.empty()) return found;
     throw InputError(
         fmt::format("{} cannot be refitted: {}", fmt::join(refitted, " and "), found.undetermined));
-}
-
-/// What of a set-up may have moved, the least first; nothing where all is known.
-std::vector<std::vector<std::string>> movable_parts(const Campaign& campaign) {
-    const bool has_base = base_parameter_count(campaign) > 0;
-    const bool has_targets = !campaign.sensor->unknown_names().empty();
-    std::vector<std::vector<std::string>> parts;
-    if (has_base) parts.push_back({"base"});
-    if (has_targets) parts.push_back({"targets"});
-    if (has_base && has_targets) parts.push_back({"base", "targets"});
-    return parts;
-}
-
-Moved measure_moved(const Campaign& campaign, const Parameters& before, const Parameters& after,
-                    const std::vector<std::string>& parts) {
-    const Targets& targets = campaign.sensor->targets();
-    Moved moved;
-    moved.parts = parts;
-    moved.base =
-        (after.world_from_base.translation() - before.world_from_base.translation()).norm();
-    for (Index k = 0; k < targets.count(); ++k) {
-        const double distance =
-            (targets.position(k, after.sensor) - targets.position(k, before.sensor)).norm();
-        moved.targets = std::max(moved.targets, distance);
-    }
-    return moved;
-}
-
-/// Nothing unless others are off by far more than the estimate expects there, and fit with base,
-/// targets or both identified anew: as few as it takes to be as expected, else both.
-std::optional<Moved> find_moved(const Work& work, const Campaign& campaign, const Estimate& before,
-                                const Measurements& others) {
-    constexpr double plain = 5;
-    const double expected = expected_sample_error(campaign, before, others).total();
-    const double off = judge(campaign, before.parameters, others).rms();
-    if (off <= plain * expected) return std::nullopt;
-    for (const std::vector<std::string>& parts : movable_parts(campaign)) {
-        const Estimate found = find_refit(work, campaign, before, others, parts);
-        if (!found.undetermined.empty()) continue;
-        const double left = judge(campaign, found.parameters, others).rms();
-        if (plain * left > off) continue;
-        if (left > plain * expected && parts.size() == 1) continue;
-        return measure_moved(campaign, before.parameters, found.parameters, parts);
-    }
-    return std::nullopt;
 }
 
 /// Only where it matters: of what an earlier estimate tells as prior, or of what is held.
@@ -314,7 +243,7 @@ void find_moved_since(const Work& work, Calibration& result) {
     const bool is_prior = earlier->use.is_prior;
     if (!is_prior && !work.known.base && !work.known.targets) return;
     const Campaign then = with_model_error(work.whole, earlier->estimate);
-    auto moved = find_moved(work, then, earlier->estimate, work.used);
+    auto moved = detail::find_moved(work.refitting(), then, earlier->estimate, work.used);
     if (!moved) return;
     std::erase_if(moved->parts, [&](const std::string& part) {
         return !is_prior && !(part == "base" ? work.known.base : work.known.targets);
@@ -337,22 +266,39 @@ void validate(const Work& work, Calibration& result) {
         result.refitted->nominal = estimate.parameters;
         result.refitted_sigmas = sigmas_by_name(estimate);
     }
-    result.validation = judge(campaign, estimate.parameters, *options.validation);
-    result.validation_beyond = find_beyond_measured(campaign, work.used.configurations,
-                                                    options.validation->configurations);
     // What else was identified there the estimate's covariance does not tell.
-    if (options.validation_campaign != nullptr) return;
-    result.expected_validation = expected_sample_error(campaign, estimate, *options.validation);
-    if (options.refitted.empty()) {
-        result.moved = find_moved(work, campaign, estimate, *options.validation);
+    const bool is_same = options.validation_campaign == nullptr;
+    result.validation = detail::judge({campaign, estimate, work.used.configurations, is_same,
+                                       refitted_count(options.refitted, campaign)},
+                                      *options.validation);
+    if (is_same && options.refitted.empty()) {
+        result.moved =
+            detail::find_moved(work.refitting(), campaign, estimate, *options.validation);
     }
+}
+
+/// On poses of the same file that were not used: those that a plan has to verify, and the rest.
+void judge_others(const Work& work, const Measurements& all, Calibration& result) {
+    const auto judge_at = [&](const std::vector<Index>& configurations) {
+        std::optional<Judgement> judgement;
+        if (configurations.empty()) return judgement;
+        judgement = detail::judge({result.campaign, result.estimate, work.used.configurations},
+                                  take(all, configurations));
+        return judgement;
+    };
+    const CalibrationOptions& options = work.options;
+    result.verification = judge_at(options.verification);
+    if (options.used.empty()) return;
+    std::vector<Index> known = options.used;
+    known.insert(known.end(), options.verification.begin(), options.verification.end());
+    result.left_out = judge_at(all_but(all.configuration_count(), known));
 }
 
 }  // namespace
 
 Calibration calibrate(const Campaign& campaign, const Measurements& measurements,
                       const CalibrationOptions& options) {
-    check_options(options);
+    detail::check_options(options);
     const Measurements part =
         options.used.empty() ? Measurements{} : take(measurements, options.used);
     const Measurements& used = options.used.empty() ? measurements : part;
@@ -374,16 +320,12 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
     result.method = options.method;
     result.measured = count_measured(*campaign.sensor, used);
     result.excluded = options.excluded;
+    result.limit = options.limit;
     result.held = names_only_in(whole, work.campaign);
     calibrate_with(work, result);
     if (!result.is_identified()) return result;
     find_moved_since(work, result);
-    const auto left_out = all_but(measurements.configuration_count(), options.used);
-    if (!options.used.empty() && !left_out.empty()) {
-        const Measurements others = take(measurements, left_out);
-        result.left_out = judge(campaign, result.estimate.parameters, others);
-        result.expected_left_out = expected_sample_error(result.campaign, result.estimate, others);
-    }
+    judge_others(work, measurements, result);
     try {
         validate(work, result);
     } catch (const InputError& error) {

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "../measurement/contact.hpp"
+#include "../measurement/feasible.hpp"
 #include "../measurement/noise.hpp"
 #include "../model/halton.hpp"
 #include "choice_problem.hpp"
 #include "inputs.hpp"
+#include "posewise/jacobian/unknowable.hpp"
 
 namespace posewise {
 namespace {
@@ -38,10 +39,9 @@ std::vector<PlannedPose> poses_of(const ChoiceProblem& problem, const std::vecto
 Plan solve(ChoiceProblem& problem, const ChoiceOptions& options) {
     problem.options.stop = options.stop;
     problem.options.progress = options.progress;
-    const PlanSources& sources = problem.request.sources;
-    const std::string& name = sources.candidates.empty() ? sources.campaign : sources.candidates;
-    const Choice choice = detail::compute_from(
-        name, [&] { return determined(select_poses(problem.blocks, problem.options)); });
+    const Choice choice = detail::compute_from(detail::name_of(problem.request.sources), [&] {
+        return determined(select_poses(problem.blocks, problem.options));
+    });
     Plan plan;
     plan.poses = poses_of(problem, choice.poses);
     plan.request = problem.request;
@@ -115,8 +115,8 @@ Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_
     candidates.kind = CandidateKind::Random;
     candidates.ids = detail::number_ids(count);
     detail::ShownPoses poses =
-        detail::draw_poses(campaign, campaign.nominal, count, [&](Index drawn) {
-            return detail::halton_configurations(campaign.robot, drawn, {{}, 1, seed});
+        detail::draw_feasible(campaign, count, [&](const Chain& robot, Index drawn) {
+            return detail::halton_configurations(robot, drawn, {{}, 1, seed});
         });
     candidates.configurations = std::move(poses.configurations);
     candidates.share = times_seen(poses.is_seen, 1);
@@ -124,6 +124,7 @@ Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_
 }
 
 Plan choose(const Campaign& campaign, Candidates candidates, const ChoiceOptions& options) {
+    check_knowable(campaign, options.stop);
     if (campaign.spread.is_prior) {  // else selection says if they are too few
         detail::compute_from(options.sources.campaign, [&] {
             detail::check_enough_poses(campaign, options.pose_count,
@@ -131,11 +132,14 @@ Plan choose(const Campaign& campaign, Candidates candidates, const ChoiceOptions
                                        options.stop);
         });
     }
+    const std::optional<Measurements> measured = candidates.measured;
     ChoiceProblem problem = detail::state_choice(campaign, std::move(candidates), options,
                                                  options.stop.with_half_the_time());
+    detail::judge_candidates(campaign, measured, options);
     Plan plan = solve(problem, options);
     plan.campaign = campaign.name;
     plan.columns = configuration_columns(campaign);
+    plan.cell_doubts = problem.cell_doubts;
     plan.assumptions = assumptions_of(campaign);
     plan.predicted = predict(campaign, problem, plan.poses);
     plan.value_rms = value_rms(campaign, problem, options.test_poses, plan.value);

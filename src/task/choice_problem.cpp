@@ -6,8 +6,12 @@
 #include <utility>
 
 #include "../core/checksum.hpp"
+#include "../core/decompositions.hpp"
 #include "../core/format.hpp"
 #include "../core/text.hpp"
+#include "../measurement/prior_rows.hpp"
+#include "calibration_options.hpp"
+#include "choice_cell.hpp"
 #include "inputs.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
@@ -20,11 +24,8 @@ namespace {
 constexpr double same_joints = 1e-6;  // rad or m
 constexpr Index at_once = 4096;       // candidates whose blocks are made
 
-/// Held information there is none of yet.
-MatrixXd& held(ChoiceProblem& problem) {
-    const Index L = problem.blocks.parameter_count();
-    if (problem.options.held.size() == 0) problem.options.held = MatrixXd::Zero(L, L);
-    return problem.options.held;
+void hold(ChoiceProblem& problem, const RowMatrixXd& rows) {
+    problem.options.held_rows = stack(problem.options.held_rows, rows);
 }
 
 /// Blocks beside the candidates must have as many columns.
@@ -39,7 +40,7 @@ void check_columns(const ChoiceProblem& problem, const Blocks& blocks, const std
 
 void hold_blocks(ChoiceProblem& problem, const Blocks& measured) {
     check_columns(problem, measured, problem.request.sources.augment);
-    held(problem) += information(measured);
+    hold(problem, measured.matrix);
     problem.options.held_pose_count = measured.count();
     for (Index i = 0; i < problem.blocks.count(); ++i) {
         for (Index k = 0; k < measured.count(); ++k) {
@@ -48,24 +49,26 @@ void hold_blocks(ChoiceProblem& problem, const Blocks& measured) {
     }
 }
 
-/// Blocks of random candidates, part by part until `stop` comes; all targets are seen.
+/// Blocks of random candidates, part by part until `stop` comes.
 void make_random_blocks(ChoiceProblem& problem, const Campaign& campaign,
                         const Parameters& parameters, const StopSignal& stop) {
-    const Index rows = campaign.sensor->row_count();
     const Index count = problem.configurations.rows();
     Blocks& blocks = problem.blocks;
-    blocks.matrix.resize(rows * count, parameter_count(campaign));
+    blocks.matrix.resize(campaign.sensor->row_count() * count, parameter_count(campaign));
     Index made = 0;
     while (made < count && !(made > 0 && stop.is_set())) {
         const Index size = std::min(count - made, at_once);
-        blocks.matrix.middleRows(rows * made, rows * size) =
-            make_blocks(campaign, parameters, problem.configurations.middleRows(made, size),
-                        problem.request.repeats)
-                .matrix;
+        const Blocks part = make_blocks(
+            campaign, parameters, problem.configurations.middleRows(made, size),
+            RowMatrixXd(problem.request.repeats * problem.share.middleRows(made, size)));
+        const Index begin = blocks.first_row.back();
+        blocks.matrix.middleRows(begin, part.matrix.rows()) = part.matrix;
+        for (Index i = 1; i <= size; ++i) {
+            blocks.first_row.push_back(begin + part.first_row[static_cast<std::size_t>(i)]);
+        }
         made += size;
     }
-    blocks.matrix.conservativeResize(rows * made, Eigen::NoChange);
-    for (Index i = 1; i <= made; ++i) blocks.first_row.push_back(rows * i);
+    blocks.matrix.conservativeResize(blocks.first_row.back(), Eigen::NoChange);
     problem.configurations.conservativeResize(made, Eigen::NoChange);
     problem.share.conservativeResize(made, Eigen::NoChange);
     problem.ids.resize(static_cast<std::size_t>(made));
@@ -128,7 +131,7 @@ void check_contacts(const ChoiceProblem& problem, const Campaign& campaign,
 
 void hold_measured(ChoiceProblem& problem, const Campaign& campaign, const Parameters& parameters,
                    const Measurements& measured) {
-    held(problem) += information(measured_blocks(campaign, parameters, measured));
+    hold(problem, measured_blocks(campaign, parameters, measured).matrix);
     problem.options.held_pose_count = measured.configuration_count();
     const Index joints = campaign.robot.joint_count();
     for (Index i = 0; i < problem.configurations.rows(); ++i) {
@@ -161,8 +164,7 @@ void state_limits(ChoiceProblem& problem, const std::vector<Index>& groups) {
         options.groups.resize(problem.ids.size());  // of those there was time for
     }
     const CandidateIndex index(problem.ids, request.excluded);
-    const PlanSources& sources = request.sources;
-    compute_from(sources.candidates.empty() ? sources.campaign : sources.candidates, [&] {
+    compute_from(name_of(request.sources), [&] {
         for (const std::string& id : request.excluded) {
             options.excluded.push_back(index.find(id, "excluded candidate"));
         }
@@ -179,6 +181,17 @@ void check_test_poses(const ChoiceOptions& options) {
 }
 
 }  // namespace
+
+const std::string& name_of(const PlanSources& sources) {
+    return sources.candidates.empty() ? sources.campaign : sources.candidates;
+}
+
+void judge_candidates(const Campaign& campaign, const std::optional<Measurements>& measured,
+                      const ChoiceOptions& options) {
+    if (!measured) return;
+    compute_from(options.sources.candidates,
+                 [&] { judge_measured(campaign, *measured, options.judge, options.stop); });
+}
 
 std::vector<std::string> ids_of(const std::vector<PlannedPose>& poses) {
     std::vector<std::string> ids;
@@ -198,9 +211,8 @@ std::vector<Index> candidates_of(const ChoiceProblem& problem,
 }
 
 MatrixXd information_of(const ChoiceProblem& problem, const std::vector<PlannedPose>& poses) {
-    MatrixXd M = information(problem.blocks, candidates_of(problem, poses));
-    if (problem.options.held.size() > 0) M += problem.options.held;
-    return M;
+    return information_of(problem.options.held_rows, problem.blocks.parameter_count()) +
+           information(problem.blocks, candidates_of(problem, poses));
 }
 
 RowMatrixXd workspace_of(const ChoiceProblem& problem) {
@@ -236,7 +248,10 @@ ChoiceProblem state_choice(Blocks candidates, const ChoiceOptions& options) {
     Checksum checksum;
     checksum.add(problem.blocks.matrix);
     problem.checksum = checksum.text();
-    if (options.has_prior) held(problem).diagonal().array() += 1;
+    if (options.has_prior) {
+        const Index L = problem.blocks.parameter_count();
+        hold(problem, RowMatrixXd::Identity(L, L));
+    }
     if (options.held_blocks.count() > 0) hold_blocks(problem, options.held_blocks);
     if (options.test_blocks.count() > 0) {
         check_columns(problem, options.test_blocks, options.sources.test_poses);
@@ -265,15 +280,18 @@ ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
         make_random_blocks(problem, campaign, parameters, stop);
     } else {
         if (!candidates.measured) {
-            compute_from(request.sources.candidates,
-                         [&] { check_contacts(problem, campaign, parameters); });
+            compute_from(request.sources.candidates, [&] {
+                check_contacts(problem, campaign, parameters);
+                heed_cell(problem, campaign, options.held.has_value());
+            });
         }
         problem.blocks = make_blocks(campaign, parameters, problem.configurations,
                                      RowMatrixXd(request.repeats * problem.share));
     }
+    add_unchecked_bodies(problem, campaign);
     problem.checksum = checksum_of(problem, candidates);
     problem.options.column_names = parameter_names(campaign);
-    if (request.has_prior) held(problem) += prior_information(campaign);
+    if (request.has_prior) hold(problem, prior_rows(campaign));
     if (options.held) hold_measured(problem, campaign, parameters, *options.held);
     if (request.is_focused_on_robot) problem.options.nuisance = nuisance_of_robot(campaign);
     if (request.least_distance > 0) {

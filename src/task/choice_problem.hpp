@@ -20,14 +20,22 @@ struct ChoiceProblem {
     std::string checksum;        ///< of all of the candidates' numbers
     Parameters parameters;       ///< that blocks are linearised at; nothing for plain blocks
     Blocks blocks;
-    std::unique_ptr<Blocks> test_poses;  ///< null: the candidates
-    SelectOptions options;               ///< the problem's part; refers to test_poses
+    std::unique_ptr<Blocks> test_poses;    ///< null: the candidates
+    SelectOptions options;                 ///< the problem's part; refers to test_poses
+    std::vector<std::string> cell_doubts;  ///< as Plan::cell_doubts
 };
+
+/// The file that candidates are of, for messages.
+const std::string& name_of(const PlanSources& sources);
 
 /// Of random candidates fewer are used if `stop` comes. Throws InputError as choose().
 ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
                            const ChoiceOptions& options, const StopSignal& stop = {});
 ChoiceProblem state_choice(Blocks candidates, const ChoiceOptions& options);
+
+/// ChoiceOptions::judge of what measured candidates calibrate, if they are measured.
+void judge_candidates(const Campaign& campaign, const std::optional<Measurements>& measured,
+                      const ChoiceOptions& options);
 
 std::vector<std::string> ids_of(const std::vector<PlannedPose>& poses);
 

@@ -1,7 +1,10 @@
 #include "posewise/task/correction.hpp"
 
+#include <cmath>
+
 #include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/pool.hpp"
 
 namespace posewise {
 namespace {
@@ -17,6 +20,28 @@ Isometry3d estimated_base_from_base(const Campaign& campaign, const Parameters& 
     return found.world_from_base.inverse() * campaign.nominal.world_from_base;
 }
 
+bool is_home(const Chain& robot, const Correction& correction, const CorrectionOptions& options) {
+    constexpr double most = 0.5;  // of the error without correction
+    const auto size = [&](const PoseError& error) {
+        return std::hypot(error.position, options.length_per_angle * error.orientation);
+    };
+    return describe_shortfall(robot, correction).empty() ||
+           size(correction.residual) <= most * size(correction.uncorrected);
+}
+
+/// What of the program collides in the campaign's cell, the targets taken off.
+std::string describe_collisions(const Campaign& campaign, const RowMatrixXd& configurations,
+                                const std::vector<std::string>& ids) {
+    Campaign working = campaign;
+    working.has_nominal_targets = false;
+    Cell cell;
+    cell.links = campaign.cell.links;
+    cell.keep_outs = campaign.cell.keep_outs;
+    cell.safety_distance = campaign.cell.safety_distance;
+    working.cell = cell;
+    return describe(find_violations(Constraints(working, cell, false), configurations), ids);
+}
+
 }  // namespace
 
 CorrectedPoses correct_poses(const Campaign& campaign, const Parameters& found,
@@ -24,7 +49,8 @@ CorrectedPoses correct_poses(const Campaign& campaign, const Parameters& found,
                              CorrectionBase base, const CorrectionOptions& options) {
     const Isometry3d from_base = estimated_base_from_base(campaign, found, base);
     const VectorXd no_errors = VectorXd::Zero(campaign.robot.parameter_count());
-    CorrectedPoses corrected{campaign.robot, ids, configurations, {}};
+    CorrectedPoses corrected{campaign.robot, ids, configurations, {}, {}, {}};
+    corrected.collisions = describe_collisions(campaign, configurations, ids);
     for (Index i = 0; i < configurations.rows(); ++i) {
         const VectorXd nominal = configurations.row(i).transpose();
         try {
@@ -34,6 +60,9 @@ CorrectedPoses correct_poses(const Campaign& campaign, const Parameters& found,
         } catch (const InputError& error) {
             throw InputError("configuration " + detail::quote(ids[static_cast<std::size_t>(i)]) +
                              ": " + error.what());
+        }
+        if (!is_home(campaign.robot, corrected.corrections.back(), options)) {
+            corrected.not_home.push_back(i);
         }
     }
     return corrected;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "posewise/calibrator/registration.hpp"
@@ -35,6 +36,30 @@ double rms_of(const Campaign& campaign, const Measurements& measured, const Esti
     return make_metrics(residuals(campaign, estimate.parameters, measured)).distance_rms;
 }
 
+bool sockets_lack_length(const Campaign& campaign) {
+    const SocketSensor* const sensor = unknown_sockets(campaign);
+    if (sensor == nullptr) return false;
+    for (Index k = 0; k < sensor->target_count(); ++k) {
+        if (sensor->has_distance(k)) return false;
+    }
+    return true;
+}
+
+bool planes_lack_length(const Campaign& campaign, const Measurements& measured) {
+    constexpr double touched = 1e-3;  // m
+    const auto* const sensor = dynamic_cast<const PlaneSensor*>(campaign.sensor.get());
+    if (sensor == nullptr || campaign.prior) return false;
+    if (std::ranges::any_of(sensor->planes(), &Plane::offset_is_known)) return false;
+    for (Index i = 0; i < measured.observations.rows(); ++i) {
+        for (Index k = 0; k < measured.is_seen.cols(); ++k) {
+            if (measured.is_seen(i, k) && std::abs(measured.observations(i, k)) > touched) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 }  // namespace
 
 std::optional<DistanceDoubt> find_distance_doubt(const Campaign& campaign,
@@ -68,12 +93,10 @@ std::optional<DistanceDoubt> find_distance_doubt(const Campaign& campaign,
     return doubt;
 }
 
-bool lacks_length(const Campaign& campaign) {
-    const SocketSensor* const sensor = unknown_sockets(campaign);
-    if (sensor == nullptr || sensor->targets().unknown_count() < 3) return false;
-    for (Index k = 0; k < sensor->target_count(); ++k) {
-        if (sensor->has_distance(k)) return false;
-    }
+bool lacks_length(const Campaign& campaign, const Measurements& measured) {
+    const Targets& targets = campaign.sensor->targets();
+    const bool is_open = sockets_lack_length(campaign) || planes_lack_length(campaign, measured);
+    if (!is_open || targets.unknown_count() < 3 * targets.count()) return false;
     for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
         if (campaign.robot.parameter_element(k).motion == Motion::Translation) return true;
     }

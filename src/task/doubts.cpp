@@ -4,23 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "../calibrator/missing_errors.hpp"
 #include "../core/format.hpp"
 #include "../core/statistics.hpp"
 #include "../model/joint_limits.hpp"
 #include "absurd_values.hpp"
-#include "other_senses.hpp"
+#include "gross_errors.hpp"
+#include "plane_doubts.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/planner/prediction.hpp"
 
 namespace posewise {
 namespace {
-
-/// A robot's maker is rarely wrong by 10 cm, nor by 5 deg.
-constexpr double gross_distance = 0.1;  // m
-constexpr double gross_angle = 0.1;     // rad
 
 /// Times the expected size: a joint with a wrong sign may converge as well, with an offset of half
 /// a turn.
@@ -31,6 +29,9 @@ constexpr double doubtful_under_prior = 3;
 /// What no robot has, in expected sizes, and no measurement, in standard deviations as stated.
 constexpr double incredible_size = 100;
 constexpr double incredible_residuals = 300;
+/// A joint whose zero is off by more was meant otherwise.
+constexpr double incredible_offset = 10 * std::numbers::pi / 180;
+constexpr double incredible_offset_size = 5;
 
 std::optional<double> clear_ratio(const ResidualVariance& variance, LossKind loss) {
     constexpr double tolerated = 1.2;  // intervals of 95 % would hold 90 %
@@ -131,25 +132,6 @@ std::optional<double> find_missing_errors(const Campaign& campaign, const Measur
     return share;
 }
 
-/// Residuals in units of those stated; where they are beyond the model error that was found, too,
-/// that counts.
-double times_stated(const Campaign& stated, const Estimate& estimate) {
-    constexpr double beyond = 2;
-    double largest = std::sqrt(estimate.variance_factor);
-    const auto add = [&](bool is_angle, double found, double expected) {
-        const double ratio = std::sqrt(estimate.variance_of(is_angle).factor);
-        if (ratio > beyond && found > expected && expected > 0) {
-            largest = std::max(largest, found / expected * ratio);
-        }
-    };
-    const Sensor& sensor = *stated.sensor;
-    if (sensor.has_lengths()) add(false, estimate.model_error, stated.model_error);
-    if (sensor.has_angles()) {
-        add(true, estimate.model_error_orientation, stated.model_error_orientation);
-    }
-    return largest;
-}
-
 std::vector<Index> find_negative_compliances(const Campaign& campaign, const Estimate& estimate) {
     constexpr double significant = 3;  // standard deviations
     const VectorXd sigmas = standard_deviations(estimate);
@@ -196,7 +178,7 @@ std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& e
     if (estimate.ending != Ending::Converged && estimate.ending != Ending::RoundoffLimited) {
         faults.push_back(fmt::format("it did not converge ({})", ending_name(estimate.ending)));
     }
-    const double ratio = times_stated(campaign, estimate);
+    const double ratio = detail::times_stated(campaign, estimate);
     if (!(ratio <= incredible_residuals)) {
         faults.push_back(fmt::format("its residuals are {} times what sigma and model error say",
                                      detail::format_short(ratio, 2)));
@@ -210,18 +192,22 @@ std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& e
     const VectorXd scale = parameter_scale(campaign);
     const VectorXd sigmas = standard_deviations(estimate);
     const Index robot_begin = base_parameter_count(campaign);
-    const auto add = [&](Index k, double value, const char* what) {
+    const auto add = [&](Index k, double value, const char* what, bool is_offset) {
         const double times = std::abs(value) / scale[robot_begin + k];
-        if (times <= incredible_size) return;
         const bool is_angle = campaign.robot.parameter_element(k).motion == Motion::Rotation;
+        const bool is_turned = is_offset && is_angle && times > incredible_offset_size &&
+                               std::abs(value) > incredible_offset;
+        if (times <= incredible_size && !is_turned) return;
         faults.push_back(fmt::format("{}{} is {} {}, {} times the size expected of it", what,
                                      estimate.names[static_cast<std::size_t>(robot_begin + k)],
                                      detail::format_short(1e3 * value, 4), units_of(is_angle).error,
                                      detail::format_short(times, 2)));
     };
     for (Index k = 0; k < estimate.parameters.robot.size(); ++k) {
-        add(k, estimate.parameters.robot[k], "");
-        add(k, sigmas[robot_begin + k], "the standard deviation of ");
+        const bool is_offset = !campaign.robot.parameter_element(k).joints.empty() &&
+                               campaign.robot.parameter_term(k) == nullptr;
+        add(k, estimate.parameters.robot[k], "", is_offset);
+        add(k, sigmas[robot_begin + k], "the standard deviation of ", false);
     }
     detail::add_absurd_values(campaign, estimate, faults);
     return faults;
@@ -235,10 +221,9 @@ Doubts find_doubts(const Campaign& campaign, const Measurements& measured,
         doubts.planes = find_plane_doubts(campaign, measured);
         doubts.places = find_place_doubts(campaign, registered);
     }
-    if (nominal.distance_rms > gross_distance) doubts.gross_error = nominal.distance_rms;
-    if (campaign.sensor->has_orientation() && nominal.orientation_rms > gross_angle) {
-        doubts.orientations = OrientationDoubt{nominal.orientation_rms};
-        detail::find_other_sense(campaign, measured, gross_angle, *doubts.orientations);
+    if (nominal.distance_rms > detail::gross_distance) doubts.gross_error = nominal.distance_rms;
+    if (campaign.sensor->has_orientation() && nominal.orientation_rms > detail::gross_angle) {
+        doubts.orientations = nominal.orientation_rms;
     }
     return doubts;
 }
@@ -251,7 +236,7 @@ void add_doubts(const Campaign& campaign, const Measurements& measured, const Es
     doubts.small_residuals = find_small_residuals(campaign, estimate);
     doubts.missing_errors = find_missing_errors(campaign, measured, estimate);
     doubts.scatter = find_scatter_doubt(campaign, measured, estimate.parameters);
-    doubts.lacks_length = lacks_length(campaign);
+    doubts.lacks_length = lacks_length(campaign, measured);
     doubts.distance = find_distance_doubt(campaign, measured, estimate);
     doubts.negative_compliances = find_negative_compliances(campaign, estimate);
 }

@@ -81,6 +81,16 @@ void Findings::compare(const std::string& name, double stated, double actual, bo
     findings_.push_back({name, is_right, "", stated, actual});
 }
 
+void Findings::compare_value(Criterion criterion, double stated, double actual, double tolerance) {
+    if (std::isfinite(actual)) {
+        return compare("value", stated, actual,
+                       is_same_value(criterion, stated, actual, tolerance));
+    }
+    note("value", false,
+         fmt::format("stated {}, but the poses do not identify all parameters",
+                     format_number(stated)));
+}
+
 bool Findings::has_same_parameters(const Plan& plan, const Campaign& campaign) {
     const auto stated = parameters_in(plan.assumptions);
     const auto actual = parameters_in(assumptions_of(campaign));

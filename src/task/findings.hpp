@@ -15,6 +15,8 @@ class Findings {
   public:
     void note(const std::string& name, bool is_right, const std::string& text);
     void compare(const std::string& name, double stated, double actual, bool is_right);
+    /// The criterion's value; wrong, too, where the poses do not identify the parameters.
+    void compare_value(Criterion criterion, double stated, double actual, double tolerance);
     /// Whether a plan is of the parameters that the campaign has now; notes it if not, for then no
     /// other number of it can be compared.
     bool has_same_parameters(const Plan& plan, const Campaign& campaign);

@@ -1,9 +1,32 @@
 #include "posewise/task/inspection.hpp"
 
+#include "../jacobian/nominal_factor.hpp"
 #include "../model/complete_model.hpp"
+#include "../model/driven_axes.hpp"
 #include "posewise/calibrator/registration.hpp"
+#include "posewise/model/error_terms.hpp"
 
 namespace posewise {
+
+std::vector<OnAxis> find_on_axis(const Campaign& campaign) {
+    const Chain bare = without_parameters(campaign.robot);
+    std::vector<OnAxis> found;
+    if (!campaign.has_nominal_targets || campaign.sensor->has_orientation()) return found;
+    const auto [axes, flange] = detail::find_driven_axes(bare, VectorXd());
+    const detail::DrivenAxis& last = axes.back();
+    if (last.element->motion != Motion::Rotation) return found;
+    const Vector3d direction =
+        last.base_from_element.linear().col(static_cast<Index>(last.element->axis));
+    const double near = detail::least_visible * extent(bare);
+    const Targets& targets = campaign.sensor->targets();
+    for (Index k = 0; k < targets.count(); ++k) {
+        const Vector3d place = flange * targets.position(k, campaign.nominal.sensor);
+        const Vector3d beside = place - last.base_from_element.translation();
+        if (direction.cross(beside).norm() > near) return {};
+        found.push_back({k, bare.joint(last.element->joints.front().joint).name});
+    }
+    return found;
+}
 
 Inspection inspect(const Campaign& campaign, const Chain& declared, bool is_stated) {
     Inspection inspection;
@@ -12,6 +35,8 @@ Inspection inspect(const Campaign& campaign, const Chain& declared, bool is_stat
     if (is_stated) inspection.stated = find_identifiable(campaign);
     inspection.of_complete = find_identifiable(inspection.complete);
     inspection.least_pose_count = least_calibration_count(campaign);
+    inspection.unknowable = find_unknowable(campaign);
+    inspection.on_axis = find_on_axis(campaign);
     return inspection;
 }
 

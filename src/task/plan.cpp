@@ -9,6 +9,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/measurement/campaign.hpp"
+#include "same_pose.hpp"
 
 namespace posewise {
 namespace {
@@ -47,12 +48,19 @@ std::string describe_columns(const Plan& plan, const std::vector<std::string>& w
                        detail::count_of(std::ssize(plan.columns), "joint"), wanted.size());
 }
 
-/// What a plan of another robot or campaign has not, which may well have the same ids.
-/// The tolerance is in rad or m.
-void check_is_measured_pose(const PlannedPose& pose, const VectorXd& measured, double tolerance) {
-    if (pose.configuration.size() == measured.size() &&
-        (pose.configuration - measured).cwiseAbs().maxCoeff() <= tolerance) {
-        return;
+/// The measured configuration of that id, if there is one. Throws InputError if it has other joint
+/// values: a plan of another robot or campaign may well have the same ids.
+std::optional<Index> find_measured(const Plan& plan, const PlannedPose& pose,
+                                   const Campaign& campaign, const Measurements& measured) {
+    const auto found = std::ranges::find(measured.ids, pose.id);
+    if (found == measured.ids.end()) return std::nullopt;
+    const Index index = found - measured.ids.begin();
+    if (plan.kind == CandidateKind::Blocks) return index;
+    // What was guided to a contact by hand differs from the plan.
+    const double tolerance = campaign.sensor->has_contacts() ? 0.2 : detail::same_pose_tolerance;
+    if (detail::is_same_pose(pose.configuration, measured.configurations.row(index).transpose(),
+                             tolerance)) {
+        return index;
     }
     throw InputError("configuration '" + pose.id +
                      "' of the plan has other joint values than the measured one; the plan must "
@@ -149,24 +157,30 @@ std::string describe_mismatch(const Plan& plan, const Campaign& campaign) {
 std::vector<Index> find_planned(const Plan& plan, const Campaign& campaign,
                                 const Measurements& measured,
                                 const std::vector<std::string>& excluded) {
-    // What was read back may differ from the plan; what was guided to a contact by hand does.
-    const double tolerance = campaign.sensor->has_contacts() ? 0.2 : 2e-3;
     check_is_whole(plan, campaign);
     std::vector<Index> planned;
     for (const PlannedPose& pose : plan.poses) {
         if (std::ranges::find(excluded, pose.id) != excluded.end()) continue;
-        const auto found = std::ranges::find(measured.ids, pose.id);
-        if (found == measured.ids.end()) {
+        const auto found = find_measured(plan, pose, campaign, measured);
+        if (!found) {
             throw InputError("configuration '" + pose.id +
                              "' of the plan is not among the measured ones");
         }
-        planned.push_back(found - measured.ids.begin());
-        if (plan.kind == CandidateKind::Blocks) continue;
-        check_is_measured_pose(pose, measured.configurations.row(planned.back()).transpose(),
-                               tolerance);
+        planned.push_back(*found);
     }
     if (planned.empty()) throw InputError("all poses of the plan are excluded");
     return planned;
+}
+
+std::vector<Index> find_verification(const Plan& plan, const Campaign& campaign,
+                                     const Measurements& measured,
+                                     const std::vector<std::string>& excluded) {
+    std::vector<Index> found;
+    for (const PlannedPose& pose : plan.verification) {
+        if (std::ranges::find(excluded, pose.id) != excluded.end()) continue;
+        if (const auto one = find_measured(plan, pose, campaign, measured)) found.push_back(*one);
+    }
+    return found;
 }
 
 }  // namespace posewise

@@ -1,35 +1,17 @@
 #include "plan_maker.hpp"
 
 #include <cmath>
-#include <set>
 
 #include "../planner/plan_space.hpp"
 #include "../planner/tour.hpp"
 #include "inputs.hpp"
+#include "new_ids.hpp"
 #include "pool_choices.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "verification_poses.hpp"
 
 namespace posewise::detail {
 namespace {
-
-/// p1, p2, ... but for those that poses kept or dropped have.
-class NewIds {
-  public:
-    explicit NewIds(const PlanningProblem& problem)
-        : taken_(problem.request.dropped.begin(), problem.request.dropped.end()) {
-        for (const PlannedPose& pose : problem.kept) taken_.insert(pose.id);
-    }
-    std::string next() {
-        std::string id;
-        do id = 'p' + std::to_string(++last_);
-        while (taken_.count(id) > 0);
-        return id;
-    }
-
-  private:
-    std::set<std::string> taken_;
-    int last_ = 0;
-};
 
 /// The poses kept, then the new ones.
 RowMatrixXd all_poses(const PlanningProblem& problem, const RowMatrixXd& planned) {
@@ -43,7 +25,7 @@ RowMatrixXd all_poses(const PlanningProblem& problem, const RowMatrixXd& planned
 /// All poses in the order of the tour; new ones are named in it.
 std::vector<PlannedPose> arrange(const PlanningProblem& problem, const RowMatrixXd& poses,
                                  const Tour& tour) {
-    NewIds ids(problem);
+    NewIds ids('p', problem);
     std::vector<PlannedPose> arranged;
     const auto kept = static_cast<Index>(problem.kept.size());
     for (const Visit& visit : tour.visits) {
@@ -51,10 +33,9 @@ std::vector<PlannedPose> arrange(const PlanningProblem& problem, const RowMatrix
         if (visit.pose < kept) {
             pose = problem.kept[static_cast<std::size_t>(visit.pose)];
         } else {
-            pose.id = ids.next();
-            pose.configuration = poses.row(visit.pose).transpose();
-            pose.targets = targets_seen(problem.constraints.seen(pose.configuration));
+            pose = pose_at(problem, ids.next(), poses.row(visit.pose).transpose());
         }
+        pose.clearance = least_clearance(problem, pose.configuration);
         pose.via = visit.via;
         pose.is_blocked = visit.is_blocked;
         arranged.push_back(std::move(pose));
@@ -82,9 +63,10 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.request.starts = planned.starts;
     plan.starts_at_best = planned.starts_at_best;
     plan.value_rms = value_rms_of(problem, plan.value);
-    plan.standard_deviations = detail::standard_deviations(campaign, planned.information);
     plan.visiting_time = tour.time;
     plan.assumptions = assumptions_of(campaign);
+    const std::string unchecked = describe_unchecked_bodies(campaign);
+    if (!unchecked.empty()) plan.cell_doubts.push_back(unchecked);
     return plan;
 }
 
@@ -172,6 +154,10 @@ Planning PlanMaker::make_quickly(Index pose_count) const {
     return finish(search, plan_poses(from.space, from.configurations, from.blocks, search));
 }
 
+void PlanMaker::add_verification(Planning& planning) const {
+    detail::add_verification(problem_, pool_, options_, planning);
+}
+
 Ending PlanMaker::ending_of(const PlannedPoses& planned) const {
     if (!planned.is_interrupted && is_pool_complete_) return Ending::Converged;
     return options_.stop.is_interrupted() ? Ending::Interrupted : Ending::TimeLimit;
@@ -198,7 +184,11 @@ Planning PlanMaker::finish(PlanOptions search, const PlannedPoses& planned) cons
     planning.campaign = problem_.campaign;
     planning.errors = problem_.errors;
     planning.search = std::move(search);
-    planning.information = planned.information;
+    // As verify() sums it, so that no digit depends on the order of the poses.
+    planning.information =
+        held_information(problem_) + information(blocks_of(problem_, planning.plan.poses));
+    planning.plan.standard_deviations =
+        standard_deviations(problem_.campaign, planning.information);
     conclude(planning, problem_, options_.drop_out_count);
     return planning;
 }

@@ -32,6 +32,9 @@ class PlanMaker {
     /// the time.
     Planning make_quickly(Index pose_count) const;
 
+    /// Draws the poses to verify, see Plan::verification; the plan's others stay as they are.
+    void add_verification(Planning& planning) const;
+
   private:
     /// Candidates of a search.
     struct Candidates {

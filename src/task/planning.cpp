@@ -16,9 +16,10 @@ Planning make_plan(const Campaign& campaign, const PlanningOptions& options) {
         throw InputError(fmt::format("{} poses that may be missing leave none of {}; must be fewer",
                                      options.drop_out_count, all));
     }
-    return detail::PlanMaker(std::move(problem), options).make(count, [](const Planning&) {
-        return true;
-    });
+    const detail::PlanMaker maker(std::move(problem), options);
+    Planning planning = maker.make(count, [](const Planning&) { return true; });
+    maker.add_verification(planning);
+    return planning;
 }
 
 Planning judge_again(const Plan& plan, const Campaign& campaign, const PlanningOptions& options) {

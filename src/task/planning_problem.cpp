@@ -5,20 +5,21 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "../core/decompositions.hpp"
 #include "../core/text.hpp"
+#include "../measurement/places.hpp"
+#include "../measurement/prior_rows.hpp"
 #include "../model/joint_limits.hpp"
 #include "inputs.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/jacobian/unknowable.hpp"
 #include "workspace.hpp"
 
 namespace posewise::detail {
 namespace {
-
-/// New poses keep so far from those that could not be reached (some joint, rad).
-constexpr double distance_from_dropped = to_radians(5);
 
 // ---- What is known before ----
 
@@ -43,11 +44,9 @@ Campaign with_base(Campaign campaign, const PlanningOptions& options) {
     return campaign;
 }
 
-void hold(PlanningProblem& problem, const MatrixXd& information, const RowMatrixXd& poses) {
+void hold(PlanningProblem& problem, const RowMatrixXd& rows, const RowMatrixXd& poses) {
     HeldPoses& held = problem.search.held;
-    const Index L = parameter_count(problem.campaign);
-    if (held.information.size() == 0) held.information.setZero(L, L);
-    held.information += information;
+    held.rows = stack(held.rows, rows);
     RowMatrixXd all(held.configurations.rows() + poses.rows(),
                     problem.campaign.robot.joint_count());
     if (held.configurations.rows() > 0)
@@ -80,6 +79,12 @@ void check_repaired(const PlanningProblem& problem, const Plan& repaired) {
     }
     if (!fault.empty()) throw input_error_at({name}, fault);
     for (const std::string& id : problem.request.dropped) {
+        if (std::ranges::count(repaired.verification, id, &PlannedPose::id) > 0) {
+            throw InputError(fmt::format(
+                "--drop {}: is a pose to verify, which need not be replaced; leave it out of what "
+                "is measured",
+                id));
+        }
         const auto has_id = [&](const PlannedPose& pose) { return pose.id == id; };
         if (std::any_of(repaired.poses.begin(), repaired.poses.end(), has_id)) continue;
         throw InputError(fmt::format("--drop {}: {} has no such pose", id, name));
@@ -95,14 +100,15 @@ void hold_kept(PlanningProblem& problem, const Plan& repaired) {
         const bool is_dropped = std::find(ids.begin(), ids.end(), pose.id) != ids.end();
         (is_dropped ? away : problem.kept).push_back(pose);
     }
+    problem.kept_to_verify = repaired.verification;
+    away.insert(away.end(), repaired.verification.begin(), repaired.verification.end());
     for (const PlannedPose& pose : problem.kept) check_kept(problem, pose);
-    const Index L = parameter_count(problem.campaign);
+    for (const PlannedPose& pose : problem.kept_to_verify) check_kept(problem, pose);
     const Index joints = problem.campaign.robot.joint_count();
-    hold(problem, MatrixXd::Zero(L, L), configurations_of(away, joints));
+    hold(problem, {}, configurations_of(away, joints));
     if (problem.kept.empty()) return;
     for (PlannedPose& pose : problem.kept) pose.is_kept = true;
-    hold(problem, information(blocks_of(problem, problem.kept)),
-         configurations_of(problem.kept, joints));
+    hold(problem, blocks_of(problem, problem.kept).matrix, configurations_of(problem.kept, joints));
     problem.search.held_pose_count += static_cast<Index>(problem.kept.size());
 }
 
@@ -118,11 +124,13 @@ PlanningOptions options_of(const Plan& plan, const PlanningOptions& inputs) {
 PlanningProblem state_planning(const Campaign& given, const PlanningOptions& options) {
     check_torques_known(given);
     const Campaign campaign = with_base(given, options);
+    check_places(campaign);
+    check_knowable(campaign, options.stop);
     Cell cell = campaign.cell;
     if (options.repaired) {
-        cell.least_joint_distance = std::max(cell.least_joint_distance, distance_from_dropped);
+        cell.least_joint_distance = std::max(cell.least_joint_distance, distance_from_others);
     }
-    PlanningProblem problem{options, campaign, Constraints(campaign, std::move(cell)), {}, 0, 0,
+    PlanningProblem problem{options, campaign, Constraints(campaign, std::move(cell)), {}, 0, 0, {},
                             {},      {}};
     problem.request.has_prior = campaign.spread.is_prior;
     if (problem.request.repeats == 0) problem.request.repeats = 1;
@@ -131,9 +139,9 @@ PlanningProblem state_planning(const Campaign& given, const PlanningOptions& opt
     problem.request.starts = problem.search.starts;
     problem.search.seed = options.seed;
     if (options.is_focused_on_robot) problem.search.nuisance = nuisance_of_robot(campaign);
-    if (campaign.spread.is_prior) hold(problem, prior_information(campaign), {});
+    if (campaign.spread.is_prior) hold(problem, prior_rows(campaign), {});
     if (options.held) {
-        hold(problem, information(measured_blocks(campaign, campaign.nominal, *options.held)),
+        hold(problem, measured_blocks(campaign, campaign.nominal, *options.held).matrix,
              options.held->configurations);
         problem.measured_count = options.held->configuration_count();
         problem.search.held_pose_count += problem.measured_count;
@@ -185,6 +193,21 @@ RowMatrixXd configurations_of(const std::vector<PlannedPose>& poses, Index joint
     return configurations;
 }
 
+PlannedPose pose_at(const PlanningProblem& problem, std::string id, const VectorXd& configuration) {
+    PlannedPose pose;
+    pose.id = std::move(id);
+    pose.configuration = configuration;
+    pose.targets = targets_seen(problem.constraints.seen(configuration));
+    pose.clearance = least_clearance(problem, configuration);
+    return pose;
+}
+
+std::optional<Clearance> least_clearance(const PlanningProblem& problem,
+                                         const VectorXd& configuration) {
+    Clearance nearest = problem.constraints.nearest(configuration);
+    return nearest.body.empty() ? std::nullopt : std::optional(std::move(nearest));
+}
+
 Seen seen_at(const std::vector<PlannedPose>& poses, Index target_count) {
     Seen is_seen(static_cast<Index>(poses.size()), target_count);
     for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -201,9 +224,7 @@ Blocks blocks_of(const PlanningProblem& problem, const std::vector<PlannedPose>&
 }
 
 MatrixXd held_information(const PlanningProblem& problem) {
-    const Index L = parameter_count(problem.campaign);
-    const MatrixXd& held = problem.search.held.information;
-    return held.size() > 0 ? held : MatrixXd::Zero(L, L);
+    return information_of(problem.search.held.rows, parameter_count(problem.campaign));
 }
 
 std::vector<NamedNumber> standard_deviations(const Campaign& campaign, const MatrixXd& M) {
@@ -230,7 +251,12 @@ std::string describe_violation(const PlanningProblem& problem, const PlannedPose
     for (std::size_t k = 0; k < constraint_count; ++k) {
         const auto constraint = static_cast<Constraint>(k);
         if (report[constraint] >= -rounding || constraint == Constraint::JointLimits) continue;
-        return std::string("does not meet ") + constraint_name(constraint);
+        std::string text = std::string("does not meet ") + constraint_name(constraint);
+        if (constraint == Constraint::KeepOuts || constraint == Constraint::SelfCollision) {
+            text += ": " +
+                    describe_clearance(constraints.nearest(q), constraints.cell().safety_distance);
+        }
+        return text;
     }
     const std::vector<std::string> contacts = problem.campaign.sensor->contact_names();
     for (const Index target : pose.targets) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "posewise/core/units.hpp"
 #include "posewise/task/planning.hpp"
 
 namespace posewise::detail {
@@ -16,8 +17,13 @@ struct PlanningProblem {
     Index workspace_count = 0;
     Index measured_count = 0;
     std::vector<PlannedPose> kept;  ///< of the plan to repair
+    std::vector<PlannedPose> kept_to_verify;
     PlanOptions search;  ///< without test poses, which are errors.by_parameters for G and V
 };
+
+/// New poses keep so far from those that could not be reached, poses to verify from all others
+/// (some joint, rad; farther if the cell says so).
+inline constexpr double distance_from_others = to_radians(5);
 
 /// The options that a plan was made with, to state its problem again: all of its poses are its own.
 PlanningOptions options_of(const Plan& plan, const PlanningOptions& inputs);
@@ -36,6 +42,13 @@ std::optional<Box> workspace_box(const PlanRequest& request);
 RowMatrixXd workspace_of(const PlanningProblem& problem, const PlanningOptions& options);
 /// Fills in what errors are there.
 void draw_workspace(PlanningProblem& problem, const PlanningOptions& options);
+
+/// A pose at a configuration, with the targets that are seen there.
+PlannedPose pose_at(const PlanningProblem& problem, std::string id, const VectorXd& configuration);
+
+/// PlannedPose::clearance.
+std::optional<Clearance> least_clearance(const PlanningProblem& problem,
+                                         const VectorXd& configuration);
 
 /// poses x targets.
 Seen seen_at(const std::vector<PlannedPose>& poses, Index target_count);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "../core/decompositions.hpp"
 #include "posewise/jacobian/identification.hpp"
 
 namespace posewise::detail {
@@ -17,7 +18,7 @@ PoolChoices::PoolChoices(const Campaign& campaign, const Pool& pool, double repe
     if (select_.criterion == Criterion::G) select_.criterion = Criterion::V;  // much quicker
     if (select_.criterion == Criterion::V) select_.test_poses = &prediction;
     select_.nuisance = search.nuisance;
-    select_.held = search.held.information;
+    select_.held_rows = search.held.rows;
     select_.held_pose_count = search.held_pose_count;
     select_.starts = 4;  // one alone may be far off where poses hardly suffice
     select_.proof = 0;
@@ -37,9 +38,8 @@ std::optional<std::vector<Index>> PoolChoices::choose(Index pose_count,
 }
 
 MatrixXd PoolChoices::information(const std::vector<Index>& chosen) const {
-    MatrixXd M = posewise::information(blocks_, chosen);
-    if (select_.held.size() > 0) M += select_.held;
-    return M;
+    return information_of(select_.held_rows, blocks_.parameter_count()) +
+           posewise::information(blocks_, chosen);
 }
 
 InformationByNoise PoolChoices::by_noise(const std::vector<Index>& chosen) const {

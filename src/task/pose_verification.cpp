@@ -12,6 +12,7 @@
 #include "planning_problem.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/units.hpp"
+#include "verification_poses.hpp"
 
 namespace posewise {
 namespace {
@@ -26,7 +27,25 @@ constexpr double rounding = 1e-6;
 std::string find_fault_of_way(const Constraints& constraints, const VectorXd& via) {
     const std::string beyond = detail::describe_limit_violation(constraints.robot(), via);
     if (!beyond.empty()) return "has a via beyond the joint limits: " + beyond;
-    return constraints.collision_clearance(via) < -rounding ? "has a via that collides" : "";
+    if (constraints.collision_clearance(via) >= -rounding) return "";
+    return "has a via that collides: " +
+           describe_clearance(constraints.nearest(via), constraints.cell().safety_distance);
+}
+
+/// Where the least clearance that a pose states is another.
+std::string find_fault_of_clearance(const Constraints& constraints, const PlannedPose& pose) {
+    if (!pose.clearance) return "";
+    const auto describe = [](const Clearance& clearance) {
+        return fmt::format("{} mm, {} to {}", detail::format_mm(clearance.distance), clearance.body,
+                           clearance.other);
+    };
+    const Clearance& stated = *pose.clearance;
+    const Clearance nearest = constraints.nearest(pose.configuration);
+    if (std::abs(nearest.distance - stated.distance) <= rounding && nearest.body == stated.body &&
+        nearest.other == stated.other) {
+        return "";
+    }
+    return fmt::format("states as nearest {}, is {}", describe(stated), describe(nearest));
 }
 
 /// What is wrong with a pose; empty if nothing is.
@@ -37,7 +56,7 @@ std::string find_fault(const PlanningProblem& problem, const PlannedPose& pose) 
         const std::string fault = find_fault_of_way(problem.constraints, *pose.via);
         if (!fault.empty()) return fault;
     }
-    return "";
+    return find_fault_of_clearance(problem.constraints, pose);
 }
 
 void check_poses(const PlanningProblem& problem, const std::vector<PlannedPose>& poses,
@@ -62,6 +81,31 @@ void check_poses(const PlanningProblem& problem, const std::vector<PlannedPose>&
     if (is_right) findings.note("poses", true, fmt::format("{}, all feasible", poses.size()));
 }
 
+/// Those that the calibration is to be judged on: feasible, and apart from all others.
+void check_verification(const PlanningProblem& problem, const Plan& plan, Findings& findings) {
+    if (plan.verification.empty()) return;
+    const double least = detail::verification_distance(problem);
+    std::vector<PlannedPose> others = plan.poses;
+    bool is_right = true;
+    for (const PlannedPose& pose : plan.verification) {
+        std::string fault = find_fault(problem, pose);
+        for (const PlannedPose& other : others) {
+            const double distance = joint_distance(pose.configuration, other.configuration);
+            if (!fault.empty() || distance >= least - rounding) continue;
+            fault = fmt::format("is {} deg from {}, must be {} away",
+                                detail::format_short(to_degrees(distance)), detail::quote(other.id),
+                                detail::format_short(to_degrees(least)));
+        }
+        others.push_back(pose);
+        if (fault.empty()) continue;
+        findings.note("verification", false, detail::quote(pose.id) + ' ' + fault);
+        is_right = false;
+    }
+    if (!is_right) return;
+    findings.note("verification", true,
+                  fmt::format("{}, all feasible and apart", plan.verification.size()));
+}
+
 void check_value(const Plan& plan, const PlanningProblem& problem, const Blocks& blocks,
                  Findings& findings) {
     SelectOptions options;
@@ -69,13 +113,12 @@ void check_value(const Plan& plan, const PlanningProblem& problem, const Blocks&
     options.pose_count = blocks.count();
     if (needs_test_poses(options.criterion)) options.test_poses = &problem.errors.by_parameters;
     options.nuisance = problem.search.nuisance;
-    options.held = problem.search.held.information;
+    options.held_rows = problem.search.held.rows;
     options.held_pose_count = problem.search.held_pose_count;
     std::vector<Index> all(plan.poses.size());
     std::iota(all.begin(), all.end(), Index{0});
     const double value = detail::choice_value(blocks, options, all);
-    findings.compare("value", plan.value, value,
-                     detail::is_same_value(options.criterion, plan.value, value, rounding));
+    findings.compare_value(options.criterion, plan.value, value, rounding);
 }
 
 /// Each parameter's, which the plan must state, and no other.
@@ -152,6 +195,7 @@ Verification verify(const Plan& plan, const Campaign& campaign, const PlanningOp
     if (!mismatch.empty()) throw InputError(mismatch);
     return detail::collect(static_cast<Index>(plan.poses.size()), [&](Findings& findings) {
         check_poses(problem, plan.poses, findings);
+        check_verification(problem, plan, findings);
         if (!findings.has_same_parameters(plan, problem.campaign)) return;
         const Blocks blocks = detail::blocks_of(problem, plan.poses);
         check_value(plan, problem, blocks, findings);

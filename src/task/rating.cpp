@@ -1,6 +1,7 @@
-#include <Eigen/Cholesky>
 #include <limits>
 
+#include "../core/decompositions.hpp"
+#include "../measurement/prior_rows.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/task/choice.hpp"
@@ -9,29 +10,11 @@
 namespace posewise {
 namespace {
 
-/// Blocks, and below them what a prior tells: a root of its information of parameters that have
-/// one.
-MatrixXd stack_with_prior(const Blocks& blocks, const MatrixXd& prior) {
-    std::vector<Index> known;
-    for (Index k = 0; k < prior.rows(); ++k) {
-        if (prior(k, k) > 0) known.push_back(k);
-    }
-    const MatrixXd root = MatrixXd(prior(known, known)).llt().matrixU();
-    MatrixXd stacked = MatrixXd::Zero(blocks.matrix.rows() + root.rows(), blocks.parameter_count());
-    stacked.topRows(blocks.matrix.rows()) = blocks.matrix;
-    stacked.bottomRows(root.rows())(Eigen::all, known) = root;
-    return stacked;
-}
-
-Indices compute_indices(const Blocks& blocks, const MatrixXd& stacked) {
+Indices compute_indices(const Blocks& blocks, const RowMatrixXd& stacked) {
     const VectorXd s = singular_values(stacked);
-    const MatrixXd M = stacked.transpose() * stacked;
     Indices indices;
     for (std::size_t i = 0; i < all_criteria.size(); ++i) {
-        const Criterion criterion = all_criteria[i];
-        indices.values[i] = needs_test_poses(criterion)
-                                ? evaluate(criterion, M, blocks.count(), &blocks)
-                                : evaluate(criterion, s, blocks.count());
+        indices.values[i] = evaluate_rows(all_criteria[i], stacked, blocks.count(), &blocks);
     }
     const double least = s[s.size() - 1];
     indices.condition = least > 0 ? s[0] / least : std::numeric_limits<double>::infinity();
@@ -49,7 +32,7 @@ Rating rate(const Campaign& campaign, const Measurements& measurements, Index di
     const Blocks scaled = make_blocks(campaign, registered, configurations, rating.repeats * share);
     // m per m and m per rad are mm per mm and mm per mrad: nothing to convert.
     const Blocks plain = make_plain_blocks(campaign, registered, configurations, share);
-    const MatrixXd stacked = stack_with_prior(scaled, prior_information(campaign));
+    const RowMatrixXd stacked = detail::stack(detail::prior_rows(campaign), scaled.matrix);
     rating.configurations = scaled.count();
     rating.parameters = scaled.parameter_count();
     rating.scaled = compute_indices(scaled, stacked);

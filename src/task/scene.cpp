@@ -4,8 +4,8 @@
 #include <cmath>
 #include <variant>
 
+#include "../measurement/places.hpp"
 #include "posewise/calibrator/registration.hpp"
-#include "posewise/measurement/sensors.hpp"
 #include "posewise/model/error_terms.hpp"
 
 namespace posewise {
@@ -101,12 +101,6 @@ void add_cell(Scene& scene, const Campaign& campaign, const std::vector<Index>& 
     }
 }
 
-const PointNoise* noise_of(const Sensor& sensor) {
-    if (const auto* points = dynamic_cast<const PointSensor*>(&sensor)) return &points->noise();
-    if (const auto* poses = dynamic_cast<const PoseSensor*>(&sensor)) return &poses->noise();
-    return nullptr;
-}
-
 }  // namespace
 
 Scene make_scene(const Campaign& campaign, const Parameters& parameters) {
@@ -151,12 +145,7 @@ std::vector<Vector3d> arm_places(const Scene& scene, const VectorXd& configurati
 }
 
 std::optional<Vector3d> instrument_position(const Campaign& campaign) {
-    const PointNoise* const noise = noise_of(*campaign.sensor);
-    if (noise != nullptr) {
-        if (const auto* tracker = std::get_if<LaserTrackerNoise>(noise)) return tracker->position;
-    }
-    if (campaign.cell.sight) return Vector3d(Vector3d::Zero());
-    return std::nullopt;
+    return detail::tracker_position(campaign);
 }
 
 std::vector<std::string> reading_names(const Campaign& campaign) {

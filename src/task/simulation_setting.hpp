@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "posewise/planner/pool.hpp"
+#include "posewise/measurement/pool.hpp"
 #include "posewise/task/simulated_study.hpp"
 #include "trial_robot.hpp"
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "../core/checksum.hpp"
+#include "calibration_options.hpp"
 #include "inputs.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
@@ -38,9 +39,9 @@ struct Setting {
 
 /// Why not even all configurations identify the model; empty: they do.
 std::string describe_undetermined(const Campaign& campaign, const Measurements& measurements,
-                                  const Registration& registration) {
+                                  const Registration& registration, const StudyOptions& options) {
     if (!registration.is_determined()) return registration.undetermined;
-    return identify(campaign, measurements, registration.parameters).undetermined;
+    return detail::judge_measured(campaign, measurements, options.judge, options.stop);
 }
 
 void check_options(const StudyOptions& options) {
@@ -209,7 +210,7 @@ Prepared prepare(Index least, const RobotModel& model, const Measurements& measu
     }
     Prepared prepared{{campaign, measurements, options, make_splits(all, split_count, options)},
                       {},
-                      describe_undetermined(campaign, measurements, registration)};
+                      describe_undetermined(campaign, measurements, registration, options)};
     std::vector<Split>& splits = prepared.setting.splits;
     const auto counts =
         choose_pose_counts(options.pose_counts, static_cast<Index>(splits.front().pool.size()),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "../measurement/prior_rows.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -34,7 +35,7 @@ SelectOptions study_selection(const StudyOptions& options, const Campaign& campa
     selection.starts = options.starts;
     selection.kicks = kick_count(candidate_count);
     selection.proof = proof_seconds;
-    if (campaign.spread.is_prior) selection.held = prior_information(campaign);
+    if (campaign.spread.is_prior) selection.held_rows = detail::prior_rows(campaign);
     selection.least_distance = options.least_distance;
     selection.seed = options.seed;
     return selection;

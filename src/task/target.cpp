@@ -343,6 +343,7 @@ TargetPlanning plan_for_target(const Campaign& campaign, const PlanningOptions& 
         return result;
     }
     Search(maker, options, result, least + target.robust_to).run();
+    if (result.planning) maker.add_verification(*result.planning);
     return result;
 }
 

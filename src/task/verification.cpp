@@ -20,9 +20,10 @@ namespace {
 using detail::ChoiceProblem;
 using detail::Findings;
 
-/// To rounding, which differs between processors.
-bool agree(Criterion criterion, double a, double b) {
-    return detail::is_same_value(criterion, a, b, 1e-8);
+constexpr double rounding = 1e-8;  // relative, which differs between processors
+
+bool agree(Criterion criterion, double a, double b, double tolerance = rounding) {
+    return detail::is_same_value(criterion, a, b, tolerance);
 }
 
 void check_candidates(const Plan& plan, const ChoiceProblem& problem, Findings& findings) {
@@ -193,14 +194,16 @@ void check_numbers(const Plan& plan, const ChoiceProblem& problem, const std::ve
                    Findings& findings) {
     const Criterion criterion = problem.options.criterion;
     const double value = detail::choice_value(problem.blocks, problem.options, poses);
-    findings.compare("value", plan.value, value, agree(criterion, plan.value, value));
+    findings.compare_value(criterion, plan.value, value, rounding);
 
     double bound = std::max(value, prove_bound(plan, problem, findings));
-    const bool claims_more = plan.bound < bound && !agree(criterion, plan.bound, bound);
+    const double of_bound =
+        std::clamp(0.1 * detail::bound_rounding(criterion, plan.certificate.M), rounding, 1e-4);
+    const bool claims_more = plan.bound < bound && !agree(criterion, plan.bound, bound, of_bound);
     if (claims_more && has_certificate(plan, problem) && agree(criterion, plan.value, value)) {
         bound = std::max(value, prove_again(plan, problem, poses, findings));
     }
-    findings.compare("bound", plan.bound, bound, agree(criterion, plan.bound, bound));
+    findings.compare("bound", plan.bound, bound, agree(criterion, plan.bound, bound, of_bound));
     if (plan.ending == Ending::Optimal && !agree(criterion, plan.value, plan.bound)) {
         findings.note("proof", false, "stated to be optimal, the bound is above the value");
     }
@@ -208,7 +211,7 @@ void check_numbers(const Plan& plan, const ChoiceProblem& problem, const std::ve
     const double actual =
         detail::efficiency(criterion, value, bound, problem.blocks.parameter_count() - nuisance);
     findings.compare("efficiency", plan.efficiency, actual,
-                     std::abs(plan.efficiency - actual) <= 1e-8);
+                     std::abs(plan.efficiency - actual) <= of_bound);
 }
 
 /// `campaign` is null for plain blocks.

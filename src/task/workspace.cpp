@@ -4,7 +4,7 @@
 
 #include "../model/sampling.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/planner/pool.hpp"
+#include "posewise/measurement/pool.hpp"
 
 namespace posewise::detail {
 

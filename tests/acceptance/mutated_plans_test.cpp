@@ -188,6 +188,8 @@ class MutatedPlans : public ::testing::Test {
                     "/candidates/count",
                     "/poses/#/id",
                     "/poses/#/kept",
+                    "/poses/#/clearance_m",  // older files have none
+                    "/poses/#/nearest",
                     "/poses/#/readable",  // may be left out; beside joints it must agree
                     "/poses/#/way_is_blocked",
                     "/poses/#/via/q1_rad",

@@ -147,5 +147,37 @@ TEST(CrossValidate, CountsFoldsThatCannotBeIdentified) {
     EXPECT_THROW(cross_validate(campaign, measurements, start, 7), InputError);
 }
 
+/// The robot came back to each of 16 poses: held out one by one each would be judged by its twin.
+TEST(CrossValidate, HoldsOutEqualPosesTogether) {
+    const Campaign campaign = tracked_campaign(fanuc());
+    const Measurements once = simulate(campaign, {16, 1, 7, 8}).measurements;
+    const Measurements again =
+        simulate_measurements(campaign, campaign.nominal, once.configurations, 1, 9);
+    Measurements both = once;
+    both.configurations.conservativeResize(32, Eigen::NoChange);
+    both.configurations.bottomRows(16) = once.configurations;
+    both.observations.conservativeResize(32, Eigen::NoChange);
+    both.observations.bottomRows(16) = again.observations;
+    both.is_seen.setConstant(32, once.is_seen.cols(), true);
+    for (Index i = 16; i < 32; ++i) {
+        both.ids.push_back('r' + std::to_string(i));
+        both.first_sample.push_back(i + 1);
+    }
+    const Parameters start = register_base_and_targets(campaign, both).parameters;
+    LevenbergMarquardtOptions options;
+    options.finds_model_error = false;
+    const CrossValidation found = cross_validate(campaign, both, start, 32, options);
+    EXPECT_EQ(found.folds, 16);
+    ASSERT_EQ(found.residuals.rows(), 32 * 3);
+    EXPECT_TRUE(found.residuals.allFinite());
+    const Index last = 15;
+    const Measurements others = take(both, all_but(32, {last, 16 + last}));
+    const Parameters without = identify(campaign, others, start, options).parameters;
+    const RowMatrixXd expected = residuals(campaign, without, take(both, {16 + last}));
+    EXPECT_LT((found.residuals.bottomRows(3) - expected).norm(), 1e-6 * expected.norm());
+    const Measurements still = take(both, {3, 19});
+    EXPECT_THROW(cross_validate(campaign, still, start, 2, options), InputError);
+}
+
 }  // namespace
 }  // namespace posewise

@@ -236,7 +236,7 @@ TEST_F(BadInput, ColumnsInTheWrongUnitAreSuspected) {
     }
     write_text("m.csv", text);
     const Outcome outcome = run("calibrate c.yaml -m m.csv --folds 0");
-    EXPECT_NE(outcome.err.find("are points in mm where the file says m?"), std::string::npos)
+    EXPECT_NE(outcome.err.find("with points in mm where the file says m ("), std::string::npos)
         << outcome.err;
 }
 

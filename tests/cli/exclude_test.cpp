@@ -97,7 +97,7 @@ TEST_F(Exclude, IsOfWhatIsThere) {
     const std::string calibrate = "calibrate c.yaml -m s.csv --exclude ";
     expect_input_error(calibrate + "99",
                        "s.csv: excluded configuration '99' is not among the measured ones; must be "
-                       "an id, or one and the number of a sample like ");
+                       "an id, one and the number of a sample like ");
     expect_input_error(calibrate + "4:3",
                        "s.csv: excluded sample '4:3' is not among the measured "
                        "ones; configuration '4' has 3 samples, 4:0 to 4:2");
@@ -107,6 +107,17 @@ TEST_F(Exclude, IsOfWhatIsThere) {
     for (int k = 1; k < 30; ++k) all += ',' + std::to_string(k);
     expect_input_error("indices c.yaml -m s.csv --exclude " + all, "nothing is left");
     EXPECT_EQ(run("calibrate c.yaml -m s.csv --exclude 4,,5").code, 2);
+    expect_input_error(calibrate + "6-4", "'6-4' is not among the measured ones");
+    expect_input_error(calibrate + "5,4-6", "'4-6' is excluded twice; keep one");
+}
+
+TEST_F(Exclude, TakesARangeInTheOrderOfTheFile) {
+    measure(points);
+    const std::string calibrate = "calibrate c.yaml -m s.csv --folds 0 --json --exclude ";
+    const Json by_range = Json::parse(run_well(calibrate + "4-6,9").out);
+    const Json by_ids = Json::parse(run_well(calibrate + "4,5,6,9").out);
+    EXPECT_EQ(by_range["robot"], by_ids["robot"]);
+    EXPECT_EQ(by_range["measured"]["configurations"], by_ids["measured"]["configurations"]);
 }
 
 TEST_F(Exclude, WinsOverThePlan) {

@@ -58,17 +58,24 @@ TEST_F(Export, HasTheOrientationOfAToolOfMeasuredPoses) {
     EXPECT_NEAR(quaternion[3], std::sqrt(0.5), 0.02);
 }
 
-TEST_F(Export, WarnsOfAURThatBeginsAtTheWrongLink) {
+TEST_F(Export, LeavesOutAURsHalfTurnFromBaseLinkAndRefusesAnother) {
     std::string design = read_text(source_folder() + "/designs/ur10/campaign.yaml") + base_;
-    design.insert(design.find("    - Rz q1"), "    - Rz 180 deg\n");
     design.insert(design.find("  sigma_mm"),
                   "  tool: {position_mm: [0, 0, 50], rpy_deg: [0, 0, 0]}\n");
-    calibrate(design);
-    const Outcome outcome = run("export c.yaml e.json --ur-kinematics k.yaml");
-    EXPECT_EQ(outcome.code, 0);
-    EXPECT_NE(outcome.err.find("must begin at base_link_inertia, not at base_link"),
+    const auto turned = [&](const std::string& turn) {
+        std::string text = design;
+        return text.insert(text.find("    - Rz q1"), "    - Rz " + turn + " deg\n");
+    };
+    calibrate(turned("180"));
+    const std::string text = run_well("export c.yaml e.json --ur-kinematics k.yaml");
+    EXPECT_NE(text.find("the half turn from base_link to base_link_inertia is not in it"),
               std::string::npos)
-        << outcome.err;
+        << text;
+    const std::string kinematics = read_text(folder_ / "k.yaml");
+    EXPECT_LT(std::abs(number_behind(kinematics, "yaw:")), 0.1) << kinematics;
+    calibrate(turned("170"));
+    expect_input_error("export c.yaml e.json --ur-kinematics k.yaml",
+                       "kinematics of a UR begin at base_link_inertia");
 }
 
 }  // namespace

@@ -252,6 +252,11 @@ TEST_F(Report, RefusesWhatItCannotReadOrWrite) {
     const std::string calibrate = "calibrate " + fanuc_design + " -m s.csv --folds 0 ";
     expect_input_error(calibrate + "--report s.csv", "is read and shall be written");
     expect_input_error(calibrate + "--out a --report ./a", "shall be written twice");
+    std::filesystem::create_symlink("b.json", folder_ / "link.html");
+    expect_input_error(calibrate + "--out b.json --report link.html", "shall be written twice");
+    EXPECT_FALSE(has_file("b.json"));
+    std::filesystem::create_symlink("absent/r.html", folder_ / "astray.html");
+    expect_input_error(calibrate + "--report astray.html", "cannot be written");
     expect_input_error(calibrate + "--report absent/r.html", "cannot be written");
     expect_input_error(calibrate + "--report .", "is a folder");
     expect_input_error("study " + fanuc_design + " -m s.csv --report s.csv", "is read and shall");

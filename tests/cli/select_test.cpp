@@ -98,6 +98,39 @@ TEST_F(Select, SaysThatTheBoundIsLooseAtFewPoses) {
     EXPECT_NE(text.find(" independent starts ended at this value"), std::string::npos);
 }
 
+/// 39 rows of 7 numbers: two blocks of three have six rows.
+TEST_F(Select, RefusesFewerRowsThanParametersAndVerifyDoes) {
+    std::string text;
+    for (int row = 0; row < 39; ++row) {
+        for (int column = 0; column < 7; ++column) {
+            text += std::to_string((row + 3) * (column + 5) * 37 % 101 - 50) +
+                    (column < 6 ? ',' : '\n');
+        }
+    }
+    write_text("few.csv", text);
+    const std::string few = "--blocks few.csv --rows 3 ";
+    for (const std::string criterion : {"d", "e", "v", "o2"}) {
+        for (const std::string relax : {"", " --relax -o w.csv"}) {
+            expect_input_error("select " + few + "-k 2 -c " + criterion + relax,
+                               "few.csv: pose count is 2, must be at least 3: 2 poses have 6 rows, "
+                               "fewer than the 7 parameters; or state a prior");
+        }
+    }
+    run_well("select " + few + "-k 3 -o p.json");
+    run_well("verify p.json");
+    auto edited = plan("p.json");
+    edited["poses"].erase(2);
+    edited["problem"]["pose_count"] = 2;
+    edited["value"] = nullptr;
+    write_text("e.json", edited.dump());
+    const Outcome outcome = run("verify e.json");
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.out.find("value:      stated -inf, but the poses do not identify all "
+                               "parameters"),
+              std::string::npos)
+        << outcome.out;
+}
+
 TEST_F(Select, APriorAllowsFewerPosesThanParametersNeed) {
     expect_input_error("select " + input_ + "-k 3 -o p.json", "state a prior");
     run_well("select " + input_ + "-k 3 --prior -o p.json");
@@ -264,8 +297,8 @@ TEST_F(Select, SuspectsTheUnitOfMeasurements) {
         write_text("wrong.csv", text);
         return "select " + fanuc_design + " -m wrong.csv -k 8";
     };
-    expect_input_error(renamed("_mm", "_m"), "are points in mm where the file says m?");
-    expect_input_error(renamed("_rad", "_deg"), "are joint values in rad where the file says deg");
+    expect_input_error(renamed("_mm", "_m"), "with points in mm where the file says m (");
+    expect_input_error(renamed("_rad", "_deg"), "with joint values in rad where the file says degrees (");
 }
 
 TEST_F(Select, RefusesMoreCandidatesThanMemoryHolds) {

@@ -33,11 +33,11 @@ class Units : public Program {
 TEST_F(Units, LimitsInDegreesUnderRadAreRefused) {
     write_with("limits_deg: [-90, 90]", "limits_rad: [-90, 90]");
     expect_input_error("inspect w.yaml",
-                       "robot.joints.q2.limits_rad reaches 14.3 turns; must be within five either "
+                       "robot.joints.q2.limits_rad reaches 14.3 turns; must be within three either "
                        "way: are they degrees? Then the key is limits_deg");
     expect_input_error("plan w.yaml --poses 10", "are they degrees?");
     write_with("limits_deg: [-90, 90]", "limits_deg: [-90, 1900]");
-    expect_input_error("inspect w.yaml", "q2.limits_deg reaches 5.28 turns; must be within five");
+    expect_input_error("inspect w.yaml", "q2.limits_deg reaches 5.28 turns; must be within three");
     write_with("limits_deg: [-90, 90]", "limits_deg: [-1700, 1700]");
     run_well("inspect w.yaml");
 }

@@ -44,7 +44,7 @@ TEST_F(Ur10, SaysThatTheOrderOfTheQuaternionIsWrong) {
     csv.replace(csv.find(right), right.size(), "qx,qy,qz,qw");
     write_text("m.csv", csv);
     const auto outcome = run("calibrate c.yaml --folds 0 -m m.csv");
-    EXPECT_NE(outcome.err.find("is qw the real part"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("with the number called qx as its real part ("), std::string::npos) << outcome.err;
 }
 
 /// Its axes 2, 3 and 4 are parallel to within 2 mrad: common normals are up to 1 km away.

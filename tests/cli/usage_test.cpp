@@ -137,7 +137,7 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
     {"study a.yaml -m b.csv -c ,", "--criteria: '' is no criterion; must be one of o1, "},
     {"select a.yaml -m b.csv -k 8 -c o6", "--criterion: 'o6' is no criterion; must be one of o1, "},
     {"study a.yaml -m b.csv --models full,rigid",
-     "--models: is 'rigid'; must be full, geometric or stated"},
+     "--models: is 'rigid'; must be full, geometric, offsets or stated"},
     {"study a.yaml -m b.csv -k 8:6", "--poses: is '8:6'; the first must not be above the last"},
     {"study absent.yaml --simulate -k 6,10 --merge a.sqlite --store b.sqlite",
      " is not looked at where --merge puts stores together"},

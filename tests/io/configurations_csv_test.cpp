@@ -61,6 +61,23 @@ TEST_F(ReadConfigurations, RefusesWhatIsBeyondTheLimits) {
         << error;
 }
 
+TEST_F(ReadConfigurations, LeavesOutThePointsToPassThatProgramsKeep) {
+    const std::string text =
+        "config,q1_rad,q2_rad,lift_mm,visible_targets,purpose,way,clearance_mm,nearest\n"
+        "p1.via,0.7,0.2,100,,via,straight,,\n"
+        "p1,0.5,0.25,125,2,calibrate,BLOCKED,31.50,target 1 to fence\n"
+        "v1,1,0.5,250,1 2,verify,straight,,\n";
+    const Configurations configurations = read(text);
+    EXPECT_EQ(configurations.ids, (std::vector<std::string>{"p1", "v1"}));
+    EXPECT_TRUE((configurations.is_seen == Seen{{false, true}, {true, true}}).all());
+    const Configurations program = read_program(folder_.write("q.csv", text), campaign_);
+    EXPECT_EQ(program.ids, (std::vector<std::string>{"p1.via", "p1", "v1"}));
+    EXPECT_EQ(program.purposes, (std::vector<std::string>{"via", "calibrate", "verify"}));
+    const std::string error = testing::input_error_of(
+        [&] { read("config,q1_rad,q2_rad,lift_mm,purpose\na,0.5,0.25,125,Via\n"); });
+    EXPECT_EQ(error, "q.csv:2:16: purpose is 'Via'; must be calibrate, verify or via");
+}
+
 TEST_F(ReadConfigurations, StillNeedsEveryJoint) {
     const std::string error =
         testing::input_error_of([&] { read("config,q1_rad,lift_mm\nlow,0.5,125\n"); });

@@ -94,8 +94,8 @@ TEST_F(EstimateFile, LeavesOutWhatWasNotComputed) {
     calibration_.repeatability = Repeatability{5e-5};
     calibration_.held_out = CrossValidation{};
     calibration_.held_out->failures = {"fold 3: too few", "fold 4: too few"};
-    calibration_.left_out = Metrics{};
-    calibration_.validation = Metrics{};
+    calibration_.left_out = Judgement{};
+    calibration_.validation = Judgement{};
     const Json accuracy = written().at("accuracy");
     EXPECT_DOUBLE_EQ(accuracy.at("repeatability_mm").get<double>(), 0.05);
     EXPECT_EQ(accuracy.at("held_out").at("failures").size(), 2U);

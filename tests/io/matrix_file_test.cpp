@@ -45,6 +45,22 @@ TEST_F(ReadMatrix, TakesTheFirstOrANamedVariableOfAMatlabFile) {
               std::string::npos);
 }
 
+/// Zeros are packed a thousandfold: a small file would fill the memory.
+TEST_F(ReadMatrix, RefusesZerosThatArePackedAThousandfold) {
+    const std::string path = folder_.path("b.mat");
+    const auto write = [&](matio_compression compression) {
+        mat_t* const file = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
+        testing::add_matrix(file, "many", 600000, 2, std::vector<double>(1200000), compression);
+        Mat_Close(file);
+    };
+    write(MAT_COMPRESSION_ZLIB);
+    EXPECT_EQ(input_error_of([&] { read_matrix(path); }),
+              "b.mat: variable 'many' is 600000 x 2, packed more than fiftyfold; must be saved "
+              "unpacked (-v6)");
+    write(MAT_COMPRESSION_NONE);
+    EXPECT_EQ(read_matrix(path).rows(), 600000);
+}
+
 TEST_F(ReadMatrix, SaysWhereAFileIsWrong) {
     const std::string rule = "; must be a finite number with a decimal point";
     EXPECT_EQ(error_of("a,b\n1,2\n3,four\n"), "b.csv:3:3: 'four' is not a number" + rule);

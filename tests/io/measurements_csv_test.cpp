@@ -81,6 +81,23 @@ TEST(ReadMeasurementsCsv, EmptyCellsAreATargetThatWasNotSeen) {
     EXPECT_EQ(means.observations(0, 3), 4);
 }
 
+TEST(ReadMeasurementsCsv, CellsOfNanAreATargetThatWasNotSeen) {
+    for (const std::string nan : {"nan", "NaN", "NAN"}) {
+        expect_equal(read(replaced(good, "10,11,12", nan + ',' + nan + ',' + nan)),
+                     read(replaced(good, "10,11,12", ",,")));
+    }
+}
+
+TEST(ReadMeasurementsCsv, TheRobotMayComeBackToAPose) {
+    const Measurements measurements = read(replaced(good, "0.25", "0.2"));
+    EXPECT_EQ(measurements.ids, (std::vector<std::string>{"a", "b"}));
+    EXPECT_EQ(measurements.configurations.row(0), measurements.configurations.row(1));
+}
+
+TEST(ReadMeasurementsCsv, RadiansALittleBeyondTheLimitsAreRadians) {
+    EXPECT_EQ(read(replaced(good, "b,0,0.1", "b,0,12.5")).configurations(1, 0), 12.5);
+}
+
 TEST(ReadMeasurementsCsv, DoesNotMindWhichTargetsWerePlannedToBeVisible) {
     std::string text = replaced(good, "config,", "visible_targets,config,");
     for (const char* row : {"\na,0", "\na,1", "\nb,0"}) {
@@ -229,13 +246,15 @@ TEST(BadMeasurementsCsv, Numbers) {
         {"1.5", "", "3:17: p1_x" + some},
         {"1.5,2,3", "1.5,,3", "3:21: p1_y" + some},
         {"1.5,2,3", ",,3", "3:17: p1_x" + some},
-        {"10,11,12", "nan,nan,nan", "4:24: 'nan' is not fin[...]"},
-        {"1.5", "nan", "3:17: 'nan' is not finite" + rule},
+        {"10,11,12", "nan,11,12",
+         "4:24: p2_x is not a number, but not all cells of target 2 are; must be a number, or all "
+         "empty if it was not seen"},
+        {"0.25", "nan", "4:9: 'nan' is not finite" + rule},
         {"1.5", "inf", "3:17: 'inf' is not finite" + rule},
         {"1.5", "-inf", "3:17: '-inf' is not finite" + rule},
         {"1.5", "1e999", "3:17: '1e999' is beyond the range of numbers; mu[...]"},
         {"b,0,0.1", "b,0,45",
-         "4:5: q1 = 45 rad is more than a full turn beyond its limits (-1.5708 to 1.5708 rad) and "
+         "4:5: q1 = 45 rad is more than four turns beyond its limits (-1.5708 to 1.5708 rad) and "
          "looks like degrees; state degrees as such"},
         {"0.25", "1e300", "[...]'1e300' is out of any cell; must be at most 10000 rad[...]"},
     });
@@ -243,14 +262,15 @@ TEST(BadMeasurementsCsv, Numbers) {
 
 TEST(BadMeasurementsCsv, Rows) {
     expect_messages_of({
+        {"b,0,0.1,0.25,0.3,7,8,9,10,11,12",
+         "b,0,0.1,0.2,0.3,1,2,3,4,5,6\nb,1,0.1,0.2,0.3,1.5,2,3,4,5,6",
+         "4: configuration 'b' has the same joint values and readings as 'a' (line 2), and 1 of 2 "
+         "are such copies; every reading must be in the file once"},
         {"4,5,6\na,1", "4,5\na,1", "2:26: row has 10 fields; must have 11 as the header"},
         {"4,5,6\na,1", "4,5,6,7\na,1",
          "2:29: row has 12 fields; must have 11 as the header; are there decimal commas?"},
         {"7,8,9,10,11,12", ",,,,,",
          "4:18: the sample shows no target; must show one at least, or be left out"},
-        {"0.25", "0.2",
-         "4:5: configuration 'b' has the same joint values as 'a' (line 2); samples of one "
-         "configuration must have the same id"},
         {"a,1,0.1,0.2,", "a,1,0.1,0.201,",
          "3:9: configuration 'a' has q2 = 0.201 here and 0.2 before (line 2); samples of one "
          "configuration must agree within 1e-6 (rad or m)"},

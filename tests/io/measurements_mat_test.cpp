@@ -173,7 +173,7 @@ TEST_F(ReadMeasurementsMat, RefusesAnglesThatLookLikeDegrees) {
     campaign_.mat.angle_unit = 1;
     write(good_q);
     EXPECT_EQ(error(),
-              "m.mat: variable 'q', row 1: q1 = 10 rad is more than a full turn beyond its limits "
+              "m.mat: variable 'q', row 1: q2 = 30 rad is more than four turns beyond its limits "
               "(-1.5708 to 1.5708 rad) and looks like degrees; state degrees as such");
 }
 

@@ -9,6 +9,7 @@
 #include "posewise/core/version.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/json_reports.hpp"
+#include "posewise/io/measurements_file.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -124,6 +125,36 @@ TEST_F(PlanFileTest, KeepsEveryKindOfCandidates) {
         EXPECT_EQ(read.kind, kind);
         EXPECT_EQ(read.request.sources.rows_per_block, kind == CandidateKind::Blocks ? 4 : 0);
     }
+}
+
+TEST_F(PlanFileTest, KeepsPosesToVerifyApart) {
+    make_continuous();
+    EXPECT_EQ(written().find("verification\""), std::string::npos);
+    plan_.request.verification_count = 3;
+    plan_.verification = {{"v1", Eigen::Vector3d(0.25, 0.5, 0.125), 1, {0}},
+                          {"v2", Eigen::Vector3d(0.5, 0.25, 1.0 / 3), 1, {0, 1}}};
+    plan_.verification[0].via = Eigen::Vector3d(0.1, 0.2, 0.3);
+    plan_.verification_time = 3.5;
+    written();
+    const Plan read = read_plan(path_);
+    EXPECT_EQ(read.poses.size(), 2U);
+    EXPECT_EQ(read.request.verification_count, 3);
+    EXPECT_EQ(read.verification_time, 3.5);
+    ASSERT_EQ(read.verification.size(), 2U);
+    EXPECT_EQ(read.verification[0].via, plan_.verification[0].via);
+    EXPECT_EQ(read.verification[1].configuration, plan_.verification[1].configuration);
+    EXPECT_EQ(read.verification[1].targets, plan_.verification[1].targets);
+    const std::string error = error_with("\"id\": \"v2\"", "\"id\": \"dritte Stück\"");
+    EXPECT_NE(error.find("verification[1].id: 'dritte Stück' occurs before in poses[1]; keep one"),
+              std::string::npos)
+        << error;
+    const Campaign campaign = read_campaign(folder_.path("c.yaml"));
+    write_plan(path_, plan_, folder_.path("p.csv"), campaign);
+    const std::string csv = read_file(folder_.path("p.csv"));
+    EXPECT_NE(csv.find(",visible_targets,purpose\n"), std::string::npos) << csv;
+    EXPECT_NE(csv.find(",calibrate\nv1,"), std::string::npos) << csv;
+    EXPECT_NE(csv.find(",1,verify\nv2,"), std::string::npos) << csv;
+    EXPECT_EQ(read_configurations(folder_.path("p.csv"), campaign).ids.size(), 4U);
 }
 
 TEST_F(PlanFileTest, KeepsWhatAContinuousPlanIs) {

@@ -55,6 +55,24 @@ Measurements read_csv(const std::string& sensor, const std::string& text) {
     return read_measurements_csv(folder.write("m.csv", text), read(sensor));
 }
 
+TEST(ReadSensor, KnowsHowLargeTheBallsAtTargetsAre) {
+    const std::string points =
+        "sensor: {kind: points, sigma_mm: 0.1, targets: {position_mm: [[0, 0, 50]]}}\n";
+    EXPECT_EQ(read(points).sensor->target_radius(), 0.01905);
+    const auto stated = [&](const std::string& radius) {
+        return replaced(points, "50]]", "50]], radius_mm: " + radius);
+    };
+    EXPECT_EQ(read(stated("6.35")).sensor->target_radius(), 0.00635);
+    EXPECT_EQ(read(stated("0")).sensor->target_radius(), 0);
+    EXPECT_EQ(read(distances).sensor->target_radius(), 0.01905);
+    EXPECT_FALSE(read(poses).sensor->target_radius());
+    EXPECT_FALSE(read(planes).sensor->target_radius()) << "a tip that is to touch is no body";
+    EXPECT_NE(input_error_of([&] { read(stated("-1")); }).find("radius_mm is '-1'"),
+              std::string::npos);
+    EXPECT_NE(input_error_of([&] { read(stated("2000")); }).find("radius_mm is '2000'"),
+              std::string::npos);
+}
+
 TEST(ReadSensor, TakesPosesWithTheirTool) {
     const Campaign campaign = read(poses);
     const auto& sensor = dynamic_cast<const PoseSensor&>(*campaign.sensor);

@@ -142,7 +142,7 @@ TEST(BadUrdf, Limits) {
         {"velocity=\"1.5\"", "velocity=\"-1.5\"",
          "24:5: joint 'arm-joint' has a negative velocity; must be positive"},
         {"lower=\"-1.5\"", "lower=\"-90\"",
-         "24:5: joint 'arm-joint' has limits beyond five turns; must be rad: are they degrees?"},
+         "24:5: joint 'arm-joint' has limits beyond three turns; must be rad: are they degrees?"},
         {"effort=\"10\"", "efort=\"10\"",
          "24:5: joint 'arm-joint' has limit with unknown attribute 'efort'; did you mean "
          "'effort'?"},
@@ -158,6 +158,46 @@ TEST(ReadUrdf, WarnsOfAttributesOfLimitsThatItDoesNotKnow) {
         "which is left out";
     EXPECT_TRUE(doubts[0].ends_with(end)) << doubts[0];
     EXPECT_EQ(make_chain(robot).joints()[1].upper, 2);
+}
+
+TEST(ReadUrdf, LeavesWhatIsOfOtherNamespacesToOthers) {
+    std::string extended =
+        replaced(text, "effort=\"10\"", "drake:acceleration=\"5\" effort=\"10\"");
+    extended = replaced(extended, "<axis xyz=\"0 -1 0\"/>",
+                        "<axis drake:x=\"1\" xyz=\"0 -1 0\"/><drake:mimc joint=\"a\"/>");
+    const UrdfRobot robot = read(extended);
+    EXPECT_TRUE(describe_doubts(robot).empty());
+    EXPECT_EQ(make_chain(robot).joints()[1].upper, 2);
+}
+
+TEST(ReadUrdf, TakesATemplateThatIsOnlyOfLooks) {
+    const auto with = [](const std::string& inside) {
+        return replaced(text, "<link name=\"base\"/>", "<link name=\"base\">" + inside + "</link>");
+    };
+    const std::string macro = "<xacro:colour name=\"grey\"/>";
+    EXPECT_EQ(error_of(with("<visual>" + macro + "</visual>")), "no error");
+    EXPECT_EQ(error_of(with("<collision><geometry>" + macro + "</geometry></collision>")),
+              "no error");
+    for (const std::string& inside : {macro, "<inertial>" + macro + "</inertial>"}) {
+        EXPECT_NE(error_of(with(inside)).find("is a template for xacro"), std::string::npos);
+    }
+    EXPECT_NE(error_of(replaced(text, "<axis xyz=\"0 -1 0\"/>", "<axis xyz=\"0 -1 0\"/>" + macro))
+                  .find("is a template for xacro"),
+              std::string::npos);
+}
+
+TEST(BadUrdf, NamesAMimicOfAJointOutsideBeforeItMissesJoints) {
+    const std::string error = error_of(R"(<robot name="finger">
+<link name="base"/><link name="f"/><link name="tool"/>
+<joint name="drive" type="revolute"><parent link="base"/><child link="f"/>
+<limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+<joint name="follow" type="revolute"><parent link="base"/><child link="tool"/>
+<limit lower="0" upper="1" effort="1" velocity="1"/><mimic joint="drive"/></joint></robot>
+)",
+                                       "base", "tool");
+    EXPECT_NE(error.find("joint 'follow' mimics 'drive', which is no joint between base link"),
+              std::string::npos)
+        << error;
 }
 
 TEST(ReadUrdf, TakesHugeLimitsForNone) {

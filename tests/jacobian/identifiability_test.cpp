@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "../../src/model/complete_model.hpp"
@@ -182,6 +183,76 @@ TEST(FindIdentifiable, CountIsFourRevoluteTwoPrismaticThreeTargets) {
     EXPECT_EQ(irreducible_count(testing::gantry_with_wrist()), 4 * 3 + 2 * 3 + targets);
     EXPECT_EQ(irreducible_count(testing::seven_joint_arm()), 4 * 7 + targets);
     EXPECT_EQ(irreducible_count(testing::rail_with_fanuc()), 4 * 6 + 2 * 1 + targets);
+}
+
+/// Of an axis that another joint drives along four errors count like those of any.
+TEST(FindIdentifiable, CountsAnAxisThatOnlyFollows) {
+    std::vector<Element> elements = testing::fanuc().elements();
+    const auto last = std::find_if(elements.begin(), elements.end(), [](const Element& element) {
+        return !element.joints.empty() && element.joints[0].joint == 5;
+    });
+    const std::vector<Element> more{rotation(Axis::Z, 0.6),
+                                    Element{Motion::Rotation, Axis::Y, 0.0, {{4, -1.0}}, ""},
+                                    rotation(Axis::Z, -0.7), translation(Axis::X, 0.1)};
+    elements.insert(last, more.begin(), more.end());
+    EXPECT_EQ(irreducible_count(Chain(testing::fanuc().joints(), elements)), 4 * 7 + 3 * 3);
+}
+
+/// A target that is on the last joint's axis but for rounded angles says as little as one on it.
+TEST(FindIdentifiable, IsNotDecidedByTheRoundingOfAngles) {
+    for (const double half : {std::numbers::pi / 2, 1.5707963, 1.570796, 1.5708}) {
+        std::vector<Element> elements = testing::fanuc().elements();
+        elements.push_back(rotation(Axis::Y, half));
+        Campaign campaign = tracked_campaign(Chain(testing::fanuc().joints(), elements));
+        campaign.robot = complete_model(campaign.robot);
+        campaign.sensor = std::make_shared<PointSensor>(
+            std::vector<std::optional<Vector3d>>(1, std::nullopt), 5e-5);
+        campaign.nominal.sensor = Vector3d(0, 0, 0.15);
+        const Identifiability found = find_identifiable(campaign);
+        EXPECT_EQ(found.kept.size(), 25U) << half;
+        EXPECT_TRUE(has_clear_gap(found)) << half;
+        for (const DroppedParameter& dropped : found.dropped) {
+            for (const ParameterTerm& term : dropped.absorbed_by) {
+                EXPECT_LT(std::abs(term.coefficient), 1e2) << half;
+            }
+        }
+    }
+}
+
+/// Faces that are touched tell no length: all could be larger.
+Campaign touching_campaign(bool offset_is_known) {
+    Campaign campaign = tracked_campaign(testing::fanuc());
+    campaign.nominal.world_from_base.setIdentity();
+    campaign.base_is_known.fill(true);
+    std::vector<Plane> planes{{{1, 0, 0}, 1.6}, {{0, 1, 0}, 0.4}, {{0, 0, 1}, 0.9}};
+    planes[0].offset_is_known = offset_is_known;
+    std::vector<double> unknowns{0.28, 0.05, -0.11};
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+        unknowns.insert(unknowns.end(), {0, 0});
+        if (k > 0 || !offset_is_known) unknowns.push_back(planes[k].offset);
+    }
+    campaign.sensor = std::make_shared<PlaneSensor>(
+        Targets(std::vector<std::optional<Vector3d>>{std::nullopt}), planes, 5e-5);
+    campaign.nominal.sensor = Eigen::Map<VectorXd>(unknowns.data(), std::ssize(unknowns));
+    return campaign;
+}
+
+TEST(FindIdentifiable, TellsNoLengthByFacesThatAreTouched) {
+    Campaign open = touching_campaign(false);
+    Campaign known = touching_campaign(true);
+    for (Campaign* const campaign : {&open, &known}) {
+        *campaign = with_robot(*campaign, complete_model(campaign->robot));
+    }
+    const std::size_t told = find_identifiable(open).kept.size();
+    EXPECT_EQ(find_identifiable(known).kept.size(), told) << "an unknown less, and a length";
+    EXPECT_EQ(told, 24U + 3 - 6 + 9 - 1);
+    EXPECT_GE(least_pose_count(open), static_cast<Index>(told)) << "a pose touches one face";
+    EXPECT_LE(least_pose_count(open), static_cast<Index>(told) + 3);
+}
+
+TEST(IrreducibleOffsets, AreTheJointsZerosThatBaseAndTargetsDoNotTell) {
+    const Chain offsets = irreducible_offsets(tracked_campaign(testing::fanuc()));
+    EXPECT_EQ(offsets.parameter_names(), (std::vector<std::string>{"dq2", "dq3", "dq4", "dq5"}));
 }
 
 TEST(FindIdentifiable, DroppedColumnIsTheStatedCombination) {

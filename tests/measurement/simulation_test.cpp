@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "../../src/measurement/noise.hpp"
 #include "../../src/model/sampling.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/constraints.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "support/campaigns.hpp"
+#include "support/cells.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise {
@@ -43,6 +47,54 @@ TEST(Simulate, ALongerCampaignBeginsWithTheShorterOne) {
     EXPECT_EQ(shorter.measurements.observations, prefix.observations);
     EXPECT_EQ(shorter.measurements.ids, prefix.ids);
     EXPECT_EQ(shorter.truth.robot, longer.truth.robot);
+}
+
+TEST(Simulate, SendsTheRobotOnlyWhereItsCellAllows) {
+    Campaign campaign = testing::cell_campaign();
+    campaign.cell = testing::demo_cell();
+    const Measurements measured = simulate(campaign, {.pose_count = 40}).measurements;
+    const Constraints constraints(campaign, campaign.cell);
+    ASSERT_EQ(measured.configuration_count(), 40);
+    for (Index i = 0; i < 40; ++i) {
+        const ConstraintReport report =
+            constraints.check(measured.configurations.row(i).transpose());
+        EXPECT_TRUE(report.is_feasible());
+        EXPECT_TRUE((measured.is_seen.row(i) == report.is_seen).all());
+    }
+    const Measurements shorter = simulate(campaign, {.pose_count = 7}).measurements;
+    EXPECT_EQ(shorter.configurations, measured.configurations.topRows(7));
+}
+
+TEST(Simulate, SaysWhatCollidesWhereTheCellLeavesNoRoom) {
+    Campaign campaign = testing::cell_campaign();
+    campaign.cell.keep_outs = {{"everything", HalfSpace{{0, 0, 9}, {0, 0, 1}}}};
+    const std::string error = input_error_of([&] { simulate(campaign, {.pose_count = 3}); });
+    EXPECT_NE(error.find("none of"), std::string::npos) << error;
+    EXPECT_NE(error.find("and everything are nearer than safety_distance"), std::string::npos)
+        << error;
+}
+
+TEST(Simulate, RefusesPlacesThatNoCellHas) {
+    const auto expect_refused = [](const std::function<void(Campaign&)>& spoil,
+                                   const std::string& words) {
+        Campaign campaign = tracked_campaign(fanuc());
+        spoil(campaign);
+        const std::string error = input_error_of([&] { simulate(campaign, {.pose_count = 3}); });
+        EXPECT_NE(error.find(words), std::string::npos) << error;
+    };
+    expect_refused([](Campaign& of) { of.nominal.sensor.head<3>() << 60, 40, 90; },
+                   "target 1, seen from the flange, is stated 115.3 m away, must be within 10 m; "
+                   "are its numbers in mm? Then the key is position_mm");
+    expect_refused([](Campaign& of) { of.nominal.sensor.head<3>() << 6e-5, 4e-5, 9e-5; },
+                   "stated 0.1153 mm away, which is no place for it; are its numbers in m?");
+    const auto put_base = [](double x) {
+        return [x](Campaign& of) {
+            of.cell.sight = Sight{};
+            of.nominal.world_from_base.translation() = Vector3d(x, 0, 0);
+        };
+    };
+    expect_refused(put_base(2500), "the base, seen from the tracker, is stated 2500 m away");
+    expect_refused(put_base(2.5e-3), "is stated 2.5 mm away, which is no place for it");
 }
 
 TEST(Simulate, SensorNoiseHasTheStatedVariance) {

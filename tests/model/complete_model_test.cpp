@@ -41,9 +41,41 @@ TEST(CompleteModel, GivesACoupledJointOneSetOfErrors) {
     EXPECT_EQ(complete_model(arm).parameter_count(), 10);
 }
 
+/// Three joints and an axis that follows the second one, tilted against it and in line with the
+/// third one, as a mimic of a URDF.
+Chain arm_with_mimic() {
+    return Chain({{"q1", -1, 1}, {"q2", -1, 1}, {"q3", -1, 1}},
+                 {driven(Motion::Rotation, Axis::Z, 0), translation(Axis::X, 0.5),
+                  driven(Motion::Rotation, Axis::X, 1), rotation(Axis::Y, -1.2),
+                  Element{Motion::Rotation, Axis::X, 0, {{1, -1.0}}, ""}, translation(Axis::X, 0.2),
+                  driven(Motion::Rotation, Axis::X, 2)});
+}
+
+TEST(CompleteModel, GivesAnAxisThatOnlyFollowsErrorsOfItsOwn) {
+    const Chain complete = complete_model(arm_with_mimic());
+    const auto names = complete.parameter_names();
+    ASSERT_EQ(names.size(), 20U);
+    EXPECT_EQ(std::vector<std::string>(names.begin() + 10, names.begin() + 15),
+              (std::vector<std::string>{"dq2_2", "Ty_q2_2", "Tz_q2_2", "Ry_q2_2", "Rz_q2_2"}));
+}
+
+TEST(CompleteModel, TakesACoupledJointWrittenInTwoElementsForOneAxis) {
+    const Element back{Motion::Rotation, Axis::Z, 0.0, {{0, -1.0}}, ""};
+    for (const bool is_first : {false, true}) {
+        std::vector<Element> elements{driven(Motion::Rotation, Axis::Z, 0),
+                                      translation(Axis::X, 1.0),
+                                      driven(Motion::Rotation, Axis::Z, 1)};
+        elements.insert(elements.begin() + (is_first ? 2 : 3), back);
+        const Chain arm({{"q1", -1, 1}, {"q2", -1, 1}}, elements);
+        EXPECT_EQ(complete_model(arm).parameter_count(), 10);
+    }
+}
+
 TEST(CompleteModel, OfItselfIsItself) {
-    const Chain once = complete_model(fanuc());
-    EXPECT_EQ(complete_model(once).parameter_names(), once.parameter_names());
+    for (const Chain& chain : {fanuc(), arm_with_mimic()}) {
+        const Chain once = complete_model(chain);
+        EXPECT_EQ(complete_model(once).parameter_names(), once.parameter_names());
+    }
 }
 
 }  // namespace

@@ -87,6 +87,26 @@ TEST(UrFrames, TakeHalvesOfPiThatAreRounded) {
               std::string::npos);
 }
 
+/// Descriptions with ROS's base_link begin with half a turn; frames begin after it.
+TEST(UrFrames, LeaveOutTheHalfTurnBeforeBaseLinkInertia) {
+    const auto turned = [](double angle) {
+        std::vector<Element> elements = ur_type().elements();
+        elements.insert(elements.begin(), rotation(Axis::Z, angle));
+        return Chain(ur_type().joints(), elements);
+    };
+    const UrFrames expected = ur_frames(ur_type(), VectorXd());
+    for (const double half : {std::numbers::pi, -std::numbers::pi, 3.14159}) {
+        const UrFrames frames = ur_frames(turned(half), VectorXd());
+        for (std::size_t k = 0; k < 6; ++k) {
+            EXPECT_TRUE(frames[k].isApprox(expected[k], 1e-14)) << half << ' ' << k;
+        }
+    }
+    EXPECT_NE(input_error_of([&] {
+                  ur_frames(turned(3.1), VectorXd());
+              }).find("the shoulder is turned by 177.6 deg about the base's z axis"),
+              std::string::npos);
+}
+
 TEST(UrFrames, AreRefusedWhereTheyCannotExpressTheRobot) {
     const auto error = [](const Chain& chain, const VectorXd& errors) {
         return input_error_of([&] { ur_frames(chain, errors); });

@@ -34,6 +34,7 @@ DesignSpace planar_space(Index n, double limit, bool absolute_angles = false) {
     space.lower[1] = -limit;
     space.upper[1] = limit;
     space.parameter_count = 2 * n;
+    space.rows = block;
     space.information = [block](const VectorXd& q) -> MatrixXd {
         const RowMatrixXd B = block(q);
         return B.transpose() * B;

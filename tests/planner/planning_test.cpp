@@ -211,13 +211,13 @@ TEST(PlanPoses, CountsThePosesThatAreHeld) {
     const Scene scene(300, 30);
     PlanOptions options = scene.options(Criterion::D, 4, 2);
     options.held.configurations = fanuc_pool(8);
-    options.held.information =
-        information(make_blocks(scene.campaign, scene.campaign.nominal, fanuc_pool(8)));
+    const Blocks held = make_blocks(scene.campaign, scene.campaign.nominal, fanuc_pool(8));
+    options.held.rows = held.matrix;
     options.held_pose_count = 8;
     const PlannedPoses plan = plan_poses(scene.space, scene.pool, scene.blocks, options);
     EXPECT_EQ(plan.configurations.rows(), 4);
     const Blocks added = make_blocks(scene.campaign, scene.campaign.nominal, plan.configurations);
-    const MatrixXd M = options.held.information + information(added);
+    const MatrixXd M = information(held) + information(added);
     EXPECT_TRUE(plan.information.isApprox(M, 1e-12));
     EXPECT_NEAR(evaluate(Criterion::D, M, 12), plan.value, 1e-6);
 }
@@ -246,6 +246,7 @@ TEST(PlanPoses, EndsWhenFiveStartsAgreeAndBoundsWhatIsBest) {
     space.lower = VectorXd::Zero(1);
     space.upper = VectorXd::Ones(1);
     space.parameter_count = 2;
+    space.rows = [](const VectorXd& q) -> RowMatrixXd { return Eigen::RowVector2d(1, q[0]); };
     space.information = [](const VectorXd& q) -> MatrixXd {
         const Eigen::Vector2d row(1, q[0]);
         return row * row.transpose();

@@ -6,7 +6,7 @@
 
 #include "../../src/model/halton.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/planner/pool.hpp"
+#include "posewise/measurement/pool.hpp"
 #include "support/cells.hpp"
 #include "support/sweep.hpp"
 
@@ -148,6 +148,18 @@ TEST(PlanTour, FindsAViaWhereTheStraightMoveHits) {
     const VectorXd& via = *tour.visits[0].via;
     EXPECT_GT(sampled_clearance(constraints, cell.home, via), -1e-3);
     EXPECT_GT(sampled_clearance(constraints, via, poses.row(0).transpose()), -1e-3);
+}
+
+TEST(PlanTour, StartsWhereTheRobotIsIfThatIsStated) {
+    const Constraints constraints = arm_and_post({9, 9, 0}, angle(0));
+    RowMatrixXd poses(3, 1);
+    poses << 10 * degree, 50 * degree, 90 * degree;
+    TourOptions options;
+    EXPECT_EQ(plan_tour(constraints, poses, options).visits.front().pose, 0);
+    options.start = angle(95);
+    const Tour tour = plan_tour(constraints, poses, options);
+    EXPECT_EQ(tour.visits.front().pose, 2);
+    EXPECT_NEAR(tour.time, 85 * degree, 1e-9);
 }
 
 TEST(PlanTour, StartsAnywhereIfThereIsNoHome) {

@@ -78,7 +78,7 @@ TEST(FormatCalibration, SaysWhatToExpectAtPosesToPredict) {
     }
 }
 
-TEST(FormatCalibration, NamesTheModelErrorThatDoesNotFitAndTheOneThatWould) {
+TEST(FormatCalibration, SaysWhichResidualsAreNotAsStated) {
     Campaign truth = testing::tracked_campaign(testing::fanuc());
     truth.sensor = std::make_shared<PoseSensor>(std::nullopt, IsotropicNoise{5e-5}, 5e-5);
     truth.nominal.sensor = VectorXd::Zero(6);
@@ -91,17 +91,26 @@ TEST(FormatCalibration, NamesTheModelErrorThatDoesNotFitAndTheOneThatWould) {
     ASSERT_EQ(calibration.doubts.residuals.size(), 1U);
     EXPECT_NEAR(calibration.doubts.residuals[0].fitting, 4e-4, 4e-5);
     const std::string text = format(calibration);
-    EXPECT_TRUE(holds(text,
-                      "the residuals in mrad are 1.8 times what sigma and model error say: "
-                      "state a larger model_error_orientation_mrad (0."))
+    EXPECT_TRUE(holds(text, "the residuals in mrad are 1.8 times what sigma and model error say\n"))
         << text;
-    EXPECT_TRUE(holds(text, "add error terms (errors: full)")) << text;
-    EXPECT_FALSE(holds(text, "model_error_mm")) << text;
-    stated = with_robot(
-        stated, with_torque_shapes(with_harmonics(without_parameters(stated.robot), {1, 2})));
-    calibration = calibrate(stated, measured, {.folds = 0});
-    calibration.doubts.missing_errors = 0.2;
-    EXPECT_FALSE(holds(format(calibration), "errors: full"));
+    EXPECT_FALSE(holds(text, "residuals in mm")) << text;
+    stated.model_error_orientation = 8e-4;
+    EXPECT_TRUE(holds(format(calibrate(stated, measured, {.folds = 0})),
+                      "what sigma and model error say, as a model error of 0."));
+}
+
+TEST(FormatCalibration, NamesOnlyCuresThatWereTriedWithTheirFigures) {
+    const Example example(16);
+    Calibration calibration = calibrate(example.campaign, example.measurements, {.folds = 0});
+    EXPECT_FALSE(holds(format(calibration), "held out no better"));
+    calibration.cures = {{{"--exclude 5", 0.038, 1.6e-4}}, {"--loss cauchy", "errors: full"}};
+    const std::string cure = "with --exclude 5: 0.16 instead of 38 mm held out";
+    EXPECT_TRUE(holds(format(calibration),
+                      cure + "\ntried, and held out no better: --loss cauchy, errors: full\n"))
+        << format(calibration);
+    EXPECT_TRUE(describe_doubts(calibration, "m.csv").empty()) << "there is none to cure";
+    calibration.faults = {"it is wrong"};
+    EXPECT_EQ(describe_doubts(calibration, "m.csv"), std::vector<std::string>{"m.csv: " + cure});
 }
 
 TEST(FormatCalibration, SaysWhetherTheValidationIsAsExpected) {
@@ -121,8 +130,48 @@ TEST(FormatCalibration, SaysWhetherTheValidationIsAsExpected) {
     EXPECT_TRUE(holds(report(), "times what is expected, beyond chance")) << report();
     EXPECT_TRUE(holds(report(), "the robot has changed")) << report();
     others.configurations(4, 1) += 3;
-    EXPECT_TRUE(holds(report(), "\n1 of 30 poses of the validation leave the range measured of "))
+    EXPECT_TRUE(holds(report(), "\nvalidation, 29 new poses: RMS ")) << report();
+    EXPECT_TRUE(
+        holds(report(), "\nvalidation, 1 pose beyond the joint ranges calibrated with (q2): RMS "))
         << report();
+    EXPECT_TRUE(holds(report(), "extrapolated; calibrate with poses like those, too\n"))
+        << report();
+}
+
+TEST(FormatCalibration, NeverSaysWithinChanceOfPosesCalibratedWith) {
+    const Example example(20);
+    const Measurements again =
+        simulate(example.campaign, {.pose_count = 20, .repeats = 1}).measurements;
+    CalibrationOptions options;
+    options.folds = 0;
+    options.limit = 1e-3;
+    options.validation = &again;
+    const std::string text = format(calibrate(example.campaign, example.measurements, options));
+    EXPECT_TRUE(holds(text, "\nvalidation, 20 poses calibrated with: RMS ")) << text;
+    EXPECT_TRUE(holds(text,
+                      " degrees of freedom), limit 1 mm: not judged; they were calibrated "
+                      "with and say nothing of other poses\n"))
+        << text;
+    EXPECT_FALSE(holds(text, "within chance")) << text;
+}
+
+TEST(FormatCalibration, SaysWhetherALimitIsKept) {
+    const Example example(30);
+    const Measurements others =
+        simulate(example.campaign, {.pose_count = 15, .seed = 9}).measurements;
+    CalibrationOptions options;
+    options.folds = 0;
+    options.validation = &others;
+    const auto report = [&](double limit) {
+        options.limit = limit;
+        return format(calibrate(example.campaign, example.measurements, options));
+    };
+    const double rms =
+        calibrate(example.campaign, example.measurements, options).validation->found.rms();
+    EXPECT_TRUE(holds(report(2 * rms), " mm: pass; ")) << report(2 * rms);
+    EXPECT_TRUE(holds(report(0.5 * rms), " mm: fail; ")) << report(0.5 * rms);
+    EXPECT_TRUE(holds(report(1.1 * rms), " mm: undecided (if the RMS stays, "))
+        << report(1.1 * rms);
 }
 
 TEST(FormatCalibration, OfOneThatIsNotIdentifiedSaysWhy) {
@@ -136,18 +185,15 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
     Calibration calibration = calibrate(example.campaign, example.measurements, {.folds = 0});
     calibration.doubts.gross_error = 0.25;
     calibration.doubts.sizes = {{"dq2", 40, 0, true, false}, {"Tx1", 25.5, 0, false, false}};
-    calibration.doubts.orientations = OrientationDoubt{0.5, OrientationSense::RealPartLast, 0.001};
+    calibration.doubts.orientations = 0.5;
     EXPECT_EQ(
         describe_doubts(calibration, "m.csv"),
         (std::vector<std::string>{
-            "m.csv: the nominal robot misses the points by 0.25 m (RMS); if some are grossly "
-            "wrong, try --loss cauchy",
-            "m.csv: the nominal robot misses the orientations by 28.6 deg (RMS), but by 0.057 deg "
-            "with the last number of each quaternion as its real part: name the columns qx, qy, "
-            "qz, qw",
+            "m.csv: the nominal robot misses the points by 0.25 m (RMS)",
+            "m.csv: the nominal robot misses the orientations by 28.6 deg (RMS); in no other sense "
+            "of their columns that was tried by clearly less",
             "far above the expected size: dq2 (40 times), Tx1 (25.5 times); are sign, unit and "
-            "nominal value in the campaign right, and do the poses tell them apart? If so, state "
-            "a larger size in spread.angle_mrad (1 now) and spread.length_mm (1 now)"}));
+            "nominal value in the campaign right, and do the poses tell them apart?"}));
     for (int k = 1; k <= 5; ++k) {
         calibration.doubts.sizes.push_back({"a" + std::to_string(k), 20.0 + k, 0, true, false});
     }
@@ -170,8 +216,7 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
               "stated is too small: 12 mrad would fit");
     EXPECT_EQ(sentences[0],
               "beyond three times the expected size, which holds them back: dq2 (70 mrad, 3.5 "
-              "times); does the robot give way that much? If so, state a larger size in "
-              "spread.parameters.dq2");
+              "times); does the robot give way that much?");
     EXPECT_TRUE(sentences[1].starts_with(
         "the model error found is 0.9 mm, 9 times what is expected: error terms are missing"));
 }

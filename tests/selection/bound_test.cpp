@@ -31,7 +31,7 @@ SelectOptions random_options(const Blocks& candidates, std::uint64_t seed) {
     const Index L = candidates.parameter_count();
     SelectOptions options;
     options.pose_count = 2 + random.index(3);
-    if (random.index(2) == 0) options.held = random.uniform(0, 2) * MatrixXd::Identity(L, L);
+    if (random.index(2) == 0) options.held_rows = random.uniform(0, 1.4) * MatrixXd::Identity(L, L);
     options.repeat_limit = 1 + random.index(3);
     if (random.index(3) == 0) {
         for (Index i = 0; i < candidates.count(); ++i) options.groups.push_back(i % 3);

@@ -80,7 +80,7 @@ void expect_best_found(const Shape& shape, std::uint64_t seed) {
     options.pose_count = pose_count;
     options.proof = 0;  // so that it is the search that finds
     const MatrixXd identity = MatrixXd::Identity(shape.parameters, shape.parameters);
-    if (shape.has_prior) options.held = identity;
+    if (shape.has_prior) options.held_rows = identity;
     const BestValues best =
         Enumeration(candidates, shape.has_prior ? identity : MatrixXd(0 * identity)).best();
     for (const auto& [criterion, value] :
@@ -137,7 +137,7 @@ TEST(Enumeration, ProvesTheBestChoiceByEveryCriterion) {
         for (const Criterion criterion : all_criteria) {
             SelectOptions options = few_poses(criterion, 5);
             expect_proven(candidates, options);
-            options.held = 0.1 * MatrixXd::Identity(13, 13);
+            options.held_rows = std::sqrt(0.1) * MatrixXd::Identity(13, 13);
             options.pose_count = 3;
             expect_proven(candidates, options);
         }

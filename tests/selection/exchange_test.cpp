@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "../../src/core/decompositions.hpp"
 #include "../../src/selection/bound.hpp"
 #include "posewise/core/errors.hpp"
 #include "support/designs.hpp"
@@ -139,7 +140,7 @@ TEST(SelectByExchange, AddsToWhatIsHeld) {
     const Blocks candidates = test::random_blocks(12, 2, 9, 8);
     for (const Criterion criterion : all_criteria) {
         SelectOptions options = make_options(criterion, 3);  // six rows, nine parameters
-        options.held = MatrixXd::Identity(9, 9) + information(candidates, {0, 1});
+        options.held_rows = stack(MatrixXd::Identity(9, 9), take(candidates, {0, 1}).matrix);
         options.held_pose_count = 2;
         options.excluded = {0, 1};
         expect_best(candidates, options);
@@ -296,7 +297,7 @@ TEST(SelectByExchange, RefusesUnusableInput) {
     const Blocks candidates = test::random_blocks(6, 1, 4, 1);
     expect_refusal(candidates, make_options(Criterion::D, 7), "pose count is 7");
     expect_refusal(candidates, make_options(Criterion::D, 0), "pose count is 0");
-    expect_refusal(candidates, make_options(Criterion::D, 3), "more poses");
+    expect_refusal(candidates, make_options(Criterion::D, 3), "must be at least 4: ");
     SelectOptions options = make_options(Criterion::D, 5);
     options.starts = -1;
     expect_refusal(candidates, options, "starts is -1");
@@ -312,10 +313,10 @@ TEST(SelectByExchange, RefusesUnusableInput) {
     options.group_limit = 2;
     expect_refusal(candidates, options, "only 4");
     options = make_options(Criterion::D, 5);
-    options.held = MatrixXd::Identity(3, 3);
-    expect_refusal(candidates, options, "4 square");
-    options.held = -MatrixXd::Identity(4, 4);
-    expect_refusal(candidates, options, "positive semidefinite");
+    options.held_rows = MatrixXd::Identity(3, 3);
+    expect_refusal(candidates, options, "held rows have 3 columns, must have 4");
+    options.held_rows = MatrixXd::Constant(1, 4, std::nan(""));
+    expect_refusal(candidates, options, "held rows have a value that is not a finite number");
     options = make_options(Criterion::D, 5);
     options.least_distance = 1;
     expect_refusal(candidates, options, "positions has 0 rows");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,19 @@ inline double depth_in(const Shape& shape, const Vector3d& x) {
             std::min(nearest, (x - capsule.from - i / 50.0 * (capsule.to - capsule.from)).norm());
     }
     return capsule.radius - nearest;
+}
+
+/// How far a point lies outside of a solid; 0 within.
+inline double distance_to(const Shape& shape, const Vector3d& x) {
+    if (const auto* const box = std::get_if<Box>(&shape)) {
+        return (x - x.cwiseMax(box->lower).cwiseMin(box->upper)).norm();
+    }
+    const auto* const capsule = std::get_if<Capsule>(&shape);
+    if (capsule == nullptr) return std::max(0.0, -depth_in(shape, x));
+    const Vector3d along = capsule->to - capsule->from;
+    const double square = std::max(along.squaredNorm(), 1e-300);
+    const double share = std::clamp(along.dot(x - capsule->from) / square, 0.0, 1.0);
+    return std::max(0.0, (x - capsule->from - share * along).norm() - capsule->radius);
 }
 
 /// Points on a capsule's surface: rings and fans about both ends.
@@ -64,6 +78,13 @@ class CellRecheck {
             const Isometry3d& frame = frames[static_cast<std::size_t>(link.frame)];
             solids_.push_back({frame * link.solid.from, frame * link.solid.to, link.solid.radius});
         }
+        balls_.clear();
+        const auto targets = static_cast<Index>(campaign_.nominal.sensor.size() / 3);
+        for (Index k = 0; k < targets; ++k) {
+            const Vector3d center =
+                frames.back() * Vector3d(campaign_.nominal.sensor.segment<3>(3 * k));
+            balls_.push_back({center, center, ball_radius});
+        }
         for (Index j = 0; j < q.size(); ++j) {
             const Joint& joint = campaign_.robot.joints()[static_cast<std::size_t>(j)];
             const double margin = cell_.limit_margin.angle - 1e-9;
@@ -78,16 +99,28 @@ class CellRecheck {
   private:
     void add(const std::string& name) { found_.push_back(name); }
 
+    /// Adds a body any of whose surface points is within a solid, or nearer than the safety
+    /// distance.
+    void check_apart(const std::string& name, const Capsule& body, const std::string& other,
+                     const Shape& solid) {
+        const double safety = cell_.safety_distance;
+        for (const Vector3d& x : surface_points(body)) {
+            const bool is_bad = safety > 0 ? distance_to(solid, x) < safety - allowed_
+                                           : depth_in(solid, x) > allowed_;
+            if (!is_bad) continue;
+            add(name + " at " + other);
+            return;
+        }
+    }
+
     void check_keep_outs() {
-        for (std::size_t i = 0; i < solids_.size(); ++i) {
-            if (cell_.links[i].frame == 0) continue;
-            for (const KeepOut& keep_out : cell_.keep_outs) {
-                for (const Vector3d& x : surface_points(solids_[i])) {
-                    if (depth_in(keep_out.solid, x) > allowed_) {
-                        add(cell_.links[i].name + " in " + keep_out.name);
-                        break;
-                    }
-                }
+        for (const KeepOut& keep_out : cell_.keep_outs) {
+            for (std::size_t i = 0; i < solids_.size(); ++i) {
+                if (cell_.links[i].frame == 0) continue;
+                check_apart(cell_.links[i].name, solids_[i], keep_out.name, keep_out.solid);
+            }
+            for (const Capsule& ball : balls_) {
+                check_apart("a target", ball, keep_out.name, keep_out.solid);
             }
         }
     }
@@ -95,12 +128,12 @@ class CellRecheck {
     void check_links() {
         for (std::size_t i = 0; i < solids_.size(); ++i) {
             for (std::size_t j = i + 2; j < solids_.size(); ++j) {  // one link a frame, in order
-                for (const Vector3d& x : surface_points(solids_[i])) {
-                    if (depth_in(solids_[j], x) > allowed_) {
-                        add(cell_.links[i].name + " in " + cell_.links[j].name);
-                        break;
-                    }
-                }
+                check_apart(cell_.links[i].name, solids_[i], cell_.links[j].name, solids_[j]);
+            }
+            // Balls are on the flange.
+            if (cell_.links[i].frame > campaign_.robot.joint_count() - 2) continue;
+            for (const Capsule& ball : balls_) {
+                check_apart("a target", ball, cell_.links[i].name, solids_[i]);
             }
         }
     }
@@ -122,6 +155,7 @@ class CellRecheck {
     void check_targets(const Isometry3d& base_from_flange) {
         const Isometry3d& world_from_base = campaign_.nominal.world_from_base;
         const Vector3d tracker = world_from_base.inverse() * Vector3d::Zero();
+        if (!cell_.sight) return;
         const Sight& sight = *cell_.sight;
         Index seen = 0;
         for (std::size_t j = 0; j < 3; ++j) {
@@ -149,10 +183,12 @@ class CellRecheck {
     const Campaign& campaign_;
     const Cell& cell_;
     double allowed_;
-    std::vector<Capsule> solids_;
+    std::vector<Capsule> solids_;  ///< links
+    std::vector<Capsule> balls_;   ///< at the targets
     std::vector<std::string> found_;
 
   public:
+    double ball_radius = 0.01905;
     std::array<bool, 3> is_seen_{};  ///< of the last configuration
 };
 

@@ -105,9 +105,9 @@ TEST(Calibrate, IsJudgedOnWhatItDidNotUse) {
     const Calibration result = calibrate(example.campaign, example.measurements, options);
     EXPECT_FALSE(result.held_out.has_value());
     EXPECT_EQ(result.measured.configurations, 18);
-    EXPECT_EQ(result.left_out->point_count, 6 * 2 * 3);
-    EXPECT_EQ(result.validation->point_count, 10 * 2 * 3);
-    EXPECT_GT(result.left_out->distance_rms, result.estimate.fit.distance_rms);
+    EXPECT_EQ(result.left_out->found.point_count, 6 * 2 * 3);
+    EXPECT_EQ(result.validation->found.point_count, 10 * 2 * 3);
+    EXPECT_GT(result.left_out->found.distance_rms, result.estimate.fit.distance_rms);
 }
 
 TEST(Calibrate, PredictsWhatASingleReadingElsewhereWouldFind) {
@@ -122,7 +122,7 @@ TEST(Calibrate, PredictsWhatASingleReadingElsewhereWouldFind) {
     ASSERT_EQ(result.predicted.size(), 1U);
     const ErrorPrediction& prediction = result.predicted.front();
     EXPECT_FALSE(prediction.is_angle);
-    EXPECT_EQ(prediction.overall.total(), result.expected_validation->total());
+    EXPECT_EQ(prediction.overall.total(), result.validation->expected->total());
     ASSERT_EQ(prediction.each.size(), 30U);
     double squares = 0;
     double most = 0;

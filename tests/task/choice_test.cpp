@@ -7,10 +7,12 @@
 
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/pool.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/selection/exchange.hpp"
 #include "posewise/task/verification.hpp"
 #include "support/campaigns.hpp"
+#include "support/cells.hpp"
 #include "support/designs.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -64,6 +66,50 @@ TEST(ChooseFromBlocks, HoldsWhatWasMeasuredAndDoesNotChooseItAgain) {
     for (const std::string& id : ids_of(after)) {
         for (const std::string& other : ids_of(before)) EXPECT_NE(id, other);
     }
+}
+
+/// The demonstration cell with a prior, so that few poses are enough.
+Campaign campaign_in_cell() {
+    Campaign campaign = testing::cell_campaign();
+    campaign.cell = testing::demo_cell();
+    campaign.spread.is_prior = true;
+    return campaign;
+}
+
+TEST(RandomCandidates, AreOnlyWhereTheCellAllows) {
+    const Campaign campaign = campaign_in_cell();
+    const Candidates candidates = random_candidates(campaign, 120, 1);
+    const Constraints constraints(campaign, campaign.cell);
+    EXPECT_TRUE(find_violations(constraints, candidates.configurations).rows.empty());
+    for (Index i = 0; i < 120; ++i) {
+        const SeenTargets seen = constraints.seen(candidates.configurations.row(i).transpose());
+        EXPECT_TRUE(((candidates.share.row(i).array() > 0) == seen).all());
+    }
+    EXPECT_EQ(random_candidates(campaign, 30, 1).configurations,
+              candidates.configurations.topRows(30));
+    const Plan plan = choose(campaign, candidates, choice_of(8));
+    EXPECT_TRUE(plan.cell_doubts.empty());
+    EXPECT_TRUE(verify(plan, campaign, candidates, choice_of(8)).is_right());
+}
+
+TEST(ChooseFromAList, TakesNothingThatTheCellDoesNotAllow) {
+    const Campaign campaign = campaign_in_cell();
+    const Constraints constraints(campaign, campaign.cell);
+    Campaign free = campaign;
+    free.cell = {};
+    Candidates listed = random_candidates(free, 400, 5);
+    listed.kind = CandidateKind::Configurations;
+    const auto violations = find_violations(constraints, listed.configurations);
+    ASSERT_GT(violations.rows.size(), 100U);
+    ASSERT_LT(violations.rows.size(), 390U);
+    const Plan plan = choose(campaign, listed, choice_of(6));
+    for (const PlannedPose& pose : plan.poses) {
+        EXPECT_GE(constraints.margin(pose.configuration), -1e-9) << pose.id;
+    }
+    ASSERT_EQ(plan.cell_doubts.size(), 1U);
+    EXPECT_NE(plan.cell_doubts[0].find(" of 400 configurations violate the campaign's cell: "),
+              std::string::npos);
+    EXPECT_TRUE(verify(plan, campaign, listed, choice_of(6)).is_right());
 }
 
 ApproximateDesign weights_of(const Blocks& candidates, const ChoiceOptions& options) {

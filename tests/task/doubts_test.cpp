@@ -41,25 +41,40 @@ TEST(FindMisfit, NamesTheUnitThatIsWrong) {
     const Measurements right = measure(campaign);
     Measurements wrong = right;
     wrong.configurations *= 180 / 3.14159265358979;
-    EXPECT_EQ(misfit_of(campaign, wrong)->unit, UnitDoubt::JointsInDegrees);
+    EXPECT_EQ(misfit_of(campaign, wrong)->reading->words,
+              "joint values in degrees where the file says rad");
     wrong = right;
     wrong.observations *= 1000;
     const auto misfit = misfit_of(campaign, wrong);
-    EXPECT_EQ(misfit->unit, UnitDoubt::PointsInMillimetres);
+    EXPECT_EQ(misfit->reading->words, "points in mm where the file says m");
+    EXPECT_LT(misfit->reading->misfit.distance_rms, 0.01);
+    EXPECT_EQ(misfit->reading->cure, "let the names of their columns end in _mm");
     EXPECT_GT(misfit->distance, 10 * misfit->expected);
     const std::string words = describe_misfit(campaign, *misfit);
-    EXPECT_NE(words.find("are points in mm where the file says m?"), std::string::npos) << words;
+    EXPECT_NE(words.find("they fit clearly better with points in mm where the file says m ("),
+              std::string::npos)
+        << words;
     EXPECT_THROW(check_is_of_robot(campaign, wrong, register_base_and_targets(campaign, wrong)),
                  InputError);
 }
 
+TEST(FindMisfit, NamesNoReadingOfAnotherRobot) {
+    const Campaign campaign = tracked_fanuc();
+    Measurements wrong = measure(campaign);
+    wrong.configurations.col(1).array() += 0.6;  // nearer to a zero that is 90 deg elsewhere
+    wrong.configurations.col(2).array() -= 0.5;
+    const auto misfit = misfit_of(campaign, wrong);
+    ASSERT_TRUE(misfit);
+    EXPECT_FALSE(misfit->reading) << misfit->reading->words;
+}
+
 TEST(FindMisfit, TakesNoTorqueForAJoint) {
-    const Campaign campaign = testing::tracked_campaign(
-        with_measured_compliance(testing::fanuc(), {{1, 300}, {2, 200}}));
+    const Campaign campaign =
+        testing::tracked_campaign(with_measured_compliance(testing::fanuc(), {{1, 300}, {2, 200}}));
     Measurements wrong = measure(campaign);
     ASSERT_GT(wrong.configurations.rightCols(2).cwiseAbs().maxCoeff(), 100);
     wrong.observations *= 1000;
-    EXPECT_EQ(misfit_of(campaign, wrong)->unit, UnitDoubt::PointsInMillimetres);
+    EXPECT_EQ(misfit_of(campaign, wrong)->reading->words, "points in mm where the file says m");
 }
 
 TEST(CheckIsOfRobot, CannotTellWithTooFewMeasurements) {

@@ -85,12 +85,12 @@ TEST(EarlierEstimate, HoldsTheRobotWhileBaseAndTargetsAreFound) {
     judged.refitted = {"base", "targets"};
     const Measurements used = measure_at_random(campaign, first.estimate.parameters, 24, 1);
     const Calibration refitted = calibrate(campaign, used, judged);
-    EXPECT_LT(refitted.expected_validation->total(), 2 * refitted.expected.total());
-    const double here = refitted.validation->distance_rms;
+    EXPECT_LT(refitted.validation->expected->total(), 2 * refitted.expected.total());
+    const double here = refitted.validation->found.distance_rms;
     judged.validation = &moved;
-    EXPECT_NEAR(calibrate(campaign, used, judged).validation->distance_rms, here, 1e-12);
+    EXPECT_NEAR(calibrate(campaign, used, judged).validation->found.distance_rms, here, 1e-12);
     judged.refitted = {};
-    EXPECT_GT(calibrate(campaign, used, judged).validation->distance_rms, 0.1);
+    EXPECT_GT(calibrate(campaign, used, judged).validation->found.distance_rms, 0.1);
 }
 
 TEST(EarlierEstimate, FindsTheErrorsThatAreNamed) {
@@ -212,10 +212,10 @@ TEST(EarlierEstimate, HoldsTargetsOrBaseAlone) {
         const Measurements used = measure_at_random(campaign, draw_truth(campaign, 3), 24, 1);
         judged.validation = &base.measured;
         judged.refitted = {"base"};
-        const double refitted = calibrate(campaign, used, judged).validation->distance_rms;
+        const double refitted = calibrate(campaign, used, judged).validation->found.distance_rms;
         EXPECT_NEAR(refitted, found.estimate.fit.distance_rms, 1e-9);
         judged.refitted = {"targets"};
-        EXPECT_GT(calibrate(campaign, used, judged).validation->distance_rms, 0.1);
+        EXPECT_GT(calibrate(campaign, used, judged).validation->found.distance_rms, 0.1);
     }
 }
 

@@ -118,6 +118,111 @@ TEST_F(MakePlan, RepairsWithoutMovingTheOthers) {
     EXPECT_THROW(make_plan(campaign_, options_), InputError);
 }
 
+TEST_F(MakePlan, DrawsPosesToVerifyThatAreFeasibleAndApartFromAllOthers) {
+    const Plan without = make_plan(campaign_, options_).plan;
+    EXPECT_TRUE(without.verification.empty());
+    options_.verification_count = 6;
+    const Planning planning = make_plan(campaign_, options_);
+    const Plan& plan = planning.plan;
+    // The others stay as they are.
+    ASSERT_EQ(plan.poses.size(), without.poses.size());
+    for (std::size_t i = 0; i < plan.poses.size(); ++i) {
+        EXPECT_EQ(plan.poses[i].configuration, without.poses[i].configuration);
+    }
+    EXPECT_EQ(plan.visiting_time, without.visiting_time);
+    EXPECT_EQ(plan.predicted->rms, without.predicted->rms);
+    ASSERT_EQ(plan.verification.size(), 6U);
+    EXPECT_GT(plan.verification_time, 0);
+    const Constraints constraints(campaign_, campaign_.cell);
+    std::vector<PlannedPose> others = plan.poses;
+    for (const PlannedPose& pose : plan.verification) {
+        EXPECT_EQ(pose.id.front(), 'v');
+        EXPECT_TRUE(constraints.check(pose.configuration).is_feasible()) << pose.id;
+        EXPECT_FALSE(pose.targets.empty());
+        for (const PlannedPose& other : others) {
+            EXPECT_GE(joint_distance(pose.configuration, other.configuration), 5 * testing::degree);
+        }
+        others.push_back(pose);
+    }
+    EXPECT_TRUE(verify(plan, campaign_, options_).is_right());
+    Plan edited = plan;
+    edited.verification[2].configuration = plan.poses[1].configuration;
+    edited.verification[2].targets = plan.poses[1].targets;
+    EXPECT_EQ(verify(edited, campaign_, options_).wrong(),
+              std::vector<std::string>{"verification"});
+    // Random ones, by the seed.
+    const Plan again = make_plan(campaign_, options_).plan;
+    for (std::size_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(again.verification[i].configuration, plan.verification[i].configuration);
+    }
+    options_.verification_count = 100000;  // as many as there are
+    EXPECT_LT(make_plan(campaign_, options_).plan.verification.size(), 300U);
+}
+
+TEST_F(MakePlan, DrawsPosesToVerifyWhereTheRobotShallBeAccurate) {
+    options_.verification_count = 3;
+    options_.workspace_box_mm = {1000, -1000, 0, 2500, 1000, 1500};
+    options_.workspace_count = 200;
+    const Planning planning = make_plan(campaign_, options_);
+    ASSERT_EQ(planning.plan.verification.size(), 3U);
+    for (const PlannedPose& pose : planning.plan.verification) {
+        for (Index target = 0; target < 3; ++target) {
+            const Vector3d place =
+                campaign_.robot.base_from_flange(pose.configuration, campaign_.nominal.robot) *
+                campaign_.sensor->target_position(target, campaign_.nominal.sensor);
+            EXPECT_TRUE((place.array() >= Eigen::Array3d(1, -1, 0)).all() &&
+                        (place.array() <= Eigen::Array3d(2.5, 1, 1.5)).all())
+                << place.transpose();
+        }
+    }
+}
+
+TEST_F(MakePlan, KeepsPosesToVerifyOfThePlanItRepairs) {
+    options_.verification_count = 3;
+    const Plan first = make_plan(campaign_, options_).plan;
+    options_.repaired = first;
+    options_.pose_count = 0;
+    options_.verification_count = 0;
+    options_.dropped = {"p2"};
+    Plan repaired = make_plan(campaign_, options_).plan;
+    ASSERT_EQ(repaired.verification.size(), 3U);
+    const auto has = [&](const PlannedPose& pose) {
+        return std::ranges::any_of(repaired.verification, [&](const PlannedPose& other) {
+            return other.id == pose.id && other.configuration == pose.configuration;
+        });
+    };
+    EXPECT_TRUE(std::ranges::all_of(first.verification, has));
+    options_.verification_count = 5;
+    repaired = make_plan(campaign_, options_).plan;
+    EXPECT_EQ(repaired.verification.size(), 5U);
+    EXPECT_TRUE(std::ranges::all_of(first.verification, has));
+    options_.dropped = {"v2"};
+    EXPECT_EQ(testing::input_error_of([&] { make_plan(campaign_, options_); }),
+              "--drop v2: is a pose to verify, which need not be replaced; leave it out of what is "
+              "measured");
+}
+
+TEST_F(MakePlan, FindsPosesToVerifyAmongThoseMeasured) {
+    options_.verification_count = 3;
+    Plan plan = make_plan(campaign_, options_).plan;
+    Measurements measured;
+    for (const auto* list : {&plan.verification, &plan.poses}) {
+        for (const PlannedPose& pose : *list) {
+            if (pose.id == "v2") continue;  // was not measured
+            measured.ids.push_back(pose.id);
+            measured.configurations.conservativeResize(std::ssize(measured.ids), 6);
+            measured.configurations.bottomRows(1) = pose.configuration.transpose();
+        }
+    }
+    const auto found = find_verification(plan, campaign_, measured);
+    EXPECT_EQ(found, (std::vector<Index>{0, 1}));
+    EXPECT_EQ(find_planned(plan, campaign_, measured), (std::vector<Index>{2, 3, 4, 5}));
+    EXPECT_EQ(find_verification(plan, campaign_, measured, {measured.ids[0]}),
+              (std::vector<Index>{1}));
+    measured.configurations(1, 2) += 0.1;
+    EXPECT_THROW(find_verification(plan, campaign_, measured), InputError);
+}
+
 TEST_F(MakePlan, LetsAnExceptionOfTheCallbackThrough) {
     options_.progress = [](const Progress&) { throw std::domain_error("enough"); };
     EXPECT_THROW(make_plan(campaign_, options_), std::domain_error);

@@ -127,7 +127,22 @@ ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
 ExpectedError expected_sample_error(const Campaign& campaign, const Estimate& estimate,
                                     const Measurements& measured);
 
-/// The same, and what 95 % of the points are off by less than.
+/// Of how many independent numbers the mean square of all samples at measured configurations is as
+/// sure: chi-squared of the same mean and variance [Satterthwaite 1946]. All samples of a
+/// configuration share its errors, and its targets what the model leaves over, so that there are
+/// hardly more than three numbers a configuration.
+struct ErrorFreedom {
+    /// For the mean over all poses of this robot: other configurations might have been measured.
+    double of_poses = 0;
+    /// For the mean that is expected of any robot: errors of the parameters are shared by all
+    /// configurations.
+    double of_robots = 0;
+};
+/// Of lengths; of angles where none is measured. At least one target must be seen.
+ErrorFreedom error_freedom(const Campaign& campaign, const Estimate& estimate,
+                           const Measurements& measured);
+
+/// An expected error, and what 95 % of the points are off by less than.
 struct PredictedError : ExpectedError {
     double percentile95 = 0;
 };

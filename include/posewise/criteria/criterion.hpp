@@ -58,6 +58,13 @@ VectorXd singular_values(const RowMatrixXd& stacked);
 /// minus infinity. G and V need test poses: InputError.
 double evaluate(Criterion criterion, const VectorXd& singular_values, Index pose_count);
 
+/// The criterion of stacked blocks (rows x parameters) of m poses, by QR of the rows: more digits
+/// than their information matrix gives. `test_poses` is needed by G and V only. Never NaN: rows
+/// that do not identify all parameters (what is left of a column beside the others is at most 1e-10
+/// of it) give minus infinity.
+double evaluate_rows(Criterion criterion, const RowMatrixXd& stacked, Index pose_count,
+                     const Blocks* test_poses = nullptr);
+
 /// The criterion from an information matrix of m poses. `test_poses` is needed by G and V only.
 /// Never NaN: a singular (or not positive definite) M gives minus infinity.
 double evaluate(Criterion criterion, const MatrixXd& M, Index pose_count,

@@ -25,11 +25,12 @@ struct MatMapping {
 /// Which error parameters the robot of a campaign has.
 enum class ErrorModel {
     Stated,    ///< those that the file names in brackets
+    Offsets,   ///< the joints' zeros, reduced to those that can be told apart
     Complete,  ///< every geometric error of a rigid link, reduced to an irreducible set
     Full,      ///< full_model(), with the sizes of errors that robots have as priors: the default
 };
 
-/// "stated", "geometric" or "full", as files state it under `errors`.
+/// "stated", "offsets", "geometric" or "full", as files state it under `errors`.
 std::string_view error_model_name(ErrorModel model);
 /// The model of that name ("complete" is geometric, too). Throws InputError for any other.
 ErrorModel parse_error_model(const std::string& name);
@@ -39,9 +40,12 @@ struct CampaignFile : Campaign {
     std::string path;
     std::string checksum;  ///< of the file's text
     /// The robot as the file's elements state it. With ErrorModel::Complete, `robot` is the
-    /// irreducible form of its complete model, with ErrorModel::Full its full model, else the
-    /// same.
+    /// irreducible form of its complete model, with ErrorModel::Offsets that of its joints' zeros,
+    /// with ErrorModel::Full its full model, else the same.
     Chain declared_robot;
+    /// Angles of the robot that the file rounds, within 1e-6 rad of a multiple of 90 deg: they are
+    /// taken as that.
+    Index rounded_angle_count = 0;
     ErrorModel error_model = ErrorModel::Stated;
     /// What select and plan reckon with instead, as the file says under `planning`.
     std::optional<ErrorModel> planned_model;

@@ -46,6 +46,7 @@ Estimate read_estimate(const std::string& path, const Campaign& campaign);
 struct EarlierFile : Earlier {
     /// Where the campaign's noise or expected sizes are others now: "sigma_m was 1e-05, is 2e-05".
     std::vector<std::string> changes;
+    std::vector<std::string> warnings;  ///< that were given when it was made, a sentence each
     /// Calibration::faults, where it was written all the same: it must not be used.
     std::vector<std::string> faults;
 };

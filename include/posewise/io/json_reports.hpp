@@ -14,6 +14,7 @@
 #include "posewise/task/geometry.hpp"
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"
+#include "posewise/task/readings.hpp"
 #include "posewise/task/simulated_plan.hpp"
 #include "posewise/task/study.hpp"
 #include "posewise/task/target.hpp"
@@ -31,13 +32,8 @@ std::string with_warnings(const std::string& document, const std::vector<std::st
 
 std::string to_json(const Inspection& inspection);
 
-/// How well the robot fits with some joints taken as reversed.
-struct JointDirections {
-    std::vector<std::string> reversed;  ///< names of joints
-    double distance_rms = 0;            ///< base and targets registered, m
-};
-/// With the choices of joint directions that were tried, the best fitting first.
-std::string to_json(const Inspection& inspection, const std::vector<JointDirections>& directions);
+/// With the readings of measurements that were tried, the best fitting first.
+std::string to_json(const Inspection& inspection, const ReadingSearch& readings);
 
 std::string to_json(const Rating& rating, const Campaign& campaign);
 

@@ -9,11 +9,11 @@
 namespace posewise::io {
 
 /// Reads measurements by the file's ending: `.mat` or else CSV. Throws InputError with
-/// path:line:column. A target that a sample does not show has empty cells (CSV) or NaN (MATLAB),
-/// all of them. Refused: a sample that shows no target, missing or unknown columns, ragged rows,
-/// text or other non-finite numbers, two configurations with the same joint values, angles in rad
-/// over a full turn beyond the limits (degrees by the look of them), a configuration whose samples
-/// differ in a joint by over 1e-6.
+/// path:line:column. A target that a sample does not show has empty cells or "nan" (CSV) or NaN
+/// (MATLAB), all of them. Refused: a sample that shows no target, missing or unknown columns,
+/// ragged rows, text or other non-finite numbers, readings of which half are others once more under
+/// another id, angles in rad over four turns beyond the limits (degrees by the look of them), a
+/// configuration whose samples differ in a joint by over 1e-6.
 Measurements read_measurements(const std::string& path, const CampaignFile& file);
 
 /// Named configurations, none of them measured (or not of interest whether).
@@ -21,6 +21,8 @@ struct Configurations {
     std::vector<std::string> ids;
     RowMatrixXd joints;  ///< configurations x joints, rad or m
     Seen is_seen;        ///< which targets are to be measured there
+    /// Of a program with a column purpose (as plan --csv writes it): calibrate, verify or via.
+    std::vector<std::string> purposes = {};
 };
 
 /// Reads configurations as read_measurements() does; a CSV need not have the sensor's columns, and

@@ -25,8 +25,12 @@ void write_plan(const std::string& path, const Plan& plan, const std::string& cs
 /// Throws InputError with the place for whatever is missing, of another type or out of range.
 Plan read_plan(const std::string& path);
 
-/// The poses as CSV: config, then each joint in degrees or mm, digits enough to read the numbers
-/// back exactly, then visible_targets ("1 3"). read_configurations() reads it.
+/// The poses as CSV, in the order to visit them: config, then each joint in degrees or mm, digits
+/// enough to read the numbers back exactly, then visible_targets ("1 3"), purpose, way and, where a
+/// cell has obstacles, clearance_mm and nearest. The purpose is calibrate, or verify of those that
+/// a plan has to verify, which come last. A point to pass on the way to p3 is a row of its own
+/// before it, p3.via, its purpose via; a way is straight, or BLOCKED where none was found.
+/// read_configurations() reads the others, read_program() all.
 void write_configurations_csv(const std::string& path, const Campaign& campaign,
                               const std::vector<PlannedPose>& poses);
 

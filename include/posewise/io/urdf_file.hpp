@@ -74,6 +74,17 @@ Chain make_chain(const UrdfRobot& robot);
 /// negative or no number, and if no link has one.
 std::vector<Load> read_urdf_loads(const UrdfSource& source);
 
+/// The robot's own solids for a cell.
+struct UrdfBodies {
+    std::vector<Link> links;           ///< capsules around the collision shapes, from base to tip
+    std::vector<std::string> skipped;  ///< what has none, a sentence each: meshes, mostly
+};
+/// Of the links from base to tip and of those that fixed joints hang on them. A box, cylinder,
+/// sphere or capsule lies within its capsules, up to four of them where a box is flat. Of two that
+/// overlap wherever the robot stands, though they are no neighbours, the smaller one is skipped.
+/// Throws InputError with the place for a shape whose size is missing or not positive.
+UrdfBodies read_urdf_bodies(const UrdfRobot& robot);
+
 /// Largest speed of each joint of the chain, rad/s or m/s; empty unless the file states all.
 VectorXd joint_speeds(const UrdfRobot& robot);
 

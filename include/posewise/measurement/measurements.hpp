@@ -10,6 +10,13 @@
 
 namespace posewise {
 
+/// Which numbers of a file an orientation was read from.
+enum class OrientationNotation {
+    RotationVector,  ///< as observations have it, numbers unchanged
+    Quaternion,      ///< real part first
+    RollPitchYaw,    ///< about fixed axes x, y and z
+};
+
 /// A measured campaign: configurations, each observed once or several times.
 struct Measurements {
     RowMatrixXd configurations;    ///< m x joints, rad or m
@@ -21,6 +28,9 @@ struct Measurements {
     std::vector<Index> first_sample{0};  ///< m + 1; samples of configuration i start at [i]
     /// Of each sample, as in the file's column `sample`; empty: numbers from 1 on.
     std::vector<std::string> sample_names = {};
+    OrientationNotation notation = OrientationNotation::RotationVector;  ///< of the file
+    /// samples x 3: roll, pitch and yaw as they were read, rad; empty: in another notation.
+    RowMatrixXd roll_pitch_yaw = {};
 
     Index configuration_count() const { return static_cast<Index>(ids.size()); }
     Index sample_count(Index configuration) const {

@@ -77,6 +77,10 @@ class Sensor {
     virtual void covariance(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                             Eigen::Ref<MatrixXd> covariance) const = 0;
 
+    /// Radius of the ball about each of targets(), m: a body of the robot, which keeps off what
+    /// stands in its cell. Nothing: they are no bodies, as the tip of a probe that is to touch.
+    virtual std::optional<double> target_radius() const { return std::nullopt; }
+
     // ---- What kinds of numbers these are: lengths, unless it says otherwise ----
 
     /// Whether the number in this row of an observation is an angle (rad), else a length (m). Of
@@ -104,6 +108,8 @@ class Sensor {
     /// all readings are 0, and files have a column of these names instead. Empty: readings differ.
     virtual std::vector<std::string> contact_names() const { return {}; }
     bool has_contacts() const { return !contact_names().empty(); }
+    /// Whether its readings are those of a probe that is brought to what it measures: about 0.
+    virtual bool touches() const { return has_contacts(); }
     /// How many a pose can show at once.
     Index seen_at_once() const { return has_contacts() ? 1 : target_count(); }
     /// Which of targets() it belongs to.

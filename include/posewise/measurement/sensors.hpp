@@ -29,6 +29,9 @@ class PointSensor final : public Sensor {
     double sigma() const { return coordinate_sigma(noise_, 3); }
 
     const Targets& targets() const override { return targets_; }
+    std::optional<double> target_radius() const override {
+        return targets_.radius().value_or(tracker_ball_radius);
+    }
     Index row_count() const override { return 3 * targets_.count(); }
     std::vector<std::string> observation_names() const override;
     std::vector<std::string> unknown_names() const override { return targets_.unknown_names(); }
@@ -201,6 +204,9 @@ class DistanceSensor final : public ScalarSensor {
     DistanceSensor(Targets targets, std::vector<Vector3d> anchors, bool are_known, double sigma);
 
     bool is_distance(Index) const override { return true; }
+    std::optional<double> target_radius() const override {
+        return targets().radius().value_or(tracker_ball_radius);
+    }
 
   protected:
     Length measure(const Vector3d& x, Index anchor, const Vector3d& position) const override;
@@ -228,6 +234,7 @@ class PlaneSensor final : public ScalarSensor {
     const std::vector<Plane>& planes() const { return planes_; }
     /// With these values of the unknowns.
     Plane plane(Index plane, const VectorXd& unknowns) const;
+    bool touches() const override { return true; }
 
   protected:
     Length measure(const Vector3d& x, Index plane, const Vector3d& tilts_and_offset) const override;

@@ -56,12 +56,13 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
                                    const RowMatrixXd& configurations, const Seen& is_seen,
                                    Index repeats, std::uint64_t seed);
 
-/// draw_truth() measured at random configurations within the joint limits. Throws InputError for
-/// counts below 1 or if the campaign does not state its base and targets.
+/// draw_truth() measured at random configurations that the campaign's cell allows. Throws
+/// InputError for counts below 1, if the campaign does not state its base and targets, or states
+/// them where no cell has them, and if hardly any configuration is allowed.
 Simulation simulate(const Campaign& campaign, const SimulateOptions& options);
 
 /// The same at given configurations (m x joints), each of which shows some targets (m x targets);
-/// options.pose_count is not looked at.
+/// options.pose_count is not looked at, nor is the cell, see find_violations().
 Simulation simulate(const Campaign& campaign, const RowMatrixXd& configurations,
                     const Seen& is_seen, const SimulateOptions& options);
 

@@ -10,6 +10,9 @@
 
 namespace posewise {
 
+/// Radius of the ball that a laser tracker looks at, 1.5 inch across, m.
+inline constexpr double tracker_ball_radius = 0.01905;
+
 /// Points fixed to the flange. Each coordinate of each position in the flange frame is known or an
 /// unknown of the sensor that looks at them; targets' unknowns come first among the sensor's.
 class Targets {
@@ -18,6 +21,12 @@ class Targets {
     explicit Targets(const std::vector<std::optional<Vector3d>>& known_positions);
     /// Positions (m) of which only the coordinates marked are known; the others are not looked at.
     Targets(std::vector<Vector3d> positions, std::vector<std::array<bool, 3>> is_known);
+
+    /// The same points as centres of balls of this radius, m. Throws InputError if it is negative,
+    /// not finite or above 1 m.
+    Targets with_radius(double radius) const;
+    /// Nothing: not stated.
+    std::optional<double> radius() const { return radius_; }
 
     Index count() const { return static_cast<Index>(known_.size()); }
     Index unknown_count() const { return unknown_count_; }
@@ -48,6 +57,7 @@ class Targets {
     std::vector<Vector3d> known_;  ///< coordinates that are unknown hold anything finite
     std::vector<std::array<Index, 3>> unknown_index_;
     Index unknown_count_ = 0;
+    std::optional<double> radius_;
 };
 
 /// "3 targets (1 known, 2 to be identified)".

@@ -51,6 +51,15 @@ struct Sight {
     std::optional<Index> least_visible;
 };
 
+/// The two bodies that are nearest to each other where one of them moves: links, keep-outs, and
+/// the balls at the targets.
+struct Clearance {
+    /// Of their surfaces, m; negative: how deep they overlap. Infinite: nothing is near.
+    double distance = std::numeric_limits<double>::infinity();
+    std::string body;   ///< a link's name, or "target 1"
+    std::string other;  ///< a keep-out's name, or a link's
+};
+
 /// What configurations keep from the joint limits.
 struct JointMargin {
     double angle = 0;   ///< of revolute joints, rad
@@ -66,7 +75,7 @@ struct Cell {
     std::vector<Box> target_boxes;
     std::vector<Link> links;
     std::vector<KeepOut> keep_outs;
-    /// What links keep from keep-outs and from each other, m.
+    /// What links and the balls at the targets keep from keep-outs and from each other, m.
     double safety_distance = 0;
     std::optional<Sight> sight;
     VectorXd home;     ///< where visiting starts, rad or m; empty: anywhere

@@ -3,14 +3,14 @@
 #include <cstdint>
 #include <optional>
 
-#include "posewise/planner/pool.hpp"
+#include "posewise/measurement/pool.hpp"
 #include "posewise/selection/exchange.hpp"
 
 namespace posewise {
 
 /// What a plan has besides the poses that are refined: a prior, poses already measured, or both.
 struct HeldPoses {
-    MatrixXd information;        ///< parameters square; empty: none
+    RowMatrixXd rows;            ///< as SelectOptions::held_rows; empty: none
     RowMatrixXd configurations;  ///< poses x joints; for the least joint distance
 };
 

@@ -29,6 +29,9 @@ std::string format(const Inspection& inspection);
 /// hardly tell, as text: all that `posewise indices` prints.
 std::string format(const Rating& rating, const Campaign& campaign, int digits = 6);
 
+/// "target 1 lies on the axis of joint_6, ...".
+std::string describe(const OnAxis& on_axis);
+
 /// Says that there is no clear gap between what is identifiable and what is not, where that is so.
 std::string describe_gap(const Inspection& inspection);
 

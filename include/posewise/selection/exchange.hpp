@@ -17,9 +17,10 @@ struct SelectOptions {
     const Blocks* test_poses = nullptr;
     /// Columns estimated along but of no interest (D becomes Ds). Not with G, V, O2 and O4.
     std::vector<Index> nuisance;
-    /// Information there is before measuring: a prior (identity in scaled units), poses already
-    /// measured, or their sum. Empty: none.
-    MatrixXd held;
+    /// What there is before measuring, as rows beside those of the candidates: blocks of poses
+    /// already measured, and a root R of a prior's information R^T R (the identity, where the
+    /// expected size of each parameter's error is its prior). Empty: none.
+    RowMatrixXd held_rows;
     Index held_pose_count = 0;    ///< poses already measured; m of O1 is K more
     Index repeat_limit = 1;       ///< how often one candidate may be chosen
     std::vector<Index> excluded;  ///< candidates not to choose
@@ -54,11 +55,13 @@ struct SelectOptions {
 /// over OpenMP threads whose number does not matter; what they end at is crossed (memetic search);
 /// last sweeps over all candidates end where no exchange improves (for O5 and parameters of
 /// interest: none of those estimated to be good, but all in the last sweeps). Where branch and
-/// bound rules out or tries all others in time, the plan is optimal. Ends NotIdentifiable if all
-/// candidates together do not identify the parameters (naming the columns of the unseen
-/// directions), or if no start found K poses that do. Throws InputError if K is not in [1,
-/// candidates x repeats], if the limits leave fewer than K, or for options that contradict the
-/// candidates.
+/// bound rules out or tries all others in time, the plan is optimal. Value, rank and what is
+/// compared at the end are those of the stacked rows (evaluate_rows()); the bound is above the
+/// truth by its rounding at least. Ends NotIdentifiable if all candidates together do not identify
+/// the parameters (naming the columns of the unseen directions), if K of them have fewer rows than
+/// there are parameters to tell, or if no start found K poses that do. Throws InputError if K is
+/// not in [1, candidates x repeats], if the limits leave fewer than K, or for options that
+/// contradict the candidates.
 Choice select_poses(const Blocks& candidates, const SelectOptions& options);
 
 }  // namespace posewise

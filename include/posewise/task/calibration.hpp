@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "posewise/core/progress.hpp"
 #include "posewise/task/doubts.hpp"
 #include "posewise/task/earlier.hpp"
+#include "posewise/task/judgement.hpp"
 
 namespace posewise {
 
@@ -33,6 +35,9 @@ struct CalibrationOptions {
     /// Configurations to calibrate with, such as those of a plan; it is judged on the others, too.
     /// Empty: all.
     std::vector<Index> used{};
+    /// Configurations that are not used but to judge by themselves, such as the poses that a plan
+    /// has to verify; none of `used`, which must be stated.
+    std::vector<Index> verification{};
     /// What was left out of the measurements by hand, with leave_out(): for the record.
     std::vector<std::string> excluded{};
     /// Needs Joint.
@@ -46,6 +51,8 @@ struct CalibrationOptions {
     /// other targets or another sensor. Then base and targets must both be refitted. Null: the
     /// same.
     const Campaign* validation_campaign = nullptr;
+    /// That the RMS of distances is to keep where the calibration is judged (judge_limit()), m.
+    std::optional<double> limit{};
     /// Configurations that need not be measured, to say what to expect there (m x joints, and
     /// measured torques; rad, m, N m). Empty: none.
     RowMatrixXd predicted{};
@@ -55,6 +62,8 @@ struct CalibrationOptions {
     /// Replaces the expected sizes of the robot's errors by those they have, learn_sizes(); the
     /// groups held out are predicted with the same sizes. Needs Joint and a spread that is a prior.
     bool learns_sizes = false;
+    /// Where there are doubts: campaigns that richer errors would make, to try. Nothing: none.
+    std::function<std::vector<OtherCampaign>()> richer{};
     /// Ends the identification with the best so far; figures that are not complete are left out.
     StopSignal stop{};
     ProgressCallback progress{};  ///< of the identification, the groups held out and the sets
@@ -109,18 +118,16 @@ struct Calibration {
     std::optional<Repeatability> repeatability;  ///< nothing: no configuration was repeated
     std::optional<CrossValidation> held_out;
     /// Of means at poses like those measured; of samples over the workspace as estimated_geometry()
-    /// draws it (nothing where it cannot, and for contacts), at the configurations not used, and at
-    /// the validation's.
+    /// draws it (nothing where it cannot, and for contacts).
     ExpectedError expected;
     std::optional<ExpectedError> expected_workspace;
-    std::optional<ExpectedError> expected_left_out;
-    std::optional<ExpectedError> expected_validation;
     /// At CalibrationOptions::predicted: of distances, of angles.
     std::vector<ErrorPrediction> predicted;
-    std::optional<Metrics> left_out;    ///< on the configurations not used
-    std::optional<Metrics> validation;  ///< on CalibrationOptions::validation
-    /// Where poses of the validation, or those to predict, are unlike those calibrated with.
-    std::optional<BeyondMeasured> validation_beyond;
+    std::optional<double> limit;            ///< CalibrationOptions::limit
+    std::optional<Judgement> verification;  ///< at CalibrationOptions::verification
+    std::optional<Judgement> left_out;      ///< at the other configurations not used
+    std::optional<Judgement> validation;    ///< at CalibrationOptions::validation
+    /// Where poses to predict are unlike those calibrated with.
     std::optional<BeyondMeasured> predicted_beyond;
     /// With CalibrationOptions::refitted: the validation's campaign, which may have other targets,
     /// at the parameters that it was judged with.
@@ -135,12 +142,21 @@ struct Calibration {
     std::optional<WithoutOutliers> without_outliers;  ///< if there are some
     std::optional<ModelSelection> selection;          ///< if asked for
     Doubts doubts;
-    /// What makes it none that may reach a robot, find_faults(); beside Global, which expects large
-    /// errors, values of any size are taken.
+    Cures cures;  ///< that were tried where there are doubts, of Joint
+    /// What makes it none that may reach a robot: find_faults(), a calibrated robot that predicts
+    /// others worse than the nominal one (or no better, with residuals far beyond those stated),
+    /// that leaves more over than a robot misses before it is calibrated, or ten times more than
+    /// without one configuration. Of Global, which expects large errors, values of any size are
+    /// taken.
     std::vector<std::string> faults;
 
     bool is_identified() const { return estimate.ending != Ending::NotIdentifiable; }
 };
+
+/// Looks at the calibration by all that was measured before something is built on it.
+using JudgeCalibration = std::function<void(const Calibration&)>;
+/// Throws InputError, with what is wrong, if it has faults.
+void refuse_faults(const Calibration& calibration);
 
 /// What is wrong with CalibrationOptions::validation, not with what is calibrated with.
 struct ValidationError : InputError {

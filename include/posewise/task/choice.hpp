@@ -4,6 +4,7 @@
 #include "posewise/core/progress.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
+#include "posewise/task/calibration.hpp"
 #include "posewise/task/plan.hpp"
 
 namespace posewise {
@@ -21,7 +22,8 @@ struct Candidates {
     std::optional<Measurements> measured;
 };
 Candidates measured_candidates(Measurements measured);
-/// Scrambled Halton sequence within the joint limits, named 0, 1, ...; all targets are seen.
+/// Of a scrambled Halton sequence within the joint limits those that the campaign's cell allows,
+/// named 0, 1, ..., with the targets seen there. Throws InputError if hardly any is allowed.
 Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_t seed);
 
 /// What is asked for, what there is besides the candidates, and when to stop.
@@ -31,6 +33,8 @@ struct ChoiceOptions : PlanRequest {
     std::vector<Index> groups;         ///< label of each candidate; empty: none
     Blocks held_blocks;                ///< the same of plain blocks
     Blocks test_blocks;
+    /// Of measured candidates: what all of them calibrate.
+    JudgeCalibration judge = refuse_faults;
     StopSignal stop{};  ///< ends the search with the best so far
     ProgressCallback progress{};
 };
@@ -39,7 +43,8 @@ struct ChoiceOptions : PlanRequest {
 /// registered from measured candidates, else as the campaign states them, else registered from
 /// held measurements. Of random candidates only those are used whose blocks can be made in half of
 /// the time there is; Plan::candidate_count says how many. Throws InputError as select_poses(), for
-/// ids that are not among the candidates, and if base or targets are known from nowhere.
+/// ids that are not among the candidates, if base or targets are known from nowhere, and for
+/// measured candidates that are no calibration (ChoiceOptions::judge).
 Plan choose(const Campaign& campaign, Candidates candidates, const ChoiceOptions& options);
 
 /// The same of plain blocks, named 0, 1, ..., without a robot.

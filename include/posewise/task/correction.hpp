@@ -20,6 +20,15 @@ struct CorrectedPoses {
     std::vector<std::string> ids;
     RowMatrixXd nominal;                  ///< m x joints, as programmed
     std::vector<Correction> corrections;  ///< m
+    /// Configurations that are not brought home: joints are held, or it is singular there, and over
+    /// half of the error is left.
+    std::vector<Index> not_home{};
+    /// Which of them would bring links of the campaign's cell into obstacles or each other, in
+    /// words; empty: none.
+    std::string collisions = {};
+
+    /// Whether most are brought home; else these are no corrections to send to a robot.
+    bool are_usable() const { return 2 * not_home.size() <= corrections.size(); }
 };
 
 /// Joint values that bring the robot with the errors found to where the nominal one would be at

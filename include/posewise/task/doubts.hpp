@@ -7,6 +7,9 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/measurement/sensors.hpp"
+#include "posewise/task/held_out.hpp"
+#include "posewise/task/readings.hpp"
+#include "posewise/task/residual_look.hpp"
 
 /// What looks wrong with measurements and what was identified from them. A doubt stops nothing; it
 /// is what to look at first.
@@ -48,15 +51,6 @@ struct PlaneDoubt {
 std::vector<PlaneDoubt> find_plane_doubts(const Campaign& campaign,
                                           const Measurements& measurements);
 
-/// In which unit values look as if they were.
-enum class UnitDoubt {
-    None,
-    JointsInDegrees,  ///< though read as rad
-    JointsInRadians,  ///< though read as degrees
-    PointsInMillimetres,
-    PointsInMetres,
-};
-
 /// Base or a target that the measurements put elsewhere than the campaign states it.
 struct PlaceDoubt {
     std::string name;  ///< as that of its parameters: "base", "target1", "tool"
@@ -79,13 +73,12 @@ std::vector<PlaceDoubt> find_place_doubts(const Campaign& campaign, const Parame
 struct Misfit {
     double distance = 0;  ///< by which it misses half of them at least, base and targets fitted, m
     double expected = 0;  ///< as the spread says, m
-    UnitDoubt unit = UnitDoubt::None;
     std::vector<PlaneDoubt> planes;
-    std::vector<std::string> reversed;  ///< joints that fit clearly better the other way round
-    Index other_choices = 0;            ///< of joints that fit alike, by the robot's symmetry
+    std::optional<BetterReading> reading;  ///< of joints, lengths or orientations
 };
 
-/// Nothing if the nominal robot explains the measurements. `registered`: base and targets, by
+/// Nothing if the nominal robot explains the measurements, or misses them by less than ten expected
+/// errors and no other reading fits clearly better. `registered`: base and targets, by
 /// register_base_and_targets() of these measurements.
 std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& measurements,
                                   const Parameters& registered);
@@ -96,27 +89,12 @@ void check_is_of_robot(const Campaign& campaign, const Measurements& measurement
                        const Registration& registration);
 
 /// One sentence, for messages: by how much the nominal robot misses the measurements, and which
-/// unit or plane may be wrong.
+/// planes may be wrong or how else they may have been meant.
 std::string describe_misfit(const Campaign& campaign, const Misfit& misfit);
 /// "plane 2 looks reversed: stated with ..."; empty for none.
 std::string describe_planes(const std::vector<PlaneDoubt>& planes);
 /// "the base is stated at [...] mm, measured at [...] mm ..."; empty for none.
 std::string describe_places(const std::vector<PlaceDoubt>& places);
-
-/// How orientations may have been meant, from how they were read.
-enum class OrientationSense {
-    AsRead,
-    Inverted,      ///< conjugate quaternions
-    RealPartLast,  ///< quaternions qx, qy, qz, qw
-};
-
-/// The nominal robot misses the orientations by more than a robot does.
-struct OrientationDoubt {
-    double rms = 0;  ///< rad
-    /// In which sense they fit far better; AsRead: in none.
-    OrientationSense sense = OrientationSense::AsRead;
-    double rms_in_sense = 0;  ///< rad
-};
 
 /// An error of the robot far above its expected size.
 struct SizeDoubt {
@@ -166,8 +144,9 @@ std::optional<DistanceDoubt> find_distance_doubt(const Campaign& campaign,
                                                  const Estimate& estimate);
 
 /// Whether nothing but the robot's lengths, which are identified, says how large all is: sockets
-/// without a distance known.
-bool lacks_length(const Campaign& campaign);
+/// without a distance known, or planes none of whose offsets is, which were touched (readings
+/// within 1 mm of 0).
+bool lacks_length(const Campaign& campaign, const Measurements& measurements);
 
 /// All doubts about a calibration.
 struct Doubts {
@@ -176,7 +155,8 @@ struct Doubts {
     std::vector<PlaceDoubt> places;  ///< where there is no misfit
     /// Distance by which the nominal robot misses the points (RMS, m), if grossly: outliers?
     std::optional<double> gross_error;
-    std::optional<OrientationDoubt> orientations;
+    /// The same of orientations (RMS, rad).
+    std::optional<double> orientations;
     std::vector<SizeDoubt> sizes;
     std::vector<ModelErrorDoubt> model_errors;  ///< of lengths, of angles
     /// About how much of the squares left over follows bending and periodic errors of joints that
@@ -186,6 +166,8 @@ struct Doubts {
     bool lacks_length = false;  ///< see lacks_length()
     std::optional<DistanceDoubt> distance;
     std::optional<HeldBackSize> held_back;  ///< where sizes were learned
+    /// Where the calibrated robot is not shown to predict others better than the nominal one.
+    std::optional<HeldOutComparison> held_out;
     /// Those that are more than 1.2 times larger or smaller than stated, and beyond what chi
     /// squared of the degrees of freedom is once in a thousand times.
     std::vector<ResidualDoubt> residuals;
@@ -194,14 +176,16 @@ struct Doubts {
     std::optional<double> small_residuals;
     /// Joints whose compliance is clearly negative: by three standard deviations.
     std::vector<Index> negative_compliances;
+    ResidualLook look;
 };
 
 /// How large values may be to be believed.
 enum class ValueCheck { ByExpectedSizes, None };
 
 /// What is so wrong with an estimate of this campaign that it must not reach a robot, in words:
-/// that it did not converge, residuals of hundreds of times the noise and model error stated, a
-/// value or standard deviation of a hundred times its expected size, or what no cell has: a model
+/// that it did not converge, residuals (of lengths or of angles) of hundreds of times the noise and
+/// model error stated, a value or standard deviation of a hundred times its expected size, the
+/// offset of a joint beyond 10 deg and five times its expected size, or what no cell has: a model
 /// error beyond 100 mm or 100 mrad, a base 1 km from the instrument, a target 10 m from the
 /// flange or within 1 mm of another, a variance below what rounding leaves. Empty: nothing.
 std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& estimate,

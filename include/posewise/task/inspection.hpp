@@ -5,9 +5,20 @@
 
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/jacobian/identifiability.hpp"
+#include "posewise/jacobian/unknowable.hpp"
 #include "posewise/measurement/measurements.hpp"
 
 namespace posewise {
+
+/// A target on the axis about which the last joint turns: that joint does not move it, and no
+/// measurement of it tells the joint's zero.
+struct OnAxis {
+    Index target = 0;
+    std::string joint;
+};
+/// Of stated targets, within 1e-5 of how far the robot reaches; where there are others beside the
+/// axis, too, none.
+std::vector<OnAxis> find_on_axis(const Campaign& campaign);
 
 /// What can be found of a robot's errors.
 struct Inspection {
@@ -18,6 +29,9 @@ struct Inspection {
     std::optional<Identifiability> stated;
     Identifiability of_complete;
     Index least_pose_count = 0;  ///< that a calibration can do with
+    Unknowable unknowable;       ///< of base and sensor
+    std::vector<OnAxis> on_axis;
+    Index rounded_angle_count = 0;  ///< angles of the robot's file that are taken for exact ones
 };
 
 /// `declared` is the robot as stated, from which the complete model is made; `is_stated`: its error

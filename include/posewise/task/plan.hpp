@@ -9,6 +9,7 @@
 #include "posewise/core/progress.hpp"
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/measurement/measurements.hpp"
+#include "posewise/model/cell.hpp"
 #include "posewise/planner/prediction.hpp"
 #include "posewise/selection/choice.hpp"
 #include "posewise/task/earlier.hpp"
@@ -69,7 +70,10 @@ struct PlanRequest {
     std::vector<double> workspace_box_mm;
     Index workspace_target = 0;  ///< that counts, from 1; 0: all
     Index pool_count = 20000;    ///< candidates drawn
-    double time_limit = 0;       ///< s, as was stated; 0: none
+    /// Poses to draw beside those planned, see Plan::verification. 0: as many as a repaired plan
+    /// has.
+    Index verification_count = 0;
+    double time_limit = 0;  ///< s, as was stated; 0: none
 };
 
 /// One pose to measure.
@@ -81,6 +85,8 @@ struct PlannedPose {
     std::optional<VectorXd> via = {};  ///< configuration to pass on the way there
     bool is_blocked = false;           ///< no free way there was found
     bool is_kept = false;              ///< of the plan that was repaired
+    /// Of continuous plans: the least there, at the nominal robot; nothing: not stated.
+    std::optional<Clearance> clearance = {};
 };
 
 /// A number by its name, which ends with its unit where it has one.
@@ -126,7 +132,18 @@ struct Plan {
 
     // Of continuous plans: deviations, and how long measuring takes.
     std::vector<NamedNumber> standard_deviations;  ///< expected, of each parameter, m or rad
-    double visiting_time = 0;                      ///< s
+    double visiting_time = 0;                      ///< s, without those to verify
+
+    /// To judge the calibration on, and never to calibrate with: random in the workspace, feasible
+    /// and seen like the others, 5 deg or more (and the cell's least joint distance) from them and
+    /// from each other. In the order to visit them, from the last of `poses` on. Fewer than asked
+    /// for where there are no more.
+    std::vector<PlannedPose> verification;
+    double verification_time = 0;  ///< s, of all moves to and between them
+
+    /// What of the robot is not kept off the cell's obstacles, and listed candidates that are not
+    /// allowed there, a sentence each.
+    std::vector<std::string> cell_doubts;
 
     /// Noise and scales it rests on: "sigma_m", "expected_error/dq2_rad". A NaN was no number.
     std::vector<NamedNumber> assumptions;
@@ -157,5 +174,11 @@ std::string describe_mismatch(const Plan& plan, const Campaign& campaign);
 std::vector<Index> find_planned(const Plan& plan, const Campaign& campaign,
                                 const Measurements& measured,
                                 const std::vector<std::string>& excluded = {});
+
+/// Which of the measured configurations are those that a plan has to verify, as far as they were
+/// measured. Throws InputError if one of them was measured at other joint values.
+std::vector<Index> find_verification(const Plan& plan, const Campaign& campaign,
+                                     const Measurements& measured,
+                                     const std::vector<std::string>& excluded = {});
 
 }  // namespace posewise

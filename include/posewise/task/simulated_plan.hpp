@@ -1,5 +1,6 @@
 #pragma once
 
+#include "posewise/task/limit.hpp"
 #include "posewise/task/planning.hpp"
 
 namespace posewise {
@@ -47,12 +48,8 @@ struct SimulatedPlan {
     bool is_sure() const { return ending == Ending::Converged; }
 };
 
-/// Whether a limit of the error (m) is kept with the assurance asked for.
-enum class LimitVerdict {
-    Kept,
-    NotKept,
-    Open,  ///< too close to say: within twice the uncertainty
-};
+/// Whether a limit of the error (m) is kept with the assurance asked for; open within twice the
+/// uncertainty.
 LimitVerdict judge_limit(const SimulatedPlan& simulated, double limit);
 
 /// Throws InputError, which says what to do instead, where robots cannot be drawn for plans of this

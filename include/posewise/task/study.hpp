@@ -14,6 +14,7 @@
 #include "posewise/core/progress.hpp"
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/task/calibration.hpp"
 #include "posewise/task/trials.hpp"
 
 namespace posewise {
@@ -106,6 +107,8 @@ struct StudyOptions {
     double least_distance = 0;  ///< rad, of any two in a planned subset, as PlanRequest has it
     Index starts = 4;           ///< of the exchange
     std::uint64_t seed = 1;
+    /// Of measured configurations: what all of them calibrate, before any case is run.
+    JudgeCalibration judge = refuse_faults;
     TrialStore store{};               ///< of cases that are finished; none: they are run anew
     TrialCrew crew = run_on_threads;  ///< runs the cases
     Shard shard{};                    ///< of the cases that are run
@@ -131,7 +134,8 @@ struct Study {
 /// Chooses k of the measured configurations by each criterion and at random, calibrates with them
 /// from registration on, and judges on configurations held out: the same ones for all subsets of a
 /// split. The same result for any number of threads.
-/// Throws InputError for measurements of another robot (check_is_of_robot()), for a pose count that
+/// Throws InputError for measurements of another robot (check_is_of_robot()), for those that are no
+/// calibration (StudyOptions::judge), for a pose count that
 /// is not in [1, configurations], for a least distance that as many configurations do not keep, and
 /// for other options out of range.
 Study study(const Campaign& campaign, const Measurements& measurements,

@@ -8,7 +8,7 @@ const socketsOf = ({ predicted }) =>
 
 /**
  * `id`, `joints` (m, rad), `keys` of them, and of plans `value` (mm; null: needed), `targets` it shows or
- * `touched` sockets, `via`.
+ * `touched` sockets, `via`, `nearest`: how near (mm) which two bodies come.
  */
 export function posesOf(part) {
   const { document, scene } = part;
@@ -23,6 +23,7 @@ export function posesOf(part) {
         id: pose.id, times: pose.times, keys, all: keys.map((key) => pose.joints[key]),
         joints: drawn.map((key) => pose.joints[key]),
         via: pose.via ? drawn.map((key) => pose.via[key]) : null,
+        nearest: typeof pose.clearance_m === 'number' ? `${fixed(1e3 * pose.clearance_m, 2)} ${pose.nearest.join(' to ')}` : null,
         blocked: pose.way_is_blocked, kept: pose.kept, hasWay: 'via' in pose,
         value: values.get(pose.id), targets: sockets.length > 0 ? null : pose.visible_targets ?? null,
         touched: sockets.length > 0 ? (pose.visible_targets ?? []).map((number) => sockets[number - 1] ?? number) : null,

@@ -44,12 +44,15 @@ function poseTable(part, poses) {
   if (poses.some((pose) => pose.targets)) header.push('targets seen');
   if (poses.some((pose) => pose.touched)) header.push('socket');
   if (isPlan) header.push('way there');
+  const hasNearest = poses.some((pose) => pose.nearest);
+  if (hasNearest) header.push('nearest/mm');
   const rows = poses.map((pose) => {
     const row = [pose.id, ...pose.all.map((value, k) => cellOf(pose.keys[k], value))];
     if (header.includes('value/mm')) row.push(pose.value === undefined ? '-' : valueOf(pose));
     if (header.includes('targets seen')) row.push((pose.targets ?? []).join(' '));
     if (header.includes('socket')) row.push((pose.touched ?? []).join(' '));
     if (isPlan) row.push(wayOf(pose));
+    if (hasNearest) row.push(pose.nearest ?? '');
     return row;
   });
   return table(isPlan ? 'Poses, in the order to visit them' : 'Poses', header, rows);
@@ -94,6 +97,7 @@ function describe(poses, k) {
   if (pose.value !== undefined) parts.push(pose.value === null ? 'needed' : `value ${mm(pose.value)} mm`);
   if (pose.targets) parts.push(pose.targets.length > 0 ? `targets seen: ${pose.targets.join(' ')}` : 'no target seen');
   if (pose.touched) parts.push(`socket: ${pose.touched.join(' ')}`);
+  if (pose.nearest) parts.push(`nearest: ${pose.nearest.replace(' ', ' mm ')}`);
   if (pose.blocked) parts.push('no free way there was found');
   else if (pose.via) parts.push('reached over a via point');
   return parts.join(' \u00b7 ');

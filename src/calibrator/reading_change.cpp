@@ -1,0 +1,247 @@
+#include "reading_change.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "../core/format.hpp"
+#include "length_units.hpp"
+#include "posewise/core/units.hpp"
+#include "posewise/model/transforms.hpp"
+
+namespace posewise::detail {
+namespace {
+
+using Kind = ReadingChange::Kind;
+
+bool turns(const Campaign& campaign, Index joint) {
+    return campaign.robot.joint(joint).motion == Motion::Rotation;
+}
+
+const std::string& name_of(const Campaign& campaign, Index joint) {
+    return campaign.robot.joints()[static_cast<std::size_t>(joint)].name;
+}
+
+// ---- Reading otherwise ----
+
+void change_joints(const ReadingChange& change, const Campaign& campaign, RowMatrixXd& q) {
+    switch (change.kind) {
+        case Kind::Reversed:
+            q.col(change.joint) *= -1;
+            return;
+        case Kind::Exchanged:
+            q.col(change.joint).swap(q.col(change.other));
+            return;
+        case Kind::Coupled:
+            q.col(change.joint) =
+                change.factor * q.col(change.joint) + change.other_factor * q.col(change.other);
+            return;
+        case Kind::JointFactor:
+            for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
+                const bool is_meant = change.joint < 0 ? turns(campaign, j) : j == change.joint;
+                if (is_meant) q.col(j) *= change.factor;
+            }
+            return;
+        case Kind::Zero:
+            q.col(change.joint).array() += change.factor;
+            return;
+        default:
+            return;
+    }
+}
+
+void change_lengths(const ReadingChange& change, const Sensor& sensor, RowMatrixXd& observations) {
+    const Index width = sensor.rows_per_target();
+    for (Index row = 0; row < observations.cols(); ++row) {
+        const bool is_meant = change.joint < 0 || row / width == change.joint;
+        if (is_meant && !sensor.is_angle(row)) observations.col(row) *= change.factor;
+    }
+}
+
+void mirror(const Sensor& sensor, RowMatrixXd& observations) {
+    const Index width = sensor.rows_per_target();
+    for (Index z = 2; z < observations.cols(); z += width) observations.col(z) *= -1;
+    if (sensor.has_orientation()) observations.middleCols(observations.cols() - 3, 2) *= -1;
+}
+
+void change_orientations(const OrientationSense& sense, Measurements& measurements) {
+    const bool has_rpy = measurements.roll_pitch_yaw.rows() > 0;
+    for (Index k = 0; k < measurements.observations.rows(); ++k) {
+        auto rotation = measurements.observations.row(k).tail<3>();
+        Vector3d read = rotation.transpose();
+        if (has_rpy) read = measurements.roll_pitch_yaw.row(k).transpose();
+        rotation = vector_from_rotation(sense.meant(read)).transpose();
+    }
+}
+
+// ---- Words ----
+
+/// "j3 - j2", "-j3 + j2".
+std::string coupled(const ReadingChange& change, const Campaign& campaign) {
+    return fmt::format("{}{} {} {}", change.factor < 0 ? "-" : "", name_of(campaign, change.joint),
+                       change.other_factor < 0 ? "-" : "+", name_of(campaign, change.other));
+}
+
+/// "q2 + 90 deg".
+std::string shifted(const ReadingChange& change, const Campaign& campaign) {
+    return fmt::format("{} {} {} deg", name_of(campaign, change.joint),
+                       change.factor < 0 ? "-" : "+",
+                       format_short(to_degrees(std::abs(change.factor)), 3));
+}
+
+struct JointUnits {
+    const char* meant;
+    const char* read;
+    const char* suffix;
+};
+
+/// The unit that a factor of joint values would mend.
+JointUnits joint_units(const ReadingChange& change, const Campaign& campaign) {
+    const bool is_larger = change.factor > 1;
+    if (change.joint >= 0 && !turns(campaign, change.joint)) {
+        return is_larger ? JointUnits{"m", "mm", "_m"} : JointUnits{"mm", "m", "_mm"};
+    }
+    return is_larger ? JointUnits{"rad", "degrees", "_rad"} : JointUnits{"degrees", "rad", "_deg"};
+}
+
+std::string describe_one(const ReadingChange& change, const Campaign& campaign,
+                         OrientationNotation notation) {
+    switch (change.kind) {
+        case Kind::Reversed:
+            break;  // all together
+        case Kind::Exchanged:
+            return fmt::format("{} and {} exchanged", name_of(campaign, change.joint),
+                               name_of(campaign, change.other));
+        case Kind::Coupled:
+            return fmt::format("{} in place of {}", coupled(change, campaign),
+                               name_of(campaign, change.joint));
+        case Kind::JointFactor: {
+            const JointUnits units = joint_units(change, campaign);
+            return fmt::format("{} in {} where the file says {}",
+                               change.joint < 0 ? "joint values" : name_of(campaign, change.joint),
+                               units.meant, units.read);
+        }
+        case Kind::Zero:
+            return fmt::format("{} in place of {}", shifted(change, campaign),
+                               name_of(campaign, change.joint));
+        case Kind::LengthFactor: {
+            const LengthUnitMistake& mistake = mistake_of(change.factor);
+            const std::string what = change.joint < 0 ? campaign.sensor->words().readings
+                                                      : fmt::format("target {}", change.joint + 1);
+            return fmt::format("{} in {} where the file says {}", what, mistake.meant,
+                               mistake.read);
+        }
+        case Kind::LeftHanded:
+            return "the instrument's frame left-handed";
+        case Kind::Orientation:
+            return fmt::format("{} {}", orientation_columns(notation), change.sense->words);
+    }
+    return "";
+}
+
+std::string cure_one(const ReadingChange& change, const Campaign& campaign) {
+    switch (change.kind) {
+        case Kind::Reversed:
+            break;  // all together
+        case Kind::Exchanged:
+            return "exchange the names of these columns";
+        case Kind::Coupled:
+            return fmt::format("write {} into the column {}", coupled(change, campaign),
+                               name_of(campaign, change.joint));
+        case Kind::JointFactor: {
+            const char* suffix = joint_units(change, campaign).suffix;
+            return change.joint < 0
+                       ? fmt::format("let the names of their columns end in {}", suffix)
+                       : fmt::format("name the column {}{}", name_of(campaign, change.joint),
+                                     suffix);
+        }
+        case Kind::Zero:
+            return fmt::format("write {} into the column {}, or turn the joint's zero in the robot",
+                               shifted(change, campaign), name_of(campaign, change.joint));
+        case Kind::LengthFactor: {
+            const std::string meant = mistake_of(change.factor).meant;
+            return meant == "m" || meant == "mm"
+                       ? fmt::format("let the names of their columns end in _{}", meant)
+                       : fmt::format("multiply them by {}", format_short(change.factor, 4));
+        }
+        case Kind::LeftHanded:
+            return campaign.sensor->has_orientation()
+                       ? "turn round the signs of z and of the turns about x and y"
+                       : "turn round the signs of all z";
+        case Kind::Orientation:
+            return change.sense->cure;
+    }
+    return "";
+}
+
+}  // namespace
+
+Measurements read_with(const ReadingChanges& changes, const Campaign& campaign,
+                       Measurements measurements) {
+    for (const ReadingChange& change : changes) {
+        change_joints(change, campaign, measurements.configurations);
+        RowMatrixXd& observations = measurements.observations;
+        if (change.kind == Kind::LengthFactor)
+            change_lengths(change, *campaign.sensor, observations);
+        if (change.kind == Kind::LeftHanded) mirror(*campaign.sensor, observations);
+        if (change.kind == Kind::Orientation) change_orientations(*change.sense, measurements);
+    }
+    return measurements;
+}
+
+bool has_kind(const ReadingChanges& changes, Kind kind) {
+    return std::ranges::any_of(changes, [&](const auto& change) { return change.kind == kind; });
+}
+
+Index count_changes(const ReadingChanges& changes) {
+    const auto twice = std::ranges::count_if(changes, [](const ReadingChange& change) {
+        return change.kind == Kind::Coupled && change.factor < 0;
+    });
+    return std::ssize(changes) + twice;
+}
+
+bool has_all(const ReadingChanges& changes, const ReadingChanges& others) {
+    return std::ranges::all_of(others, [&](const ReadingChange& other) {
+        return std::ranges::find(changes, other) != changes.end();
+    });
+}
+
+std::vector<std::string> reversed_joints(const ReadingChanges& changes, const Campaign& campaign) {
+    std::vector<std::string> names;
+    for (const ReadingChange& change : changes) {
+        if (change.kind == Kind::Reversed) names.push_back(name_of(campaign, change.joint));
+    }
+    return names;
+}
+
+std::string describe(const ReadingChanges& changes, const Campaign& campaign,
+                     OrientationNotation notation) {
+    if (changes.empty()) return "as stated";
+    std::vector<std::string> parts;
+    for (const ReadingChange& change : changes) {
+        if (change.kind == Kind::Reversed) continue;
+        parts.push_back(describe_one(change, campaign, notation));
+    }
+    const auto reversed = reversed_joints(changes, campaign);
+    if (!reversed.empty()) parts.push_back(fmt::format("{} reversed", fmt::join(reversed, ", ")));
+    return fmt::format("{}", fmt::join(parts, " and "));
+}
+
+std::string describe_cure(const ReadingChanges& changes, const Campaign& campaign) {
+    std::vector<std::string> parts;
+    for (const ReadingChange& change : changes) {
+        if (change.kind == Kind::Reversed) continue;
+        parts.push_back(cure_one(change, campaign));
+    }
+    if (has_kind(changes, Kind::Reversed)) {
+        parts.emplace_back(
+            "write each with the opposite sign (-q for q) in the file or wherever it stands in the "
+            "campaign's robot, or turn its axis round in the URDF");
+    }
+    return fmt::format("{}", fmt::join(parts, ", and "));
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,146 @@
+#include "readings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "../core/parallel.hpp"
+#include "../core/statistics.hpp"
+#include "length_units.hpp"
+#include "posewise/calibrator/estimate.hpp"
+#include "posewise/calibrator/registration.hpp"
+
+namespace posewise::detail {
+namespace {
+
+/// So many readings, the best of the quick registration, are registered properly.
+constexpr std::size_t polished_count = 64;
+
+/// Evenly spaced configurations, or all where a target is seen only in the others.
+Measurements thin_out(const Measurements& measurements, Index most) {
+    const Index count = measurements.configuration_count();
+    if (count <= most) return measurements;
+    Measurements some = take(measurements, evenly_spaced(count, most));
+    const auto shown = [](const Measurements& all) { return all.is_seen.colwise().any().count(); };
+    return shown(some) < shown(measurements) ? measurements : some;
+}
+
+/// How much farther the measured points of a target spread than the flange, by the joints, does.
+double measured_extent(const Campaign& campaign, const Measurements& measured) {
+    const VectorXd no_errors = VectorXd::Zero(campaign.robot.parameter_count());
+    RowMatrixXd flange(measured.configuration_count(), 3);
+    for (Index i = 0; i < flange.rows(); ++i) {
+        const VectorXd q = measured.configurations.row(i).transpose();
+        flange.row(i) =
+            campaign.robot.base_from_links(q, no_errors).back().translation().transpose();
+    }
+    RowMatrixXd seen(measured.is_seen.rows(), 3);
+    Index count = 0;
+    for (Index sample = 0; sample < seen.rows(); ++sample) {
+        if (!measured.is_seen(sample, 0)) continue;
+        seen.row(count++) = measured.observation(sample, 0).head<3>();
+    }
+    return rms_spread(seen.topRows(count)) / rms_spread(flange);
+}
+
+/// With which the measured points spread about as the flange does.
+double likely_length_factor(const Campaign& campaign, const Measurements& measured) {
+    if (campaign.sensor->lengths_per_target() != 3) return 1;
+    const double extent = measured_extent(campaign, measured);
+    constexpr double tolerated = 4;  // targets beside the flange move farther
+    if (!(extent > tolerated) && !(extent < 1 / tolerated && extent > 0)) return 1;
+    return nearest_length_factor(1 / extent);
+}
+
+using Register = Registration (&)(const Campaign&, const Measurements&);
+
+/// Infinite where the tool, moved so, does not turn in enough ways.
+void fit(const Campaign& campaign, const Measurements& measurements, Register registers,
+         FittedReading& reading) {
+    reading.distance_rms = reading.misfit = std::numeric_limits<double>::infinity();
+    const Measurements meant =
+        mean_measurements(*campaign.sensor, read_with(reading.changes, campaign, measurements));
+    const Registration registered = registers(campaign, meant);
+    if (!registered.is_determined()) return;
+    const RowMatrixXd left = residuals(campaign, registered.parameters, meant);
+    const Index lengths = campaign.sensor->lengths_per_target();
+    const Metrics metrics = make_metrics(left, lengths);
+    reading.distance_rms = metrics.distance_rms;
+    reading.orientation_rms = metrics.orientation_rms;
+    const auto judged = left.leftCols(lengths > 0 ? lengths : left.cols());
+    reading.median = quantile(judged.rowwise().norm(), 0.5, QuantileRule::Upper);
+    constexpr double lever = 1;  // m
+    reading.misfit = std::hypot(metrics.distance_rms, lever * metrics.orientation_rms);
+}
+
+/// Fits the first `count` readings anew and sorts them.
+void fit(std::vector<FittedReading>& readings, std::size_t count, const Campaign& campaign,
+         const Measurements& measurements, Register registers) {
+    for_each_index(static_cast<Index>(count), [&](Index k) {
+        fit(campaign, measurements, registers, readings[static_cast<std::size_t>(k)]);
+    });
+    std::ranges::stable_sort(readings.begin(),
+                             readings.begin() + static_cast<std::ptrdiff_t>(count), {},
+                             &FittedReading::misfit);
+}
+
+Index changes_of(const FittedReading& reading) { return count_changes(reading.changes); }
+
+}  // namespace
+
+FittedReadings fit_readings(const Campaign& campaign, const Measurements& measurements,
+                            Index most_configurations) {
+    const Measurements thinned = thin_out(measurements, most_configurations);
+    // What is wrong with the measurements themselves is said once, of the robot as stated.
+    FittedReadings fitted{{}, register_roughly(campaign, thinned).undetermined};
+    if (!fitted.undetermined.empty()) return fitted;
+    std::vector<FittedReading>& readings = fitted.readings;
+    for (ReadingChanges& changes :
+         all_readings(campaign, measurements.notation, likely_length_factor(campaign, thinned))) {
+        readings.push_back({std::move(changes)});
+    }
+    fit(readings, readings.size(), campaign, thinned, register_roughly);
+    const std::size_t polished = std::min(polished_count, readings.size());
+    const auto stated = std::ranges::find(readings, 0, changes_of);
+    const auto last = readings.begin() + static_cast<std::ptrdiff_t>(polished) - 1;
+    if (stated > last) std::iter_swap(stated, last);
+    fit(readings, polished, campaign, thinned, register_base_and_targets);
+    const auto end = std::ranges::find_if_not(
+        readings, [&](const auto& reading) { return fit_alike(reading, readings.front()); });
+    std::ranges::stable_sort(readings.begin(), end, {}, changes_of);
+    return fitted;
+}
+
+bool fit_alike(const FittedReading& reading, const FittedReading& other) {
+    constexpr double tolerated = 1.001;
+    return reading.misfit <= tolerated * other.misfit && other.misfit <= tolerated * reading.misfit;
+}
+
+const FittedReading& as_stated(const std::vector<FittedReading>& readings) {
+    return *std::ranges::find(readings, 0, changes_of);
+}
+
+const FittedReading* find_clearly_better(const std::vector<FittedReading>& readings,
+                                         double credible) {
+    constexpr double far = 0.5;
+    constexpr double clearly = 1.5;
+    const double best = readings.front().misfit;
+    const double stated = as_stated(readings).misfit;
+    // The simplest of those that fit about as well as the best.
+    const FittedReading* simplest = nullptr;
+    bool is_alone = true;
+    for (const FittedReading& reading : readings) {
+        if (!(reading.misfit <= clearly * best)) break;
+        if (simplest == nullptr || changes_of(reading) < changes_of(*simplest)) {
+            simplest = &reading;
+            is_alone = true;
+        } else if (changes_of(reading) == changes_of(*simplest)) {
+            is_alone = is_alone && fit_alike(reading, *simplest);
+        }
+    }
+    if (simplest == nullptr || !is_alone) return nullptr;
+    const bool is_better = simplest->misfit < far * stated && simplest->median <= credible;
+    return is_better ? simplest : nullptr;
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,61 @@
+#include "nominal_factor.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "../core/decompositions.hpp"
+#include "posewise/jacobian/identification.hpp"
+
+namespace posewise::detail {
+namespace {
+
+/// Beside these values rank is nearly lost only.
+Parameters nominal_of(const Campaign& campaign) {
+    Parameters nominal = campaign.nominal;
+    nominal.robot.setZero(campaign.robot.parameter_count());
+    return nominal;
+}
+
+}  // namespace
+
+ShownPoses poses_to_judge(const Campaign& campaign, Index count) {
+    const Parameters nominal = nominal_of(campaign);
+    auto touching = touching_poses(campaign, nominal, count, configuration_seed);
+    return touching ? std::move(*touching)
+                    : random_poses(campaign, nominal, count, configuration_seed);
+}
+
+VectorXd sizes_of(Campaign campaign) {
+    campaign.spread.by_name.clear();
+    campaign.spread.offset.reset();
+    return parameter_scale(campaign);
+}
+
+MatrixXd stack_at_nominal(const Campaign& campaign, const ShownPoses& poses, Index first,
+                          Index count) {
+    return make_plain_blocks(campaign, nominal_of(campaign),
+                             poses.configurations.middleRows(first, count),
+                             times_seen(poses.is_seen.middleRows(first, count), 1))
+        .matrix;
+}
+
+MatrixXd factor_at_nominal(const Campaign& campaign, const StopSignal& stop) {
+    constexpr Index least_part = 1'000'000;  // numbers; less takes no time
+    const Index L = parameter_count(campaign);
+    const ShownPoses poses = poses_to_judge(campaign, 2 * L);
+    const Index rows = std::max(4 * L, least_part / std::max<Index>(1, L));
+    const Index at_once = std::max<Index>(1, rows / campaign.sensor->row_count());
+    MatrixXd R(0, L);
+    for (Index first = 0; first < poses.configurations.rows(); first += at_once) {
+        if (first > 0) stop.check(fmt::format("finding what is identifiable of {} parameters", L));
+        const Index count = std::min(at_once, poses.configurations.rows() - first);
+        const MatrixXd part = stack_at_nominal(campaign, poses, first, count);
+        MatrixXd both(R.rows() + part.rows(), L);
+        both << R, part;
+        R = triangular_factor(std::move(both));
+    }
+    return R * sizes_of(campaign).asDiagonal();
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "../measurement/contact.hpp"
+#include "posewise/core/progress.hpp"
+#include "posewise/measurement/campaign.hpp"
+
+/// The Jacobian that decides what is identifiable: at nominal values, in expected errors.
+namespace posewise::detail {
+
+inline constexpr std::uint64_t configuration_seed =
+    20151;  // any: it only has to be always the same
+
+/// In expected errors, as a share of the strongest column: where that is 2 mm, 20 nm, which no
+/// instrument sees. What is left of a column there is the rounding of a file's numbers, a target
+/// on the last joint's axis but for an angle of 1.5708.
+inline constexpr double least_visible = 1e-5;
+
+/// So many random poses. Of a probe that touches each touches one thing, where they can reach all.
+ShownPoses poses_to_judge(const Campaign& campaign, Index count);
+
+/// Expected errors by their kinds alone: what one of them is stated as, or how far joints' zeros are
+/// off where nobody mastered them, is no matter of rank.
+VectorXd sizes_of(Campaign campaign);
+
+/// Rows of the poses from `first` on, in m and rad.
+MatrixXd stack_at_nominal(const Campaign& campaign, const ShownPoses& poses, Index first,
+                          Index count);
+
+/// The triangular factor of the Jacobian in expected errors over as many poses as twice the
+/// parameters, which is made in parts: all that tells how columns depend on each other, and no more
+/// rows than columns. Throws InputError if it is stopped.
+MatrixXd factor_at_nominal(const Campaign& campaign, const StopSignal& stop);
+
+}  // namespace posewise::detail

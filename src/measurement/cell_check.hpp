@@ -1,0 +1,39 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "../model/joint_limits.hpp"
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/model/cell.hpp"
+
+/// What Constraints finds out once, when it is made.
+namespace posewise::detail {
+
+/// Nominal targets in the flange frame; none if the sensor has no targets. Throws InputError if
+/// the cell needs them, or the tracker, and the campaign does not state them.
+std::vector<Vector3d> nominal_targets(const Campaign& campaign, const Cell& cell);
+
+/// Throws InputError for all else that is wrong with a cell (see Constraints). `robot` has the
+/// margin applied.
+void check_cell(const Cell& cell, const Chain& robot, const std::vector<Vector3d>& targets);
+
+/// The limits of a robot, of joints that the cell fixes their value.
+JointRange joint_range(const Chain& robot, const Cell& cell);
+
+/// All that is a body of the robot: the cell's links, then the balls at the targets, if they are
+/// balls and the campaign states where they are.
+std::vector<Link> bodies_of(const Campaign& campaign, const Cell& cell);
+
+/// Pairs of bodies that may collide. Links: the frames they are fixed to, in order along the chain,
+/// are neither the same nor next to each other, so that they share no joint. A ball, which is on
+/// the flange, and a link: two joints part them at least.
+std::vector<std::pair<std::size_t, std::size_t>> colliding_pairs(const std::vector<Link>& links,
+                                                                 const std::vector<Link>& bodies,
+                                                                 Index joint_count);
+
+/// How far a unit of each joint moves any point on the axes of the bodies at most: the sum of
+/// lengths between the joint and the body's far end.
+VectorXd clearance_rates(const Chain& robot, const std::vector<Link>& bodies);
+
+}  // namespace posewise::detail

@@ -1,0 +1,306 @@
+#include "posewise/measurement/constraints.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "../core/elementary.hpp"
+#include "../core/format.hpp"
+#include "../model/halton.hpp"
+#include "cell_check.hpp"
+#include "contact.hpp"
+
+namespace posewise {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double interval_clearance(const Interval& interval, double value) {
+    return std::min(value - interval.lower, interval.upper - value);
+}
+
+/// Clearance of an azimuth to an interval that may lie across +-pi.
+double azimuth_clearance(const Interval& interval, double azimuth) {
+    if (!std::isfinite(interval.lower) || !std::isfinite(interval.upper)) {
+        return interval_clearance(interval, azimuth);
+    }
+    const double center = (interval.lower + interval.upper) / 2;
+    const double offset = std::remainder(azimuth - center, 2 * std::numbers::pi);
+    return (interval.upper - interval.lower) / 2 - std::abs(offset);
+}
+
+/// Angle between two vectors, exact also where it is small; 0 if one has no length.
+double angle_between(const Vector3d& a, const Vector3d& b) {
+    return detail::arc_tangent(a.cross(b).norm(), a.dot(b));
+}
+
+}  // namespace
+
+/// Where everything that moves with the robot is, in the base frame.
+struct Constraints::Posture {
+    std::vector<Capsule> bodies;  ///< links first
+    std::vector<Vector3d> targets;
+    Isometry3d base_from_flange;
+};
+
+/// A body and what is nearest to it.
+struct Constraints::Pair {
+    double distance = infinity;  ///< of the surfaces, m
+    std::size_t body = 0;
+    std::size_t other = 0;  ///< a keep-out, or a body
+
+    void consider(double candidate, std::size_t first, std::size_t second) {
+        if (candidate < distance) *this = {candidate, first, second};
+    }
+};
+
+const char* constraint_name(Constraint constraint) {
+    static constexpr std::array<const char*, constraint_count> names{
+        "joint limits",
+        "fixed",
+        "target_boxes",
+        "keep_out",
+        "self-collision of links",
+        "contact",
+        "tracker.range",
+        "tracker.azimuth",
+        "tracker.elevation",
+        "reflectors.acceptance_half_angle",
+        "tracker.line_of_sight",
+        "reflectors.at_least_visible"};
+    return names[static_cast<std::size_t>(constraint)];
+}
+
+double ConstraintReport::margin() const {
+    return *std::min_element(clearance.begin(), clearance.end());
+}
+
+Constraints::Constraints(const Campaign& campaign, Cell cell, bool needs_contact)
+    : cell_(std::move(cell)),
+      contact_(needs_contact && campaign.sensor->has_contacts() ? std::optional(campaign)
+                                                                : std::nullopt),
+      robot_(without_parameters(detail::with_margin(campaign.robot, cell_.limit_margin))),
+      target_count_(campaign.sensor->target_count()),
+      tracker_from_base_(campaign.nominal.world_from_base),
+      targets_(detail::nominal_targets(campaign, cell_)),
+      bodies_(detail::bodies_of(campaign, cell_)),
+      pairs_(detail::colliding_pairs(cell_.links, bodies_, robot_.joint_count())),
+      clearance_rates_(detail::clearance_rates(robot_, bodies_)) {
+    detail::check_cell(cell_, robot_, targets_);
+    const Vector3d tracker = tracker_from_base_.inverse().translation();
+    for (std::size_t i = 0; i < cell_.keep_outs.size(); ++i) {
+        if (!contains(cell_.keep_outs[i].solid, tracker)) screens_.push_back(i);
+    }
+}
+
+bool Constraints::restricts_places() const {
+    const bool has_obstacles = !bodies_.empty() && !cell_.keep_outs.empty();
+    return contact_ || cell_.sight || !cell_.target_boxes.empty() || has_obstacles ||
+           !pairs_.empty();
+}
+
+Constraints::Posture Constraints::pose_bodies(const VectorXd& q) const {
+    const std::vector<Isometry3d> frames = robot_.base_from_links(q, VectorXd());
+    Posture posture{{}, {}, frames.back()};
+    for (const Link& body : bodies_) {
+        posture.bodies.push_back(frames[static_cast<std::size_t>(body.frame)] * body.solid);
+    }
+    for (const Vector3d& target : targets_) posture.targets.push_back(frames.back() * target);
+    return posture;
+}
+
+double Constraints::limit_clearance(const VectorXd& q) const {
+    double least = infinity;
+    for (Index j = 0; j < robot_.joint_count(); ++j) {
+        if (cell_.fixed_joints.count(j) != 0) continue;
+        const Joint& joint = robot_.joints()[static_cast<std::size_t>(j)];
+        least = std::min(least, interval_clearance({joint.lower, joint.upper}, q[j]));
+    }
+    return least;
+}
+
+double Constraints::fixed_clearance(const VectorXd& q) const {
+    constexpr double tolerance = 1e-9;
+    double least = infinity;
+    for (const auto& [joint, value] : cell_.fixed_joints) {
+        const double deviation = std::abs(q[joint] - value);
+        if (deviation > tolerance) least = std::min(least, -deviation);
+    }
+    return least;
+}
+
+double Constraints::box_clearance(const Posture& posture) const {
+    if (cell_.target_boxes.empty()) return infinity;
+    double least = infinity;
+    for (const Vector3d& target : posture.targets) {
+        double best = -infinity;
+        for (const Box& box : cell_.target_boxes) {
+            best = std::max(best, -signed_distance(target, box));
+        }
+        least = std::min(least, best);
+    }
+    return least;
+}
+
+Constraints::Pair Constraints::nearest_keep_out(const Posture& posture) const {
+    Pair nearest;
+    for (std::size_t i = 0; i < posture.bodies.size(); ++i) {
+        if (bodies_[i].frame == 0) continue;  // never moves
+        for (std::size_t k = 0; k < cell_.keep_outs.size(); ++k) {
+            nearest.consider(clearance(posture.bodies[i], cell_.keep_outs[k].solid), i, k);
+        }
+    }
+    return nearest;
+}
+
+Constraints::Pair Constraints::nearest_of_robot(const Posture& posture) const {
+    Pair nearest;
+    for (const auto& [i, j] : pairs_) {
+        nearest.consider(clearance(posture.bodies[i], posture.bodies[j]), i, j);
+    }
+    return nearest;
+}
+
+double Constraints::line_clearance(const Posture& posture, const Vector3d& target) const {
+    if (!cell_.sight->is_line_required) return infinity;
+    const Capsule line{tracker_from_base_.inverse().translation(), target, 0};
+    double least = infinity;
+    for (std::size_t i = 0; i < cell_.links.size(); ++i) {
+        least = std::min(least, clearance(line, posture.bodies[i]));
+    }
+    for (const std::size_t i : screens_) {
+        least = std::min(least, clearance(line, cell_.keep_outs[i].solid));
+    }
+    return least;
+}
+
+void Constraints::check_contact(const VectorXd& q, ConstraintReport& report) const {
+    constexpr double touches = 1e-9;  // m
+    const Parameters& nominal = contact_->nominal;
+    const RowMatrixXd readings =
+        contact_->sensor->predict(world_from_flange(*contact_, nominal, q), nominal.sensor)
+            .reshaped<Eigen::RowMajor>(target_count_, contact_->sensor->rows_per_target());
+    const VectorXd misses = readings.rowwise().norm();
+    report.is_seen = (misses.transpose().array() <= touches);
+    report.clearance[static_cast<std::size_t>(Constraint::Contact)] = touches - misses.minCoeff();
+}
+
+RowMatrixXd Constraints::bring_to_contacts(const RowMatrixXd& candidates, Index first) const {
+    if (!contact_) return candidates;
+    return detail::bring_to_contacts(*contact_, contact_->nominal, candidates, first,
+                                     detail::joint_range(robot_, cell_))
+        .configurations;
+}
+
+void Constraints::check_sight(const Posture& posture, ConstraintReport& report) const {
+    constexpr double rounding = 1e-9;  // m or rad: a pose at its bound, read from a file
+    const Sight& sight = *cell_.sight;
+    const std::size_t count = posture.targets.size();
+    const Matrix3d tracker_R_flange =
+        tracker_from_base_.linear() * posture.base_from_flange.linear();
+    // Clearances of each target: range, azimuth, elevation, incidence, line, and the least of them.
+    constexpr std::size_t first = static_cast<std::size_t>(Constraint::Range);
+    constexpr std::size_t kinds = constraint_count - first;
+    std::array<std::vector<double>, kinds> clearances;
+    for (std::size_t j = 0; j < count; ++j) {
+        const Vector3d point = tracker_from_base_ * posture.targets[j];
+        const double incidence =
+            sight.normals.empty() ? infinity
+                                  : sight.acceptance_half_angle -
+                                        angle_between(tracker_R_flange * sight.normals[j], -point);
+        const double azimuth = detail::arc_tangent(point.y(), point.x());
+        const double elevation = detail::arc_tangent(point.z(), point.head<2>().norm());
+        std::array<double, kinds> of_target{interval_clearance(sight.range, point.norm()),
+                                            azimuth_clearance(sight.azimuth, azimuth),
+                                            interval_clearance(sight.elevation, elevation),
+                                            incidence,
+                                            line_clearance(posture, posture.targets[j]),
+                                            infinity};
+        of_target.back() = *std::min_element(of_target.begin(), of_target.end());
+        report.is_seen[static_cast<Index>(j)] = of_target.back() >= -rounding;
+        for (std::size_t k = 0; k < kinds; ++k) clearances[k].push_back(of_target[k]);
+    }
+    const auto needed =
+        static_cast<std::size_t>(sight.least_visible.value_or(static_cast<Index>(count)));
+    if (needed == 0) return;
+    for (std::size_t k = 0; k < kinds; ++k) {  // the needed-th largest
+        const auto nth = clearances[k].begin() + static_cast<std::ptrdiff_t>(needed) - 1;
+        std::nth_element(clearances[k].begin(), nth, clearances[k].end(), std::greater<>());
+        report.clearance[first + k] = *nth;
+    }
+}
+
+ConstraintReport Constraints::check(const VectorXd& q) const {
+    robot_.check_configuration(q);
+    const Posture posture = pose_bodies(q);
+    ConstraintReport report;
+    report.clearance.fill(infinity);
+    report.is_seen.setConstant(target_count_, true);
+    const auto set = [&report](Constraint constraint, double value) {
+        report.clearance[static_cast<std::size_t>(constraint)] = value;
+    };
+    set(Constraint::JointLimits, limit_clearance(q));
+    set(Constraint::FixedJoints, fixed_clearance(q));
+    set(Constraint::TargetBoxes, box_clearance(posture));
+    set(Constraint::KeepOuts, nearest_keep_out(posture).distance - cell_.safety_distance);
+    set(Constraint::SelfCollision, nearest_of_robot(posture).distance - cell_.safety_distance);
+    if (cell_.sight) check_sight(posture, report);
+    if (contact_) check_contact(q, report);
+    return report;
+}
+
+SeenTargets Constraints::seen(const VectorXd& q) const {
+    return cell_.sight || contact_ ? check(q).is_seen : SeenTargets::Constant(target_count_, true);
+}
+
+double Constraints::collision_clearance(const VectorXd& q) const {
+    const Posture posture = pose_bodies(q);
+    return std::min(nearest_keep_out(posture).distance, nearest_of_robot(posture).distance) -
+           cell_.safety_distance;
+}
+
+Clearance Constraints::nearest(const VectorXd& q) const {
+    const Posture posture = pose_bodies(q);
+    const Pair outer = nearest_keep_out(posture);
+    const Pair inner = nearest_of_robot(posture);
+    if (std::min(outer.distance, inner.distance) == infinity) return {};
+    if (outer.distance <= inner.distance) {
+        return {outer.distance, bodies_[outer.body].name, cell_.keep_outs[outer.other].name};
+    }
+    // The later one along the chain first, as it is what moves.
+    return {inner.distance, bodies_[inner.other].name, bodies_[inner.body].name};
+}
+
+std::string describe_clearance(const Clearance& nearest, double safety_distance) {
+    const bool is_apart = nearest.distance >= 0;
+    return fmt::format(
+        "{} {} {} mm {} {}, must be {} mm away", nearest.body, is_apart ? "is" : "reaches",
+        detail::format_fixed(1e3 * std::abs(nearest.distance), 2), is_apart ? "from" : "into",
+        nearest.other, detail::format_short(1e3 * safety_distance));
+}
+
+std::string describe_unchecked_bodies(const Campaign& campaign) {
+    const Cell& cell = campaign.cell;
+    if (cell.keep_outs.empty()) return "";
+    const bool are_balls = campaign.sensor->target_radius().has_value();
+    std::string text;
+    if (cell.links.empty()) {
+        text =
+            "the arm is not kept off the cell's obstacles, since cell.links are not stated: "
+            "state them (inspect --write-campaign makes them from a URDF's collision shapes)";
+    }
+    if (are_balls && !campaign.has_nominal_targets) {
+        text += std::string(text.empty() ? "" : "; ") +
+                "the targets are not kept off them, since it is not stated where they are: state " +
+                campaign.sensor->words().key;
+    }
+    return text;
+}
+
+double joint_distance(const VectorXd& a, const VectorXd& b) {
+    return (a - b).cwiseAbs().maxCoeff();
+}
+
+}  // namespace posewise

@@ -1,0 +1,102 @@
+#include "judgement_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "../core/format.hpp"
+#include "../core/text.hpp"
+#include "posewise/core/units.hpp"
+#include "sentences.hpp"
+
+namespace posewise::detail {
+namespace {
+
+/// What the poses of a judgement are called, and what it means if they are worse than expected.
+struct Kind {
+    const char* name;
+    const char* cause;
+};
+
+/// "12 new poses", "3 poses beyond the joint ranges calibrated with (q2, q3)".
+std::string describe_poses(const JudgedGroup& group) {
+    const Index count = std::ssize(group.configurations);
+    if (group.group == PoseGroup::New) return count_of(count, "new pose");
+    if (group.group == PoseGroup::Repeated) return count_of(count, "pose") + " calibrated with";
+    return escape_controls(fmt::format("{} beyond the joint ranges calibrated with ({})",
+                                       count_of(count, "pose"), fmt::join(group.joints, ", ")));
+}
+
+std::string describe_interval(const JudgedGroup& group, bool is_angle) {
+    if (!group.interval) return ", interval unknown: as much was fitted to them as they tell";
+    const auto& [lower, upper, freedom] = *group.interval;
+    return fmt::format(", with 95 % {}..{} ({} degrees of freedom)",
+                       format_short(mm_per_m * lower, 4), format_error(upper, is_angle),
+                       format_short(freedom, 3));
+}
+
+std::string describe_limit(const JudgedGroup& group, const std::optional<double>& limit) {
+    if (!limit) return "";
+    const std::string text = fmt::format(", limit {}: ", format_error(*limit, false));
+    const std::optional<LimitVerdict> verdict = judge_limit(group, *limit);
+    if (!verdict) return text + "not judged";
+    if (*verdict == LimitVerdict::Kept) return text + "pass";
+    if (*verdict == LimitVerdict::NotKept) return text + "fail";
+    const std::optional<Index> count = poses_to_decide(group, *limit);
+    return text + (count ? fmt::format("undecided (if the RMS stays, {} poses decide)", *count)
+                         : "undecided");
+}
+
+std::string describe_verdict(const Calibration& calibration, const Kind& kind,
+                             const JudgedGroup& group) {
+    const bool is_repeated = group.group == PoseGroup::Repeated;
+    const std::string unjudged =
+        is_repeated ? "; they were calibrated with and say nothing of other poses" : "";
+    if (!group.expected) return unjudged;
+    const std::string times =
+        fmt::format("; {} times what is expected", format_short(group.ratio(), 3));
+    switch (group.verdict) {
+        case ChanceVerdict::NotJudged:
+            return unjudged;
+        case ChanceVerdict::Within:
+            return times + ", within chance: the calibration holds there";
+        case ChanceVerdict::Below:
+            return times + ", less than chance would have it: it holds there";
+        case ChanceVerdict::Beyond:
+            break;
+    }
+    return fmt::format("{}, beyond chance (up to {}): {}", times, format_short(group.chance, 3),
+                       calibration.moved ? "it was measured with another set-up (--refit)"
+                       : is_repeated     ? "the robot or its set-up has changed since"
+                       : group.group == PoseGroup::Beyond
+                           ? "what is expected there is extrapolated; calibrate with poses like "
+                             "those, too"
+                           : kind.cause);
+}
+
+std::string describe(const Calibration& calibration, const Kind& kind,
+                     const std::optional<Judgement>& judgement) {
+    if (!judgement) return "";
+    const bool is_angle = !calibration.campaign.sensor->has_lengths();
+    std::string text;
+    for (const JudgedGroup& group : judgement->groups) {
+        text += fmt::format(
+            "{}, {}: RMS {}{}{}{}\n", kind.name, describe_poses(group),
+            format_error(group.found.rms(), is_angle), describe_interval(group, is_angle),
+            describe_limit(group, calibration.limit), describe_verdict(calibration, kind, group));
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string describe_judgements(const Calibration& calibration) {
+    constexpr const char* unlike = "the robot's errors there are unlike those calibrated with";
+    return describe(calibration, {"verification", unlike}, calibration.verification) +
+           describe(calibration, {"not in plan", unlike}, calibration.left_out) +
+           describe(calibration,
+                    {"validation",
+                     "the robot has changed, or its errors there are unlike those calibrated with"},
+                    calibration.validation);
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/task/readings.hpp"
+
+namespace posewise::detail {
+
+/// Says whether the measurements fit best as they are stated, and if not, how else; a search that
+/// tried some.
+std::string describe_readings(const Campaign& campaign, const ReadingSearch& search);
+
+}  // namespace posewise::detail

@@ -1,0 +1,121 @@
+#include "residual_look_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "../core/format.hpp"
+#include "../core/text.hpp"
+#include "posewise/core/units.hpp"
+
+namespace posewise::detail {
+namespace {
+
+/// "0.16 instead of 38 mm held out".
+std::string describe(const HeldOutChange& change, const Campaign& campaign) {
+    return fmt::format("{} instead of {} {} held out", format_short(1e3 * change.after, 3),
+                       format_short(1e3 * change.before, 3),
+                       units_of(!campaign.sensor->has_lengths()).error);
+}
+
+/// "[1.2, -1.6, 0.01]", of m or rad as mm or mrad.
+std::string describe_vector(const Vector3d& v) {
+    const auto number = [&](double value) {
+        return format_fixed(1e3 * value, v.norm() < 1e-3 ? 2 : 1);
+    };
+    return fmt::format("[{}, {}, {}]", number(v.x()), number(v.y()), number(v.z()));
+}
+
+std::string describe(const OutlyingConfigurations& outlying, const Campaign& campaign) {
+    const bool is_one = outlying.ids.size() == 1;
+    std::string text =
+        fmt::format("{} {} {} not fit the others, without {} {} % of the squares is left",
+                    is_one ? "configuration" : "configurations", fmt::join(outlying.ids, ", "),
+                    is_one ? "does" : "do", is_one ? "it" : "them",
+                    format_short(100 * outlying.squares_left, 2));
+    if (outlying.exchanged) {
+        text += fmt::format(" ({} and {} fit with each other's joint values: rows exchanged?)",
+                            outlying.exchanged->first, outlying.exchanged->second);
+    }
+    return text + fmt::format("; with --exclude {}: {}", fmt::join(outlying.ids, ","),
+                              describe(outlying.held_out, campaign));
+}
+
+std::string describe(const SetUpChange& change, const Campaign& campaign) {
+    const bool is_base = change.part == "base";
+    std::string text = fmt::format(
+        "{} {} configurations {} and {}, by {} mm", is_base ? "base or instrument" : change.part,
+        change.is_gradual ? "drifts between" : "moved between", change.last_before,
+        change.first_after, describe_vector(change.translation));
+    if (change.rotation.norm() > 0) {
+        text += fmt::format(" and {} mrad", describe_vector(change.rotation));
+    }
+    const bool is_in_world = is_base || change.part.starts_with("socket");
+    text += is_in_world ? " in the instrument's frame" : " in the flange's frame";
+    if (!change.excluded.empty()) {
+        return text + fmt::format("; with --exclude {}: {}", change.excluded,
+                                  describe(change.held_out, campaign));
+    }
+    return text +
+           fmt::format("; with that as one more unknown: {}", describe(change.held_out, campaign));
+}
+
+std::string describe(const LengthFactor& factor) {
+    const double percent = 100 * factor.excess;
+    return fmt::format(
+        "all lengths are {} % {} than the robot's (give or take {} %), which errors of single "
+        "lengths as expected would not do: is the instrument's scale right, its temperature and "
+        "the robot's? Scale the readings by {} if not",
+        format_short(std::abs(percent), 2), percent > 0 ? "longer" : "shorter",
+        format_short(100 * factor.deviation, 1), format_fixed(1 / (1 + factor.excess), 5));
+}
+
+std::string describe(const JointPattern& pattern, const Campaign& campaign) {
+    const std::string held_out = describe(pattern.held_out, campaign);
+    if (pattern.kind == JointPattern::Kind::Scale) {
+        return fmt::format(
+            "residuals follow the value of {}, as if it moved by {} % more than it says: is the "
+            "scale of its readings right? With that as one more unknown: {}",
+            pattern.joint, format_short(100 * pattern.size, 3), held_out);
+    }
+    return fmt::format(
+        "residuals follow the direction that {} came from, {} {} from one side to the other: "
+        "backlash? Come to each pose from the same side; with that as one more unknown: {}",
+        pattern.joint, format_short(1e3 * std::abs(pattern.size), 2),
+        units_of(pattern.is_angle).error, held_out);
+}
+
+std::string describe(const RoundedJoints& rounded, const Campaign& campaign) {
+    const double degrees = to_degrees(rounded.step);
+    return fmt::format(
+        "all joint angles are multiples of {} deg, and rounding them so leaves {} {} by itself: "
+        "record more digits; with joint_repeatability_deg: {}: {}",
+        format_short(degrees, 2), format_short(1e3 * rounded.effect, 2),
+        units_of(!campaign.sensor->has_lengths()).error, format_short(degrees / std::sqrt(12.0), 2),
+        describe(rounded.held_out, campaign));
+}
+
+std::string describe(const ShiftedRows& shifted, const Campaign& campaign) {
+    return fmt::format(
+        "from configuration {} on, readings fit the joint values of the row {}: was a row lost? "
+        "The nominal robot then misses half of the readings by {} instead of {} {}",
+        quote(shifted.first), shifted.shift > 0 ? "before" : "after",
+        format_short(1e3 * shifted.after, 3), format_short(1e3 * shifted.before, 3),
+        units_of(!campaign.sensor->has_lengths()).error);
+}
+
+}  // namespace
+
+std::vector<std::string> describe_look(const ResidualLook& look, const Campaign& campaign) {
+    std::vector<std::string> sentences;
+    if (look.shifted) sentences.push_back(describe(*look.shifted, campaign));
+    if (look.outlying) sentences.push_back(describe(*look.outlying, campaign));
+    for (const SetUpChange& change : look.changes) sentences.push_back(describe(change, campaign));
+    if (look.lengths) sentences.push_back(describe(*look.lengths));
+    for (const JointPattern& joint : look.joints) sentences.push_back(describe(joint, campaign));
+    if (look.rounded) sentences.push_back(describe(*look.rounded, campaign));
+    return sentences;
+}
+
+}  // namespace posewise::detail

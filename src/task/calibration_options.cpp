@@ -1,0 +1,90 @@
+#include "calibration_options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "posewise/core/errors.hpp"
+
+namespace posewise {
+
+std::string_view method_name(CalibrationMethod method) {
+    switch (method) {
+        case CalibrationMethod::Joint:
+            return "lm";
+        case CalibrationMethod::TwoStep:
+            return "two-step";
+        case CalibrationMethod::Global:
+            return "global";
+    }
+    return "";
+}
+
+Index default_folds(Index configuration_count) {
+    constexpr Index leave_one_out_limit = 100;
+    constexpr Index folds = 10;
+    if (configuration_count < 2) return 0;
+    return configuration_count <= leave_one_out_limit ? configuration_count : folds;
+}
+
+void refuse_faults(const Calibration& calibration) {
+    if (calibration.faults.empty()) return;
+    throw InputError(
+        fmt::format("this is no calibration: {}", fmt::join(calibration.faults, "; ")));
+}
+
+namespace detail {
+
+std::string judge_measured(const Campaign& campaign, const Measurements& measurements,
+                           const JudgeCalibration& judge, const StopSignal& stop) {
+    CalibrationOptions options;
+    options.folds = 0;
+    options.stop = stop;
+    const Calibration calibration = calibrate(campaign, measurements, options);
+    if (calibration.is_identified() && judge && !stop.is_set()) judge(calibration);
+    return calibration.estimate.undetermined;
+}
+
+void check_options(const CalibrationOptions& options) {
+    const bool is_joint = options.method == CalibrationMethod::Joint;
+    if (options.earlier && (!is_joint || options.learns_sizes || options.model_selection)) {
+        throw InputError(
+            "an earlier estimate needs the method lm, without model selection or learning sizes");
+    }
+    const auto count_refitted = [&](const char* name) {
+        return std::count(options.refitted.begin(), options.refitted.end(), name);
+    };
+    const auto base = count_refitted("base");
+    const auto targets = count_refitted("targets");
+    if (base + targets < std::ssize(options.refitted)) {
+        throw InputError("what is refitted for the validation must be base, targets or both");
+    }
+    const Campaign* const other = options.validation_campaign;
+    if (other != nullptr && (targets == 0 || (base == 0 && base_parameter_count(*other) > 0))) {
+        throw InputError("for a validation of another campaign both base and targets are refitted");
+    }
+    if (!is_joint && options.joint.loss.kind != LossKind::Squares) {
+        throw InputError("the loss is " + std::string(loss_name(options.joint.loss.kind)) +
+                         ", must be squares with the method " +
+                         std::string(method_name(options.method)));
+    }
+    if (options.model_selection && (!is_joint || options.folds == 0)) {
+        throw InputError("model selection needs the method lm, and groups to hold out");
+    }
+    for (const Index one : options.verification) {
+        if (options.used.empty() || std::ranges::count(options.used, one) > 0) {
+            throw InputError(
+                "poses to verify with must be others than those used, which must be stated");
+        }
+    }
+    if (options.limit && !(*options.limit > 0)) {
+        throw InputError(fmt::format("the limit is {} m, must be above 0", *options.limit));
+    }
+    if (options.learns_sizes && !is_joint) {
+        throw InputError("learning the sizes of errors needs the method lm");
+    }
+}
+
+}  // namespace detail
+}  // namespace posewise

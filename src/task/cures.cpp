@@ -1,0 +1,187 @@
+#include "cures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "held_out_doubt.hpp"
+#include "posewise/calibrator/registration.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/measurement/exclusion.hpp"
+#include "posewise/model/error_terms.hpp"
+
+namespace posewise::detail {
+namespace {
+
+constexpr double beyond_chance = 2.3263;  // one-sided, 0.01 of normal deviates
+
+/// Nothing unless the measurements identify all and it converges.
+std::optional<Estimate> identify_anew(const Campaign& campaign, const Measurements& measurements,
+                                      const LevenbergMarquardtOptions& options) {
+    const Registration registration = register_base_and_targets(campaign, measurements);
+    if (!registration.is_determined()) return std::nullopt;
+    Estimate found = identify(campaign, measurements, registration.parameters, options);
+    if (!found.undetermined.empty()) return std::nullopt;
+    return found;
+}
+
+/// What a trial leaves of points that it judges, its configurations in their order.
+struct Judged {
+    RowMatrixXd squares;
+    Seen is_judged;
+};
+
+std::optional<Judged> judge(const CureTrial& trial, Index folds) {
+    Campaign campaign = trial.campaign;
+    if (trial.learns_sizes) {
+        const Registration registration = register_base_and_targets(campaign, trial.measurements);
+        if (!registration.is_determined()) return std::nullopt;
+        campaign.spread =
+            learn_sizes(campaign, trial.measurements, registration.parameters, trial.options);
+    }
+    const auto found = identify_anew(campaign, trial.measurements, trial.options);
+    if (!found) return std::nullopt;
+    LevenbergMarquardtOptions options = trial.options;
+    options.finds_model_error = false;
+    const Index count = trial.measurements.configuration_count();
+    const CrossValidation held_out =
+        cross_validate(with_model_error(campaign, *found), trial.measurements, found->parameters,
+                       std::min(folds, count), options);
+    Judged judged{held_out.squared_distances, points_held_out(trial.measurements, held_out)};
+    for (const Outlier& outlier : found->outliers) {
+        judged.is_judged(outlier.configuration, outlier.target) = false;
+    }
+    return judged;
+}
+
+/// Which configurations of all these are.
+std::vector<Index> places_of(const std::vector<std::string>& ids,
+                             const std::vector<std::string>& all) {
+    std::map<std::string, Index> places;
+    for (const std::string& id : all) places.emplace(id, std::ssize(places));
+    std::vector<Index> found;
+    for (const std::string& id : ids) found.push_back(places.at(id));
+    return found;
+}
+
+/// RMS of each configuration's points that were held out, the farthest; -1: none was.
+Index farthest_configuration(const Doubted& doubted) {
+    const Seen is_judged = points_held_out(doubted.measurements, doubted.held_out);
+    Index farthest = -1;
+    double largest = 0;
+    for (Index i = 0; i < is_judged.rows(); ++i) {
+        const auto count = static_cast<double>(is_judged.row(i).count());
+        const double mean =
+            is_judged.row(i).select(doubted.held_out.squared_distances.row(i).array(), 0).sum() /
+            std::max(1.0, count);
+        if (count == 0 || mean <= largest) continue;
+        largest = mean;
+        farthest = i;
+    }
+    return farthest;
+}
+
+/// Nothing where too little would be left.
+std::optional<CureTrial> leave_one_out(const Doubted& doubted, const std::string& excluded) {
+    try {
+        return CureTrial{"--exclude " + excluded, doubted.campaign,
+                         leave_out(doubted.measurements, {excluded}), doubted.options};
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+}
+
+bool has_terms(const Chain& robot, TermKind kind) {
+    for (Index k = 0; k < robot.parameter_count(); ++k) {
+        const ErrorTerm* const term = robot.parameter_term(k);
+        if (term != nullptr && term->kind == kind) return true;
+    }
+    return false;
+}
+
+std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
+                                   const CureOptions& options) {
+    const Campaign& campaign = doubted.campaign;
+    std::vector<CureTrial> trials;
+    const auto add = [&](const std::string& option, const Campaign& other) -> CureTrial& {
+        return trials.emplace_back(option, other, doubted.measurements, doubted.options);
+    };
+    if (doubted.options.loss.kind == LossKind::Squares) {
+        std::vector<std::string> worst;
+        if (doubts.scatter) worst.push_back(doubts.scatter->sample);
+        const Index farthest = farthest_configuration(doubted);
+        if (farthest >= 0) {
+            worst.push_back(doubted.measurements.ids[static_cast<std::size_t>(farthest)]);
+        }
+        for (const std::string& excluded : worst) {
+            if (auto trial = leave_one_out(doubted, excluded)) trials.push_back(*std::move(trial));
+        }
+        add("--loss cauchy", campaign).options.loss.kind = LossKind::Cauchy;
+    }
+    if (options.can_learn_sizes && campaign.spread.is_prior) {
+        add("--learn-sizes", campaign).learns_sizes = true;
+    }
+    for (const OtherCampaign& other : options.campaigns) add(other.option, other.campaign);
+    // Without a prior, or before harmonics, tilts are more than most poses tell apart.
+    const Chain& robot = campaign.robot;
+    if (campaign.spread.is_prior && has_terms(robot, TermKind::Harmonic) &&
+        !has_terms(robot, TermKind::Tilt)) {
+        add("robot.axis_tilt: {orders: [1, 2]}",
+            with_robot(campaign, with_axis_tilt(robot, {1, 2})));
+    }
+    return trials;
+}
+
+}  // namespace
+
+std::optional<Cure> try_cure(const Doubted& doubted, const CureTrial& trial) {
+    const auto judged = judge(trial, doubted.held_out.folds);
+    if (!judged) return std::nullopt;
+    const std::vector<Index> places = places_of(trial.measurements.ids, doubted.measurements.ids);
+    const Seen all = points_held_out(doubted.measurements, doubted.held_out);
+    const Seen common = all(places, Eigen::all).array() && judged->is_judged.array();
+    const RowMatrixXd before = doubted.held_out.squared_distances(places, Eigen::all);
+    const VectorXd after = common.select(judged->squares, 0).rowwise().sum();
+    const double deviations = rank_deviations(after, common.select(before, 0).rowwise().sum());
+    if (!(deviations < -beyond_chance)) return std::nullopt;
+    const Cure cure{trial.option, rms_of(doubted.held_out.squared_distances, all),
+                    rms_of(judged->squares, judged->is_judged)};
+    if (!(cure.after < cure.before)) return std::nullopt;
+    return cure;
+}
+
+std::optional<LoneConfiguration> find_lone_configuration(const Doubted& doubted) {
+    constexpr double below = 0.1;
+    constexpr Index enough = 8;  // others
+    if (doubted.options.loss.kind != LossKind::Squares) return std::nullopt;
+    const Index farthest = farthest_configuration(doubted);
+    if (farthest < 0) return std::nullopt;
+    const std::string& id = doubted.measurements.ids[static_cast<std::size_t>(farthest)];
+    const auto trial = leave_one_out(doubted, id);
+    if (!trial) return std::nullopt;
+    // As many numbers as unknowns fit always.
+    if (trial->measurements.configuration_count() < enough) return std::nullopt;
+    const auto found = identify_anew(trial->campaign, trial->measurements, trial->options);
+    if (!found || 2 * found->degrees_of_freedom < doubted.estimate.degrees_of_freedom) {
+        return std::nullopt;
+    }
+    const LoneConfiguration lone{id, doubted.estimate.fit_means.rms(), found->fit_means.rms()};
+    if (!(lone.after < below * lone.before)) return std::nullopt;
+    return lone;
+}
+
+Cures find_cures(const Doubted& doubted, const Doubts& doubts, const CureOptions& options) {
+    Cures cures;
+    for (const CureTrial& trial : list_trials(doubted, doubts, options)) {
+        if (doubted.options.stop.is_set()) return {};
+        if (const auto cure = try_cure(doubted, trial)) {
+            cures.found.push_back(*cure);
+        } else {
+            cures.without_effect.push_back(trial.option);
+        }
+    }
+    std::ranges::stable_sort(cures.found, {}, &Cure::after);
+    return cures;
+}
+
+}  // namespace posewise::detail

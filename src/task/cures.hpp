@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewise/task/doubts.hpp"
+#include "posewise/task/held_out.hpp"
+
+namespace posewise::detail {
+
+/// A calibration whose doubts are to be cured, and the groups that were held out of it.
+struct Doubted {
+    const Campaign& campaign;
+    const Measurements& measurements;
+    const Estimate& estimate;
+    const CrossValidation& held_out;
+    LevenbergMarquardtOptions options{};  ///< of its identification, and of those to try
+};
+
+/// A calibration to try instead: of the campaign, of fewer measurements, with another loss.
+struct CureTrial {
+    std::string option;
+    Campaign campaign;
+    Measurements measurements;
+    LevenbergMarquardtOptions options{};
+    bool learns_sizes = false;
+};
+
+/// Calibrates as the trial says and holds out as many groups; nothing unless that lowers the error
+/// beyond chance at the points that both judge. What the trial leaves out, and what its loss calls
+/// outliers, judges nothing.
+std::optional<Cure> try_cure(const Doubted& doubted, const CureTrial& trial);
+
+/// The one that is missed most where it is held out, if leaving it out takes what is left over
+/// below a tenth. Nothing under a robust loss, which does that by itself.
+std::optional<LoneConfiguration> find_lone_configuration(const Doubted& doubted);
+
+/// What may be tried beside what a calibration tells by itself.
+struct CureOptions {
+    bool can_learn_sizes = false;
+    std::vector<OtherCampaign> campaigns{};
+};
+
+/// Tries a robust loss, the configuration or sample left out that looks worst, sizes that are
+/// learned, and richer errors. `doubts`: which sample scatters.
+Cures find_cures(const Doubted& doubted, const Doubts& doubts, const CureOptions& options);
+
+}  // namespace posewise::detail

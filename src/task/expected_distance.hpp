@@ -1,0 +1,21 @@
+#pragma once
+
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/measurements.hpp"
+
+namespace posewise::detail {
+
+/// Another robot's measurements are off by more than so many expected errors.
+inline constexpr double credible_errors = 10;
+
+/// By how much the nominal robot is expected to miss the points measured, as the spread, the model
+/// error and the instrument's noise say: RMS, m.
+double expected_distance(const Campaign& campaign, const Measurements& measured);
+
+/// By how much readings (RMS of a target's means; m, or of angles, rad) are off that no robot of
+/// this kind explains: what one is expected to miss them by before it is calibrated, if it has
+/// every geometric error of the sizes expected here, model error and noise.
+double largest_left_over(const Campaign& campaign, const Parameters& at,
+                         const Measurements& measured, bool is_angle);
+
+}  // namespace posewise::detail

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/task/judgement.hpp"
+
+namespace posewise::detail {
+
+/// What poses were judged with: a robot calibrated at other ones.
+struct Judge {
+    const Campaign& campaign;  ///< with the model error found
+    const Estimate& estimate;
+    const RowMatrixXd& calibrated_with;  ///< configurations
+    /// Whether the estimate's covariance tells what to expect there.
+    bool knows_expected = true;
+    Index fitted_count = 0;  ///< of base and targets, fitted to the poses that are judged
+};
+
+Judgement judge(const Judge& judge, const Measurements& others);
+
+}  // namespace posewise::detail

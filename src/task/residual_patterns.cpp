@@ -1,0 +1,147 @@
+#include "residual_patterns.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/calibrator/registration.hpp"
+
+namespace posewise::detail {
+namespace {
+
+constexpr Index base_columns = 6;
+
+/// Twists of the world's translations and of rotations about the base's origin, then of joints.
+TwistMatrix twists_of(const Campaign& campaign, const Parameters& parameters, const VectorXd& q,
+                      FlangeMotion& motion) {
+    campaign.robot.differentiate(parameters.world_from_base, q, parameters.robot, motion);
+    TwistMatrix twists = TwistMatrix::Zero(6, base_columns + motion.joint_twists.cols());
+    const Vector3d origin = parameters.world_from_base.translation();
+    for (Index k = 0; k < 3; ++k) {
+        const Vector3d axis = Vector3d::Unit(k);
+        twists.col(k).tail<3>() = axis;
+        twists.col(3 + k).head<3>() = axis;
+        twists.col(3 + k).tail<3>() = origin.cross(axis);
+    }
+    twists.rightCols(motion.joint_twists.cols()) = motion.joint_twists;
+    return twists;
+}
+
+bool tells_lengths(const Sensor& sensor) { return sensor.has_lengths() && !sensor.has_contacts(); }
+
+}  // namespace
+
+std::optional<Fitted> fit_again(const Campaign& campaign, const Measurements& measured,
+                                const Loss& loss) {
+    const Registration start = register_base_and_targets(campaign, measured);
+    if (!start.is_determined()) return std::nullopt;
+    LevenbergMarquardtOptions options;
+    options.loss.kind = loss.kind;
+    Fitted fitted{campaign, measured, identify(campaign, measured, start.parameters, options)};
+    if (!fitted.estimate.undetermined.empty()) return std::nullopt;
+    return fitted;
+}
+
+FittedProblem::FittedProblem(const Fitted& fitted)
+    : found(with_model_error(fitted.campaign, fitted.estimate)),
+      problem(make_problem(found, fitted.measured)) {
+    problem.loss = fitted.estimate.loss;
+    problem.deviation = std::sqrt(fitted.estimate.variance_factor);
+}
+
+double held_out_rms(const Fitted& fitted) {
+    const FittedProblem linearised(fitted);
+    const auto fit = linear_fit(linearised.problem, fitted.estimate.parameters);
+    if (!fit) return fitted.estimate.fit.rms();
+    return fitted.estimate.fit.rms() * std::sqrt(held_out_ratio(*fit));
+}
+
+PatternColumns::PatternColumns(const FittedProblem& fitted, const Parameters& parameters) {
+    const Campaign& campaign = fitted.found;
+    const Sensor& sensor = *campaign.sensor;
+    const Measurements& means = fitted.problem.means;
+    first_unknown_ = base_columns + campaign.robot.joint_count();
+    lengths_ = first_unknown_ + parameters.sensor.size();
+    const Index touched = sensor.has_contacts() ? 3 : 0;
+    FlangeMotion motion;
+    all_ = whitened_columns(fitted.problem, parameters, lengths_ + 1 + touched,
+                            [&](Index i, Eigen::Ref<RowMatrixXd> columns) {
+                                const VectorXd q = means.configurations.row(i).transpose();
+                                const TwistMatrix twists =
+                                    twists_of(campaign, parameters, q, motion);
+                                columns.setZero();
+                                sensor.differentiate(motion.world_from_flange, twists,
+                                                     parameters.sensor, columns.leftCols(lengths_));
+                                for (Index row = 0; row < columns.rows(); ++row) {
+                                    if (tells_lengths(sensor) && !sensor.is_angle(row) &&
+                                        means.is_seen(i, row / sensor.rows_per_target())) {
+                                        columns(row, lengths_) = means.observations(i, row);
+                                    }
+                                    if (touched > 0) columns(row, lengths_ + 1 + row % 3) = -1;
+                                }
+                            });
+}
+
+RowMatrixXd PatternColumns::unknowns(const std::vector<Index>& which) const {
+    RowMatrixXd columns(all_.rows(), std::ssize(which));
+    for (Index k = 0; k < columns.cols(); ++k) {
+        columns.col(k) = all_.col(first_unknown_ + which[static_cast<std::size_t>(k)]);
+    }
+    return columns;
+}
+
+std::optional<LengthFactor> find_length_factor(const Fitted& fitted, const PatternColumns& columns,
+                                               const LinearFit& fit) {
+    if (!tells_lengths(*fitted.campaign.sensor)) return std::nullopt;
+    // A robot whose errors are larger than expected may well be longer as a whole, too.
+    const Campaign& campaign = fitted.campaign;
+    const VectorXd& errors = fitted.estimate.parameters.robot;
+    const VectorXd times = errors.cwiseQuotient(
+        parameter_scale(campaign).segment(base_parameter_count(campaign), errors.size()));
+    const double mean_square =
+        errors.size() == 0 ? 1 : times.squaredNorm() / static_cast<double>(errors.size());
+    const Score found = score(fit, columns.lengths(), std::max(1.0, mean_square));
+    if (!found.is_beyond(chance_of_factor)) return std::nullopt;
+    return LengthFactor{found.effect[0], found.deviations[0]};
+}
+
+std::vector<JointPattern> find_joint_patterns(const Fitted& fitted, const PatternColumns& columns,
+                                              const LinearFit& fit) {
+    const Chain& robot = fitted.campaign.robot;
+    const RowMatrixXd& q = fitted.measured.configurations;
+    const std::vector<Index> all = all_but(fit.count(), {});
+    const double before = held_out_squares(fit, all);
+    const double rms = held_out_rms(fitted);
+    std::vector<JointPattern> patterns;
+    double best = material * before;
+    const auto try_pattern = [&](Index j, JointPattern::Kind kind, const auto& amount) {
+        RowMatrixXd X = columns.joint(j);
+        for (Index i = 0; i < fit.count(); ++i) {
+            X.middleRows(fit.begin(i), fit.rows(i)) *= amount(i);
+        }
+        const Score found = score(fit, X);
+        if (!found.is_beyond(chance_of_joint / static_cast<double>(2 * robot.joint_count()))) {
+            return;
+        }
+        const double after = held_out_squares(found.with, all);
+        if (after > best) return;
+        best = after;
+        const double sides = kind == JointPattern::Kind::Backlash ? 2 : 1;
+        patterns = {{robot.joint(j).name,
+                     kind,
+                     sides * found.effect[0],
+                     robot.joint(j).motion == Motion::Rotation,
+                     {rms, rms * std::sqrt(after / before)}}};
+    };
+    for (Index j = 0; j < robot.joint_count(); ++j) {
+        try_pattern(j, JointPattern::Kind::Scale, [&](Index i) { return q(i, j); });
+        try_pattern(j, JointPattern::Kind::Backlash, [&](Index i) {
+            const double step = i == 0 ? 0 : q(i, j) - q(i - 1, j);
+            return step > 0 ? 1.0 : step < 0 ? -1.0 : 0.0;
+        });
+    }
+    return patterns;
+}
+
+}  // namespace posewise::detail

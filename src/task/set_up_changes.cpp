@@ -1,0 +1,184 @@
+#include <algorithm>
+#include <cmath>
+
+#include "../core/statistics.hpp"
+#include "residual_patterns.hpp"
+
+namespace posewise::detail {
+namespace {
+
+constexpr Index least_on_a_side = 3;  // configurations
+constexpr std::size_t most_changes = 3;
+
+/// A part of the set-up that may have moved: its columns, and where it matters.
+struct Part {
+    std::string name;
+    RowMatrixXd X;               ///< translations first, three; then rotations, if there are some
+    std::vector<Index> members;  ///< configurations that see it
+    bool is_in_instrument = false;
+};
+
+Part part_of_target(const Fitted& fitted, const PatternColumns& columns, Index target) {
+    const Sensor& sensor = *fitted.campaign.sensor;
+    const bool is_body = sensor.has_orientation();
+    std::vector<Index> which;
+    for (Index axis = 0; axis < 3; ++axis) {
+        const Index k = sensor.targets().unknown_index(target, axis);
+        if (k >= 0) which.push_back(k);
+    }
+    if (which.size() < 3) return {};
+    if (is_body) which = {0, 1, 2, 3, 4, 5};
+    Part part{
+        is_body ? "tool" : "target" + std::to_string(target + 1), columns.unknowns(which), {}};
+    for (Index i = 0; i < fitted.measured.configuration_count(); ++i) part.members.push_back(i);
+    return part;
+}
+
+std::vector<Part> list_parts(const Fitted& fitted, const PatternColumns& columns,
+                             const LinearFit& fit) {
+    const Sensor& sensor = *fitted.campaign.sensor;
+    std::vector<Part> parts{{"base", columns.base(), all_but(fit.count(), {}), true}};
+    for (Index target = 0; target < sensor.targets().count(); ++target) {
+        Part part = part_of_target(fitted, columns, target);
+        if (part.X.cols() > 0) parts.push_back(std::move(part));
+    }
+    const std::vector<std::string> contacts = sensor.contact_names();
+    const RowMatrixXd seen = times_seen(fitted.measured);
+    for (Index k = 0; k < std::ssize(contacts); ++k) {
+        Part part{"socket " + contacts[static_cast<std::size_t>(k)], {}, {}, true};
+        for (Index i = 0; i < fit.count(); ++i) {
+            if (seen(i, k) > 0) part.members.push_back(i);
+        }
+        part.X = RowMatrixXd::Zero(fit.e.size(), 3);
+        for (const Index i : part.members) {
+            part.X.middleRows(fit.begin(i), fit.rows(i)) =
+                columns.touched().middleRows(fit.begin(i), fit.rows(i));
+        }
+        parts.push_back(std::move(part));
+    }
+    return parts;
+}
+
+/// A change of one part, as a step or a drift.
+struct Candidate {
+    const Part* part = nullptr;
+    Index first = 0;  ///< among the part's members; 0: it drifts
+    RowMatrixXd X;
+    Score score;
+};
+
+RowMatrixXd ramp(const LinearFit& fit, const Part& part) {
+    RowMatrixXd X = RowMatrixXd::Zero(part.X.rows(), part.X.cols());
+    const auto last = static_cast<double>(std::ssize(part.members) - 1);
+    for (Index k = 0; k < std::ssize(part.members); ++k) {
+        const Index i = part.members[static_cast<std::size_t>(k)];
+        X.middleRows(fit.begin(i), fit.rows(i)) =
+            static_cast<double>(k) / last * part.X.middleRows(fit.begin(i), fit.rows(i));
+    }
+    return X;
+}
+
+/// Translation alone, if the rotation is within chance.
+Candidate judge(const LinearFit& fit, const Part& part, Index first, RowMatrixXd X) {
+    Candidate candidate{&part, first, std::move(X), {}};
+    candidate.score = score(fit, candidate.X);
+    if (candidate.X.cols() == 3) return candidate;
+    const Score translation = score(fit, candidate.X.leftCols(3));
+    if (score(translation.with, candidate.X.rightCols(candidate.X.cols() - 3)).is_beyond(0.01)) {
+        return candidate;
+    }
+    candidate.X = RowMatrixXd(candidate.X.leftCols(3));
+    candidate.score = translation;
+    return candidate;
+}
+
+/// How much of what the part's configurations are missed by, held out, stays with the change.
+double share_left(const LinearFit& fit, const Candidate& candidate) {
+    const std::vector<Index>& members = candidate.part->members;
+    return held_out_squares(candidate.score.with, members) / held_out_squares(fit, members);
+}
+
+std::optional<Candidate> find_likeliest(const LinearFit& fit, const std::vector<Part>& parts) {
+    double tried = 0;
+    for (const Part& part : parts) tried += static_cast<double>(part.members.size());
+    std::optional<Candidate> best;
+    double least_share = material;
+    const auto take = [&](Candidate candidate) {
+        if (!candidate.score.is_beyond(chance_of_change / tried)) return;
+        const double share = share_left(fit, candidate);
+        if (share > least_share) return;
+        least_share = share;
+        best = std::move(candidate);
+    };
+    for (const Part& part : parts) {
+        if (std::ssize(part.members) < 2 * least_on_a_side) continue;
+        const ChangePoint point = find_change_point(fit, part.X, part.members, least_on_a_side);
+        if (point.statistic > 0) {
+            take(
+                judge(fit, part, point.first, from_member(fit, part.X, part.members, point.first)));
+        }
+        take(judge(fit, part, 0, ramp(fit, part)));
+    }
+    return best;
+}
+
+/// "21-40", or "21" where it is one.
+std::string range_of(const std::vector<std::string>& ids, Index first, Index last) {
+    const std::string& from = ids[static_cast<std::size_t>(first)];
+    return first == last ? from : from + "-" + ids[static_cast<std::size_t>(last)];
+}
+
+/// Without the fewer configurations; else with the change as one more unknown.
+void try_cure(const Fitted& fitted, const LinearFit& fit, const Candidate& candidate,
+              SetUpChange& change) {
+    const double before = held_out_rms(fitted);
+    const std::vector<Index> all = all_but(fit.count(), {});
+    change.held_out = {before, before * std::sqrt(held_out_squares(candidate.score.with, all) /
+                                                  held_out_squares(fit, all))};
+    if (change.is_gradual || std::ssize(candidate.part->members) < fit.count()) return;
+    const bool is_later_smaller = 2 * candidate.first >= fit.count();
+    const Index first = is_later_smaller ? candidate.first : 0;
+    const Index last = is_later_smaller ? fit.count() - 1 : candidate.first - 1;
+    std::vector<Index> out;
+    for (Index i = first; i <= last; ++i) out.push_back(i);
+    const auto without = fit_again(
+        fitted.campaign, take(fitted.measured, all_but(fit.count(), out)), fitted.estimate.loss);
+    if (!without) return;
+    const double after = held_out_rms(*without);
+    if (!(after < before)) return;
+    change.excluded = range_of(fitted.measured.ids, first, last);
+    change.held_out.after = after;
+}
+
+SetUpChange describe(const Fitted& fitted, const LinearFit& fit, const Candidate& candidate) {
+    const std::vector<Index>& members = candidate.part->members;
+    const auto id = [&](Index k) {
+        return fitted.measured.ids[static_cast<std::size_t>(members[static_cast<std::size_t>(k)])];
+    };
+    SetUpChange change;
+    change.part = candidate.part->name;
+    change.is_gradual = candidate.first == 0;
+    change.last_before = id(change.is_gradual ? 0 : candidate.first - 1);
+    change.first_after = id(change.is_gradual ? std::ssize(members) - 1 : candidate.first);
+    change.translation = candidate.score.effect.head<3>();
+    if (candidate.score.effect.size() > 3) change.rotation = candidate.score.effect.tail<3>();
+    try_cure(fitted, fit, candidate, change);
+    return change;
+}
+
+}  // namespace
+
+std::vector<SetUpChange> find_set_up_changes(const Fitted& fitted, const PatternColumns& columns,
+                                             LinearFit& fit) {
+    const std::vector<Part> parts = list_parts(fitted, columns, fit);
+    std::vector<SetUpChange> changes;
+    while (changes.size() < most_changes) {
+        const auto found = find_likeliest(fit, parts);
+        if (!found) break;
+        changes.push_back(describe(fitted, fit, *found));
+        fit = found->score.with;
+    }
+    return changes;
+}
+
+}  // namespace posewise::detail
