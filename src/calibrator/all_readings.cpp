@@ -82,6 +82,11 @@ void add_observation_changes(const Sensor& sensor, OrientationNotation notation,
         }
     }
     if (!sensor.has_orientation()) return;
+    constexpr Index orders = 6;
+    constexpr Index signs = 8;
+    for (Index k = 1; k < orders * signs; ++k) {
+        all.push_back({{.kind = Kind::Axes, .joint = k / signs, .other = k % signs}});
+    }
     for (const OrientationSense& sense : orientation_senses(notation)) {
         all.push_back({{.kind = Kind::Orientation, .sense = &sense}});
     }
@@ -99,6 +104,7 @@ std::vector<ReadingChanges> all_readings(const Campaign& campaign, OrientationNo
     const std::size_t count = all.size();
     for (std::size_t k = 0; k < count; ++k) {
         if (all[k].empty() || has_kind(all[k], Kind::LengthFactor)) continue;
+        if (has_kind(all[k], Kind::Zero)) continue;  // base and targets take up most of them
         ReadingChanges both = all[k];
         both.push_back({.kind = Kind::LengthFactor, .factor = length_factor});
         all.push_back(both);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -67,6 +68,26 @@ void mirror(const Sensor& sensor, RowMatrixXd& observations) {
     if (sensor.has_orientation()) observations.middleCols(observations.cols() - 3, 2) *= -1;
 }
 
+/// Which column is meant by x, y and z.
+constexpr std::array<std::array<Index, 3>, 6> orders{
+    {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}}};
+
+bool is_axis_reversed(const ReadingChange& change, Index axis) {
+    return (change.other >> axis & 1) != 0;
+}
+
+Index column_of_axis(const ReadingChange& change, Index axis) {
+    return orders[static_cast<std::size_t>(change.joint)][static_cast<std::size_t>(axis)];
+}
+
+void change_axes(const ReadingChange& change, RowMatrixXd& observations) {
+    const RowMatrixXd read = observations.leftCols(3);
+    for (Index axis = 0; axis < 3; ++axis) {
+        const double sign = is_axis_reversed(change, axis) ? -1 : 1;
+        observations.col(axis) = sign * read.col(column_of_axis(change, axis));
+    }
+}
+
 void change_orientations(const OrientationSense& sense, Measurements& measurements) {
     const bool has_rpy = measurements.roll_pitch_yaw.rows() > 0;
     for (Index k = 0; k < measurements.observations.rows(); ++k) {
@@ -78,6 +99,17 @@ void change_orientations(const OrientationSense& sense, Measurements& measuremen
 }
 
 // ---- Words ----
+
+/// "y, x, -z".
+std::string axes(const ReadingChange& change) {
+    std::string text;
+    for (Index axis = 0; axis < 3; ++axis) {
+        text +=
+            fmt::format("{}{}{}", axis == 0 ? "" : ", ", is_axis_reversed(change, axis) ? "-" : "",
+                        "xyz"[column_of_axis(change, axis)]);
+    }
+    return text;
+}
 
 /// "j3 - j2", "-j3 + j2".
 std::string coupled(const ReadingChange& change, const Campaign& campaign) {
@@ -136,6 +168,8 @@ std::string describe_one(const ReadingChange& change, const Campaign& campaign,
         }
         case Kind::LeftHanded:
             return "the instrument's frame left-handed";
+        case Kind::Axes:
+            return axes(change) + " in place of x, y, z";
         case Kind::Orientation:
             return fmt::format("{} {}", orientation_columns(notation), change.sense->words);
     }
@@ -171,6 +205,8 @@ std::string cure_one(const ReadingChange& change, const Campaign& campaign) {
             return campaign.sensor->has_orientation()
                        ? "turn round the signs of z and of the turns about x and y"
                        : "turn round the signs of all z";
+        case Kind::Axes:
+            return fmt::format("write {} into the columns x, y, z", axes(change));
         case Kind::Orientation:
             return change.sense->cure;
     }
@@ -186,6 +222,7 @@ Measurements read_with(const ReadingChanges& changes, const Campaign& campaign,
         RowMatrixXd& observations = measurements.observations;
         if (change.kind == Kind::LengthFactor)
             change_lengths(change, *campaign.sensor, observations);
+        if (change.kind == Kind::Axes) change_axes(change, observations);
         if (change.kind == Kind::LeftHanded) mirror(*campaign.sensor, observations);
         if (change.kind == Kind::Orientation) change_orientations(*change.sense, measurements);
     }
@@ -198,7 +235,7 @@ bool has_kind(const ReadingChanges& changes, Kind kind) {
 
 Index count_changes(const ReadingChanges& changes) {
     const auto twice = std::ranges::count_if(changes, [](const ReadingChange& change) {
-        return change.kind == Kind::Coupled && change.factor < 0;
+        return change.kind == Kind::Zero || (change.kind == Kind::Coupled && change.factor < 0);
     });
     return std::ssize(changes) + twice;
 }

@@ -20,9 +20,10 @@ struct ReadingChange {
         LengthFactor,  ///< observed lengths in another unit; target -1: of all targets
         LeftHanded,    ///< the instrument's frame: z of points mirrored, and orientations with it
         Orientation,   ///< the orientations in another sense
+        Axes,          ///< x, y, z of a pose along other axes than its orientation's
     } kind = Kind::Reversed;
-    Index joint = -1;  ///< or target
-    Index other = -1;
+    Index joint = -1;  ///< or target, or the order of axes
+    Index other = -1;  ///< or which axes are reversed, a bit each
     double factor = 1;
     double other_factor = 0;
     const OrientationSense* sense = nullptr;
@@ -40,7 +41,8 @@ Measurements read_with(const ReadingChanges& changes, const Campaign& campaign,
 /// Whether there is one of this kind among them.
 bool has_kind(const ReadingChanges& changes, ReadingChange::Kind kind);
 
-/// How many things are changed: a coupling with the joint reversed as well counts as two.
+/// How many things are changed. A coupling with the joint reversed as well counts as two; so does a
+/// zero: half a turn of one joint of a wrist does what the next does reversed, which is likelier.
 Index count_changes(const ReadingChanges& changes);
 
 /// "q2, q6 reversed and points in mm where the file says m"; "as stated" of none.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "../core/parallel.hpp"
 #include "../core/statistics.hpp"
@@ -52,6 +53,26 @@ double likely_length_factor(const Campaign& campaign, const Measurements& measur
     return nearest_length_factor(1 / extent);
 }
 
+/// Degrees read as rad go beyond a turn, and mm read as m beyond any rail. Taken as such smaller
+/// values would let the robot hardly move: then points that hardly move fit, whatever they are.
+bool is_possible(const ReadingChanges& changes, const Campaign& campaign,
+                 const Measurements& measured) {
+    constexpr double turn = 2 * std::numbers::pi;
+    constexpr double rail = 20;  // m
+    for (const ReadingChange& change : changes) {
+        if (change.kind != ReadingChange::Kind::JointFactor || change.factor > 1) continue;
+        double largest = 0;  // in turns or rails
+        for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
+            const bool turns = campaign.robot.joint(j).motion == Motion::Rotation;
+            if (change.joint < 0 ? !turns : j != change.joint) continue;
+            const double value = measured.configurations.col(j).cwiseAbs().maxCoeff();
+            largest = std::max(largest, value / (turns ? turn : rail));
+        }
+        if (largest <= 1) return false;
+    }
+    return true;
+}
+
 using Register = Registration (&)(const Campaign&, const Measurements&);
 
 /// Infinite where the tool, moved so, does not turn in enough ways.
@@ -97,6 +118,7 @@ FittedReadings fit_readings(const Campaign& campaign, const Measurements& measur
     std::vector<FittedReading>& readings = fitted.readings;
     for (ReadingChanges& changes :
          all_readings(campaign, measurements.notation, likely_length_factor(campaign, thinned))) {
+        if (!is_possible(changes, campaign, thinned)) continue;
         readings.push_back({std::move(changes)});
     }
     fit(readings, readings.size(), campaign, thinned, register_roughly);

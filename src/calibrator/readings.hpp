@@ -25,7 +25,8 @@ struct FittedReadings {
     std::string undetermined;
 };
 
-/// All readings that all_readings() lists. Those of a symmetric robot may fit exactly alike. Each
+/// All readings that all_readings() lists, but degrees read as rad where no joint is beyond a turn
+/// (mm as m: 20 m). Those of a symmetric robot may fit exactly alike. Each
 /// is registered from nothing, the best 64 and what is stated with polish, with at most
 /// `most_configurations` configurations evenly taken from the measurements (all if those do not
 /// show every target). Throws InputError as register_base_and_targets() does.

@@ -66,6 +66,15 @@ void find_scale(const LinearFit& fit, const RowMatrixXd& WX, const VectorXd& lef
         squares / expected * (score.freedom + static_cast<double>(score.columns)) / score.freedom;
 }
 
+/// The same from all that is left: each configuration counts as one number.
+void find_scale_of_all(const LinearFit& with, Score& score) {
+    const auto rows = static_cast<double>(with.e.size());
+    const double free = rows - with.U.squaredNorm();
+    if (!(free > 0)) return;
+    score.scale = with.e.squaredNorm() / free;
+    score.freedom = std::max(1.0, static_cast<double>(with.count()) * free / rows);
+}
+
 }  // namespace
 
 std::optional<LinearFit> linear_fit(const IdentificationProblem& problem,
@@ -127,7 +136,7 @@ bool Score::is_beyond(double chance) const {
     return statistic > mixture_quantile(1 - chance, {{q, q}}, freedom);
 }
 
-Score score(const LinearFit& fit, const RowMatrixXd& X, double prior_scale) {
+Score score(const LinearFit& fit, const RowMatrixXd& X, double prior_scale, ScaleFrom scale_from) {
     Score score;
     const MatrixXd UX = fit.U.transpose() * X;
     const MatrixXd XX = X.transpose() * X;
@@ -140,7 +149,11 @@ Score score(const LinearFit& fit, const RowMatrixXd& X, double prior_scale) {
     score.with.e -= WX * z;
     score.with.U.conservativeResize(Eigen::NoChange, fit.U.cols() + score.columns);
     score.with.U.rightCols(score.columns) = WX;
-    find_scale(fit, WX, score.with.e, score);
+    if (scale_from == ScaleFrom::Score) {
+        find_scale(fit, WX, score.with.e, score);
+    } else {
+        find_scale_of_all(score.with, score);
+    }
     const MatrixXd by_noise = WX.transpose() * WX;
     const MatrixXd variance = prior_scale * MatrixXd::Identity(z.size(), z.size()) +
                               (score.scale - prior_scale) * by_noise;

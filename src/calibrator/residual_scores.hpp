@@ -52,7 +52,8 @@ double held_out_squares(const LinearFit& fit, const std::vector<Index>& configur
 /// is b = V^-1 X^T e with V = X^T W X. Their variance is taken as `scale` times what it would be
 /// by the noise as stated, plus that by the prior; the scale is found from the residuals that are
 /// left with X, each configuration's part of the score one independent number: within one they may
-/// depend on each other in any way.
+/// depend on each other in any way. Where few configurations have rows of X, it may be found from
+/// the residuals of all instead.
 struct Score {
     Index columns = 0;     ///< that the model cannot take up
     double statistic = 0;  ///< about `columns` times F(columns, freedom) if there is nothing
@@ -65,8 +66,10 @@ struct Score {
     /// Whether chance would do it with less than this probability.
     bool is_beyond(double chance) const;
 };
+enum class ScaleFrom { Score, AllResiduals };
 /// `prior_scale`: of the variance by the prior.
-Score score(const LinearFit& fit, const RowMatrixXd& X, double prior_scale = 1);
+Score score(const LinearFit& fit, const RowMatrixXd& X, double prior_scale = 1,
+            ScaleFrom scale_from = ScaleFrom::Score);
 
 /// The rows of X from one of these configurations on, 0 before.
 RowMatrixXd from_member(const LinearFit& fit, const RowMatrixXd& X,

@@ -51,7 +51,8 @@ std::string describe(const SetUpChange& change, const Campaign& campaign) {
     if (change.rotation.norm() > 0) {
         text += fmt::format(" and {} mrad", describe_vector(change.rotation));
     }
-    const bool is_in_world = is_base || change.part.starts_with("socket");
+    const bool is_in_world =
+        is_base || change.part.starts_with("socket") || change.part.starts_with("readings");
     text += is_in_world ? " in the instrument's frame" : " in the flange's frame";
     if (!change.excluded.empty()) {
         return text + fmt::format("; with --exclude {}: {}", change.excluded,

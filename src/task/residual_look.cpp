@@ -113,7 +113,8 @@ void look_for_patterns(const Fitted& fitted, ResidualLook& look) {
     const detail::PatternColumns columns(linearised, at);
     look.changes = find_set_up_changes(fitted, columns, *fit);
     look.joints = find_joint_patterns(fitted, columns, *fit);
-    if (!look.changes.empty()) return;
+    // A moved instrument, or a rail that is read wrong, is a factor in part.
+    if (!look.changes.empty() || !look.joints.empty()) return;
     const auto by_sizes = linear_fit(linearised.problem, at, detail::FitPrior::ExpectedSizes);
     if (by_sizes) look.lengths = find_length_factor(fitted, columns, *by_sizes);
 }

@@ -63,9 +63,9 @@ PatternColumns::PatternColumns(const FittedProblem& fitted, const Parameters& pa
     const Measurements& means = fitted.problem.means;
     first_unknown_ = base_columns + campaign.robot.joint_count();
     lengths_ = first_unknown_ + parameters.sensor.size();
-    const Index touched = sensor.has_contacts() ? 3 : 0;
+    const Index shifts = sensor.lengths_per_target() == 3 ? 3 : 0;
     FlangeMotion motion;
-    all_ = whitened_columns(fitted.problem, parameters, lengths_ + 1 + touched,
+    all_ = whitened_columns(fitted.problem, parameters, lengths_ + 1 + shifts,
                             [&](Index i, Eigen::Ref<RowMatrixXd> columns) {
                                 const VectorXd q = means.configurations.row(i).transpose();
                                 const TwistMatrix twists =
@@ -78,7 +78,8 @@ PatternColumns::PatternColumns(const FittedProblem& fitted, const Parameters& pa
                                         means.is_seen(i, row / sensor.rows_per_target())) {
                                         columns(row, lengths_) = means.observations(i, row);
                                     }
-                                    if (touched > 0) columns(row, lengths_ + 1 + row % 3) = -1;
+                                    const Index axis = row % sensor.rows_per_target();
+                                    if (axis < shifts) columns(row, lengths_ + 1 + axis) = 1;
                                 }
                             });
 }

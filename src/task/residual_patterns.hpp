@@ -45,7 +45,9 @@ class PatternColumns {
     RowMatrixXd joint(Index j) const { return all_.col(6 + j); }
     RowMatrixXd unknowns(const std::vector<Index>& which) const;
     RowMatrixXd lengths() const { return all_.col(lengths_); }
-    RowMatrixXd touched() const { return all_.rightCols(3); }  ///< of contacts: place of the socket
+    /// What three lengths of a target would all be off by, along the instrument's axes; none where
+    /// it reads others.
+    RowMatrixXd shift() const { return all_.rightCols(all_.cols() - lengths_ - 1); }
 
   private:
     Index first_unknown_;

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/statistics.hpp"
 #include "residual_patterns.hpp"
 
 namespace posewise::detail {
@@ -15,7 +14,7 @@ struct Part {
     std::string name;
     RowMatrixXd X;               ///< translations first, three; then rotations, if there are some
     std::vector<Index> members;  ///< configurations that see it
-    bool is_in_instrument = false;
+    ScaleFrom scale_from = ScaleFrom::Score;
 };
 
 Part part_of_target(const Fitted& fitted, const PatternColumns& columns, Index target) {
@@ -34,25 +33,41 @@ Part part_of_target(const Fitted& fitted, const PatternColumns& columns, Index t
     return part;
 }
 
+/// Readings of one target, or of one socket that the ball touches, along the instrument's axes.
+Part part_of_readings(const PatternColumns& columns, const LinearFit& fit, const RowMatrixXd& seen,
+                      Index target) {
+    const RowMatrixXd shift = columns.shift();
+    Part part{"", RowMatrixXd::Zero(shift.rows(), shift.cols()), {}};
+    for (Index i = 0; i < fit.count(); ++i) {
+        if (seen(i, target) == 0) continue;
+        part.members.push_back(i);
+        const auto count = static_cast<Index>((seen.row(i).array() > 0).count());
+        const Index width = fit.rows(i) / count;
+        const auto before = static_cast<Index>((seen.row(i).head(target).array() > 0).count());
+        const Index row = fit.begin(i) + width * before;
+        part.X.middleRows(row, width) = shift.middleRows(row, width);
+    }
+    return part;
+}
+
 std::vector<Part> list_parts(const Fitted& fitted, const PatternColumns& columns,
                              const LinearFit& fit) {
     const Sensor& sensor = *fitted.campaign.sensor;
-    std::vector<Part> parts{{"base", columns.base(), all_but(fit.count(), {}), true}};
+    std::vector<Part> parts{{"base", columns.base(), all_but(fit.count(), {})}};
     for (Index target = 0; target < sensor.targets().count(); ++target) {
         Part part = part_of_target(fitted, columns, target);
         if (part.X.cols() > 0) parts.push_back(std::move(part));
     }
+    if (columns.shift().cols() == 0 || sensor.target_count() == 1) return parts;
     const std::vector<std::string> contacts = sensor.contact_names();
     const RowMatrixXd seen = times_seen(fitted.measured);
-    for (Index k = 0; k < std::ssize(contacts); ++k) {
-        Part part{"socket " + contacts[static_cast<std::size_t>(k)], {}, {}, true};
-        for (Index i = 0; i < fit.count(); ++i) {
-            if (seen(i, k) > 0) part.members.push_back(i);
-        }
-        part.X = RowMatrixXd::Zero(fit.e.size(), 3);
-        for (const Index i : part.members) {
-            part.X.middleRows(fit.begin(i), fit.rows(i)) =
-                columns.touched().middleRows(fit.begin(i), fit.rows(i));
+    for (Index k = 0; k < sensor.target_count(); ++k) {
+        Part part = part_of_readings(columns, fit, seen, k);
+        part.name = "readings of target" + std::to_string(k + 1);
+        if (sensor.has_contacts()) {
+            part.name = "socket " + contacts[static_cast<std::size_t>(k)];
+            part.X *= -1;  // readings are ball less socket
+            part.scale_from = ScaleFrom::AllResiduals;
         }
         parts.push_back(std::move(part));
     }
@@ -81,7 +96,7 @@ RowMatrixXd ramp(const LinearFit& fit, const Part& part) {
 /// Translation alone, if the rotation is within chance.
 Candidate judge(const LinearFit& fit, const Part& part, Index first, RowMatrixXd X) {
     Candidate candidate{&part, first, std::move(X), {}};
-    candidate.score = score(fit, candidate.X);
+    candidate.score = score(fit, candidate.X, 1, part.scale_from);
     if (candidate.X.cols() == 3) return candidate;
     const Score translation = score(fit, candidate.X.leftCols(3));
     if (score(translation.with, candidate.X.rightCols(candidate.X.cols() - 3)).is_beyond(0.01)) {
@@ -128,10 +143,10 @@ std::string range_of(const std::vector<std::string>& ids, Index first, Index las
     return first == last ? from : from + "-" + ids[static_cast<std::size_t>(last)];
 }
 
-/// Without the fewer configurations; else with the change as one more unknown.
-void try_cure(const Fitted& fitted, const LinearFit& fit, const Candidate& candidate,
+/// Without the fewer configurations; else with the change as one more unknown. `before`: with the
+/// changes found so far as unknowns, m or rad.
+void try_cure(const Fitted& fitted, const LinearFit& fit, double before, const Candidate& candidate,
               SetUpChange& change) {
-    const double before = held_out_rms(fitted);
     const std::vector<Index> all = all_but(fit.count(), {});
     change.held_out = {before, before * std::sqrt(held_out_squares(candidate.score.with, all) /
                                                   held_out_squares(fit, all))};
@@ -150,7 +165,8 @@ void try_cure(const Fitted& fitted, const LinearFit& fit, const Candidate& candi
     change.held_out.after = after;
 }
 
-SetUpChange describe(const Fitted& fitted, const LinearFit& fit, const Candidate& candidate) {
+SetUpChange describe(const Fitted& fitted, const LinearFit& fit, double before,
+                     const Candidate& candidate) {
     const std::vector<Index>& members = candidate.part->members;
     const auto id = [&](Index k) {
         return fitted.measured.ids[static_cast<std::size_t>(members[static_cast<std::size_t>(k)])];
@@ -162,7 +178,7 @@ SetUpChange describe(const Fitted& fitted, const LinearFit& fit, const Candidate
     change.first_after = id(change.is_gradual ? std::ssize(members) - 1 : candidate.first);
     change.translation = candidate.score.effect.head<3>();
     if (candidate.score.effect.size() > 3) change.rotation = candidate.score.effect.tail<3>();
-    try_cure(fitted, fit, candidate, change);
+    try_cure(fitted, fit, before, candidate, change);
     return change;
 }
 
@@ -171,11 +187,14 @@ SetUpChange describe(const Fitted& fitted, const LinearFit& fit, const Candidate
 std::vector<SetUpChange> find_set_up_changes(const Fitted& fitted, const PatternColumns& columns,
                                              LinearFit& fit) {
     const std::vector<Part> parts = list_parts(fitted, columns, fit);
+    const std::vector<Index> all = all_but(fit.count(), {});
+    const double at_first = held_out_rms(fitted) / std::sqrt(held_out_squares(fit, all));
     std::vector<SetUpChange> changes;
     while (changes.size() < most_changes) {
         const auto found = find_likeliest(fit, parts);
         if (!found) break;
-        changes.push_back(describe(fitted, fit, *found));
+        const double before = at_first * std::sqrt(held_out_squares(fit, all));
+        changes.push_back(describe(fitted, fit, before, *found));
         fit = found->score.with;
     }
     return changes;

@@ -193,6 +193,18 @@ TEST(FitReadings, FindEverySlipOfJointsAndPoints) {
     }
 }
 
+/// A robot that hardly moves, as by joint values taken as degrees, fits them nearly as well.
+TEST(FitReadings, FindPointsInMetresThatHardlyMove) {
+    const Campaign campaign = tracked_campaign(testing::fanuc());
+    Measurements tiny = simulate(campaign, {.pose_count = 24}).measurements;
+    tiny.observations *= 1e-5;
+    const auto readings = fit_readings(campaign, tiny).readings;
+    EXPECT_TRUE(std::ranges::none_of(readings, [&](const FittedReading& reading) {
+        return has_kind(reading.changes, ReadingChange::Kind::JointFactor) &&
+               reading.distance_rms < 0.1;
+    }));
+}
+
 TEST(FitReadings, FindReversedJointsOfPointsInFeet) {
     const Campaign campaign = tracked_campaign(testing::fanuc());
     const Measurements right = simulate(campaign, {.pose_count = 24}).measurements;
@@ -268,6 +280,16 @@ TEST(FitReadings, FindAnglesAndRotationVectorsUnderEachOthersNames) {
                   "roll, pitch, yaw as " + words);
         EXPECT_EQ(poses.words_with(numbers, Notation::RotationVector), "rx, ry, rz as " + words);
     }
+}
+
+TEST(FitReadings, FindPositionsAlongOtherAxesThanOrientations) {
+    const Poses poses;
+    Measurements wrong = poses.right;
+    wrong.observations.col(2) *= -1;
+    EXPECT_EQ(words_of(poses.campaign, wrong), "x, y, -z in place of x, y, z");
+    wrong = poses.right;
+    wrong.observations.col(0).swap(wrong.observations.col(1));
+    EXPECT_EQ(words_of(poses.campaign, wrong), "y, x, z in place of x, y, z");
 }
 
 TEST(FitReadings, FindOrientationsInvertedOrInAnotherUnit) {

@@ -101,7 +101,7 @@ TEST_F(Directions, OfAWristAreNamedThoughItIsLittleOff) {
     EXPECT_EQ(run("calibrate c.yaml -m m.csv --folds 0").code, 0);
     robot.replace(robot.find("Rx q6"), 5, "Rx -q6");
     write_text("r.yaml", robot);
-    const std::string words = "they fit clearly better with q6 reversed (";
+    const std::string words = "they fit clearly better with q6 reversed";
     const Outcome outcome = run("calibrate r.yaml -m m.csv --folds 0 -o e.json");
     EXPECT_EQ(outcome.code, 3) << "even with the model error found";
     EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;

@@ -93,10 +93,27 @@ TEST_F(LookAtResiduals, TellsADriftFromAStep) {
 }
 
 TEST_F(LookAtResiduals, NamesTheTargetThatSlipped) {
-    observations_from(20).col(3).array() += 2e-3;  // of the second target, in the world
+    const Vector3d slip(2e-3, 0, 1e-3);  // in the flange's frame
+    const Parameters truth = draw_truth(campaign_, 3);
+    for (Index i = 20; i < 30; ++i) {
+        const VectorXd q = measured_.configurations.row(i).transpose();
+        const Vector3d off = world_from_flange(campaign_, truth, q).linear() * slip;
+        const Index first = measured_.first_sample[static_cast<std::size_t>(i)];
+        measured_.observations.block(first, 3, 2, 3).rowwise() += off.transpose();
+    }
     const ResidualLook found = look();
-    ASSERT_FALSE(found.changes.empty());
+    ASSERT_EQ(found.changes.size(), 1U);
     EXPECT_EQ(found.changes.front().part, "target2");
+    EXPECT_LT((found.changes.front().translation - slip).norm(), 0.2e-3);
+    EXPECT_FALSE(found.changes.front().excluded.empty());
+}
+
+TEST_F(LookAtResiduals, NamesTheTargetWhoseReadingsAreShifted) {
+    observations_from(20).col(3).array() += 2e-3;  // in the instrument's frame
+    const ResidualLook found = look();
+    ASSERT_EQ(found.changes.size(), 1U);
+    EXPECT_EQ(found.changes.front().part, "readings of target2");
+    EXPECT_NEAR(found.changes.front().translation.x(), 2e-3, 0.2e-3);
 }
 
 TEST_F(LookAtResiduals, SeesACommonFactorOfAllLengths) {

@@ -29,11 +29,12 @@ struct OutlyingConfigurations {
 
 /// A part of the set-up that is not where it was for all configurations.
 struct SetUpChange {
-    std::string part;         ///< "base" (or the instrument), "target2", "tool", "socket s3"
+    /// "base" (or the instrument), "target2", "tool", "socket s3", "readings of target2"
+    std::string part;
     bool is_gradual = false;  ///< drifts from the first to the last, else one step
     std::string last_before;  ///< ids of the configurations that it happens between
     std::string first_after;
-    /// The second part less the first, or over all configurations: of the base and of a socket in
+    /// The second part less the first, or over all configurations: of base, sockets and readings in
     /// the instrument's axes (of the base its origin), else in the flange's; m.
     Vector3d translation = Vector3d::Zero();
     Vector3d rotation = Vector3d::Zero();  ///< rad; 0 where that is within chance
