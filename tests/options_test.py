@@ -69,7 +69,7 @@ WAYS = [
     ["calibrate", "arm.yaml", "-m", "many.csv", "--folds", "2", "--model-selection"],
     ["calibrate", "arm.yaml", "-m", "many.csv", "--folds", "0", "--json"],
     ["export", "arm.yaml", "estimate.json", "--dh", "out.yaml"],
-    ["correct", "arm.yaml", "estimate.json", "--poses", "poses.csv", "-o", "out.csv"],
+    ["correct", "arm.yaml", "estimate.json", "--poses", "poses.csv", "-o", "out.csv", "--force"],
     ["study", *STUDY, "--splits", "2"],
     ["study", *STUDY, "--splits", "0"],
     ["study", *STUDY, "--splits", "2", "--from", "estimate.json"],
@@ -80,11 +80,11 @@ WAYS = [
     ["simulate", "arm.yaml", "-k", "9", "-o", "out.csv"],
     ["simulate", "arm.yaml", "--configurations", "poses.csv", "-o", "out.csv"],
 ]
-# Looked at, but without an effect where there is nothing for it to do: no fault to overlook, no sliding
-# joint, few parameters, no error that depends on the configuration, one choice that all starts end at.
+# Looked at, but without an effect where there is nothing for it to do: no fault to overlook, no blocked
+# way, no sliding joint, few parameters, no error that depends on the configuration, one choice that all starts end at.
 KNOWN = {("calibrate", "--force"), ("export", "--force"), ("correct", "--force"), ("study", "--force"),
          ("correct", "--largest-change-mm"), ("calibrate", "--all-parameters"), ("export", "--geometry"),
-         ("export", "--workspace"), ("study", "--starts")}
+         ("export", "--workspace"), ("study", "--starts"), ("plan", "--strict")}
 SHORT = {"-m": "--measurements", "-k": "--poses", "-o": "--out", "-c": "--criterion"}
 faults = []
 
