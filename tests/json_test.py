@@ -343,8 +343,8 @@ def check_writers():
     """Each word that those who write documents know is in the manual, and each key of the manual theirs:
     those of cases that are not met here, too."""
     sources = "".join((ROOT / "src/io" / f"{name}.cpp").read_text() for name in (
-        "json", "json_reports", "plan_file", "plan_document", "estimate_file", "parameters_json", "doubts_json", "robot_statement",
-        "weights_file", "page_file"))
+        "json", "json_reports", "plan_file", "plan_document", "estimate_file", "parameters_json", "doubts_json", "residual_look_json", "judgement_json",
+        "robot_statement", "weights_file", "page_file"))
     sources = re.sub(r"#include.*", "", sources)
     manual = (ROOT / "designs/json.md").read_text() + PAGE_MANUAL
     for word in sorted(set(re.findall(r'"([a-z][A-Za-z0-9_]*)"', sources)) - OTHER_WORDS):

@@ -31,7 +31,7 @@ VALUES = {
     "--out": "out2.json", "--report": "out2.html", "--digits": "12", "--target-mm": "1.5", "--quantity": "max",
     "--assurance": "0.8", "--minutes": "3", "--poses-at-most": "9", "--robust-to": "2", "--plan": "plan.json", "--drop": "p1",
     "--workspace": "pool.csv", "--workspace-poses": "30", "--workspace-box-mm": "-900,-900,-900,900,900,900",
-    "--workspace-target": "1", "--pool": "50", "--verify-digits": "1", "--verify-robots": "200", "--csv": "out2.csv",
+    "--workspace-target": "1", "--pool": "30", "--verify-digits": "1", "--verify-robots": "200", "--csv": "out2.csv",
     "--plot": "out2.svg", "--from": "estimate.json", "--drift-mm": "0.5", "--drift-offset-mrad": "0.5", "--drift-mrad": "0.5",
     "--moved": "base", "--only": "base", "--alpha": "0.5", "--max-iterations": "2", "--length-error-percent": "10",
     "--angle-error-deg": "5", "--search": "esch", "--method": "two-step", "--validate": "few.csv", "--predict": "poses.csv",
@@ -42,7 +42,7 @@ VALUES = {
     "--precision": "30%", "--truth": "7", "--vary": "sensor.sigma_mm=0.01,0.05", "--points": "2", "--store": "out2.sqlite",
     "--shard": "1/2", "--merge": "part1.sqlite", "--directions": "2", "--campaign": "other.yaml", "--configurations": "poses.csv",
     "--write-campaign": "out4.yaml", "--tip": "x"}
-PLAN = ["--pool", "60", "--starts", "1", "--workspace-poses", "10", "-o", "out.json"]
+PLAN = ["-c", "d", "--pool", "40", "--starts", "1", "--workspace-poses", "10", "-o", "out.json"]
 CHOICE = ["-k", "6", "--starts", "1", "-o", "out.json"]
 STUDY = ["arm.yaml", "-m", "many.csv", "-k", "6", "--random", "4", "--starts", "1"]
 SIMULATED = ["arm.yaml", "--simulate", "-k", "6", "--trials", "2", "--pool", "40", "--test-poses", "5"]
@@ -69,7 +69,7 @@ WAYS = [
     ["calibrate", "arm.yaml", "-m", "many.csv", "--folds", "2", "--model-selection"],
     ["calibrate", "arm.yaml", "-m", "many.csv", "--folds", "0", "--json"],
     ["export", "arm.yaml", "estimate.json", "--dh", "out.yaml"],
-    ["correct", "arm.yaml", "estimate.json", "--poses", "poses.csv", "-o", "out.csv"],
+    ["correct", "arm.yaml", "estimate.json", "--poses", "poses.csv", "-o", "out.csv", "--force"],
     ["study", *STUDY, "--splits", "2"],
     ["study", *STUDY, "--splits", "0"],
     ["study", *STUDY, "--splits", "2", "--from", "estimate.json"],
@@ -80,11 +80,11 @@ WAYS = [
     ["simulate", "arm.yaml", "-k", "9", "-o", "out.csv"],
     ["simulate", "arm.yaml", "--configurations", "poses.csv", "-o", "out.csv"],
 ]
-# Looked at, but without an effect where there is nothing for it to do: no fault to overlook, no sliding
-# joint, few parameters, no error that depends on the configuration, one choice that all starts end at.
+# Looked at, but without an effect where there is nothing for it to do: no fault to overlook, no blocked
+# way, no sliding joint, few parameters, no error that depends on the configuration, one choice that all starts end at.
 KNOWN = {("calibrate", "--force"), ("export", "--force"), ("correct", "--force"), ("study", "--force"),
          ("correct", "--largest-change-mm"), ("calibrate", "--all-parameters"), ("export", "--geometry"),
-         ("export", "--workspace"), ("study", "--starts")}
+         ("export", "--workspace"), ("study", "--starts"), ("plan", "--strict")}
 SHORT = {"-m": "--measurements", "-k": "--poses", "-o": "--out", "-c": "--criterion"}
 faults = []
 

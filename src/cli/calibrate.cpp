@@ -157,7 +157,7 @@ void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& ar
 /// With faults it is printed, but not written.
 void check_faults(const CalibrateArguments& arguments, const CommonOptions& common,
                   const Calibration& result, const Printed& printed) {
-    const std::string words = "this is no calibration: " + join_some(result.faults);
+    const std::string words = std::string(no_calibration) + join_some(result.faults);
     if (arguments.earlier.is_forced) return print_warning(words);
     print(printed, common);
     throw NoCalibration(fmt::format(

@@ -59,8 +59,8 @@ void add_common_options(CLI::App& command, CommonOptions& common) {
     }
     command
         .add_option_function<Index>("--threads", set_thread_count,
-                                    "Threads to compute with; no result depends on it (default: "
-                                    "all)")
+                                    "Threads to compute with, at most four for each core; no result "
+                                    "depends on it (default: one for each)")
         ->check(whole_number(1, 1024));
 }
 

@@ -35,6 +35,7 @@ void check_usable(const std::string& path, const Campaign& campaign, const io::E
                       join_some(earlier.changes));
     }
     for (const std::string& warning : earlier.warnings) {
+        if (warning.starts_with(no_calibration)) continue;  // its faults say so
         print_warning(path + ": was warned of when it was made: " + warning);
     }
     Campaign judged = campaign;
@@ -76,7 +77,7 @@ JudgeCalibration judge_of(const std::string& measurements, bool is_forced) {
         }
         if (calibration.faults.empty()) return;
         const std::string words =
-            measurements + ": this is no calibration: " + join_some(calibration.faults);
+            fmt::format("{}: {}{}", measurements, no_calibration, join_some(calibration.faults));
         if (!is_forced) throw NoCalibration(words + "; --force takes it all the same");
         print_warning(words);
     };

@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "posewise/calibrator/estimate.hpp"
@@ -24,6 +25,9 @@ class NoCalibration : public std::runtime_error {
 
 /// --force: an estimate with faults is taken all the same.
 CLI::Option* add_force_option(CLI::App& command, bool& is_forced);
+
+/// What a sentence begins with that says why a calibration must not be used.
+inline constexpr std::string_view no_calibration = "this is no calibration: ";
 
 /// For what is built on measurements: warns of the doubts about what those in a file calibrate,
 /// once each. With faults it throws NoCalibration, or warns if it is forced.

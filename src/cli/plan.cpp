@@ -79,7 +79,8 @@ the 90 % interval is then as narrow as that knows the model error, and sizes tha
 they are and finds new ones, at least 5 deg in some joint from those that could not be reached.
 Ctrl-C, SIGTERM or --time end the search with the best plan so far, marked as interrupted; exit
 code 0. Before there is one, while it looks for what is identifiable, they end it with an error.
-What a limit that was not kept went to is said.
+If --time is exceeded, a warning says where the time went. A plan of thousands of poses that is stopped
+is in the order of nearest poses, and moves that are not free are marked as BLOCKED.
 The same seed gives the same plan, on any number of threads, unless time ended it.)";
 
 struct PlanArguments : RequestArguments {

@@ -61,6 +61,9 @@ that to compare models --truth must say what robots are like (here truth.yaml: e
   posewise study campaign.yaml --simulate --vary sensor.sigma_mm=0.01,0.05
   posewise study campaign.yaml --simulate --vary robot.errors=geometric,full --truth truth.yaml
 
+Ctrl-C, SIGTERM or --time end it with the splits (robots) that are finished; a column says how many
+splits a pose count has, where not all are.
+
 --store keeps each trial as it ends: a study that was stopped, or killed, goes on where it was, and
 --from prints what is in a store at any moment, also while it runs. --shard runs a part, each with a
 store of its own on any machine, --merge puts stores together:

@@ -118,7 +118,7 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
         ->check(whole_number(0, largest_seed));
     command
         .add_option("--time", arguments.time_limit,
-                    "Seconds after which it ends with what is complete (default: none)")
+                    "Seconds after which it ends with what is finished (default: none)")
         ->check(real_number(1e-3, 1e9));
     command.add_option("--csv", arguments.csv, "Write every subset's result to this file")
         ->check(file_name());

@@ -44,6 +44,16 @@ std::vector<Index> make_priority(const Campaign& campaign) {
     return priority;
 }
 
+/// Numbers of the robot that are rounded blur its geometry, not the shapes of terms.
+VectorXd least_shares_of(const Campaign& campaign) {
+    VectorXd shares = VectorXd::Constant(parameter_count(campaign), detail::least_visible);
+    for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
+        if (campaign.robot.parameter_term(k) == nullptr) continue;
+        shares[base_parameter_count(campaign) + k] = 1e-12;
+    }
+    return shares;
+}
+
 /// How the dropped columns follow from the kept ones: kept x dropped, in the columns' own units.
 MatrixXd express_dropped(const MatrixXd& J, const Identifiability& result) {
     MatrixXd kept(J.rows(), static_cast<Index>(result.kept.size()));
@@ -64,8 +74,11 @@ MatrixXd express_dropped(const MatrixXd& J, const Identifiability& result) {
 
 Identifiability find_independent_columns(const MatrixXd& J, const std::vector<Index>& priority,
                                          double tolerance, const StopSignal& stop,
-                                         double least_share) {
+                                         const VectorXd& least_shares) {
     const double largest = J.colwise().norm().maxCoeff();
+    const auto least_share = [&](Index k) {
+        return least_shares.size() > 0 ? least_shares[k] : 1e-12;
+    };
     Identifiability result;
     MatrixXd Q(J.rows(), std::min(J.rows(), J.cols()));
     Index rank = 0;
@@ -77,12 +90,12 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
         for (const Index k : open) {
             if (rank >= quick) stop.check(fmt::format("telling {} parameters apart", J.cols()));
             const double norm = J.col(k).norm();
-            const VectorXd residual = norm > least_share * largest
+            const VectorXd residual = norm > least_share(k) * largest
                                           ? residual_outside(Q.leftCols(rank), J.col(k) / norm)
                                           : VectorXd::Zero(J.rows());
             const double residual_norm = residual.norm();
             const double share = residual_norm * norm / largest;
-            if (residual_norm > least && share > least_share && rank < Q.cols()) {
+            if (residual_norm > least && share > least_share(k) && rank < Q.cols()) {
                 Q.col(rank++) = residual / residual_norm;
                 result.kept.push_back(k);
                 result.least_kept_residual = std::min(result.least_kept_residual, residual_norm);
@@ -101,13 +114,14 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
 
     const MatrixXd combination = express_dropped(J, result);
     for (std::size_t d = 0; d < result.dropped.size(); ++d) {
-        const double norm = J.col(result.dropped[d].parameter).norm();
-        if (norm <= least_share * largest) continue;
+        const Index parameter = result.dropped[d].parameter;
+        const double norm = J.col(parameter).norm();
+        if (norm <= least_share(parameter) * largest) continue;
         for (std::size_t k = 0; k < result.kept.size(); ++k) {
             const double coefficient = combination(static_cast<Index>(k), static_cast<Index>(d));
             // What is less of the dropped column is rounding.
             const double part = std::abs(coefficient) * J.col(result.kept[k]).norm();
-            if (part > std::max(1e-7, least_share) * norm) {
+            if (part > std::max(1e-7, least_share(parameter)) * norm) {
                 result.dropped[d].absorbed_by.push_back({result.kept[k], coefficient});
             }
         }
@@ -118,7 +132,7 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
 Identifiability find_identifiable(const Campaign& campaign, const StopSignal& stop) {
     Identifiability found =
         find_independent_columns(detail::factor_at_nominal(campaign, stop), make_priority(campaign),
-                                 least_residual, stop, detail::least_visible);
+                                 least_residual, stop, least_shares_of(campaign));
     const VectorXd sizes = detail::sizes_of(campaign);
     for (DroppedParameter& dropped : found.dropped) {
         for (ParameterTerm& term : dropped.absorbed_by) {
@@ -226,7 +240,7 @@ Index least_pose_count(const Campaign& stated, const StopSignal& stop) {
         if (count >= poses.configurations.rows()) return true;
         const MatrixXd J = detail::stack_at_nominal(campaign, poses, 0, count) * sizes.asDiagonal();
         const auto some =
-            find_independent_columns(J, all.kept, least_residual, stop, detail::least_visible);
+            find_independent_columns(J, all.kept, least_residual, stop, least_shares_of(campaign));
         return static_cast<Index>(some.kept.size()) == rank;
     };
     Index least = (rank + rows - 1) / rows;  // nothing less can

@@ -51,8 +51,9 @@ class Search {
         std::iota(all.begin(), all.end(), Index{0});
         std::vector<Index> dropped;
         if (open.empty()) return dropped;
-        const auto found = find_independent_columns(J_(Eigen::all, open), all, least_residual,
-                                                    stop_, detail::least_visible);
+        const auto found =
+            find_independent_columns(J_(Eigen::all, open), all, least_residual, stop_,
+                                     VectorXd::Constant(std::ssize(open), detail::least_visible));
         for (const DroppedParameter& one : found.dropped) {
             dropped.push_back(open[static_cast<std::size_t>(one.parameter)]);
         }

@@ -185,8 +185,12 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
             const RowMatrixXd chosen =
                 start == 0 ? RowMatrixXd(problem.pool(pool_choice.poses, Eigen::all))
                            : choose_from_part(problem, start);
-            result = refine_poses(problem.space, problem.objective, options.held, chosen,
-                                  rough_refinement(options, 1e-6));
+            const Ending stopped = options.stop.ending_or(Ending::NotRun);
+            // Even to begin a refinement takes seconds with thousands of poses.
+            result = start == 0 && stopped != Ending::NotRun
+                         ? Refinement{chosen, pool_choice.value, pool_choice.value, stopped}
+                         : refine_poses(problem.space, problem.objective, options.held, chosen,
+                                        rough_refinement(options, 1e-6));
         } catch (const InputError&) {
             if (start == 0) first_error = std::current_exception();  // others may do better
         }
@@ -213,6 +217,7 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
 /// ended at, refined, as long as that is better; its poses are among them then.
 Refinement cross(const Problem& problem, std::vector<Refinement>& results) {
     const PlanOptions& options = problem.options;
+    if (options.stop.is_set()) return best_of(results);
     Support met;
     for (const Refinement& result : results) {
         if (std::isfinite(result.value)) met.add(problem.space, result.configurations);
@@ -368,7 +373,9 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     RefineOptions finish;
     finish.stop = problem.options.stop;
     finish.sharpness = {256};
-    best = refine_poses(space, problem.objective, options.held, best.configurations, finish);
+    if (!options.stop.is_set()) {
+        best = refine_poses(space, problem.objective, options.held, best.configurations, finish);
+    }
     conclude(problem, best.configurations, planned);
     add_searched_bound(space, pool, blocks, options, planned);
     return planned;

@@ -143,7 +143,7 @@ std::string describe_tried(const Calibration& calibration) {
     }
     const auto& others = calibration.cures.without_effect;
     if (others.empty()) return text;
-    return text + fmt::format("tried, and held out no better: {}\n",
+    return text + fmt::format("tried, of little or no use: {}\n",
                               detail::escape_controls(fmt::format("{}", fmt::join(others, ", "))));
 }
 

@@ -65,11 +65,12 @@ std::string describe(const SetUpChange& change, const Campaign& campaign) {
 std::string describe(const LengthFactor& factor) {
     const double percent = 100 * factor.excess;
     return fmt::format(
-        "all lengths are {} % {} than the robot's (give or take {} %), which errors of single "
-        "lengths as expected would not do: is the instrument's scale right, its temperature and "
-        "the robot's? Scale the readings by {} if not",
+        "all lengths are {} % {} than the robot's (give or take {} %): is the instrument's scale "
+        "right, and the robot's temperature? With readings scaled by {} the robot's errors are {} "
+        "instead of {} times what is expected of them (RMS)",
         format_short(std::abs(percent), 2), percent > 0 ? "longer" : "shorter",
-        format_short(100 * factor.deviation, 1), format_fixed(1 / (1 + factor.excess), 5));
+        format_short(100 * factor.deviation, 1), format_fixed(1 / (1 + factor.excess), 5),
+        format_short(factor.errors_after, 3), format_short(factor.errors_before, 3));
 }
 
 std::string describe(const JointPattern& pattern, const Campaign& campaign) {

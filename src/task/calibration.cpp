@@ -149,11 +149,14 @@ std::map<std::string, double> sigmas_by_name(const Estimate& estimate) {
     return by_name;
 }
 
-/// At the residuals; not where it was stopped, since that takes fits.
+/// At the residuals; not where it was stopped, since that takes fits. Measurements that are not of
+/// this robot, or were misread, contradict all of it: of them only rows are looked at.
 void look(const Work& work, Calibration& result) {
     if (work.options.stop.is_set()) return;
     Doubts& doubts = result.doubts;
-    doubts.look = look_at_residuals(work.campaign, work.used, result.estimate);
+    if (!doubts.misfit) {
+        doubts.look = look_at_residuals(work.campaign, work.used, result.estimate);
+    }
     if (doubts.misfit || doubts.gross_error) {
         doubts.look.shifted = find_shifted_rows(work.campaign, work.used);
     }

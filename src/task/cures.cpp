@@ -14,6 +14,8 @@ namespace posewise::detail {
 namespace {
 
 constexpr double beyond_chance = 2.3263;  // one-sided, 0.01 of normal deviates
+/// What leaves over so many times the error that the best cure leaves is none.
+constexpr double as_good_as = 1.5;
 
 /// Nothing unless the measurements identify all and it converges.
 std::optional<Estimate> identify_anew(const Campaign& campaign, const Measurements& measurements,
@@ -181,6 +183,11 @@ Cures find_cures(const Doubted& doubted, const Doubts& doubts, const CureOptions
         }
     }
     std::ranges::stable_sort(cures.found, {}, &Cure::after);
+    while (!cures.found.empty() &&
+           cures.found.back().after > as_good_as * cures.found.front().after) {
+        cures.without_effect.push_back(cures.found.back().option);
+        cures.found.pop_back();
+    }
     return cures;
 }
 

@@ -28,6 +28,21 @@ TwistMatrix twists_of(const Campaign& campaign, const Parameters& parameters, co
     return twists;
 }
 
+/// Of the robot's errors in their expected sizes.
+double mean_square_error(const Campaign& campaign, const Estimate& estimate) {
+    const VectorXd& errors = estimate.parameters.robot;
+    const VectorXd sizes =
+        parameter_scale(campaign).segment(base_parameter_count(campaign), errors.size());
+    return errors.cwiseQuotient(sizes).squaredNorm() / static_cast<double>(errors.size());
+}
+
+Measurements with_scaled_lengths(const Sensor& sensor, Measurements measured, double factor) {
+    for (Index row = 0; row < measured.observations.cols(); ++row) {
+        if (!sensor.is_angle(row)) measured.observations.col(row) *= factor;
+    }
+    return measured;
+}
+
 }  // namespace
 
 bool tells_lengths(const Sensor& sensor) { return sensor.has_lengths() && !sensor.has_contacts(); }
@@ -94,19 +109,28 @@ RowMatrixXd PatternColumns::unknowns(const std::vector<Index>& which) const {
 
 std::optional<LengthFactor> find_length_factor(const Fitted& fitted, const PatternColumns& columns,
                                                const LinearFit& fit) {
-    if (!tells_lengths(*fitted.campaign.sensor)) return std::nullopt;
-    // A robot whose errors are larger than expected may well be longer as a whole, too.
-    const Campaign& campaign = fitted.campaign;
-    const VectorXd& errors = fitted.estimate.parameters.robot;
-    const VectorXd times = errors.cwiseQuotient(
-        parameter_scale(campaign).segment(base_parameter_count(campaign), errors.size()));
-    const double mean_square =
-        errors.size() == 0 ? 1 : times.squaredNorm() / static_cast<double>(errors.size());
-    const Score found = score(fit, columns.lengths(), std::max(1.0, mean_square));
-    if (!found.is_beyond(chance_of_factor)) return std::nullopt;
     constexpr double another_unit = 0.2;  // or another robot
-    if (std::abs(found.effect[0]) > another_unit) return std::nullopt;
-    return LengthFactor{found.effect[0], found.deviations[0]};
+    const Campaign& campaign = fitted.campaign;
+    if (!tells_lengths(*campaign.sensor) || campaign.robot.parameter_count() == 0) {
+        return std::nullopt;
+    }
+    // A robot whose errors are larger than expected may well be longer as a whole, too.
+    const double before = mean_square_error(campaign, fitted.estimate);
+    const double prior_scale = std::max(1.0, before);
+    const Score found = score(fit, columns.lengths(), prior_scale);
+    if (!found.is_beyond(chance_of_factor)) return std::nullopt;
+    const double excess = found.effect[0];
+    if (std::abs(excess) > another_unit) return std::nullopt;
+    const auto scaled = fit_again(
+        campaign, with_scaled_lengths(*campaign.sensor, fitted.measured, 1 / (1 + excess)),
+        fitted.estimate.loss);
+    if (!scaled) return std::nullopt;
+    // What is left over, of a model that lacks something, may follow a factor, too: at least half
+    // of what tells of it must be the robot's errors.
+    const double after = mean_square_error(campaign, scaled->estimate);
+    const auto count = static_cast<double>(campaign.robot.parameter_count());
+    if ((before - after) * count < 0.5 * found.statistic * prior_scale) return std::nullopt;
+    return LengthFactor{excess, found.deviations[0], std::sqrt(before), std::sqrt(after)};
 }
 
 std::vector<JointPattern> find_joint_patterns(const Fitted& fitted, const PatternColumns& columns,

@@ -114,8 +114,8 @@ TEST_F(Exclude, IsOfWhatIsThere) {
 TEST_F(Exclude, TakesARangeInTheOrderOfTheFile) {
     measure(points);
     const std::string calibrate = "calibrate c.yaml -m s.csv --folds 0 --json --exclude ";
-    const Json by_range = Json::parse(run_well(calibrate + "4-6,9").out);
-    const Json by_ids = Json::parse(run_well(calibrate + "4,5,6,9").out);
+    const Json by_range = Json::parse(run_well(calibrate + "4-6,9"));
+    const Json by_ids = Json::parse(run_well(calibrate + "4,5,6,9"));
     EXPECT_EQ(by_range["robot"], by_ids["robot"]);
     EXPECT_EQ(by_range["measured"]["configurations"], by_ids["measured"]["configurations"]);
 }

@@ -94,7 +94,8 @@ TEST_F(SpecialRobot, IsPlannedWithWhatItAsksFor) {
             write_text("c.yaml", of_elements(one.joints, one.elements, one.known) + turned + "}\n");
         }
         run_well("simulate c.yaml --configurations p.csv -o m.csv");
-        run_well("calibrate c.yaml -m m.csv --folds 0 -o e.json");
+        const Outcome calibrated = run("calibrate c.yaml -m m.csv --folds 0 -o e.json");
+        EXPECT_EQ(calibrated.code, 0) << calibrated.err;  // of 8 poses, which may help little
     }
 }
 

@@ -139,6 +139,12 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
     {"study a.yaml -m b.csv --models full,rigid",
      "--models: is 'rigid'; must be full, geometric, offsets or stated"},
     {"study a.yaml -m b.csv -k 8:6", "--poses: is '8:6'; the first must not be above the last"},
+    {"study absent.yaml --simulate -k 6,10 --merge a.sqlite --store b.sqlite",
+     " is not looked at where --merge puts stores together"},
+    {"study a.yaml -m b.csv --splits 0 --holdout 0.4", "--holdout: is of splits"},
+    {"select a.yaml -m b.csv -k 8 --relax --proof 5", "--proof: is of a choice"},
+    {"select a.yaml -m b.csv -k 8 --force", "--force requires --from"},
+    {"calibrate a.yaml -m b.csv --json --all-parameters", "--all-parameters excludes --json"},
 };
 
 TEST_F(Usage, EveryCommandRefusesNoThreads) {

@@ -28,8 +28,7 @@ class Warnings : public Program {
     }
 
     void write_with(const std::string& name, const std::string& part, const std::string& by) const {
-        std::string text =
-            read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+        std::string text = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
         ASSERT_NE(text.find(part), std::string::npos) << part;
         write_text(name, text.replace(text.find(part), part.size(), by));
     }

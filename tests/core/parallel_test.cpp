@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <atomic>
 #include <new>
 #include <stdexcept>
@@ -30,6 +31,17 @@ TEST(SetThreadCount, RefusesLessThanOne) {
     const int before = omp_get_max_threads();
     set_thread_count(3);
     EXPECT_EQ(omp_get_max_threads(), 3);
+    set_thread_count(before);
+}
+
+TEST(SetThreadCount, UsesAtMostFourForEachCore) {
+    const Index before = asked_thread_count();
+    set_thread_count(100000);
+    EXPECT_EQ(asked_thread_count(), 100000);
+    EXPECT_EQ(thread_count(), 4 * omp_get_num_procs());
+    std::atomic<int> used = 0;
+    for_each_index(1000, [&](Index) { used = std::max(used.load(), omp_get_num_threads()); });
+    EXPECT_LE(used, 4 * omp_get_num_procs());
     set_thread_count(before);
 }
 

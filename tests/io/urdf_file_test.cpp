@@ -306,7 +306,10 @@ TEST(BadUrdf, Ends) {
              {"tool", "tool", none + "'tool' and tip link 'tool'"},
              {"column", "plate", none + "'column' and tip link 'plate'"},
              {"finger", "", "robot.urdf: has no tip link below base link 'finger'"},
-             {"tool", "finger", none + "'tool' and tip link 'finger'"}}) {
+             {"tool", "finger",
+              "robot.urdf:30:3: joint 'grip' mimics 'wrist', which is no joint between base link "
+              "'tool' and tip link 'finger' that moves by itself; choose links that hold both or "
+              "neither, or make it fixed"}}) {
         EXPECT_EQ(error_of(text, base, tip), message);
     }
     const std::string two = replaced(text, "<parent link=\"tool\"/>", "<parent link=\"arm\"/>");

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "../../src/model/halton.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/pool.hpp"
@@ -169,6 +171,45 @@ TEST(PlanTour, StartsAnywhereIfThereIsNoHome) {
     EXPECT_EQ(tour.visits[1].pose, 0);
     EXPECT_NEAR(tour.planning_order_time, 0.5 + 0.7, 1e-12);
     EXPECT_TRUE(plan_tour(constraints, RowMatrixXd(0, 1)).visits.empty());
+}
+
+TEST(PlanTour, IsTheSameAfterAStopIfItIsQuick) {
+    const Constraints constraints(cell_campaign(), demo_cell());
+    const RowMatrixXd poses = make_pool(constraints, 500, 5).configurations.topRows(8);
+    const std::atomic<bool> stop = true;
+    TourOptions options;
+    options.stop.interrupted = &stop;
+    const Tour tour = plan_tour(constraints, poses, options);
+    EXPECT_FALSE(tour.is_cut_short);
+    EXPECT_EQ(tour.time, plan_tour(constraints, poses).time);
+}
+
+TEST(PlanTour, OfManyPosesIsCutShortByAStopAndMarksWhatIsInTheWay) {
+    const Constraints constraints(cell_campaign(), demo_cell());
+    const RowMatrixXd poses = make_pool(constraints, 40000, 5).configurations;
+    ASSERT_GT(poses.rows(), 2000);
+    const std::atomic<bool> stop = true;
+    TourOptions options;
+    options.stop.interrupted = &stop;
+    const Tour tour = plan_tour(constraints, poses, options);
+    EXPECT_TRUE(tour.is_cut_short);
+    ASSERT_EQ(std::ssize(tour.visits), poses.rows());
+    std::vector<bool> is_visited(tour.visits.size(), false);
+    VectorXd here = constraints.cell().home;
+    double time = 0;
+    Index blocked = 0;
+    for (const Visit& visit : tour.visits) {
+        const VectorXd next = poses.row(visit.pose).transpose();
+        EXPECT_FALSE(is_visited[static_cast<std::size_t>(visit.pose)]);
+        is_visited[static_cast<std::size_t>(visit.pose)] = true;
+        EXPECT_EQ(visit.is_blocked, !is_move_free(constraints, here, next));
+        blocked += visit.is_blocked ? 1 : 0;
+        time += move_time(constraints.cell().speed, here, next);
+        here = next;
+    }
+    EXPECT_EQ(tour.blocked_count, blocked);
+    EXPECT_NEAR(tour.time, time, 1e-9 * time);
+    EXPECT_LT(tour.time, 0.5 * tour.planning_order_time);
 }
 
 TEST(PlanTour, RejectsAHomeThatCollides) {

@@ -334,6 +334,40 @@ TEST(CompareModels, KeepsThePoseCountsThatAreCompleteInAll) {
     }
 }
 
+TEST(CompareModels, GivesTheSplitsThatAreFinishedInAllWhereItIsStopped) {
+    const Example example(30);
+    StudyOptions options = small_options();
+    options.pose_counts = {6, 7};
+    options.splits = 4;
+    const std::vector<RobotModel> models{{"a", example.campaign}, {"b", example.campaign}};
+    const auto whole = compare_models(models, example.measurements, options);
+    std::atomic<bool> stop = false;
+    options.stop.interrupted = &stop;
+    options.progress = [&](const Progress& progress) {
+        stop = 5 * progress.done > 3 * progress.total;
+    };
+    const auto part = compare_models(models, example.measurements, options);
+    ASSERT_EQ(part.size(), 2u);
+    for (std::size_t s = 0; s < 2; ++s) {
+        EXPECT_EQ(part[s].ending, Ending::Interrupted);
+        EXPECT_EQ(part[s].splits, 4);
+        ASSERT_EQ(part[s].rows.size(), 2u);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const StudyRow& row = part[s].rows[i];
+            const StudyRow& all = whole[s].rows[i];
+            const auto splits = static_cast<std::size_t>(split_count(row, 2));
+            EXPECT_TRUE(splits == 2 || splits == 3) << splits;
+            EXPECT_EQ(row.random.size(), 2 * splits);
+            for (std::size_t k = 0; k < splits; ++k) {
+                EXPECT_EQ(planned_cases(row, 1, 2)[k].poses, planned_cases(all, 1, 2)[k].poses);
+                EXPECT_EQ(row.random[k].poses, all.random[k].poses);
+                EXPECT_EQ(row.random[splits + k].poses, all.random[4 + k].poses);
+            }
+            EXPECT_TRUE(planned_advantage(part[s], row, 0, part[0].rows[i]).has_value());
+        }
+    }
+}
+
 TEST(PlannedAdvantage, IsTheGeometricMeanOverSplits) {
     Study study;
     study.criteria = {Criterion::V};

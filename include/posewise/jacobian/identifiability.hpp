@@ -38,20 +38,22 @@ inline constexpr double least_residual = 1e-8;
 /// residual on the kept ones exceeds a part of its norm (twice orthogonalised Gram-Schmidt): 1e-2
 /// in the first walk, then 1e-4 and so on down to `tolerance`, so that a column which is nearly a
 /// combination of others (axes that are parallel but for the rounding of their angles) does not
-/// displace one that is not. What is left of a column must be `least_share` of the largest column,
-/// too; one that is less as a whole moves nothing. Throws InputError if it is stopped.
+/// displace one that is not. What is left of a column must be its share of the largest column
+/// (empty: 1e-12), too; one that is less as a whole moves nothing. Throws InputError if it is
+/// stopped.
 Identifiability find_independent_columns(const MatrixXd& J, const std::vector<Index>& priority,
                                          double tolerance = least_residual,
-                                         const StopSignal& stop = {}, double least_share = 1e-12);
+                                         const StopSignal& stop = {},
+                                         const VectorXd& least_shares = {});
 
 /// What a campaign can identify at best: its Jacobian at nominal parameters over random
 /// configurations within the limits (as many as twice the parameters). Priority: base, sensor,
 /// joint offsets, translations, other rotations, error terms, each from base to flange. The test is
 /// at nominal values because off nominal a lost rank is only nearly lost, and in expected errors: a
-/// direction in which they move the readings by less than 1e-5 of what the strongest moves is lost,
-/// too, as where numbers of the robot are rounded. A probe that touches planes touches one a pose,
-/// if it can reach them all. Targets and base that the
-/// campaign does not state are put at generic places. Throws InputError if it is stopped.
+/// direction in which those of the geometry move the readings by less than 1e-4 of what the
+/// strongest moves is lost, too, as where numbers of the robot are rounded. A probe that touches
+/// planes touches one a pose, if it can reach them all. Targets and base that the campaign does not
+/// state are put at generic places. Throws InputError if it is stopped.
 Identifiability find_identifiable(const Campaign& campaign, const StopSignal& stop = {});
 
 /// Whether the tolerance has no part in what was kept: a factor of 1000 at least between the least

@@ -37,8 +37,9 @@ struct Cure {
 
 /// What was tried against the doubts about a calibration.
 struct Cures {
-    std::vector<Cure> found;                  ///< the best first
-    std::vector<std::string> without_effect;  ///< options that do not lower the error beyond chance
+    std::vector<Cure> found;  ///< the best first
+    /// Options that do not lower the error beyond chance, or leave half as much again as the best.
+    std::vector<std::string> without_effect;
 };
 
 /// A campaign that its file would state with another key: what to try.

@@ -16,7 +16,7 @@ struct OnAxis {
     Index target = 0;
     std::string joint;
 };
-/// Of stated targets, within 1e-5 of how far the robot reaches; where there are others beside the
+/// Of stated targets, within 1e-4 of how far the robot reaches; where there are others beside the
 /// axis, too, none.
 std::vector<OnAxis> find_on_axis(const Campaign& campaign);
 

@@ -49,6 +49,9 @@ struct SetUpChange {
 struct LengthFactor {
     double excess = 0;     ///< factor - 1; above 0: the measured lengths are longer
     double deviation = 0;  ///< standard deviation of that
+    /// The robot's errors in their expected sizes (RMS): as it is, and with readings scaled back.
+    double errors_before = 0;
+    double errors_after = 0;
 };
 
 /// Residuals that follow one joint.
