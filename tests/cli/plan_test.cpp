@@ -46,7 +46,8 @@ TEST_F(PlanCommand, WritesPosesAndTellsWhatTheyAchieve) {
 }
 
 TEST_F(PlanCommand, IsTheSameForOneThreadAndTwo) {
-    const std::string arguments = "plan " + cell_design + " -k 12 --pool 3000 --starts 2 -o p.json";
+    const std::string arguments =
+        "plan " + cell_design + " -k 12 --pool 3000 --starts 2 --verification 4 -o p.json";
     const std::string one = run_well(arguments, "OMP_NUM_THREADS=1");
     const std::string file_one = text_of("p.json");
     EXPECT_EQ(run_well(arguments, "OMP_NUM_THREADS=2"), one);

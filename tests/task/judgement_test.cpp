@@ -6,6 +6,8 @@
 
 #include "../../src/model/sampling.hpp"
 #include "../../src/task/judgement.hpp"
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/simulation.hpp"
 #include "posewise/task/calibration.hpp"
@@ -150,13 +152,14 @@ Coverage simulate_judging(const Campaign& campaign, Index poses, Index fresh, In
                                          1, item);
         };
         const Measurements validation = measure(fresh, seed + 2);
-        const Calibration result = calibrate(campaign, simulated.measurements, {.folds = 0});
+        const Estimate estimate =
+            identify(campaign, simulated.measurements,
+                     register_base_and_targets(campaign, simulated.measurements).parameters);
+        const Campaign found = with_model_error(campaign, estimate);
         const Measurements all = measure(1000, seed + 3);
-        const double truth =
-            make_metrics(residuals(result.campaign, result.estimate.parameters, all)).rms();
+        const double truth = make_metrics(residuals(found, estimate.parameters, all)).rms();
         // In whose ranges all are.
-        const Judgement judged =
-            detail::judge({result.campaign, result.estimate, all.configurations}, validation);
+        const Judgement judged = detail::judge({found, estimate, all.configurations}, validation);
         const JudgedGroup& group = judged.groups.at(0);
         const auto verdict = judge_limit(group, truth);
         const double share = 1.0 / static_cast<double>(campaigns);

@@ -151,13 +151,6 @@ TEST_F(MakePlan, DrawsPosesToVerifyThatAreFeasibleAndApartFromAllOthers) {
     edited.verification[2].targets = plan.poses[1].targets;
     EXPECT_EQ(verify(edited, campaign_, options_).wrong(),
               std::vector<std::string>{"verification"});
-    // Random ones, by the seed.
-    const Plan again = make_plan(campaign_, options_).plan;
-    for (std::size_t i = 0; i < 6; ++i) {
-        EXPECT_EQ(again.verification[i].configuration, plan.verification[i].configuration);
-    }
-    options_.verification_count = 100000;  // as many as there are
-    EXPECT_LT(make_plan(campaign_, options_).plan.verification.size(), 300U);
 }
 
 TEST_F(MakePlan, DrawsPosesToVerifyWhereTheRobotShallBeAccurate) {
@@ -183,19 +176,15 @@ TEST_F(MakePlan, KeepsPosesToVerifyOfThePlanItRepairs) {
     const Plan first = make_plan(campaign_, options_).plan;
     options_.repaired = first;
     options_.pose_count = 0;
-    options_.verification_count = 0;
     options_.dropped = {"p2"};
-    Plan repaired = make_plan(campaign_, options_).plan;
-    ASSERT_EQ(repaired.verification.size(), 3U);
+    options_.verification_count = 5;
+    const Plan repaired = make_plan(campaign_, options_).plan;
+    EXPECT_EQ(repaired.verification.size(), 5U);
     const auto has = [&](const PlannedPose& pose) {
         return std::ranges::any_of(repaired.verification, [&](const PlannedPose& other) {
             return other.id == pose.id && other.configuration == pose.configuration;
         });
     };
-    EXPECT_TRUE(std::ranges::all_of(first.verification, has));
-    options_.verification_count = 5;
-    repaired = make_plan(campaign_, options_).plan;
-    EXPECT_EQ(repaired.verification.size(), 5U);
     EXPECT_TRUE(std::ranges::all_of(first.verification, has));
     options_.dropped = {"v2"};
     EXPECT_EQ(testing::input_error_of([&] { make_plan(campaign_, options_); }),
