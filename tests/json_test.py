@@ -30,7 +30,7 @@ sensor: {kind: points, sigma_mm: 0.05, targets: {position_mm: [[0, 0, 50], [30, 
 base: {position_mm: [2000, 0, 0], rpy_deg: [0, 0, 90]}
 """
 PAGE_MANUAL = (ROOT / "designs/page.md").read_text()
-OTHER_WORDS = {"config"}  # of CSV files
+OTHER_WORDS = {"config", "straight"}  # of CSV files
 faults = []
 
 
