@@ -2,6 +2,7 @@
 
 #include <array>
 #include <numbers>
+#include <vector>
 
 #include "posewise/model/transforms.hpp"
 
@@ -43,35 +44,44 @@ Matrix3d reordered(const Vector3d& read) {
 
 constexpr const char* convert = "convert them to roll, pitch, yaw";
 
-const std::array<OrientationSense, 9> of_vectors{{
-    {"as roll, pitch, yaw about fixed axes", "name the columns roll, pitch, yaw", fixed_xyz},
+/// Angles about axes, whichever three numbers of an orientation they were read as.
+const std::vector<OrientationSense> of_angles{
     {"as yaw, pitch, roll (angles about z, the turned y and the turned x)",
      "name the columns yaw, pitch, roll", turned_zyx},
     {"as Euler angles about x, the turned y and the turned z", convert, turned_xyz},
     {"as Euler angles about z, the turned y and the turned z", convert, turned_zyz},
     {"as Euler angles about z, the turned x and the turned z", convert, turned_zxz},
     {"as angles about the fixed axes z, y and x", convert, fixed_zyx},
-    {"inverted", "turn round their signs", inverted},
-    {"in degrees where the file says rad", "name the columns rx_deg, ry_deg, rz_deg",
-     smaller_vector},
-    {"in rad where the file says degrees", "name the columns rx_rad, ry_rad, rz_rad",
-     larger_vector},
-}};
+};
 
-const std::array<OrientationSense, 9> of_rpy_angles{{
-    {"as a rotation vector", "name the columns rx, ry, rz", rotation_from_vector},
-    {"as yaw, pitch, roll (angles about z, the turned y and the turned x)",
-     "name the columns yaw, pitch, roll", turned_zyx},
-    {"as Euler angles about x, the turned y and the turned z", convert, turned_xyz},
-    {"as Euler angles about z, the turned y and the turned z", convert, turned_zyz},
-    {"as Euler angles about z, the turned x and the turned z", convert, turned_zxz},
-    {"as angles about the fixed axes z, y and x", convert, fixed_zyx},
-    {"inverted", "invert the rotations", inverted_rpy},
-    {"in degrees where the file says rad", "name the columns roll_deg, pitch_deg, yaw_deg",
-     smaller_rpy},
-    {"in rad where the file says degrees", "name the columns roll_rad, pitch_rad, yaw_rad",
-     larger_rpy},
-}};
+/// The likeliest, then angles about axes, then others.
+std::vector<OrientationSense> around_angles(const OrientationSense& likeliest,
+                                            const std::vector<OrientationSense>& others) {
+    std::vector<OrientationSense> all{likeliest};
+    all.insert(all.end(), of_angles.begin(), of_angles.end());
+    all.insert(all.end(), others.begin(), others.end());
+    return all;
+}
+
+const std::vector<OrientationSense> of_vectors = around_angles(
+    {"as roll, pitch, yaw about fixed axes", "name the columns roll, pitch, yaw", fixed_xyz},
+    {
+        {"inverted", "turn round their signs", inverted},
+        {"in degrees where the file says rad", "name the columns rx_deg, ry_deg, rz_deg",
+         smaller_vector},
+        {"in rad where the file says degrees", "name the columns rx_rad, ry_rad, rz_rad",
+         larger_vector},
+    });
+
+const std::vector<OrientationSense> of_rpy_angles =
+    around_angles({"as a rotation vector", "name the columns rx, ry, rz", rotation_from_vector},
+                  {
+                      {"inverted", "invert the rotations", inverted_rpy},
+                      {"in degrees where the file says rad",
+                       "name the columns roll_deg, pitch_deg, yaw_deg", smaller_rpy},
+                      {"in rad where the file says degrees",
+                       "name the columns roll_rad, pitch_rad, yaw_rad", larger_rpy},
+                  });
 
 const std::array<OrientationSense, 10> of_quaternions{{
     {"conjugate", "turn round the signs of qx, qy and qz", inverted},

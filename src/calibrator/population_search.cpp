@@ -37,9 +37,7 @@ class Misfit {
         const Registration found =
             detail::register_roughly_with_errors(campaign_, means_, errors(x));
         if (!found.is_determined()) return worse_than_any;
-        return make_metrics(residuals(campaign_, found.parameters, means_),
-                            campaign_.sensor->lengths_per_target())
-            .rms();
+        return make_metrics(campaign_, found.parameters, means_).rms();
     }
 
   private:

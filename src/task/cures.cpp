@@ -5,6 +5,7 @@
 #include <map>
 
 #include "held_out_doubt.hpp"
+#include "identify_anew.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/exclusion.hpp"
@@ -16,16 +17,6 @@ namespace {
 constexpr double beyond_chance = 2.3263;  // one-sided, 0.01 of normal deviates
 /// What leaves over so many times the error that the best cure leaves is none.
 constexpr double as_good_as = 1.5;
-
-/// Nothing unless the measurements identify all and it converges.
-std::optional<Estimate> identify_anew(const Campaign& campaign, const Measurements& measurements,
-                                      const LevenbergMarquardtOptions& options) {
-    const Registration registration = register_base_and_targets(campaign, measurements);
-    if (!registration.is_determined()) return std::nullopt;
-    Estimate found = identify(campaign, measurements, registration.parameters, options);
-    if (!found.undetermined.empty()) return std::nullopt;
-    return found;
-}
 
 /// What a trial leaves of points that it judges, its configurations in their order.
 struct Judged {

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 #include <vector>
+
+#include "nominal_residuals.hpp"
 
 namespace posewise {
 namespace {
@@ -81,12 +84,11 @@ std::optional<HeldOutComparison> compare_with_nominal(const Campaign& campaign, 
                                                       Parameters registered,
                                                       const CrossValidation& calibrated,
                                                       const LevenbergMarquardtOptions& options) {
-    registered.robot.resize(0);
-    const Campaign nominal = with_robot(campaign, without_parameters(robot));
-    const Estimate fitted = identify(nominal, measurements, registered, options);
-    if (!fitted.undetermined.empty()) return std::nullopt;
-    const CrossValidation held_out =
-        cross_validate(nominal, measurements, fitted.parameters, calibrated.folds, options);
+    const NominalRobot nominal =
+        fit_nominal_robot(campaign, robot, measurements, std::move(registered), options);
+    if (!nominal.fitted.undetermined.empty()) return std::nullopt;
+    const CrossValidation held_out = cross_validate(
+        nominal.campaign, measurements, nominal.fitted.parameters, calibrated.folds, options);
     const Seen is_judged = points_held_out(measurements, calibrated).array() &&
                            points_held_out(measurements, held_out).array();
     if (is_judged.count() == 0) return std::nullopt;

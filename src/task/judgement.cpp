@@ -37,11 +37,6 @@ PoseGroup group_of(const Judge& judge, const RowMatrixXd& configuration) {
                : PoseGroup::New;
 }
 
-Metrics find_metrics(const Judge& judge, const Measurements& others) {
-    return make_metrics(residuals(judge.campaign, judge.estimate.parameters, others),
-                        judge.campaign.sensor->lengths_per_target());
-}
-
 /// How sure figures of these poses are; where the estimate does not tell, a configuration counts as
 /// one target.
 ErrorFreedom freedom_of(const Judge& judge, const Measurements& others) {
@@ -83,7 +78,7 @@ JudgedGroup judge_group(const Judge& judge, PoseGroup group, const std::vector<I
     JudgedGroup judged;
     judged.group = group;
     judged.configurations = members;
-    judged.found = find_metrics(judge, part);
+    judged.found = make_metrics(judge.campaign, judge.estimate.parameters, part);
     if (group == PoseGroup::Beyond) {
         judged.joints =
             find_beyond_measured(judge.campaign, judge.calibrated_with, part.configurations)
@@ -102,7 +97,7 @@ JudgedGroup judge_group(const Judge& judge, PoseGroup group, const std::vector<I
 
 Judgement judge(const Judge& judge, const Measurements& others) {
     Judgement judgement;
-    judgement.found = find_metrics(judge, others);
+    judgement.found = make_metrics(judge.campaign, judge.estimate.parameters, others);
     if (judge.knows_expected) {
         judgement.expected = expected_sample_error(judge.campaign, judge.estimate, others);
     }

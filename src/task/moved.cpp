@@ -34,12 +34,6 @@ Moved measure_moved(const Campaign& campaign, const Parameters& before, const Pa
     return moved;
 }
 
-double rms_of(const Campaign& campaign, const Parameters& parameters, const Measurements& others) {
-    return make_metrics(residuals(campaign, parameters, others),
-                        campaign.sensor->lengths_per_target())
-        .rms();
-}
-
 }  // namespace
 
 Estimate refit_parts(const Refitting& refitting, const Campaign& campaign, const Estimate& before,
@@ -67,12 +61,12 @@ std::optional<Moved> find_moved(const Refitting& refitting, const Campaign& camp
                                 const Estimate& before, const Measurements& others) {
     constexpr double plain = 5;
     const double expected = expected_sample_error(campaign, before, others).total();
-    const double off = rms_of(campaign, before.parameters, others);
+    const double off = make_metrics(campaign, before.parameters, others).rms();
     if (off <= plain * expected) return std::nullopt;
     for (const std::vector<std::string>& parts : movable_parts(campaign)) {
         const Estimate found = refit_parts(refitting, campaign, before, others, parts);
         if (!found.undetermined.empty()) continue;
-        const double left = rms_of(campaign, found.parameters, others);
+        const double left = make_metrics(campaign, found.parameters, others).rms();
         if (plain * left > off) continue;
         if (left > plain * expected && parts.size() == 1) continue;
         return measure_moved(campaign, before.parameters, found.parameters, parts);

@@ -65,9 +65,7 @@ std::optional<std::pair<std::string, std::string>> find_exchanged(
             Measurements pair = take(measured, {first, second});
             pair.configurations.row(0).swap(pair.configurations.row(1));
             const double rms =
-                make_metrics(residuals(others.campaign, others.estimate.parameters, pair),
-                             others.campaign.sensor->lengths_per_target())
-                    .rms();
+                make_metrics(others.campaign, others.estimate.parameters, pair).rms();
             if (rms < fits * others.estimate.fit.rms()) return {{pair.ids[0], pair.ids[1]}};
         }
     }

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "identify_anew.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -49,13 +48,11 @@ bool tells_lengths(const Sensor& sensor) { return sensor.has_lengths() && !senso
 
 std::optional<Fitted> fit_again(const Campaign& campaign, const Measurements& measured,
                                 const Loss& loss) {
-    const Registration start = register_base_and_targets(campaign, measured);
-    if (!start.is_determined()) return std::nullopt;
     LevenbergMarquardtOptions options;
     options.loss.kind = loss.kind;
-    Fitted fitted{campaign, measured, identify(campaign, measured, start.parameters, options)};
-    if (!fitted.estimate.undetermined.empty()) return std::nullopt;
-    return fitted;
+    const auto estimate = identify_anew(campaign, measured, options);
+    if (!estimate) return std::nullopt;
+    return Fitted{campaign, measured, *estimate};
 }
 
 FittedProblem::FittedProblem(const Fitted& fitted)
@@ -162,7 +159,7 @@ std::vector<JointPattern> find_joint_patterns(const Fitted& fitted, const Patter
         patterns = {{robot.joint(j).name,
                      kind,
                      sides * found.effect[0],
-                     robot.joint(j).motion == Motion::Rotation,
+                     turns,
                      {rms, rms * std::sqrt(after / before)}}};
     };
     for (Index j = 0; j < robot.joint_count(); ++j) {

@@ -120,13 +120,22 @@ std::vector<std::string> residual_axes(const Campaign& campaign) {
 
 namespace detail {
 
+NominalRobot fit_nominal_robot(const Campaign& campaign, const Chain& robot,
+                               const Measurements& measurements, Parameters registered,
+                               const LevenbergMarquardtOptions& options) {
+    registered.robot.resize(0);
+    Campaign nominal = with_robot(campaign, without_parameters(robot));
+    Estimate fitted = identify(nominal, measurements, registered, options);
+    return {std::move(nominal), std::move(registered), std::move(fitted)};
+}
+
 RowMatrixXd nominal_residuals(const Campaign& campaign, const Chain& robot,
                               const Measurements& measurements, Parameters registered,
                               const LevenbergMarquardtOptions& options) {
-    registered.robot.resize(0);
-    const Campaign nominal = with_robot(campaign, without_parameters(robot));
-    const Estimate found = identify(nominal, measurements, registered, options);
-    return residuals(nominal, found.undetermined.empty() ? found.parameters : registered,
+    const NominalRobot nominal =
+        fit_nominal_robot(campaign, robot, measurements, std::move(registered), options);
+    const bool is_fitted = nominal.fitted.undetermined.empty();
+    return residuals(nominal.campaign, is_fitted ? nominal.fitted.parameters : nominal.start,
                      measurements);
 }
 

@@ -8,6 +8,7 @@
 
 #include "../core/checksum.hpp"
 #include "calibration_options.hpp"
+#include "identify_anew.hpp"
 #include "inputs.hpp"
 #include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
@@ -149,8 +150,7 @@ StudyCase run(const Setting& setting, const MeasuredCase& job, Index pose_count)
     }
     if (result.poses.empty()) return result;
     const Measurements& measurements = setting.measurements;
-    const auto estimate =
-        detail::calibrate_subset(setting.campaign, take(measurements, result.poses));
+    const auto estimate = detail::identify_anew(setting.campaign, take(measurements, result.poses));
     if (!estimate) return result;
     const auto judged =
         split.test.empty() ? all_but(measurements.configuration_count(), result.poses) : split.test;

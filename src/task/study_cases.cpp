@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "../measurement/prior_rows.hpp"
-#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::detail {
@@ -39,14 +38,6 @@ SelectOptions study_selection(const StudyOptions& options, const Campaign& campa
     selection.least_distance = options.least_distance;
     selection.seed = options.seed;
     return selection;
-}
-
-std::optional<Estimate> calibrate_subset(const Campaign& campaign, const Measurements& chosen) {
-    const Registration start = register_base_and_targets(campaign, chosen);
-    if (!start.is_determined()) return std::nullopt;
-    Estimate estimate = identify(campaign, chosen, start.parameters);
-    if (estimate.ending == Ending::NotIdentifiable) return std::nullopt;
-    return estimate;
 }
 
 void append_case(const StudyCase& study_case, std::vector<double>& values) {

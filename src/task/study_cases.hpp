@@ -20,9 +20,6 @@ std::vector<Index> usual_counts(Index least, Index most);
 SelectOptions study_selection(const StudyOptions& options, const Campaign& campaign,
                               std::size_t criterion, Index pose_count, Index candidate_count);
 
-/// Calibrated from registration on; nothing if the measurements do not identify the model.
-std::optional<Estimate> calibrate_subset(const Campaign& campaign, const Measurements& chosen);
-
 /// Of ratios whose logarithms are visited; nothing if there are none or one is a NaN.
 std::optional<Advantage> geometric_mean(const VisitNumbers& logarithms);
 

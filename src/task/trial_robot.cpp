@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "../core/statistics.hpp"
-#include "study_cases.hpp"
+#include "identify_anew.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -40,7 +40,7 @@ TrialRobot visit(const Campaign& truth, DrawnRobot robot, const RowMatrixXd& tes
 
 std::optional<Estimate> calibrate_robot(const Campaign& campaign, const TrialRobot& trial,
                                         const Subset& subset, Index repeats, std::uint64_t seed) {
-    return calibrate_subset(
+    return identify_anew(
         campaign, simulate_measurements(trial.truth, trial.robot.truth, subset.configurations,
                                         subset.is_seen, repeats, seed));
 }

@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "page_document.hpp"
 #include "program.hpp"
 
 /// Pages that commands write with --report, and report from what they have written.
@@ -15,15 +16,7 @@ const std::string cell_design = "'" + source_folder() + "/designs/cell_demo/camp
 class Report : public Program {
   protected:
     /// The document in a page.
-    json shown_in(const std::string& page) const {
-        const std::string text = text_of(page);
-        const std::string mark = R"(<script type="application/json" id="posewise">)";
-        const auto begin = text.find(mark);
-        EXPECT_NE(begin, std::string::npos) << page << " holds no document";
-        if (begin == std::string::npos) return {};
-        const auto end = text.find("</script>", begin);
-        return json::parse(text.substr(begin + mark.size(), end - begin - mark.size()));
-    }
+    json shown_in(const std::string& page) const { return document_in_page(text_of(page)); }
     json part_in(const std::string& page) const { return shown_in(page)["parts"][0]; }
 
     void simulate() const {

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "page_document.hpp"
 #include "program.hpp"
 
 /// Every warning of standard error stands in the documents and on the pages of the same run.
@@ -45,15 +46,7 @@ class Warnings : public Program {
         return sentences;
     }
 
-    json shown_in(const std::string& page) const {
-        const std::string text = text_of(page);
-        const std::string mark = R"(<script type="application/json" id="posewise">)";
-        const auto begin = text.find(mark);
-        EXPECT_NE(begin, std::string::npos) << page << " holds no document";
-        if (begin == std::string::npos) return {};
-        const auto end = text.find("</script>", begin);
-        return json::parse(text.substr(begin + mark.size(), end - begin - mark.size()));
-    }
+    json shown_in(const std::string& page) const { return document_in_page(text_of(page)); }
 
     void expect_everywhere(const Command& command) const {
         const std::string page = command.has_page ? " --report page.html" : "";

@@ -191,5 +191,8 @@ RowMatrixXd squared_angles(const Campaign& campaign, const Parameters& parameter
 /// Metrics of residuals as residuals() returns them, of which at most so many columns are lengths
 /// (Sensor::lengths_per_target()), the others angles.
 Metrics make_metrics(const RowMatrixXd& residuals, Index length_count = 3);
+/// Those of all samples, or of means where the measurements are means: of residuals().
+Metrics make_metrics(const Campaign& campaign, const Parameters& parameters,
+                     const Measurements& measurements);
 
 }  // namespace posewise
