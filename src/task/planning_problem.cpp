@@ -224,7 +224,9 @@ Blocks blocks_of(const PlanningProblem& problem, const std::vector<PlannedPose>&
 }
 
 MatrixXd held_information(const PlanningProblem& problem) {
-    return information_of(problem.search.held.rows, parameter_count(problem.campaign));
+    const RowMatrixXd& rows = problem.search.held.rows;
+    const Index kept = problem.kept.empty() ? 0 : blocks_of(problem, problem.kept).matrix.rows();
+    return information_of(rows.topRows(rows.rows() - kept), parameter_count(problem.campaign));
 }
 
 std::vector<NamedNumber> standard_deviations(const Campaign& campaign, const MatrixXd& M) {

@@ -59,7 +59,8 @@ Blocks blocks_of(const PlanningProblem& problem, const std::vector<PlannedPose>&
 /// poses x joints.
 RowMatrixXd configurations_of(const std::vector<PlannedPose>& poses, Index joint_count);
 
-/// Held information, zero if there is none.
+/// Information of what is held beside the poses of the plan, kept ones among them: of the prior and
+/// of measured poses; zero if there is none.
 MatrixXd held_information(const PlanningProblem& problem);
 
 /// Expected standard deviation of every parameter by the information matrix, m or rad.

@@ -308,8 +308,12 @@ TEST(PlanPoses, RefusesAPlanThatHardlySeesADirection) {
     options.bound_iterations = 0;
     VectorXd weight = VectorXd::Ones(33);
     weight[7] = 1e-5;
+    const auto rows = scene.space.rows;
     const auto full = scene.space.information;
     const auto slope = scene.space.information_gradient;
+    scene.space.rows = [rows, weight](const VectorXd& q) -> RowMatrixXd {
+        return rows(q) * weight.asDiagonal();
+    };
     scene.space.information = [full, weight](const VectorXd& q) -> MatrixXd {
         return weight.asDiagonal() * full(q) * weight.asDiagonal();
     };
