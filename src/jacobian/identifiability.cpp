@@ -101,8 +101,10 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
                 result.least_kept_residual = std::min(result.least_kept_residual, residual_norm);
             } else {
                 rest.push_back(k);
+                // What depends on others, or is too little of what is strongest.
+                const double dropped = residual_norm > least ? share : residual_norm;
                 result.largest_dropped_residual =
-                    std::max(result.largest_dropped_residual, std::min(residual_norm, share));
+                    std::max(result.largest_dropped_residual, dropped);
             }
         }
         open = std::move(rest);

@@ -11,7 +11,8 @@ struct ExactAngles {
 };
 
 /// Nominal angles within 1e-6 rad of a multiple of a quarter turn are taken as that, which files
-/// round: 1.570796, 3.1415926535. Beside it what is identifiable is decided by the rounding.
+/// round: 1.570796, 3.1415926535. Beside it what is identifiable is decided by the rounding. Those
+/// of 16 digits and more are computed, of a calibrated robot, and stay.
 ExactAngles with_exact_angles(const Chain& chain);
 
 }  // namespace posewise::detail
