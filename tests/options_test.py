@@ -84,7 +84,9 @@ WAYS = [
 # way, no sliding joint, few parameters, no error that depends on the configuration, one choice that all starts end at.
 KNOWN = {("calibrate", "--force"), ("export", "--force"), ("correct", "--force"), ("study", "--force"),
          ("correct", "--largest-change-mm"), ("calibrate", "--all-parameters"), ("export", "--geometry"),
-         ("export", "--workspace"), ("study", "--starts"), ("plan", "--strict")}
+         ("export", "--workspace"), ("study", "--starts"), ("plan", "--strict"), ("select", "--force")}
+# What makes an option without a value quick.
+WITH = {"--verify": ["--verify-robots", "200"]}
 SHORT = {"-m": "--measurements", "-k": "--poses", "-o": "--out", "-c": "--criterion"}
 faults = []
 
@@ -145,7 +147,7 @@ def check(way):
     for option in options_of(way[0]):
         if option in given or (option == "CAMPAIGN" and "arm.yaml" in way):
             continue
-        value = [VALUES[option]] if option in VALUES else []
+        value = [VALUES[option]] if option in VALUES else WITH.get(option, [])
         added = value if option == "CAMPAIGN" else [option, *value]
         code, said, changed = result_of([*way, *added])
         if code not in (0, 1, 2, 3) or (code == 0 and changed == made and (way[0], option) not in KNOWN):

@@ -86,8 +86,7 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
                      "Learn how large the errors of each class are, instead of the expected sizes");
     command.add_flag("--all-parameters", arguments.has_all_parameters, "List each, however many");
     add_earlier_options(command, arguments.earlier);
-    // It takes what is found now, too.
-    command.get_option("--force")->remove_needs(command.get_option("--from"));
+    let_force_take_measured(command);
     CLI::Option* const refit =
         add_parts_option(command, "--refit", options.refitted,
                          "With --validate: base, targets or both (base,targets) are identified "

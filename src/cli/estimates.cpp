@@ -65,7 +65,7 @@ void check_prior(const std::string& path, const Campaign& expected) {
 
 CLI::Option* add_force_option(CLI::App& command, bool& is_forced) {
     return command.add_flag("--force", is_forced,
-                     "Take an estimate that did not converge or has values no robot has");
+                            "Take an estimate that did not converge or has values no robot has");
 }
 
 JudgeCalibration judge_of(const std::string& measurements, bool is_forced) {
@@ -115,12 +115,17 @@ CLI::Option* add_from_option(CLI::App& command, EarlierArguments& arguments) {
     CLI::Option* const force = add_force_option(command, arguments.is_forced);
     CLI::Option* const from =
         command
-            .add_option("--from", arguments.from,
-                        "An estimate of the same robot (JSON), from calibrate --out: base, targets, "
-                        "errors, model error and learned sizes are as it found them")
+            .add_option(
+                "--from", arguments.from,
+                "An estimate of the same robot (JSON), from calibrate --out: base, targets, "
+                "errors, model error and learned sizes are as it found them")
             ->check(file_name());
     force->needs(from);
     return from;
+}
+
+void let_force_take_measured(CLI::App& command) {
+    command.get_option("--force")->remove_needs(command.get_option("--from"));
 }
 
 void add_earlier_options(CLI::App& command, EarlierArguments& arguments) {

@@ -64,6 +64,8 @@ struct EarlierArguments {
 CLI::Option* add_from_option(CLI::App& command, EarlierArguments& arguments);
 /// These, and --as-prior, --moved, --drift-..., --only.
 void add_earlier_options(CLI::App& command, EarlierArguments& arguments);
+/// --force takes what measurements tell, too, and does not need --from.
+void let_force_take_measured(CLI::App& command);
 
 /// The estimate in a file, as read_usable_estimate().
 Earlier read_usable_earlier(const std::string& path, const Campaign& campaign,

@@ -53,19 +53,21 @@ Measurements read_measured(const std::string& path, const io::CampaignFile& file
 Measurements read_measured_without(const std::vector<std::string>& excluded,
                                    const std::string& path, const io::CampaignFile& file,
                                    const EarlierArguments& earlier) {
-    const Measurements all = read_measured(path, file);
+    const Measurements all = io::read_measurements(path, file);
     warn_of_counting_twice(earlier.from, earlier.is_prior, path, all);
     Measurements measured = compute_from(path, [&] { return leave_out(all, excluded); });
+    warn_beyond_limits(path, file, measured.configurations, measured.ids);
     const std::vector<Index> still = find_still_joints(file, measured.configurations);
     if (!still.empty()) print_warning(path + ": " + describe_still_joints(file, still));
     return measured;
 }
 
 void add_exclude_option(CLI::App& command, std::vector<std::string>& excluded) {
-    add_ids_option(command, "--exclude", excluded,
-                   "Leave out these configurations (ids, by commas; 7-12 are all from 7 to 12 in the "
-                   "file's order) and samples (7:2 has 7 in the column config and 2 in the column "
-                   "sample; without such a column it is the second sample of 7)");
+    add_ids_option(
+        command, "--exclude", excluded,
+        "Leave out these configurations (ids, by commas; 7-12 are all from 7 to 12 in the "
+        "file's order) and samples (7:2 has 7 in the column config and 2 in the column "
+        "sample; without such a column it is the second sample of 7)");
 }
 
 void warn_of_unchecked_bodies(const io::CampaignFile& file) {

@@ -143,8 +143,9 @@ void warn_of_cell(const Plan& plan, bool is_strict) {
     const std::string text = fmt::format("no free way was found to {}", fmt::join(blocked, ", "));
     if (is_strict) {
         throw InputError(text +
-                         "; nothing is written. Leave them out (--plan with --drop), state another "
-                         "home_deg, or plan without --strict and find the ways by hand");
+                         "; nothing is written. Try another --seed, leave poses out (--plan with "
+                         "--drop), state another home_deg, or plan without --strict and find the "
+                         "ways by hand");
     }
     print_warning(text + ": find one by hand before a robot is sent there; marked BLOCKED");
 }

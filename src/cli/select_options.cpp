@@ -52,6 +52,7 @@ void add_select_problem(CLI::App& command, SelectArguments& arguments) {
         ->check(file_name());
     add_prior_option(command, arguments.prior, "; --poses may then be below what identifies");
     add_earlier_options(command, arguments.earlier);
+    let_force_take_measured(command);
     add_focus_option(command, arguments);
     command
         .add_option("--augment", request.sources.augment,
@@ -111,6 +112,9 @@ void check_select_usage(const SelectArguments& arguments) {
     require_usage(sources.variable.empty() || blocks.ends_with(".mat") || blocks.ends_with(".MAT"),
                   "--variable", "goes with --blocks and a MATLAB file only");
     require_usage(!is_plain || request.repeats == 0, "--repeats", "needs a robot");
+    require_usage(!arguments.earlier.is_forced || !arguments.earlier.from.empty() ||
+                      !arguments.measurements.empty(),
+                  "--force", "is of an estimate or of measurements; needs --from or -m");
     require_usage(!is_plain || arguments.focus == "all", "--focus", "needs a robot");
     require_usage(!is_plain || arguments.earlier.from.empty(), "--from", "needs a robot");
     const bool has_distance = arguments.least_distance_deg != 0;

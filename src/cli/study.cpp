@@ -126,6 +126,10 @@ void check_printing_only(const CLI::App& command, std::vector<std::string> used,
 }
 
 void check_study_usage(const CLI::App& command, const StudyArguments& arguments, bool reads_store) {
+    if (arguments.earlier.is_forced && command.count("--from") == 0 && arguments.is_simulated) {
+        throw CLI::ValidationError("--force",
+                                   "is of an estimate or of measurements; needs --from or -m");
+    }
     const bool has_splits = arguments.options.splits != Index{0};
     if (!has_splits && command.count("--holdout") > 0) {
         throw CLI::ValidationError("--holdout", "is of splits, and --splits 0 makes none");

@@ -97,6 +97,7 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
         "choose from; without splits from the least that identifies to all but one)");
     add_prior_option(command, arguments.prior, ": of choice and calibration alike");
     add_earlier_options(command, arguments.earlier);
+    let_force_take_measured(command);
     CLI::Option* const models = command.add_option_function<std::string>(
         "--models",
         [&arguments](const std::string& text) {

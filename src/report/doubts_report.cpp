@@ -187,9 +187,9 @@ std::string describe_still_joints(const Campaign& campaign, const std::vector<In
 
 std::string describe(const BeyondLimits& beyond, const std::vector<std::string>& ids) {
     return fmt::format(
-        "{} of {} configurations are beyond the campaign's joint limits, the first is {}: {}",
-        beyond.count, ids.size(), detail::quote(ids[static_cast<std::size_t>(beyond.first)]),
-        beyond.violation);
+        "{} of {} configurations {} beyond the campaign's joint limits, the first is {}: {}",
+        beyond.count, ids.size(), beyond.count == 1 ? "is" : "are",
+        detail::quote(ids[static_cast<std::size_t>(beyond.first)]), beyond.violation);
 }
 
 }  // namespace posewise
