@@ -60,8 +60,11 @@ void find_scale(const LinearFit& fit, const RowMatrixXd& WX, const VectorXd& lef
         squared_expected += part * part;
     }
     if (!(expected > 0)) return;
+    // Not more than what all rows leave free.
+    const double free = static_cast<double>(left.size()) - score.with.U.squaredNorm();
     score.freedom =
-        std::max(1.0, expected * expected / squared_expected - static_cast<double>(score.columns));
+        std::clamp(expected * expected / squared_expected - static_cast<double>(score.columns), 1.0,
+                   std::max(1.0, free));
     score.scale =
         squares / expected * (score.freedom + static_cast<double>(score.columns)) / score.freedom;
 }

@@ -58,9 +58,10 @@ void add_common_options(CLI::App& command, CommonOptions& common) {
         if (option != nullptr) json->excludes(option);  // it has all
     }
     command
-        .add_option_function<Index>("--threads", set_thread_count,
-                                    "Threads to compute with, at most four for each core; no result "
-                                    "depends on it (default: one for each)")
+        .add_option_function<Index>(
+            "--threads", set_thread_count,
+            "Threads to compute with, at most four for each core; no result "
+            "depends on it (default: one for each)")
         ->check(whole_number(1, 1024));
 }
 

@@ -27,7 +27,8 @@ std::string describe_vector(const Vector3d& v) {
     return fmt::format("[{}, {}, {}]", number(v.x()), number(v.y()), number(v.z()));
 }
 
-std::string describe(const OutlyingConfigurations& outlying, const Campaign& campaign) {
+/// What leaving them out gains a cure says, see find_cures().
+std::string describe(const OutlyingConfigurations& outlying) {
     const bool is_one = outlying.ids.size() == 1;
     std::string text =
         fmt::format("{} {} {} not fit the others, without {} {} % of the squares is left",
@@ -38,8 +39,7 @@ std::string describe(const OutlyingConfigurations& outlying, const Campaign& cam
         text += fmt::format(" ({} and {} fit with each other's joint values: rows exchanged?)",
                             outlying.exchanged->first, outlying.exchanged->second);
     }
-    return text + fmt::format("; with --exclude {}: {}", fmt::join(outlying.ids, ","),
-                              describe(outlying.held_out, campaign));
+    return text;
 }
 
 std::string describe(const SetUpChange& change, const Campaign& campaign) {
@@ -121,7 +121,7 @@ std::string describe(const ShiftedRows& shifted, const Campaign& campaign) {
 std::vector<std::string> describe_look(const ResidualLook& look, const Campaign& campaign) {
     std::vector<std::string> sentences;
     if (look.shifted) sentences.push_back(describe(*look.shifted, campaign));
-    if (look.outlying) sentences.push_back(describe(*look.outlying, campaign));
+    if (look.outlying) sentences.push_back(describe(*look.outlying));
     for (const SetUpChange& change : look.changes) sentences.push_back(describe(change, campaign));
     if (look.lengths) sentences.push_back(describe(*look.lengths));
     for (const JointPattern& joint : look.joints) sentences.push_back(describe(joint, campaign));

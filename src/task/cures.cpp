@@ -1,5 +1,7 @@
 #include "cures.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -15,6 +17,8 @@ namespace posewise::detail {
 namespace {
 
 constexpr double beyond_chance = 2.3263;  // one-sided, 0.01 of normal deviates
+/// What leaves more than this part of the error is not worth naming.
+constexpr double worth_naming = 0.95;
 /// What leaves over so many times the error that the best cure leaves is none.
 constexpr double as_good_as = 1.5;
 
@@ -24,7 +28,28 @@ struct Judged {
     Seen is_judged;
 };
 
-std::optional<Judged> judge(const CureTrial& trial, Index folds) {
+/// Points that may judge a calibration of these: what its loss calls outliers does not.
+Seen points_judged(const Measurements& measurements, const Estimate& found) {
+    Seen is_judged = times_seen(measurements).array() > 0;
+    for (const Outlier& outlier : found.outliers) {
+        is_judged(outlier.configuration, outlier.target) = false;
+    }
+    return is_judged;
+}
+
+/// Whether it fits points that may judge it better than the doubted one does: what does not hardly
+/// predicts better.
+bool fits_better(const Doubted& doubted, const CureTrial& trial, const Estimate& found) {
+    constexpr double hardly = 0.97;
+    const Measurements& measured = trial.measurements;
+    const Seen is_judged = points_judged(measured, found);
+    const auto rms = [&](const Campaign& campaign, const Estimate& estimate) {
+        return rms_of(squared_distances(campaign, estimate.parameters, measured), is_judged);
+    };
+    return rms(trial.campaign, found) <= hardly * rms(doubted.campaign, doubted.estimate);
+}
+
+std::optional<Judged> judge(const Doubted& doubted, const CureTrial& trial) {
     Campaign campaign = trial.campaign;
     if (trial.learns_sizes) {
         const Registration registration = register_base_and_targets(campaign, trial.measurements);
@@ -33,18 +58,18 @@ std::optional<Judged> judge(const CureTrial& trial, Index folds) {
             learn_sizes(campaign, trial.measurements, registration.parameters, trial.options);
     }
     const auto found = identify_anew(campaign, trial.measurements, trial.options);
-    if (!found) return std::nullopt;
+    if (!found || (!trial.learns_sizes && !fits_better(doubted, trial, *found))) {
+        return std::nullopt;
+    }
     LevenbergMarquardtOptions options = trial.options;
     options.finds_model_error = false;
     const Index count = trial.measurements.configuration_count();
     const CrossValidation held_out =
         cross_validate(with_model_error(campaign, *found), trial.measurements, found->parameters,
-                       std::min(folds, count), options);
-    Judged judged{held_out.squared_distances, points_held_out(trial.measurements, held_out)};
-    for (const Outlier& outlier : found->outliers) {
-        judged.is_judged(outlier.configuration, outlier.target) = false;
-    }
-    return judged;
+                       std::min(doubted.held_out.folds, count), options);
+    const Seen is_held_out = points_held_out(trial.measurements, held_out);
+    return Judged{held_out.squared_distances,
+                  is_held_out.array() && points_judged(trial.measurements, *found).array()};
 }
 
 /// Which configurations of all these are.
@@ -74,11 +99,16 @@ Index farthest_configuration(const Doubted& doubted) {
     return farthest;
 }
 
+std::string exclusion_of(const std::vector<std::string>& ids) {
+    return fmt::format("--exclude {}", fmt::join(ids, ","));
+}
+
 /// Nothing where too little would be left.
-std::optional<CureTrial> leave_one_out(const Doubted& doubted, const std::string& excluded) {
+std::optional<CureTrial> leave_out_trial(const Doubted& doubted,
+                                         const std::vector<std::string>& excluded) {
     try {
-        return CureTrial{"--exclude " + excluded, doubted.campaign,
-                         leave_out(doubted.measurements, {excluded}), doubted.options};
+        return CureTrial{exclusion_of(excluded), doubted.campaign,
+                         leave_out(doubted.measurements, excluded), doubted.options};
     } catch (const InputError&) {
         return std::nullopt;
     }
@@ -92,6 +122,15 @@ bool has_terms(const Chain& robot, TermKind kind) {
     return false;
 }
 
+/// So many measured numbers that the prior says nothing beside them.
+bool is_far_above_prior(const Doubted& doubted) {
+    constexpr Index many = 30;  // a parameter
+    const auto parameters = static_cast<Index>(doubted.estimate.names.size());
+    const Index numbers =
+        doubted.measurements.is_seen.count() * doubted.campaign.sensor->rows_per_target();
+    return numbers > many * parameters;
+}
+
 std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
                                    const CureOptions& options) {
     const Campaign& campaign = doubted.campaign;
@@ -100,18 +139,21 @@ std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
         return trials.emplace_back(option, other, doubted.measurements, doubted.options);
     };
     if (doubted.options.loss.kind == LossKind::Squares) {
-        std::vector<std::string> worst;
-        if (doubts.scatter) worst.push_back(doubts.scatter->sample);
-        const Index farthest = farthest_configuration(doubted);
-        if (farthest >= 0) {
-            worst.push_back(doubted.measurements.ids[static_cast<std::size_t>(farthest)]);
+        std::vector<std::vector<std::string>> worst;
+        if (doubts.scatter) worst.push_back({doubts.scatter->sample});
+        if (doubts.look.outlying) {
+            worst.push_back(doubts.look.outlying->ids);
+        } else if (const Index farthest = farthest_configuration(doubted); farthest >= 0) {
+            worst.push_back({doubted.measurements.ids[static_cast<std::size_t>(farthest)]});
         }
-        for (const std::string& excluded : worst) {
-            if (auto trial = leave_one_out(doubted, excluded)) trials.push_back(*std::move(trial));
+        for (const auto& excluded : worst) {
+            if (auto trial = leave_out_trial(doubted, excluded)) {
+                trials.push_back(*std::move(trial));
+            }
         }
         add("--loss cauchy", campaign).options.loss.kind = LossKind::Cauchy;
     }
-    if (options.can_learn_sizes && campaign.spread.is_prior) {
+    if (options.can_learn_sizes && campaign.spread.is_prior && !is_far_above_prior(doubted)) {
         add("--learn-sizes", campaign).learns_sizes = true;
     }
     for (const OtherCampaign& other : options.campaigns) add(other.option, other.campaign);
@@ -128,7 +170,7 @@ std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
 }  // namespace
 
 std::optional<Cure> try_cure(const Doubted& doubted, const CureTrial& trial) {
-    const auto judged = judge(trial, doubted.held_out.folds);
+    const auto judged = judge(doubted, trial);
     if (!judged) return std::nullopt;
     const std::vector<Index> places = places_of(trial.measurements.ids, doubted.measurements.ids);
     const Seen all = points_held_out(doubted.measurements, doubted.held_out);
@@ -139,7 +181,7 @@ std::optional<Cure> try_cure(const Doubted& doubted, const CureTrial& trial) {
     if (!(deviations < -beyond_chance)) return std::nullopt;
     const Cure cure{trial.option, rms_of(doubted.held_out.squared_distances, all),
                     rms_of(judged->squares, judged->is_judged)};
-    if (!(cure.after < cure.before)) return std::nullopt;
+    if (!(cure.after < worth_naming * cure.before)) return std::nullopt;
     return cure;
 }
 
@@ -150,7 +192,7 @@ std::optional<LoneConfiguration> find_lone_configuration(const Doubted& doubted)
     const Index farthest = farthest_configuration(doubted);
     if (farthest < 0) return std::nullopt;
     const std::string& id = doubted.measurements.ids[static_cast<std::size_t>(farthest)];
-    const auto trial = leave_one_out(doubted, id);
+    const auto trial = leave_out_trial(doubted, {id});
     if (!trial) return std::nullopt;
     // As many numbers as unknowns fit always.
     if (trial->measurements.configuration_count() < enough) return std::nullopt;
@@ -163,7 +205,7 @@ std::optional<LoneConfiguration> find_lone_configuration(const Doubted& doubted)
     return lone;
 }
 
-Cures find_cures(const Doubted& doubted, const Doubts& doubts, const CureOptions& options) {
+Cures find_cures(const Doubted& doubted, Doubts& doubts, const CureOptions& options) {
     Cures cures;
     for (const CureTrial& trial : list_trials(doubted, doubts, options)) {
         if (doubted.options.stop.is_set()) return {};
@@ -178,6 +220,11 @@ Cures find_cures(const Doubted& doubted, const Doubts& doubts, const CureOptions
            cures.found.back().after > as_good_as * cures.found.front().after) {
         cures.without_effect.push_back(cures.found.back().option);
         cures.found.pop_back();
+    }
+    auto& outlying = doubts.look.outlying;
+    if (outlying && !cures.found.empty() &&
+        std::ranges::count(cures.found, exclusion_of(outlying->ids), &Cure::option) == 0) {
+        outlying.reset();
     }
     return cures;
 }

@@ -29,7 +29,7 @@ struct CureTrial {
 };
 
 /// Calibrates as the trial says and holds out as many groups; nothing unless that lowers the error
-/// beyond chance at the points that both judge. What the trial leaves out, and what its loss calls
+/// by 5 % and beyond chance at the points that both judge. What the trial leaves out, and what its loss calls
 /// outliers, judges nothing.
 std::optional<Cure> try_cure(const Doubted& doubted, const CureTrial& trial);
 
@@ -43,8 +43,9 @@ struct CureOptions {
     std::vector<OtherCampaign> campaigns{};
 };
 
-/// Tries a robust loss, the configuration or sample left out that looks worst, sizes that are
-/// learned, and richer errors. `doubts`: which sample scatters.
-Cures find_cures(const Doubted& doubted, const Doubts& doubts, const CureOptions& options);
+/// Tries a robust loss, the configurations left out that are outlying or the one that looks worst,
+/// or a sample that scatters, as `doubts` say, sizes that are learned, and richer errors. Where
+/// another cure leaves much less than it does to leave the outlying out, they are it no more.
+Cures find_cures(const Doubted& doubted, Doubts& doubts, const CureOptions& options);
 
 }  // namespace posewise::detail

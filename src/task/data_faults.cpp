@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "../core/format.hpp"
 #include "../core/text.hpp"
@@ -17,6 +18,8 @@ namespace {
 
 /// The residuals contradict what is stated: errors of a kind that was not reckoned with.
 constexpr double beyond_stated = 3;
+/// No instrument's scale is off by more, nor does any temperature make a robot so much longer.
+constexpr double largest_factor = 0.005;
 
 std::string describe(double value, bool is_angle) {
     return format_short(1e3 * value, 3) + ' ' + std::string(units_of(is_angle).error);
@@ -70,7 +73,7 @@ bool asks_for_cures(const Doubts& doubts) {
     return !doubts.misfit &&
            (has_large_residuals || !doubts.model_errors.empty() || !doubts.sizes.empty() ||
             doubts.missing_errors || doubts.gross_error || doubts.orientations || doubts.scatter ||
-            doubts.held_out);
+            doubts.held_out || doubts.look.outlying);
 }
 
 std::vector<std::string> find_data_faults(const Doubted& doubted, const Calibration& calibration,
@@ -89,6 +92,15 @@ std::vector<std::string> find_data_faults(const Doubted& doubted, const Calibrat
                        faults);
     }
     add_left_over(doubted, left_over(calibration), faults);
+    if (const auto& lengths = calibration.doubts.look.lengths) {
+        if (std::abs(lengths->excess) > largest_factor) {
+            faults.push_back(fmt::format(
+                "all lengths are {} % {} than the robot's, which no instrument and no temperature "
+                "does: is it another robot, or are they in another unit?",
+                format_short(100 * std::abs(lengths->excess), 2),
+                lengths->excess > 0 ? "longer" : "shorter"));
+        }
+    }
     return faults;
 }
 

@@ -137,34 +137,36 @@ std::vector<JointPattern> find_joint_patterns(const Fitted& fitted, const Patter
     const Chain& robot = fitted.campaign.robot;
     const RowMatrixXd& q = fitted.measured.configurations;
     const std::vector<Index> all = all_but(fit.count(), {});
-    const double before = held_out_squares(fit, all);
     const double rms = held_out_rms(fitted);
     std::vector<JointPattern> patterns;
-    double best = before;
-    const auto try_pattern = [&](Index j, JointPattern::Kind kind, const auto& amount) {
+    double best = 1;
+    const auto try_pattern = [&](const LinearFit& without, Index j, JointPattern::Kind kind,
+                                 const auto& amount) {
         RowMatrixXd X = columns.joint(j);
         for (Index i = 0; i < fit.count(); ++i) {
             X.middleRows(fit.begin(i), fit.rows(i)) *= amount(i);
         }
-        const Score found = score(fit, X);
+        const Score found = score(without, X);
         if (!found.is_beyond(chance_of_joint / static_cast<double>(2 * robot.joint_count()))) {
             return;
         }
-        const double after = held_out_squares(found.with, all);
+        const double share = held_out_squares(found.with, all) / held_out_squares(without, all);
         const bool turns = robot.joint(j).motion == Motion::Rotation;
         const bool is_scale = kind == JointPattern::Kind::Scale;
-        if (after > best || after > (is_scale && turns ? plain : material) * before) return;
-        best = after;
+        if (share > std::min(best, is_scale && turns ? plain : material)) return;
+        best = share;
         const double sides = kind == JointPattern::Kind::Backlash ? 2 : 1;
         patterns = {{robot.joint(j).name,
                      kind,
                      sides * found.effect[0],
                      turns,
-                     {rms, rms * std::sqrt(after / before)}}};
+                     {rms, rms * std::sqrt(share)}}};
     };
     for (Index j = 0; j < robot.joint_count(); ++j) {
-        try_pattern(j, JointPattern::Kind::Scale, [&](Index i) { return q(i, j); });
-        try_pattern(j, JointPattern::Kind::Backlash, [&](Index i) {
+        // Beside another zero of it, which not every model has.
+        const LinearFit without = score(fit, columns.joint(j)).with;
+        try_pattern(without, j, JointPattern::Kind::Scale, [&](Index i) { return q(i, j); });
+        try_pattern(without, j, JointPattern::Kind::Backlash, [&](Index i) {
             const double step = i == 0 ? 0 : q(i, j) - q(i - 1, j);
             return step > 0 ? 1.0 : step < 0 ? -1.0 : 0.0;
         });

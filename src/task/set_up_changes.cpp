@@ -6,7 +6,10 @@
 namespace posewise::detail {
 namespace {
 
-constexpr Index least_on_a_side = 3;  // configurations
+/// Configurations: more than the columns of a translation, since their scatter is what it is judged
+/// by; as many more than those of a whole motion.
+constexpr Index least_on_a_side = 5;
+constexpr Index least_to_turn = 8;
 constexpr std::size_t most_changes = 3;
 
 /// A part of the set-up that may have moved: its columns, and where it matters.
@@ -77,6 +80,9 @@ std::vector<Part> list_parts(const Fitted& fitted, const PatternColumns& columns
 /// A change of one part, as a step or a drift.
 struct Candidate {
     const Part* part = nullptr;
+    /// The fit that it is judged beside: with the part being elsewhere all the time, which a model
+    /// where it is known does not have.
+    LinearFit without;
     Index first = 0;  ///< among the part's members; 0: it drifts
     RowMatrixXd X;
     Score score;
@@ -93,24 +99,27 @@ RowMatrixXd ramp(const LinearFit& fit, const Part& part) {
     return X;
 }
 
-/// Translation alone, if the rotation is within chance.
+/// Translation alone, if the rotation is within chance or too few configurations tell of it.
 Candidate judge(const LinearFit& fit, const Part& part, Index first, RowMatrixXd X) {
-    Candidate candidate{&part, first, std::move(X), {}};
+    Candidate candidate{&part, fit, first, std::move(X), {}};
+    const auto translate = [&] {
+        candidate.X = RowMatrixXd(candidate.X.leftCols(3));
+        candidate.score = score(fit, candidate.X, 1, part.scale_from);
+        return candidate;
+    };
+    const Index after = std::ssize(part.members) - first;
+    if (std::min(first == 0 ? after : first, after) < least_to_turn) return translate();
     candidate.score = score(fit, candidate.X, 1, part.scale_from);
     if (candidate.X.cols() == 3) return candidate;
     const Score translation = score(fit, candidate.X.leftCols(3));
-    if (score(translation.with, candidate.X.rightCols(candidate.X.cols() - 3)).is_beyond(0.01)) {
-        return candidate;
-    }
-    candidate.X = RowMatrixXd(candidate.X.leftCols(3));
-    candidate.score = translation;
-    return candidate;
+    const RowMatrixXd rotations = candidate.X.rightCols(candidate.X.cols() - 3);
+    return score(translation.with, rotations).is_beyond(0.01) ? candidate : translate();
 }
 
-/// How much of what the part's configurations are missed by, held out, stays with the change.
-double share_left(const LinearFit& fit, const Candidate& candidate) {
-    const std::vector<Index>& members = candidate.part->members;
-    return held_out_squares(candidate.score.with, members) / held_out_squares(fit, members);
+/// How much of what configurations are missed by, held out, stays with the change.
+double share_left(const Candidate& candidate, const std::vector<Index>& configurations) {
+    return held_out_squares(candidate.score.with, configurations) /
+           held_out_squares(candidate.without, configurations);
 }
 
 std::optional<Candidate> find_likeliest(const LinearFit& fit, const std::vector<Part>& parts) {
@@ -120,19 +129,20 @@ std::optional<Candidate> find_likeliest(const LinearFit& fit, const std::vector<
     double least_share = material;
     const auto take = [&](Candidate candidate) {
         if (!candidate.score.is_beyond(chance_of_change / tried)) return;
-        const double share = share_left(fit, candidate);
+        const double share = share_left(candidate, candidate.part->members);
         if (share > least_share) return;
         least_share = share;
         best = std::move(candidate);
     };
     for (const Part& part : parts) {
         if (std::ssize(part.members) < 2 * least_on_a_side) continue;
-        const ChangePoint point = find_change_point(fit, part.X, part.members, least_on_a_side);
+        const LinearFit without = score(fit, part.X).with;
+        const ChangePoint point = find_change_point(without, part.X, part.members, least_on_a_side);
         if (point.statistic > 0) {
-            take(
-                judge(fit, part, point.first, from_member(fit, part.X, part.members, point.first)));
+            take(judge(without, part, point.first,
+                       from_member(without, part.X, part.members, point.first)));
         }
-        take(judge(fit, part, 0, ramp(fit, part)));
+        take(judge(without, part, 0, ramp(without, part)));
     }
     return best;
 }
@@ -147,9 +157,7 @@ std::string range_of(const std::vector<std::string>& ids, Index first, Index las
 /// changes found so far as unknowns, m or rad.
 void try_cure(const Fitted& fitted, const LinearFit& fit, double before, const Candidate& candidate,
               SetUpChange& change) {
-    const std::vector<Index> all = all_but(fit.count(), {});
-    change.held_out = {before, before * std::sqrt(held_out_squares(candidate.score.with, all) /
-                                                  held_out_squares(fit, all))};
+    change.held_out = {before, before * std::sqrt(share_left(candidate, all_but(fit.count(), {})))};
     if (change.is_gradual || std::ssize(candidate.part->members) < fit.count()) return;
     const bool is_later_smaller = 2 * candidate.first >= fit.count();
     const Index first = is_later_smaller ? candidate.first : 0;
@@ -160,7 +168,7 @@ void try_cure(const Fitted& fitted, const LinearFit& fit, double before, const C
         fitted.campaign, take(fitted.measured, all_but(fit.count(), out)), fitted.estimate.loss);
     if (!without) return;
     const double after = held_out_rms(*without);
-    if (!(after < before)) return;
+    if (after * after > material * before * before) return;
     change.excluded = range_of(fitted.measured.ids, first, last);
     change.held_out.after = after;
 }

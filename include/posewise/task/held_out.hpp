@@ -28,7 +28,7 @@ struct HeldOutComparison {
 };
 
 /// An option of `calibrate`, or a key of the campaign, that was tried: the error held out is lower
-/// with it, beyond chance (once in 100 cures that change nothing, by signed ranks).
+/// with it, by 5 % and beyond chance (once in 100 cures that change nothing, by signed ranks).
 struct Cure {
     std::string option;  ///< "--exclude 5", "robot.errors: full"
     double before = 0;   ///< RMS of the means held out; m, or rad where no length is measured
