@@ -254,10 +254,15 @@ def check_calibrate():
                  number_behind(text, "distance RMS"), 4), "calibrate: nominal")
     expect(close(document["accuracy"]["expected"]["at_left_out"]["total_mm"],
                  number_behind(text, "expected not in plan:"), 4), "calibrate: expected")
-    for group in document["accuracy"]["judged"]:
-        expect(group["lower_mm"] < group["rms_mm"] < group["upper_mm"] and group["limit"] in text, "calibrate: judged")
-        expect(close(group["rms_mm"], number_behind(text, "validation, 9 new poses: RMS"), 4)
-               or group["poses"] != "validation", "calibrate: validation")
+    judged = document["accuracy"]["judged"]
+    expect(sum(group["configuration_count"] for group in judged if group["poses"] == "validation") == 9,
+           "calibrate: judged")
+    for group in judged:
+        expect(group["lower_mm"] < group["rms_mm"] < group["upper_mm"] and group["limit"] in text, "calibrate: limit")
+        count, name = group["configuration_count"], group["poses"].replace("_", " ").replace("left out", "not in plan")
+        kind = {"new": f"{count} new pose", "beyond": f"{count} pose", "repeated": f"{count} pose"}[group["group"]]
+        line = next((line for line in text.splitlines() if line.startswith(f"{name}, {kind}")), "")
+        expect(close(group["rms_mm"], number_behind(line, "RMS"), 4), f"calibrate: {group}: {line}")
     both("calibrate", FANUC, "-m", "s.csv", "--model-selection", "--folds", 4)
     both("calibrate", FANUC, "-m", "s.csv", "--prior", "--learn-sizes")
     run("calibrate", FANUC, "-m", "s.csv", "--folds", 0, "-o", "f.json")

@@ -36,7 +36,7 @@ bool is_found(const Estimate& estimate) { return estimate.fit_means.distance_rms
 
 TEST(GlobalIdentification, FindsRobotsThatOneStartDoesNot) {
     const Campaign campaign = tracked_campaign(testing::fanuc());
-    const GlobalOptions options{.angle = 70 * degree};
+    const GlobalOptions options{.angle = 90 * degree};
     const VectorXd bounds = error_bounds(campaign.robot, options);
     Index by_one = 0;
     Index by_many = 0;

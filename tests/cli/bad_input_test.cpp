@@ -181,7 +181,9 @@ TEST_F(BadInput, WhatNeverEndsIsRefused) {
 
 TEST_F(BadInput, CountsNameTheFile) {
     expect_input_error("select c.yaml -m s.csv -k 500", "s.csv: pose count is 500, must be from 1");
-    expect_input_error("select c.yaml -m s.csv -k 2", "s.csv: pose count is 2: no choice");
+    expect_input_error(
+        "select c.yaml -m s.csv -k 2",
+        "s.csv: pose count is 2, must be at least 4: 2 poses have 18 rows, fewer than");
     expect_input_error("select c.yaml --random 20 -k 500", "c.yaml: pose count is 500");
     expect_input_error("plan c.yaml --poses 2", "c.yaml: --poses is 2, must be at least 5");
 }

@@ -109,8 +109,7 @@ TEST_F(CellCommands, StateTheLeastClearanceOfEachPoseAndCheckIt) {
     run_well("verify p.json");
     plan.at("poses")[3].at("clearance_m") = 0.9;
     write_text("p.json", plan.dump());
-    EXPECT_NE(run("verify p.json").out.find("states as nearest 900.0000 mm, "),
-              std::string::npos);
+    EXPECT_NE(run("verify p.json").out.find("states as nearest 900.0000 mm, "), std::string::npos);
 }
 
 TEST_F(CellCommands, RefusePlacesAndLimitsInAnotherUnit) {

@@ -95,7 +95,7 @@ TEST_F(HiddenTargets, AreLeftOutBySelectionAndItsVerification) {
     // A pose that shows less is worth less.
     const auto value = [&] {
         return number_behind(
-            run_well("select " + cell + " --candidates c.csv -k 16 --starts 2 -o s.json"),
+            run_well("select " + cell + " --candidates c.csv -k 12 --starts 2 -o s.json"),
             "value:");
     };
     const double with_hidden = value();

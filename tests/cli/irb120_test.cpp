@@ -34,8 +34,11 @@ TEST_F(Irb120, CalibratesGeometricallyAsFarAsGeometryGoes) {
     std::string text = design_;
     text.erase(text.find("  gravity: true"), std::string("  gravity: true").size());
     write_text("c.yaml", text);
+    // What it lacks is no fault of the poses that show it most: no warning.
     const std::string report = run_well("calibrate c.yaml" + measured_);
     EXPECT_NEAR(number_behind(report, "distance RMS", 1), 0.2637, 0.0005);
+    EXPECT_NE(report.find("with errors: full: 0.0"), std::string::npos) << report;
+    EXPECT_EQ(report.find("with --exclude"), std::string::npos) << report;
 }
 
 /// Where it was measured a robot with gravity terms loses what they gain: 0.2637^2 = 0.1381^2 +
@@ -64,8 +67,10 @@ TEST_F(Irb120, IsExportedAsTheGeometryThatIsNearest) {
 
 TEST_F(Irb120, IsCalibratedByFewPlannedConfigurationsWithPriors) {
     write_text("c.yaml", planning_);
-    const std::string report = run_well("study c.yaml -k 12 --random 9 --starts 1 --splits 3" +
-                                        measured_.substr(0, measured_.find(" --")));
+    const Outcome outcome = run("study c.yaml -k 12 --random 9 --starts 1 --splits 3" +
+                                measured_.substr(0, measured_.find(" --")));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const std::string& report = outcome.out;
     EXPECT_LT(number_behind(report, "12 "), 0.17);
     EXPECT_GT(number_behind(report, "12 ", 1), 0.4 * number_behind(report, "12 "));  // expected
     EXPECT_LT(number_behind(report, "12 ", 1), 2 * number_behind(report, "12 "));

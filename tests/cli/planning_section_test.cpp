@@ -42,7 +42,13 @@ TEST_F(PlanningSection, AsksForAsManyPosesAsTheFittedModelNeeds) {
 
 TEST_F(PlanningSection, IsSaidWhereItIsUsedAndWhereNot) {
     run_well("simulate c.yaml --poses 20 -o m.csv");
-    const std::string used = run_well("select c.yaml -m m.csv -k 8 --starts 1 -o p.json");
+    // Of a robot that has more errors than are fitted there may be doubts.
+    const auto run_in_doubt = [&](const std::string& command) {
+        const Outcome outcome = run(command);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return outcome.out;
+    };
+    const std::string used = run_in_doubt("select c.yaml -m m.csv -k 8 --starts 1 -o p.json");
     EXPECT_NE(used.find("\nerrors: full, as planning.errors says: the accuracy predicted is that "
                         "of a calibration that fits these, calibrate fits those of "
                         "robot.errors\n"),
@@ -50,9 +56,10 @@ TEST_F(PlanningSection, IsSaidWhereItIsUsedAndWhereNot) {
         << used;
     for (const std::string command : {"inspect c.yaml", "indices c.yaml -m m.csv",
                                       "study c.yaml -m m.csv --random 2 --splits 0 --poses 8"}) {
-        EXPECT_NE(run_well(command).find("\nplanning.errors, full, is for select and plan, and not "
-                                         "used here\n"),
-                  std::string::npos)
+        EXPECT_NE(
+            run_in_doubt(command).find("\nplanning.errors, full, is for select and plan, and not "
+                                       "used here\n"),
+            std::string::npos)
             << command;
     }
     EXPECT_EQ(run_well("inspect fitted.yaml").find("planning"), std::string::npos);

@@ -285,7 +285,9 @@ TEST_F(Select, RefusesMeasurementsOfAnotherRobot) {
     EXPECT_EQ(calibrated.err.find("posewise: warning: " + words), 0U) << calibrated.err;
     // A robot that may be far from nominal, as its campaign says, is no other.
     write_text("rough.yaml", other.replace(other.find("length_mm: 1,"), 13, "length_mm: 300,"));
-    run_well("select rough.yaml -m s.csv -k 8");
+    const Outcome outcome = run("select rough.yaml -m s.csv -k 8");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err.find("another robot"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Select, SuspectsTheUnitOfMeasurements) {
@@ -298,7 +300,8 @@ TEST_F(Select, SuspectsTheUnitOfMeasurements) {
         return "select " + fanuc_design + " -m wrong.csv -k 8";
     };
     expect_input_error(renamed("_mm", "_m"), "with points in mm where the file says m (");
-    expect_input_error(renamed("_rad", "_deg"), "with joint values in rad where the file says degrees (");
+    expect_input_error(renamed("_rad", "_deg"),
+                       "with joint values in rad where the file says degrees (");
 }
 
 TEST_F(Select, RefusesMoreCandidatesThanMemoryHolds) {

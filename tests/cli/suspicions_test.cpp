@@ -33,7 +33,7 @@ class Suspicions : public Program {
     /// s.csv with the rotation vectors as quaternions, those of `columns` (0: real part) with
     /// signs.
     void write_quaternions(const std::string& name, const std::array<std::size_t, 4>& columns,
-                           double sign_of_vector) const {
+                           double sign_of_vector, double times = 1) const {
         std::istringstream lines(text_of("s.csv"));
         std::string text;
         for (std::string line; std::getline(lines, line);) {
@@ -47,8 +47,8 @@ class Suspicions : public Program {
                 for (std::size_t k = 1; k < 4; ++k) q[k] = std::stod(cells[cells.size() - 4 + k]);
                 const double angle = std::hypot(q[1], q[2], q[3]);
                 for (std::size_t k = 1; k < 4; ++k)
-                    q[k] *= sign_of_vector * std::sin(angle / 2) / angle;
-                q[0] = std::cos(angle / 2);
+                    q[k] *= sign_of_vector * std::sin(times * angle / 2) / angle;
+                q[0] = std::cos(times * angle / 2);
                 for (std::size_t k = 0; k < 4; ++k) last[k] = std::to_string(q[columns[k]]);
             }
             cells.resize(cells.size() - 3);
@@ -156,7 +156,12 @@ TEST_F(Suspicions, QuaternionsInAnotherSenseAreNamed) {
 TEST_F(Suspicions, OrientationsThatFitInNoSenseAreAskedFor) {
     write_text("c.yaml", poses);
     run_well("simulate c.yaml --poses 20 -o s.csv");
-    write_quaternions("mixed.csv", {2, 0, 1, 3}, 1);
+    // Vectors exchanged in turn and one reversed are orientations in other axes.
+    write_quaternions("turned.csv", {2, 0, 1, 3}, 1);
+    const std::string turned = warnings_of("c.yaml -m turned.csv");
+    EXPECT_NE(turned.find("write -y, -z, x into the columns x, y, z"), std::string::npos) << turned;
+    // Turned twice as far they are in none.
+    write_quaternions("mixed.csv", {0, 1, 2, 3}, 1, 2);
     const std::string mixed = warnings_of("c.yaml -m mixed.csv");
     EXPECT_NE(mixed.find("deg (RMS); in no other sense of their columns that was tried"),
               std::string::npos)

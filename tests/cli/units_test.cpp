@@ -38,7 +38,7 @@ TEST_F(Units, LimitsInDegreesUnderRadAreRefused) {
     expect_input_error("plan w.yaml --poses 10", "are they degrees?");
     write_with("limits_deg: [-90, 90]", "limits_deg: [-90, 1900]");
     expect_input_error("inspect w.yaml", "q2.limits_deg reaches 5.28 turns; must be within three");
-    write_with("limits_deg: [-90, 90]", "limits_deg: [-1700, 1700]");
+    write_with("limits_deg: [-90, 90]", "limits_deg: [-1000, 1000]");
     run_well("inspect w.yaml");
 }
 
@@ -111,7 +111,9 @@ TEST_F(Units, ABaseElsewhereIsSaid) {
         << warnings;
     EXPECT_NE(warnings.find("mm away; state them there for plans, or are these of another set-up?"),
               std::string::npos);
-    run_well("select w.yaml -m s.csv -k 25");
+    const Outcome selected = run("select w.yaml -m s.csv -k 25");
+    EXPECT_EQ(selected.code, 0) << selected.err;
+    EXPECT_NE(selected.err.find("base is stated at [1500.0"), std::string::npos) << selected.err;
     write_with("[1500, 200, -300]", "[1500, 280, -300]");
     EXPECT_EQ(warnings_of("w.yaml -m s.csv"), "");
 }

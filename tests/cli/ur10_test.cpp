@@ -31,7 +31,13 @@ TEST_F(Ur10, CalibratesGeometricallyFromPositionsAndOrientations) {
 
 TEST_F(Ur10, IsThreeTimesAsAccurateWithJointMapsAndGravity) {
     write_text("c.yaml", read_text(source_folder() + "/designs/ur10/joint_maps.yaml"));
-    const std::string report = run_well("calibrate c.yaml --folds 4 -m '" + csv_ + "'");
+    const Outcome outcome = run("calibrate c.yaml --folds 4 -m '" + csv_ + "'");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    // Four of 1 042 configurations have half of the squares.
+    EXPECT_NE(outcome.err.find("configurations 855, 854, 532, 1063 do not fit the others"),
+              std::string::npos)
+        << outcome.err;
+    const std::string& report = outcome.out;
     EXPECT_LT(number_behind(report, "distance RMS", 1), 0.135);
     EXPECT_LT(number_behind(report, "distance RMS", 3), 0.147);  // with ten folds 0.1447
     EXPECT_NEAR(number_behind(report, "variance factor"), 0.87, 0.05);
@@ -44,7 +50,8 @@ TEST_F(Ur10, SaysThatTheOrderOfTheQuaternionIsWrong) {
     csv.replace(csv.find(right), right.size(), "qx,qy,qz,qw");
     write_text("m.csv", csv);
     const auto outcome = run("calibrate c.yaml --folds 0 -m m.csv");
-    EXPECT_NE(outcome.err.find("with the number called qx as its real part ("), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("with the number called qx as its real part ("), std::string::npos)
+        << outcome.err;
 }
 
 /// Its axes 2, 3 and 4 are parallel to within 2 mrad: common normals are up to 1 km away.

@@ -174,7 +174,7 @@ TEST_F(ReadMeasurementsMat, RefusesAnglesThatLookLikeDegrees) {
     write(good_q);
     EXPECT_EQ(error(),
               "m.mat: variable 'q', row 1: q2 = 30 rad is more than four turns beyond its limits "
-              "(-1.5708 to 1.5708 rad) and looks like degrees; state degrees as such");
+              "(-1 to 1.5 rad) and looks like degrees; state degrees as such");
 }
 
 TEST_F(ReadMeasurementsMat, RefusesACampaignWithoutMapping) {

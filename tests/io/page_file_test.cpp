@@ -91,8 +91,8 @@ TEST(ToPage, RefusesWhatIsNoDocument) {
 
 TEST(ToPage, HasTheSceneAndWhatIsLeftOfReadings) {
     Campaign campaign = testing::cell_campaign();
-    campaign.cell = testing::demo_cell();
     const Measurements measured = simulate(campaign, {.pose_count = 12, .repeats = 2}).measurements;
+    campaign.cell = testing::demo_cell();
     const Calibration found = calibrate(campaign, measured);
     PagePart part = part_of("cell");
     part.scene = make_scene(found.campaign, found.estimate.parameters);
