@@ -34,7 +34,7 @@ readings) from nothing, then identifies all parameters together, and prints
   - the noise floor, from the repeats: no calibration gets below it;
   - every parameter with its standard deviation, the base as position and rotation vector;
   - the strongest correlations: what these poses can hardly tell apart.
-What did not converge, has errors a hundred times their expected size or a joint offset beyond 10 deg,
+What did not converge, has errors fifty times their expected size or a joint offset beyond 10 deg,
 leaves more over than a robot misses before it is calibrated, is spoilt by one configuration, or
 predicts poses that were held out worse than the nominal robot does, is printed and not written, with
 exit code 3; --force writes it, marked. Where something is doubtful, robust losses, --exclude,

@@ -130,6 +130,10 @@ Json accuracy_to_json(const Calibration& calibration) {
     }
     if (calibration.held_out) accuracy["held_out"] = held_out_to_json(*calibration.held_out);
     accuracy["expected"] = expected_to_json(calibration);
+    if (const auto& lengths = calibration.doubts.look.lengths) {
+        accuracy["length_factor"] = {{"excess", lengths->excess},
+                                     {"deviation", lengths->deviation}};
+    }
     detail::add_judgements(accuracy, calibration);
     if (calibration.moved) {
         accuracy["moved_before_validation"] = moved_to_json(*calibration.moved);

@@ -49,11 +49,11 @@ Json look_to_json(const ResidualLook& look, bool is_angle) {
     for (const SetUpChange& change : look.changes) {
         json["changes"].push_back(set_up_change_to_json(change, is_angle));
     }
-    if (const auto& lengths = look.lengths) {
+    if (const auto& lengths = look.lengths; lengths && lengths->errors) {
         json["lengths"] = {{"excess", lengths->excess},
                            {"deviation", lengths->deviation},
-                           {"errors_before", lengths->errors_before},
-                           {"errors_after", lengths->errors_after}};
+                           {"errors_before", lengths->errors->before},
+                           {"errors_after", lengths->errors->after}};
     }
     for (const JointPattern& joint : look.joints) {
         json["joints"].push_back(joint_to_json(joint, is_angle));

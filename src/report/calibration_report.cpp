@@ -11,6 +11,7 @@
 #include "judgement_report.hpp"
 #include "posewise/core/units.hpp"
 #include "posewise/report/reports.hpp"
+#include "residual_look_report.hpp"
 #include "sentences.hpp"
 
 namespace posewise {
@@ -240,7 +241,8 @@ std::string format_accuracy(const Calibration& calibration) {
                   "other poses will be"
                 : "");
     }
-    return text + describe_noise_floor(calibration) + describe_expected(calibration);
+    return text + describe_noise_floor(calibration) + describe_expected(calibration) +
+           detail::describe_length_factor(calibration.doubts.look);
 }
 
 std::string count_outliers(Index count) { return detail::count_of(count, "outlier"); }

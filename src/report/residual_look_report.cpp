@@ -70,7 +70,7 @@ std::string describe(const LengthFactor& factor) {
         "instead of {} times what is expected of them (RMS)",
         format_short(std::abs(percent), 2), percent > 0 ? "longer" : "shorter",
         format_short(100 * factor.deviation, 1), format_fixed(1 / (1 + factor.excess), 5),
-        format_short(factor.errors_after, 3), format_short(factor.errors_before, 3));
+        format_short(factor.errors->after, 3), format_short(factor.errors->before, 3));
 }
 
 std::string describe(const JointPattern& pattern, const Campaign& campaign) {
@@ -118,12 +118,22 @@ std::string describe(const ShiftedRows& shifted, const Campaign& campaign) {
 
 }  // namespace
 
+std::string describe_length_factor(const ResidualLook& look) {
+    if (!look.lengths) return "";
+    const auto& [excess, deviation, errors] = *look.lengths;
+    return fmt::format(
+        "all lengths together, as by temperature or scale: {} % {} than the robot's, give or take "
+        "{} %\n",
+        format_short(100 * std::abs(excess), 2), excess > 0 ? "longer" : "shorter",
+        format_short(100 * deviation, 1));
+}
+
 std::vector<std::string> describe_look(const ResidualLook& look, const Campaign& campaign) {
     std::vector<std::string> sentences;
     if (look.shifted) sentences.push_back(describe(*look.shifted, campaign));
     if (look.outlying) sentences.push_back(describe(*look.outlying));
     for (const SetUpChange& change : look.changes) sentences.push_back(describe(change, campaign));
-    if (look.lengths) sentences.push_back(describe(*look.lengths));
+    if (look.lengths && look.lengths->errors) sentences.push_back(describe(*look.lengths));
     for (const JointPattern& joint : look.joints) sentences.push_back(describe(joint, campaign));
     if (look.rounded) sentences.push_back(describe(*look.rounded, campaign));
     if (look.rounded_readings) sentences.push_back(describe(*look.rounded_readings));

@@ -7,6 +7,9 @@
 
 namespace posewise::detail {
 
+/// The factor that all lengths have, a line; empty where they tell of none.
+std::string describe_length_factor(const ResidualLook& look);
+
 /// A sentence for each thing that the look at the residuals has found.
 std::vector<std::string> describe_look(const ResidualLook& look, const Campaign& campaign);
 

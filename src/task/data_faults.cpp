@@ -93,7 +93,7 @@ std::vector<std::string> find_data_faults(const Doubted& doubted, const Calibrat
     }
     add_left_over(doubted, left_over(calibration), faults);
     if (const auto& lengths = calibration.doubts.look.lengths) {
-        if (std::abs(lengths->excess) > largest_factor) {
+        if (lengths->errors && std::abs(lengths->excess) > largest_factor) {
             faults.push_back(fmt::format(
                 "all lengths are {} % {} than the robot's, which no instrument and no temperature "
                 "does: is it another robot, or are they in another unit?",

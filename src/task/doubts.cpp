@@ -26,8 +26,10 @@ constexpr double doubtful_size = 20;
 /// A prior holds values back: beyond it, it is wrong or the model is.
 constexpr double doubtful_under_prior = 3;
 
-/// What no robot has, in expected sizes, and no measurement, in standard deviations as stated.
-constexpr double incredible_size = 100;
+/// What no robot has, in expected sizes (real ones that were measured have ten at most), and no
+/// measurement, in standard deviations as stated.
+constexpr double incredible_size = 50;
+constexpr double incredible_deviation = 100;  // of a value, in its expected sizes
 constexpr double incredible_residuals = 300;
 /// A joint whose zero is off by more was meant otherwise.
 constexpr double incredible_offset = 10 * std::numbers::pi / 180;
@@ -192,12 +194,12 @@ std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& e
     const VectorXd scale = parameter_scale(campaign);
     const VectorXd sigmas = standard_deviations(estimate);
     const Index robot_begin = base_parameter_count(campaign);
-    const auto add = [&](Index k, double value, const char* what, bool is_offset) {
+    const auto add = [&](Index k, double value, const char* what, double most, bool is_offset) {
         const double times = std::abs(value) / scale[robot_begin + k];
         const bool is_angle = campaign.robot.parameter_element(k).motion == Motion::Rotation;
         const bool is_turned = is_offset && is_angle && times > incredible_offset_size &&
                                std::abs(value) > incredible_offset;
-        if (times <= incredible_size && !is_turned) return;
+        if (times <= most && !is_turned) return;
         faults.push_back(fmt::format("{}{} is {} {}, {} times the size expected of it", what,
                                      estimate.names[static_cast<std::size_t>(robot_begin + k)],
                                      detail::format_short(1e3 * value, 4), units_of(is_angle).error,
@@ -206,8 +208,8 @@ std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& e
     for (Index k = 0; k < estimate.parameters.robot.size(); ++k) {
         const bool is_offset = !campaign.robot.parameter_element(k).joints.empty() &&
                                campaign.robot.parameter_term(k) == nullptr;
-        add(k, estimate.parameters.robot[k], "", is_offset);
-        add(k, sigmas[robot_begin + k], "the standard deviation of ", false);
+        add(k, estimate.parameters.robot[k], "", incredible_size, is_offset);
+        add(k, sigmas[robot_begin + k], "the standard deviation of ", incredible_deviation, false);
     }
     detail::add_absurd_values(campaign, estimate, faults);
     return faults;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../calibrator/least_squares.hpp"
 #include "../model/complete_model.hpp"
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/planner/prediction.hpp"
@@ -42,8 +43,28 @@ double expected_distance(const Campaign& campaign, const Measurements& measured)
 
 double largest_left_over(const Campaign& campaign, const Parameters& at,
                          const Measurements& measured, bool is_angle) {
-    const Campaign complete = with_robot(campaign, complete_model(campaign.robot));
-    return expected_error(complete, uncalibrated(complete, at), measured, is_angle).total();
+    Campaign complete = with_robot(campaign, complete_model(campaign.robot));
+    complete.prior.reset();
+    Estimate none = uncalibrated(complete, at);
+    const IdentificationProblem problem = make_problem(complete, measured);
+    const MatrixXd J = linearise(problem, none.parameters).J().topRows(problem.observation_count());
+    const Index of_base = base_parameter_count(complete);
+    const Index of_robot = complete.robot.parameter_count();
+    const Index of_sensor = J.cols() - of_base - of_robot;
+    MatrixXd fitted(J.rows(), of_base + of_sensor);
+    fitted << J.leftCols(of_base), J.rightCols(of_sensor);
+    // Coordinates of the robot are standard normal; base and targets follow them.
+    MatrixXd along = MatrixXd::Zero(J.cols(), of_robot);
+    along.middleRows(of_base, of_robot).setIdentity();
+    if (fitted.cols() > 0) {
+        const MatrixXd followed =
+            fitted.colPivHouseholderQr().solve(J.middleCols(of_base, of_robot));
+        along.topRows(of_base) = -followed.topRows(of_base);
+        along.bottomRows(of_sensor) = -followed.bottomRows(of_sensor);
+    }
+    none.covariance = along * along.transpose();
+    problem.units.unscale(none.covariance);
+    return expected_error(complete, none, measured, is_angle).total();
 }
 
 }  // namespace posewise::detail

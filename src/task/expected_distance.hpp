@@ -13,8 +13,9 @@ inline constexpr double credible_errors = 10;
 double expected_distance(const Campaign& campaign, const Measurements& measured);
 
 /// By how much readings (RMS of a target's means; m, or of angles, rad) are off that no robot of
-/// this kind explains: what one is expected to miss them by before it is calibrated, if it has
-/// every geometric error of the sizes expected here, model error and noise.
+/// this kind explains: what one is expected to miss them by before it is calibrated, base and
+/// targets fitted, if it has every geometric error of the sizes expected here, model error and
+/// noise.
 double largest_left_over(const Campaign& campaign, const Parameters& at,
                          const Measurements& measured, bool is_angle);
 

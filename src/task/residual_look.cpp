@@ -120,8 +120,8 @@ void look_for_patterns(const Fitted& fitted, ResidualLook& look) {
 }  // namespace
 
 bool ResidualLook::is_empty() const {
-    return !outlying && changes.empty() && !lengths && joints.empty() && !rounded &&
-           !rounded_readings && !shifted;
+    return !outlying && changes.empty() && !(lengths && lengths->errors) && joints.empty() &&
+           !rounded && !rounded_readings && !shifted;
 }
 
 ResidualLook look_at_residuals(const Campaign& campaign, const Measurements& measurements,

@@ -115,19 +115,23 @@ std::optional<LengthFactor> find_length_factor(const Fitted& fitted, const Patte
     const double before = mean_square_error(campaign, fitted.estimate);
     const double prior_scale = std::max(1.0, before);
     const Score found = score(fit, columns.lengths(), prior_scale);
-    if (!found.is_beyond(chance_of_factor)) return std::nullopt;
-    const double excess = found.effect[0];
+    if (found.columns == 0) return std::nullopt;
+    LengthFactor factor{found.effect[0], found.deviations[0]};
+    const double excess = factor.excess;
     if (std::abs(excess) > another_unit) return std::nullopt;
+    if (!found.is_beyond(chance_of_factor)) return factor;
     const auto scaled = fit_again(
         campaign, with_scaled_lengths(*campaign.sensor, fitted.measured, 1 / (1 + excess)),
         fitted.estimate.loss);
-    if (!scaled) return std::nullopt;
+    if (!scaled) return factor;
     // What is left over, of a model that lacks something, may follow a factor, too: at least half
     // of what tells of it must be the robot's errors.
     const double after = mean_square_error(campaign, scaled->estimate);
     const auto count = static_cast<double>(campaign.robot.parameter_count());
-    if ((before - after) * count < 0.5 * found.statistic * prior_scale) return std::nullopt;
-    return LengthFactor{excess, found.deviations[0], std::sqrt(before), std::sqrt(after)};
+    if ((before - after) * count >= 0.5 * found.statistic * prior_scale) {
+        factor.errors = {std::sqrt(before), std::sqrt(after)};
+    }
+    return factor;
 }
 
 std::vector<JointPattern> find_joint_patterns(const Fitted& fitted, const PatternColumns& columns,

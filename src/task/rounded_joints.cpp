@@ -109,7 +109,9 @@ std::optional<RoundedReadings> find_rounded_readings(const Fitted& fitted) {
         const auto numbers = static_cast<double>(sensor.lengths_per_target());
         RoundedReadings rounded{step, std::sqrt(numbers) * deviation,
                                 fitted.estimate.fit.distance_rms};
-        if (rounded.effect * alike < rounded.left) return std::nullopt;
+        // Nor were they rounded, by a step that leaves more than there is.
+        const bool explains = rounded.effect * alike >= rounded.left;
+        if (!explains || rounded.effect > alike * rounded.left) return std::nullopt;
         return rounded;
     }
     return std::nullopt;

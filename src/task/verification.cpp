@@ -203,13 +203,14 @@ void check_numbers(const Plan& plan, const ChoiceProblem& problem, const std::ve
     if (claims_more && has_certificate(plan, problem) && agree(criterion, plan.value, value)) {
         bound = std::max(value, prove_again(plan, problem, poses, findings));
     }
-    findings.compare("bound", plan.bound, bound, agree(criterion, plan.bound, bound, of_bound));
+    const bool holds = agree(criterion, plan.bound, bound, of_bound);
+    findings.compare("bound", plan.bound, bound, holds);
     if (plan.ending == Ending::Optimal && !agree(criterion, plan.value, plan.bound)) {
         findings.note("proof", false, "stated to be optimal, the bound is above the value");
     }
     const auto nuisance = static_cast<Index>(problem.options.nuisance.size());
-    const double actual =
-        detail::efficiency(criterion, value, bound, problem.blocks.parameter_count() - nuisance);
+    const double actual = detail::efficiency(criterion, value, holds ? plan.bound : bound,
+                                             problem.blocks.parameter_count() - nuisance);
     findings.compare("efficiency", plan.efficiency, actual,
                      std::abs(plan.efficiency - actual) <= of_bound);
 }

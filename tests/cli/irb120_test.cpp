@@ -67,15 +67,15 @@ TEST_F(Irb120, IsExportedAsTheGeometryThatIsNearest) {
 
 TEST_F(Irb120, IsCalibratedByFewPlannedConfigurationsWithPriors) {
     write_text("c.yaml", planning_);
-    const Outcome outcome = run("study c.yaml -k 12 --random 9 --starts 1 --splits 3" +
+    const Outcome outcome = run("study c.yaml -k 8 --random 9 --starts 1 --splits 4" +
                                 measured_.substr(0, measured_.find(" --")));
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     const std::string& report = outcome.out;
-    EXPECT_LT(number_behind(report, "12 "), 0.17);
-    EXPECT_GT(number_behind(report, "12 ", 1), 0.4 * number_behind(report, "12 "));  // expected
-    EXPECT_LT(number_behind(report, "12 ", 1), 2 * number_behind(report, "12 "));
-    EXPECT_LT(number_behind(report, "12 ", 2), 0.9);  // of the random median
-    EXPECT_NE(report.find("v, planned against random: better at 12"), std::string::npos) << report;
+    EXPECT_LT(number_behind(report, "8 "), 0.17);
+    EXPECT_GT(number_behind(report, "8 ", 1), 0.4 * number_behind(report, "8 "));  // expected
+    EXPECT_LT(number_behind(report, "8 ", 1), 2 * number_behind(report, "8 "));
+    EXPECT_LT(number_behind(report, "8 ", 2), 0.9);  // of the random median
+    EXPECT_NE(report.find("v, planned against random: better at 8"), std::string::npos) << report;
 }
 
 TEST_F(Irb120, BendsUnderWhatTheFlangeCarries) {

@@ -90,21 +90,21 @@ TEST_F(Refusal, OfCorrectionsThatBringFewHome) {
     simulate(fanuc_design);
     run_well("calibrate " + fanuc_design + " -m s.csv --folds 0 -o e.json");
     Json estimate = Json::parse(text_of("e.json"));
-    estimate.at("robot").at("dq3").at("value_rad") = 0.095;
+    estimate.at("robot").at("dq3").at("value_rad") = 0.045;
     write_text("off.json", estimate.dump());
     write_text("p.csv",
                "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n"
                "a,10,20,30,40,50,60\nb,-80,-20,0,-40,-70,0\n");
     const std::string correct =
         "correct " + fanuc_design + " off.json --poses p.csv -o c.csv --largest-change-deg ";
-    const Outcome outcome = run(correct + "1");
+    const Outcome outcome = run(correct + "0.2");
     EXPECT_EQ(outcome.code, 3) << outcome.err;
     EXPECT_FALSE(has_file("c.csv"));
     EXPECT_EQ(outcome.err,
               "posewise: p.csv: 2 of 2 configurations are not brought home, the first is 'a': over "
               "half of their error is left; nothing was written, --force corrects them all the "
               "same\n");
-    EXPECT_EQ(run(correct + "1 --force").code, 0);
+    EXPECT_EQ(run(correct + "0.2 --force").code, 0);
     EXPECT_TRUE(has_file("c.csv"));
     run_well(correct + "12");
 }

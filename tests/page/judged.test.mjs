@@ -21,3 +21,13 @@ test('poses calibrated with are not: what was held out is', () => {
   assert.match(sentence, /off by 0\.4000 mm RMS on configurations not measured \(held out, 10 folds\)/);
   assert.doesNotMatch(sentence, /validation/);
 });
+
+test('each group is told by itself', () => {
+  const judged = [{ ...group('verification', 'new', 0.3), verdict: 'within chance', limit: 'undecided' }, group('verification', 'repeated', 0.1)];
+  const { rows } = answerEstimate({
+    document: { degrees_of_freedom: 5, variance_factor: 1, measured: { configurations: 10 }, accuracy: { fit: metrics(0.1), nominal: metrics(1), fit_means: metrics(0.1), judged } },
+  });
+  assert.equal(rows.find(([name]) => name === 'On poses not used')[1],
+    'verification, 15 poses new: 0.3000 mm RMS (95 %: 0.2700 to 0.3600), within chance, limit: undecided; ' +
+    'verification, 15 poses calibrated with, which say nothing of others: 0.1000 mm RMS (95 %: 0.0900 to 0.1200).');
+});

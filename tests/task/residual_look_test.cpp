@@ -121,7 +121,7 @@ TEST_F(LookAtResiduals, SeesACommonFactorOfAllLengths) {
     const ResidualLook found = look();
     ASSERT_TRUE(found.lengths);
     EXPECT_NEAR(found.lengths->excess, 0.02, 3 * found.lengths->deviation);
-    EXPECT_LT(found.lengths->errors_after, 0.5 * found.lengths->errors_before);
+    EXPECT_LT(found.lengths->errors->after, 0.5 * found.lengths->errors->before);
 }
 
 TEST_F(LookAtResiduals, NamesTheJointWithBacklash) {

@@ -184,10 +184,11 @@ enum class ValueCheck { ByExpectedSizes, None };
 
 /// What is so wrong with an estimate of this campaign that it must not reach a robot, in words:
 /// that it did not converge, residuals (of lengths or of angles) of hundreds of times the noise and
-/// model error stated, a value or standard deviation of a hundred times its expected size, the
-/// offset of a joint beyond 10 deg and five times its expected size, or what no cell has: a model
-/// error beyond 100 mm or 100 mrad, a base 1 km from the instrument, a target 10 m from the
-/// flange or within 1 mm of another, a variance below what rounding leaves. Empty: nothing.
+/// model error stated, a value of fifty times its expected size or a standard deviation of a
+/// hundred, the offset of a joint beyond 10 deg and five times its expected size, or what no cell
+/// has: a model error beyond 100 mm or 100 mrad, a base 1 km from the instrument, a target 10 m
+/// from the flange or within 1 mm of another, a variance below what rounding leaves. Empty:
+/// nothing.
 std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& estimate,
                                      ValueCheck values = ValueCheck::ByExpectedSizes);
 

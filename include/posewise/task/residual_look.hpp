@@ -49,9 +49,13 @@ struct SetUpChange {
 struct LengthFactor {
     double excess = 0;     ///< factor - 1; above 0: the measured lengths are longer
     double deviation = 0;  ///< standard deviation of that
-    /// The robot's errors in their expected sizes (RMS): as it is, and with readings scaled back.
-    double errors_before = 0;
-    double errors_after = 0;
+    /// Where it is beyond chance, the robot's errors in their expected sizes (RMS): as it is, and
+    /// with readings scaled back.
+    struct Errors {
+        double before = 0;
+        double after = 0;
+    };
+    std::optional<Errors> errors{};
 };
 
 /// Residuals that follow one joint.
@@ -94,7 +98,7 @@ struct ShiftedRows {
 struct ResidualLook {
     std::optional<OutlyingConfigurations> outlying;
     std::vector<SetUpChange> changes;
-    std::optional<LengthFactor> lengths;
+    std::optional<LengthFactor> lengths;  ///< wherever lengths tell of one
     std::vector<JointPattern> joints;
     std::optional<RoundedJoints> rounded;
     std::optional<RoundedReadings> rounded_readings;

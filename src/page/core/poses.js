@@ -6,30 +6,31 @@ import { fixed, reading, splitUnit } from './format.js';
 const socketsOf = ({ predicted }) =>
   [...new Set(Object.keys(predicted?.standard_deviation ?? {}).map((key) => /^socket\.(.+)\.[^.]+$/.exec(key)?.[1]).filter(Boolean))];
 
+function planned(document, poses) {
+  const sockets = socketsOf(document);
+  const values = new Map((document.pose_values ?? []).map((one) => [one.id, one.value_mm]));
+  return poses.map((pose) => {
+    const keys = Object.keys(pose.joints);
+    const drawn = keys.filter((key) => splitUnit(key).unit !== 'Nm');
+    return {
+      id: pose.id, times: pose.times, keys, all: keys.map((key) => pose.joints[key]),
+      joints: drawn.map((key) => pose.joints[key]),
+      via: pose.via ? drawn.map((key) => pose.via[key]) : null,
+      nearest: typeof pose.clearance_m === 'number' ? `${fixed(1e3 * pose.clearance_m, 2)} ${pose.nearest.join(' to ')}` : null,
+      blocked: pose.way_is_blocked, kept: pose.kept, hasWay: 'via' in pose,
+      value: values.get(pose.id), targets: sockets.length > 0 ? null : pose.visible_targets ?? null,
+      touched: sockets.length > 0 ? (pose.visible_targets ?? []).map((number) => sockets[number - 1] ?? number) : null,
+    };
+  });
+}
+
 /**
  * `id`, `joints` (m, rad), `keys` of them, and of plans `value` (mm; null: needed), `targets` it shows or
  * `touched` sockets, `via`, `nearest`: how near (mm) which two bodies come.
  */
 export function posesOf(part) {
   const { document, scene } = part;
-  const planned = document.poses;
-  if (planned?.length > 0 && planned[0].joints) {
-    const sockets = socketsOf(document);
-    const values = new Map((document.pose_values ?? []).map((one) => [one.id, one.value_mm]));
-    return planned.map((pose) => {
-      const keys = Object.keys(pose.joints);
-      const drawn = keys.filter((key) => splitUnit(key).unit !== 'Nm');
-      return {
-        id: pose.id, times: pose.times, keys, all: keys.map((key) => pose.joints[key]),
-        joints: drawn.map((key) => pose.joints[key]),
-        via: pose.via ? drawn.map((key) => pose.via[key]) : null,
-        nearest: typeof pose.clearance_m === 'number' ? `${fixed(1e3 * pose.clearance_m, 2)} ${pose.nearest.join(' to ')}` : null,
-        blocked: pose.way_is_blocked, kept: pose.kept, hasWay: 'via' in pose,
-        value: values.get(pose.id), targets: sockets.length > 0 ? null : pose.visible_targets ?? null,
-        touched: sockets.length > 0 ? (pose.visible_targets ?? []).map((number) => sockets[number - 1] ?? number) : null,
-      };
-    });
-  }
+  if (document.poses?.length > 0 && document.poses[0].joints) return planned(document, document.poses);
   const keys = (scene?.joints ?? []).map((joint) =>
     `${joint.name}_${joint.kind === 'prismatic' ? 'm' : 'rad'}`);
   const measured = (scene && part.configurations) || { id: [], joints: [] };
@@ -37,6 +38,9 @@ export function posesOf(part) {
     id: measured.id[k], keys, all: joints, joints: joints.slice(0, keys.length), via: null, targets: null, times: 1,
   }));
 }
+
+/** The same of those that a plan has to judge the calibration on. */
+export const posesToVerify = ({ document }) => planned(document, Array.isArray(document.verification) ? document.verification : []);
 
 /** Ids of a plan's poses, with how often each is to be measured. */
 export const idsOf = ({ poses }) => poses.map(({ id, times }) => (times > 1 ? `${id} (x${times})` : id)).join(' ');

@@ -2,7 +2,7 @@ import { el } from '../core/dom.js';
 import { behind, figure, lead } from '../core/figure.js';
 import { count, fixed, mm } from '../core/format.js';
 import { checkFlange } from '../core/kinematics.js';
-import { cellOf, columnTitle, posesOf, valueOf, wayOf } from '../core/poses.js';
+import { cellOf, columnTitle, posesOf, posesToVerify, valueOf, wayOf } from '../core/poses.js';
 import { rmsByConfiguration } from '../core/residuals.js';
 import { table } from '../core/table.js';
 import { colour, ramp } from '../core/theme.js';
@@ -37,7 +37,7 @@ function colouring(part, poses) {
   return { colours, bar, hasNeeded: numbers.includes(null) && part.document.pose_values };
 }
 
-function poseTable(part, poses) {
+function poseTable(caption, poses) {
   const isPlan = poses[0].hasWay;
   const header = ['pose', ...poses[0].keys.map(columnTitle)];
   if (poses.some((pose) => pose.value !== undefined)) header.push('value/mm');
@@ -55,7 +55,7 @@ function poseTable(part, poses) {
     if (hasNearest) row.push(pose.nearest ?? '');
     return row;
   });
-  return table(isPlan ? 'Poses, in the order to visit them' : 'Poses', header, rows);
+  return table(isPlan ? `${caption}, in the order to visit them` : caption, header, rows);
 }
 
 function rangeTable(joints, poses) {
@@ -130,6 +130,7 @@ function fillStage(stage, part, poses, colours) {
 export function render(part) {
   const poses = posesOf(part);
   const joints = part.scene?.joints ?? poses[0].keys.slice(0, poses[0].joints.length).map((key) => ({ name: key, lower: null, upper: null }));
+  const toVerify = posesToVerify(part);
   const { colours, bar, hasNeeded } = colouring(part, poses);
   const stage = part.scene ? el('div', { class: 'stage' }) : null;
   const coordinates = parallelCoordinates(joints, poses, colours, `Joints of ${count(poses.length, 'pose')} between their limits, as parallel coordinates`);
@@ -145,7 +146,9 @@ export function render(part) {
   const together = el('div', { class: 'stage-row' }, stage ? el('div', {}, stage) : null, side);
   const element = el('div', {}, introduction(part, poses), steps.bar, together,
     figure('Joint values of all poses between the limits; the current pose is dark.', coordinates.element, [rangeTable(joints, poses)]),
-    behind([poseTable(part, poses)], `All ${count(poses.length, 'pose')} as a table`));
+    behind([poseTable('Poses', poses)], `All ${count(poses.length, 'pose')} as a table`),
+    toVerify.length > 0 ? behind([poseTable('Poses to judge the calibration on', toVerify)],
+      `${count(toVerify.length, 'pose')} more, to judge the calibration on and not to calibrate with`) : null);
   if (stage) {
     checkFlange(part.scene, poses[0].joints);
     // After the page stands: to make a context and its programs takes a while.

@@ -20,6 +20,18 @@ function judgedOf({ judged }, unit) {
   return null;
 }
 
+/** Each group of poses that it was judged on, with its interval and verdicts. */
+function groupsOf({ judged }, unit) {
+  const sets = { validation: 'validation', verification: 'verification', left_out: 'not in the plan' };
+  const kinds = { new: 'new', beyond: 'beyond the joint ranges calibrated with', repeated: 'calibrated with, which say nothing of others' };
+  const groups = (judged ?? []).map((one) => {
+    const interval = one[`lower_${unit}`] === null ? '' : ` (95 %: ${mm(one[`lower_${unit}`])} to ${mm(one[`upper_${unit}`])})`;
+    const verdicts = [one.verdict, one.limit && `limit: ${one.limit}`].filter(Boolean).map((text) => `, ${text}`).join('');
+    return `${sets[one.poses]}, ${count(one.configuration_count, 'pose')} ${kinds[one.group]}: ${mm(one[`rms_${unit}`])} ${unit} RMS${interval}${verdicts}`;
+  });
+  return groups.length > 0 ? `${groups.join('; ')}.` : null;
+}
+
 /** What the calibration leaves where it was not measured: of what is known the most honest. */
 function errorOf({ accuracy }) {
   const unit = accuracy.fit.distance_rms_mm === undefined ? 'mrad' : 'mm';
@@ -135,6 +147,7 @@ export function answerEstimate(part) {
       ['How accurate', `${mm(error.rms)} ${error.unit} RMS${error.p95 === undefined ? '' : `, 95 % are below ${mm(error.p95)} mm`}${error.turn === undefined ? '' : `, orientations ${mm(error.turn)} mrad RMS`}, ${error.where}, noise of the instrument included.`],
       ['How sure', interval ? `RMS with 95 % confidence between ${mm(interval.lower)} and ${mm(interval.upper)} ${error.unit}, by how ${interval.count} configurations differ; ${document.degrees_of_freedom} degrees of freedom, variance factor ${short(document.variance_factor, 4)}.`
         : `${document.degrees_of_freedom} degrees of freedom, variance factor ${short(document.variance_factor, 4)}.`],
+      ['On poses not used', groupsOf(accuracy, error.unit)],
       ['Over the workspace', workspace ? `${mm(workspace.rms)} mm RMS, ${mm(workspace.most)} mm at worst, are expected by the parameters alone, at ${workspace.count} configurations within the limits: see the error map.` : null],
       ['What limits it', limit && limit + besidesModel(part, drift)],
       ['Which pose matters most', mostOf(part)],
