@@ -154,6 +154,16 @@ detail::LinearisedSystem search(detail::IdentificationProblem& problem,
     return steps.system ? std::move(*steps.system) : linearise(problem, estimate.parameters);
 }
 
+/// Whether the optimum of the system linearised here leaves far more over than errors as stated.
+/// Under a model error so much too small, large residuals bend directions that hardly anything but
+/// the prior holds: it is then found before the first step, too.
+bool leaves_far_more(const detail::IdentificationProblem& problem, const Parameters& parameters) {
+    constexpr double far = 5;  // deviations
+    const double left =
+        total_loss(problem, parameters) - Steps(problem, linearise(problem, parameters)).gain();
+    return left > far * far * static_cast<double>(problem.observation_count());
+}
+
 /// Whether their model errors are the same within 5 %: parameters and deviations depend on them far
 /// less.
 bool is_alike(const Campaign& a, const Campaign& b) {
@@ -172,18 +182,18 @@ Estimate identify(const Campaign& campaign, const Measurements& measurements,
     problem.loss = detail::complete_loss(options.loss, campaign);
     if (estimate.ending == Ending::NotIdentifiable) return estimate;
     const bool is_open = options.finds_model_error && detail::is_model_error_open(campaign);
-    detail::LinearisedSystem system = search(problem, options, estimate, is_open);
-    if (is_open) {
-        constexpr int rounds = 4;
-        bool stays = false;
-        for (int round = 1; round <= rounds && !stays && estimate.ending == Ending::Converged;
-             ++round) {
+    detail::LinearisedSystem system;
+    constexpr int rounds = 5;
+    bool stays = !is_open;
+    for (int round = 1; round == 1 || (!stays && round <= rounds); ++round) {
+        if (is_open && (round > 1 || leaves_far_more(problem, estimate.parameters))) {
             const Campaign better = find_model_error(problem, estimate.parameters, campaign);
-            stays = is_alike(found, better);
+            stays = round > 1 && is_alike(found, better);
             found = better;  // problem refers to it
-            estimate.ending = Ending::NotRun;
-            system = search(problem, options, estimate, !stays && round < rounds);
         }
+        estimate.ending = Ending::NotRun;
+        system = search(problem, options, estimate, !stays && round < rounds);
+        if (estimate.ending != Ending::Converged) break;
     }
     finish(problem, system, estimate);
     return estimate;

@@ -45,8 +45,8 @@ std::string describe_model_errors(const std::vector<ModelErrorDoubt>& errors) {
                              detail::format_short(error.times, 3));
     }
     return fmt::format(
-        "the model error found is {}: error terms are missing, the nominal robot is another, or "
-        "points are grossly wrong",
+        "the model error found is {}: so much is left over that neither the robot's model nor the "
+        "noise stated explains",
         words);
 }
 

@@ -56,7 +56,7 @@ TEST(Convergence, TakesFewStepsBesideOrientationsThatAreTurnedAndJointsThatStand
         EXPECT_EQ(estimate.ending, Ending::Converged) << seed;
         all += estimate.iterations;
     }
-    EXPECT_LT(all, 20 * 35);
+    EXPECT_LT(all, 20 * 10);
 }
 
 TEST(Convergence, TakesHardlyMoreThanOneStepForEachModelErrorOfACleanCampaign) {

@@ -218,7 +218,7 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
               "beyond three times the expected size, which holds them back: dq2 (70 mrad, 3.5 "
               "times); does the robot give way that much?");
     EXPECT_TRUE(sentences[1].starts_with(
-        "the model error found is 0.9 mm, 9 times what is expected: error terms are missing"));
+        "the model error found is 0.9 mm, 9 times what is expected: so much is left over"));
 }
 
 TEST(DescribeBeyondLimits, CountsThemAndNamesTheFirst) {
