@@ -10,6 +10,7 @@
 #include "../core/format.hpp"
 #include "../core/text.hpp"
 #include "commands.hpp"
+#include "estimates.hpp"
 #include "files.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
@@ -78,12 +79,34 @@ CLI::Validator criterion_check() {
         "CRITERION");
 }
 
+std::vector<std::string> leave_out_missing(const std::string& plan_path, const Plan& plan,
+                                           const Measurements& measured,
+                                           const std::vector<std::string>& excluded) {
+    std::vector<std::string> left_out = excluded;
+    std::vector<std::string> missing;
+    for (const PlannedPose& pose : plan.poses) {
+        if (std::ranges::find(measured.ids, pose.id) != measured.ids.end()) continue;
+        left_out.push_back(pose.id);
+        if (excluded.empty()) missing.push_back(detail::quote(pose.id));
+    }
+    if (missing.size() == plan.poses.size()) {
+        throw input_error_at({plan_path}, "none of its poses is among the measured ones");
+    }
+    if (!missing.empty()) {
+        print_warning(fmt::format("{}: {} of {} poses are not among the measured ones: {}",
+                                  plan_path, missing.size(), plan.poses.size(),
+                                  join_some(missing)));
+    }
+    return left_out;
+}
+
 std::vector<Index> find_planned(const Campaign& campaign, const Measurements& measured,
                                 const std::string& plan_path,
                                 const std::vector<std::string>& excluded) {
     const Plan plan = io::read_plan(plan_path);
+    const auto left_out = leave_out_missing(plan_path, plan, measured, excluded);
     return compute_from(plan_path,
-                        [&] { return posewise::find_planned(plan, campaign, measured, excluded); });
+                        [&] { return posewise::find_planned(plan, campaign, measured, left_out); });
 }
 
 void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }

@@ -8,6 +8,7 @@
 #include "../report/table.hpp"
 #include "posewise/core/progress.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/task/plan.hpp"
 
 /// What several subcommands share: their arguments, how they print.
 namespace posewise::cli {
@@ -26,7 +27,13 @@ CLI::Validator criterion_check();
 /// --digits: significant digits of what is printed as text.
 void add_digits_option(CLI::App& command, int& digits);
 
-/// find_planned() of a plan file.
+/// `excluded`, and ids of a plan that are not among the measured ones: warns of these where nothing
+/// is excluded. Throws InputError if that are all of them.
+std::vector<std::string> leave_out_missing(const std::string& plan_path, const Plan& plan,
+                                           const Measurements& measured,
+                                           const std::vector<std::string>& excluded);
+
+/// find_planned() of a plan file, less what is missing.
 std::vector<Index> find_planned(const Campaign& campaign, const Measurements& measured,
                                 const std::string& plan_path,
                                 const std::vector<std::string>& excluded);

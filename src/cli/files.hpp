@@ -20,8 +20,8 @@ void check_outputs(const std::vector<const io::CampaignFile*>& campaigns,
                    std::vector<std::string> inputs, const std::vector<std::string>& outputs,
                    const CommonOptions& common);
 
-/// What `compute` returns; its InputErrors, which are about the content of the file, name it, unless
-/// they name a file already.
+/// What `compute` returns; its InputErrors, which are about the content of the file, name it,
+/// unless they name a file already.
 template <class Compute>
 auto compute_from(const std::string& path, Compute&& compute) {
     try {

@@ -42,8 +42,9 @@ void warn_of_no_validation(const CalibrateArguments& arguments, const Validation
 void use_plan(const std::string& path, const Campaign& campaign, const Measurements& measured,
               CalibrationOptions& options) {
     const Plan plan = io::read_plan(path);
+    const auto left_out = leave_out_missing(path, plan, measured, options.excluded);
     compute_from(path, [&] {
-        options.used = find_planned(plan, campaign, measured, options.excluded);
+        options.used = find_planned(plan, campaign, measured, left_out);
         options.verification = find_verification(plan, campaign, measured, options.excluded);
     });
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "../model/halton.hpp"
 #include "../model/joint_limits.hpp"
@@ -216,6 +217,11 @@ void read_motion(const YamlMap& map, const Chain& robot, Cell& cell) {
         if (cell.speed.size() != 0) throw speed->error("is stated in two units; keep one");
         cell.speed = read_joint_angles({*speed, find_unit(unit)}, robot);
         if (!(cell.speed.array() > 0).all()) throw speed->error("must be positive for every joint");
+        constexpr double fastest = 35;  // rad/s, 2000 deg/s
+        for (Index j = 0; j < robot.joint_count(); ++j) {
+            if (robot.joint(j).motion != Motion::Rotation || cell.speed[j] <= fastest) continue;
+            throw speed->error("is beyond 2000 deg/s, which no joint has; is it in deg/s?");
+        }
     }
     if (const auto dwell = map.find("dwell_s")) {
         cell.dwell = dwell->number();
@@ -233,6 +239,10 @@ void read_solids(const YamlMap& map, const Chain& robot, Cell& cell) {
         }
     }
     if (const auto floor = map.find_measure("floor_z")) {
+        constexpr double farthest = 100;  // m
+        if (std::abs(floor->to_si()) > farthest) {
+            throw floor->value.error("is over 100 m from the base; is it in mm?");
+        }
         cell.keep_outs.push_back(
             {"floor", HalfSpace{Vector3d(0, 0, floor->to_si()), Vector3d::UnitZ()}});
     }

@@ -36,9 +36,17 @@ Json group_to_json(const Calibration& calibration, const char* poses, const Judg
     }
     const bool is_judged = group.verdict != ChanceVerdict::NotJudged;
     json["verdict"] = is_judged ? Json(chances.at(group.verdict)) : Json(nullptr);
+    if (group.worst) {
+        json["worst"] = group.worst->id;
+        json["rms_without_worst" + unit] = mm * group.worst->without;
+    }
     if (!calibration.limit) return json;
     const auto verdict = judge_limit(group, *calibration.limit);
     json["limit"] = verdict ? Json(limits.at(*verdict)) : Json(nullptr);
+    if (verdict == LimitVerdict::Open) {
+        const auto count = poses_to_decide(group, *calibration.limit);
+        json["poses_to_decide"] = count ? Json(*count) : Json(nullptr);
+    }
     return json;
 }
 

@@ -34,6 +34,14 @@ class Exclusion {
             }
             return;
         }
+        if (const auto range = find_range(name, true)) {
+            throw InputError(fmt::format(
+                "excluded configurations {}: {} stands after {} in the measurements' order; state "
+                "them the other way round, or by commas",
+                detail::quote(name),
+                detail::quote(measurements_.ids[static_cast<std::size_t>(range->first)]),
+                detail::quote(measurements_.ids[static_cast<std::size_t>(range->second)])));
+        }
         const std::size_t colon = name.rfind(':');
         const auto i = colon == std::string::npos ? std::nullopt : find(name.substr(0, colon));
         if (!i) {
@@ -90,13 +98,14 @@ class Exclusion {
         return found->second;
     }
 
-    /// "7-12": both ids, the first no later than the last.
-    std::optional<std::pair<Index, Index>> find_range(const std::string& name) const {
+    /// "7-12": both ids, the first no later than the last, or, `is_backward`, later.
+    std::optional<std::pair<Index, Index>> find_range(const std::string& name,
+                                                      bool is_backward = false) const {
         for (std::size_t dash = name.find('-'); dash != std::string::npos;
              dash = name.find('-', dash + 1)) {
             const auto first = find(name.substr(0, dash));
             const auto last = find(name.substr(dash + 1));
-            if (first && last && *first <= *last) return {{*first, *last}};
+            if (first && last && (*first <= *last) != is_backward) return {{*first, *last}};
         }
         return std::nullopt;
     }

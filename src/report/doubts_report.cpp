@@ -50,16 +50,21 @@ std::string describe_model_errors(const std::vector<ModelErrorDoubt>& errors) {
         words);
 }
 
-/// "base 200 mm and targets 3 mm from where EARLIER: OPTION base,targets identifies them anew".
-std::string describe_moved(const Moved& moved, const char* earlier, const char* option) {
+/// "base 200 mm and targets 3 mm".
+std::string describe_distances(const Moved& moved) {
     std::string distances;
     for (const std::string& part : moved.parts) {
         const double distance = part == "base" ? moved.base : moved.targets;
         distances += fmt::format("{}{} {} mm", distances.empty() ? "" : " and ", part,
                                  detail::format_short(mm_per_m * distance, 3));
     }
-    return fmt::format("{} from where {}: {} {} identifies {} anew", distances, earlier, option,
-                       fmt::join(moved.parts, ","),
+    return distances;
+}
+
+/// "base 200 mm and targets 3 mm from where EARLIER: OPTION base,targets identifies them anew".
+std::string describe_moved(const Moved& moved, const char* earlier, const char* option) {
+    return fmt::format("{} from where {}: {} {} identifies {} anew", describe_distances(moved),
+                       earlier, option, fmt::join(moved.parts, ","),
                        moved.parts.front() == "base" && moved.parts.size() == 1 ? "it" : "them");
 }
 
@@ -158,12 +163,30 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
             "the validation was measured with another set-up, " +
             describe_moved(*calibration.moved, "the calibration has it", "--refit"));
     }
-    for (const std::string& sentence : detail::describe_look(doubts.look, calibration.campaign)) {
+    const auto add_others = [&](const std::optional<Judgement>& judged, const char* which) {
+        if (!judged || !judged->moved) return;
+        sentences.push_back(fmt::format(
+            "{} were measured with another set-up, {} from where the calibration has it", which,
+            describe_distances(*judged->moved)));
+    };
+    add_others(calibration.verification, "the poses to verify");
+    add_others(calibration.left_out, "the poses not in the plan");
+    for (const std::string& sentence :
+         detail::describe_look(doubts.look, calibration.cures, calibration.campaign)) {
         sentences.push_back(at + sentence);
     }
     if (doubts.held_back) sentences.push_back(describe_held_back(*doubts.held_back));
     if (doubts.held_out) {
         sentences.push_back(at + describe_held_out(calibration.campaign, *doubts.held_out));
+    }
+    const auto& workspace = calibration.expected_workspace;
+    if (workspace && workspace->total() > calibration.nominal.rms()) {
+        const bool is_angle = !calibration.campaign.sensor->has_lengths();
+        sentences.push_back(fmt::format(
+            "{}it is expected to miss poses of the workspace by {}, the nominal robot misses those "
+            "measured by {}: too few poses, or too much alike, to calibrate it by",
+            at, detail::format_error(workspace->total(), is_angle),
+            detail::format_error(calibration.nominal.rms(), is_angle)));
     }
     if (sentences.empty() && calibration.faults.empty()) return sentences;
     for (const Cure& cure : calibration.cures.found) {

@@ -46,7 +46,7 @@ std::string describe_limit(const JudgedGroup& group, const std::optional<double>
                          : "undecided");
 }
 
-std::string describe_verdict(const Calibration& calibration, const Kind& kind,
+std::string describe_verdict(const Calibration& calibration, const Kind& kind, bool has_moved,
                              const JudgedGroup& group) {
     const bool is_repeated = group.group == PoseGroup::Repeated;
     const std::string unjudged =
@@ -54,35 +54,49 @@ std::string describe_verdict(const Calibration& calibration, const Kind& kind,
     if (!group.expected) return unjudged;
     const std::string times =
         fmt::format("; {} times what is expected", format_short(group.ratio(), 3));
+    const bool is_calibration =
+        calibration.faults.empty() && group.found.rms() < calibration.nominal.rms();
     switch (group.verdict) {
         case ChanceVerdict::NotJudged:
             return unjudged;
         case ChanceVerdict::Within:
-            return times + ", within chance: the calibration holds there";
+            return times + (is_calibration ? ", within chance: the calibration holds there"
+                                           : ", within chance");
         case ChanceVerdict::Below:
-            return times + ", less than chance would have it: it holds there";
+            return times + (is_calibration ? ", less than chance would have it: it holds there"
+                                           : ", less than chance would have it");
         case ChanceVerdict::Beyond:
             break;
     }
-    return fmt::format("{}, beyond chance (up to {}): {}", times, format_short(group.chance, 3),
-                       calibration.moved ? "it was measured with another set-up (--refit)"
-                       : is_repeated     ? "the robot or its set-up has changed since"
-                       : group.group == PoseGroup::Beyond
-                           ? "what is expected there is extrapolated; calibrate with poses like "
-                             "those, too"
-                           : kind.cause);
+    const bool is_angle = !calibration.campaign.sensor->has_lengths();
+    const std::string beyond =
+        fmt::format("{}, beyond chance (up to {}): ", times, format_short(group.chance, 3));
+    if (group.worst && !has_moved) {
+        return beyond + fmt::format("most of it is of {}, the others have {}",
+                                    quote(group.worst->id),
+                                    format_error(group.worst->without, is_angle));
+    }
+    return beyond + (has_moved     ? "measured with another set-up"
+                     : is_repeated ? "the robot or its set-up has changed since"
+                     : group.group == PoseGroup::Beyond
+                         ? "what is expected there is extrapolated; calibrate with poses like "
+                           "those, too"
+                         : kind.cause);
 }
 
 std::string describe(const Calibration& calibration, const Kind& kind,
                      const std::optional<Judgement>& judgement) {
     if (!judgement) return "";
     const bool is_angle = !calibration.campaign.sensor->has_lengths();
+    const bool has_moved =
+        judgement->moved || (calibration.moved && &judgement == &calibration.validation);
     std::string text;
     for (const JudgedGroup& group : judgement->groups) {
-        text += fmt::format(
-            "{}, {}: RMS {}{}{}{}\n", kind.name, describe_poses(group),
-            format_error(group.found.rms(), is_angle), describe_interval(group, is_angle),
-            describe_limit(group, calibration.limit), describe_verdict(calibration, kind, group));
+        text += fmt::format("{}, {}: RMS {}{}{}{}\n", kind.name, describe_poses(group),
+                            format_error(group.found.rms(), is_angle),
+                            describe_interval(group, is_angle),
+                            describe_limit(group, calibration.limit),
+                            describe_verdict(calibration, kind, has_moved, group));
     }
     return text;
 }

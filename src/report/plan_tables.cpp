@@ -287,11 +287,14 @@ std::string describe_ending(const Plan& plan) {
 }  // namespace
 
 std::string format_choice(const Plan& plan, int digits) {
+    const bool has_bound = std::isfinite(plan.bound);
     return fmt::format(
         "chosen:     {}\ncriterion:  {}\nvalue:      {}\nbound:      {}\n"
-        "efficiency: {} proven\nstarts:     {}, {}\n{}{}{}",
+        "efficiency: {}\nstarts:     {}, {}\n{}{}{}",
         describe_ids(plan), criterion_name(plan.request.criterion), describe_value(plan, digits),
-        format_value(plan, plan.bound, digits), detail::format_fixed(plan.efficiency, 4),
+        has_bound ? format_value(plan, plan.bound, digits)
+                  : "none: rounding leaves nothing to prove",
+        has_bound ? detail::format_fixed(plan.efficiency, 4) + " proven" : "unknown",
         describe_starts(plan, "here"), describe_ending(plan), describe_proof(plan),
         describe_prediction(plan), describe_cell_doubts(plan));
 }

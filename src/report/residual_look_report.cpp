@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../core/format.hpp"
@@ -27,8 +28,8 @@ std::string describe_vector(const Vector3d& v) {
     return fmt::format("[{}, {}, {}]", number(v.x()), number(v.y()), number(v.z()));
 }
 
-/// What leaving them out gains a cure says, see find_cures().
-std::string describe(const OutlyingConfigurations& outlying) {
+std::string describe(const OutlyingConfigurations& outlying, const Cures& cures,
+                     const Campaign& campaign) {
     const bool is_one = outlying.ids.size() == 1;
     std::string text =
         fmt::format("{} {} {} not fit the others, without {} {} % of the squares is left",
@@ -39,7 +40,9 @@ std::string describe(const OutlyingConfigurations& outlying) {
         text += fmt::format(" ({} and {} fit with each other's joint values: rows exchanged?)",
                             outlying.exchanged->first, outlying.exchanged->second);
     }
-    return text;
+    const std::string option = fmt::format("--exclude {}", fmt::join(outlying.ids, ","));
+    if (std::ranges::count(cures.found, option, &Cure::option) > 0) return text;
+    return text + fmt::format("; with {}: {}", option, describe(outlying.held_out, campaign));
 }
 
 std::string describe(const SetUpChange& change, const Campaign& campaign) {
@@ -128,10 +131,11 @@ std::string describe_length_factor(const ResidualLook& look) {
         format_short(100 * deviation, 1));
 }
 
-std::vector<std::string> describe_look(const ResidualLook& look, const Campaign& campaign) {
+std::vector<std::string> describe_look(const ResidualLook& look, const Cures& cures,
+                                       const Campaign& campaign) {
     std::vector<std::string> sentences;
     if (look.shifted) sentences.push_back(describe(*look.shifted, campaign));
-    if (look.outlying) sentences.push_back(describe(*look.outlying));
+    if (look.outlying) sentences.push_back(describe(*look.outlying, cures, campaign));
     for (const SetUpChange& change : look.changes) sentences.push_back(describe(change, campaign));
     if (look.lengths && look.lengths->errors) sentences.push_back(describe(*look.lengths));
     for (const JointPattern& joint : look.joints) sentences.push_back(describe(joint, campaign));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "../core/format.hpp"
@@ -88,6 +89,7 @@ std::string describe(const Cure& cure, const Campaign& campaign) {
 }
 
 std::string format_error(double value, bool is_angle) {
+    if (std::isnan(value)) return "-";
     return format_short(mm_per_m * value, 4) + ' ' + std::string(units_of(is_angle).error);
 }
 

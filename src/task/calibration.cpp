@@ -150,15 +150,18 @@ std::map<std::string, double> sigmas_by_name(const Estimate& estimate) {
 }
 
 /// At the residuals; not where it was stopped, since that takes fits. Measurements that are not of
-/// this robot, or were misread, contradict all of it: of them only rows are looked at.
+/// this robot, or were misread, contradict all of it: of them only rows are looked at, and whether
+/// a few configurations do it.
 void look(const Work& work, Calibration& result) {
     if (work.options.stop.is_set()) return;
     Doubts& doubts = result.doubts;
     if (!doubts.misfit) {
         doubts.look = look_at_residuals(work.campaign, work.used, result.estimate);
     }
-    if (doubts.misfit || doubts.gross_error) {
-        doubts.look.shifted = find_shifted_rows(work.campaign, work.used);
+    if (!doubts.misfit && !doubts.gross_error) return;
+    doubts.look.shifted = find_shifted_rows(work.campaign, work.used);
+    if (!doubts.look.shifted && !doubts.look.outlying) {
+        doubts.look.outlying = find_gross_configurations(work.campaign, work.used, result.estimate);
     }
 }
 
@@ -190,8 +193,10 @@ void calibrate_with(Work& work, Calibration& result) {
     result.without_outliers = judge_without_outliers(work, result);
     result.doubts = find_doubts(work.campaign, work.used, registered, result.nominal);
     if (work.options.earlier) result.doubts.places.clear();  // by moved_since, where it matters
+    Campaign as_stated = work.campaign;
+    if (result.stated_spread) as_stated.spread = *result.stated_spread;
     result.faults =
-        find_faults(work.campaign, result.estimate,
+        find_faults(as_stated, result.estimate,
                     result.method == CalibrationMethod::Global ? ValueCheck::None
                                                                : ValueCheck::ByExpectedSizes);
     add_doubts(work.campaign, work.used, result.estimate, result.doubts);
@@ -285,8 +290,13 @@ void judge_others(const Work& work, const Measurements& all, Calibration& result
     const auto judge_at = [&](const std::vector<Index>& configurations) {
         std::optional<Judgement> judgement;
         if (configurations.empty()) return judgement;
-        judgement = detail::judge({result.campaign, result.estimate, work.used.configurations},
-                                  take(all, configurations));
+        const Measurements others = take(all, configurations);
+        judgement =
+            detail::judge({result.campaign, result.estimate, work.used.configurations}, others);
+        if (judgement->is_beyond()) {
+            judgement->moved =
+                detail::find_moved(work.refitting(), result.campaign, result.estimate, others);
+        }
         return judgement;
     };
     const CalibrationOptions& options = work.options;
@@ -295,6 +305,19 @@ void judge_others(const Work& work, const Measurements& all, Calibration& result
     std::vector<Index> known = options.used;
     known.insert(known.end(), options.verification.begin(), options.verification.end());
     result.left_out = judge_at(all_but(all.configuration_count(), known));
+}
+
+/// Few poses that were held out may tell little where others, that were not calibrated with, show
+/// that it is better than the nominal robot.
+void forget_held_out(Calibration& result) {
+    constexpr double plainly = 0.7;
+    if (!result.verification || !result.doubts.held_out || result.doubts.held_out->is_worse()) {
+        return;
+    }
+    for (const JudgedGroup& group : result.verification->groups) {
+        const bool is_better = group.found.rms() < plainly * result.nominal.rms();
+        if (group.group == PoseGroup::New && is_better) result.doubts.held_out.reset();
+    }
 }
 
 }  // namespace
@@ -329,6 +352,7 @@ Calibration calibrate(const Campaign& campaign, const Measurements& measurements
     if (!result.is_identified()) return result;
     find_moved_since(work, result);
     judge_others(work, measurements, result);
+    forget_held_out(result);
     try {
         validate(work, result);
     } catch (const InputError& error) {

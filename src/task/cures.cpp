@@ -153,6 +153,7 @@ std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
         }
         add("--loss cauchy", campaign).options.loss.kind = LossKind::Cauchy;
     }
+    if (doubts.misfit) return trials;
     if (options.can_learn_sizes && campaign.spread.is_prior && !is_far_above_prior(doubted)) {
         add("--learn-sizes", campaign).learns_sizes = true;
     }

@@ -72,6 +72,21 @@ bool shows_any(const Measurements& others, const std::vector<Index>& members) {
     return times_seen(others)(members, Eigen::all).sum() > 0;
 }
 
+/// Of three at least, one that has more than half of the squares.
+std::optional<WorstConfiguration> worst_of(const Judge& judge, const Measurements& part) {
+    constexpr Index least = 3;
+    const Index count = part.configuration_count();
+    if (count < least) return std::nullopt;
+    const VectorXd squares =
+        squared_distances(judge.campaign, judge.estimate.parameters, part).rowwise().sum();
+    Index worst = 0;
+    if (!(2 * squares.maxCoeff(&worst) > squares.sum())) return std::nullopt;
+    const Measurements others = take(part, all_but(count, {worst}));
+    return WorstConfiguration{
+        part.ids[static_cast<std::size_t>(worst)],
+        make_metrics(judge.campaign, judge.estimate.parameters, others).rms()};
+}
+
 JudgedGroup judge_group(const Judge& judge, PoseGroup group, const std::vector<Index>& members,
                         const Measurements& others) {
     const Measurements part = take(others, members);
@@ -90,6 +105,7 @@ JudgedGroup judge_group(const Judge& judge, PoseGroup group, const std::vector<I
     judged.expected = expected_sample_error(judge.campaign, judge.estimate, part);
     judged.chance = chance_of(judge, freedom.of_robots);
     judged.verdict = verdict_of(judged);
+    if (judged.verdict == ChanceVerdict::Beyond) judged.worst = worst_of(judge, part);
     return judged;
 }
 

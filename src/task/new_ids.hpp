@@ -7,11 +7,12 @@
 
 namespace posewise::detail {
 
-/// p1, p2, ... but for those that poses kept or dropped have.
+/// p1, p2, ... but for those that poses kept, dropped or measured already have.
 class NewIds {
   public:
     NewIds(char letter, const PlanningProblem& problem)
         : letter_(letter), taken_(problem.request.dropped.begin(), problem.request.dropped.end()) {
+        taken_.insert(problem.measured_ids.begin(), problem.measured_ids.end());
         for (const PlannedPose& pose : problem.kept) taken_.insert(pose.id);
         for (const PlannedPose& pose : problem.kept_to_verify) taken_.insert(pose.id);
     }

@@ -62,9 +62,18 @@ std::optional<Index> find_measured(const Plan& plan, const PlannedPose& pose,
                              tolerance)) {
         return index;
     }
-    throw InputError("configuration '" + pose.id +
-                     "' of the plan has other joint values than the measured one; the plan must "
-                     "be of this robot and campaign");
+    const VectorXd q = measured.configurations.row(index).transpose();
+    Index joint = 0;
+    const Index joints = campaign.robot.joint_count();
+    (pose.configuration - q).head(joints).cwiseAbs().maxCoeff(&joint);
+    const bool is_angle = campaign.robot.joint(joint).motion == Motion::Rotation;
+    const auto value = [&](double x) { return is_angle ? to_degrees(x) : mm_per_m * x; };
+    throw InputError(fmt::format(
+        "configuration {} is planned with {} = {:.4f} {}, measured with {:.4f}; must be within "
+        "{:.2f}: "
+        "the plan must be of this robot and campaign, and a pose that was missed be left out",
+        detail::quote(pose.id), campaign.robot.joint(joint).name, value(pose.configuration[joint]),
+        is_angle ? "deg" : "mm", value(q[joint]), value(tolerance)));
 }
 
 /// Throws InputError unless a plan has as many poses as it is of, with the robot's joints.

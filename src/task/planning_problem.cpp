@@ -130,8 +130,8 @@ PlanningProblem state_planning(const Campaign& given, const PlanningOptions& opt
     if (options.repaired) {
         cell.least_joint_distance = std::max(cell.least_joint_distance, distance_from_others);
     }
-    PlanningProblem problem{options, campaign, Constraints(campaign, std::move(cell)), {}, 0, 0, {},
-                            {},      {}};
+    PlanningProblem problem{
+        options, campaign, Constraints(campaign, std::move(cell)), {}, 0, 0, {}, {}, {}, {}};
     problem.request.has_prior = campaign.spread.is_prior;
     if (problem.request.repeats == 0) problem.request.repeats = 1;
     problem.search.criterion = options.criterion;
@@ -144,6 +144,7 @@ PlanningProblem state_planning(const Campaign& given, const PlanningOptions& opt
         hold(problem, measured_blocks(campaign, campaign.nominal, *options.held).matrix,
              options.held->configurations);
         problem.measured_count = options.held->configuration_count();
+        problem.measured_ids = options.held->ids;
         problem.search.held_pose_count += problem.measured_count;
     }
     if (options.repaired) hold_kept(problem, *options.repaired);

@@ -16,6 +16,7 @@ struct PlanningProblem {
     PositionErrors errors;  ///< of target positions over the workspace
     Index workspace_count = 0;
     Index measured_count = 0;
+    std::vector<std::string> measured_ids;
     std::vector<PlannedPose> kept;  ///< of the plan to repair
     std::vector<PlannedPose> kept_to_verify;
     PlanOptions search;  ///< without test poses, which are errors.by_parameters for G and V

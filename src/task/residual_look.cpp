@@ -140,4 +140,41 @@ ResidualLook look_at_residuals(const Campaign& campaign, const Measurements& mea
     return look;
 }
 
+std::optional<OutlyingConfigurations> find_gross_configurations(const Campaign& campaign,
+                                                                const Measurements& measurements,
+                                                                const Estimate& estimate) {
+    constexpr double below = 0.1;
+    if (estimate.loss.kind != LossKind::Squares || !estimate.undetermined.empty()) {
+        return std::nullopt;
+    }
+    Loss robust;
+    robust.kind = LossKind::Cauchy;
+    const auto bent_less = detail::fit_again(campaign, measurements, robust);
+    if (!bent_less) return std::nullopt;
+    std::vector<Index> out;
+    for (const Outlier& outlier : bent_less->estimate.outliers) {
+        if (std::ranges::find(out, outlier.configuration) == out.end()) {
+            out.push_back(outlier.configuration);
+        }
+    }
+    const Index count = measurements.configuration_count();
+    const auto most = std::min(static_cast<Index>(most_outlying), count / 5);
+    if (out.empty() || std::ssize(out) > most || count - std::ssize(out) < least_configurations) {
+        return std::nullopt;
+    }
+    const auto rest =
+        detail::fit_again(campaign, take(measurements, all_but(count, out)), estimate.loss);
+    if (!rest || rest->estimate.fit.rms() > below * estimate.fit.rms()) return std::nullopt;
+    OutlyingConfigurations outlying;
+    for (const Index i : out) {
+        outlying.ids.push_back(measurements.ids[static_cast<std::size_t>(i)]);
+    }
+    const double left = rest->estimate.fit.rms() / estimate.fit.rms();
+    outlying.squares_left = left * left;
+    outlying.held_out = {detail::held_out_rms({campaign, measurements, estimate}),
+                         detail::held_out_rms(*rest)};
+    outlying.exchanged = find_exchanged(*rest, measurements, out);
+    return outlying;
+}
+
 }  // namespace posewise

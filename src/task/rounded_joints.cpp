@@ -68,6 +68,10 @@ std::optional<RoundedJoints> find_rounded_joints(const Fitted& fitted) {
     const double step = common_step(campaign.robot, fitted.measured.configurations);
     if (step == 0) return std::nullopt;
     const double deviation = step / std::sqrt(12.0);
+    const VectorXd& stated_already = campaign.joint_repeatability;
+    if (stated_already.size() > 0 && stated_already.maxCoeff() >= 0.9 * deviation) {
+        return std::nullopt;
+    }
     RoundedJoints rounded{
         step, effect_of(campaign, fitted.measured, fitted.estimate.parameters, deviation), {}};
     rounded.held_out.before = held_out_rms(fitted);

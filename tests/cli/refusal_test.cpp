@@ -1,4 +1,5 @@
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -84,6 +85,40 @@ TEST_F(Refusal, OfAnotherZeroOfAJoint) {
     EXPECT_EQ(outcome.code, 3);
     EXPECT_NE(outcome.err.find("dq2 is -15"), std::string::npos) << outcome.err;
     EXPECT_FALSE(has_file("z.json"));
+}
+
+TEST_F(Refusal, IsNotPutOffByLearnedSizes) {
+    write_irb("");
+    simulate("i.yaml");
+    rewrite("s.csv", "z.csv", [](Cells& cells) { add(cells[3], 1.5707963); });
+    const Outcome outcome = run("calibrate i.yaml -m z.csv --folds 0 --learn-sizes -o z.json");
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_NE(outcome.err.find("times the size expected of it"), std::string::npos) << outcome.err;
+    EXPECT_FALSE(has_file("z.json"));
+}
+
+TEST_F(Refusal, NamesTwoRowsThatAreExchangedWhereNothingFitsBesideThem) {
+    simulate(fanuc_design);
+    const std::string all = text_of("s.csv");
+    const auto joints_of = [&](const std::string& id) {
+        const auto begin = all.find('\n' + id + ",0,") + id.size() + 4;
+        std::size_t end = begin;
+        for (int k = 0; k < 6; ++k) end = all.find(',', end) + 1;
+        return all.substr(begin, end - begin);
+    };
+    const std::map<std::string, std::string> other{{"9", joints_of("14")}, {"14", joints_of("9")}};
+    rewrite("s.csv", "x.csv", [&](Cells& cells) {
+        if (!other.contains(cells[0])) return;
+        std::istringstream joints(other.at(cells[0]));
+        for (std::size_t k = 2; k < 8; ++k) std::getline(joints, cells[k], ',');
+    });
+    const Outcome outcome = run("calibrate " + fanuc_design + " -m x.csv --folds 0");
+    EXPECT_EQ(outcome.code, 3) << outcome.err;
+    EXPECT_NE(outcome.err.find("9 and 14 fit with each other's joint values: rows exchanged?"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_NE(outcome.err.find("with --exclude 9,14: 0."), std::string::npos) << outcome.err;
+    EXPECT_EQ(run("calibrate " + fanuc_design + " -m x.csv --folds 0 --exclude 9,14").code, 0);
 }
 
 TEST_F(Refusal, OfCorrectionsThatBringFewHome) {

@@ -42,6 +42,18 @@ TEST_F(Units, LimitsInDegreesUnderRadAreRefused) {
     run_well("inspect w.yaml");
 }
 
+TEST_F(Units, FloorAndSpeedsThatNoCellHasAreRefused) {
+    const std::string cell = read_text(source_folder() + "/designs/cell_demo/campaign.yaml");
+    const auto with = [&](const std::string& part, const std::string& by) {
+        std::string text = cell;
+        write_text("cell.yaml", text.replace(text.find(part), part.size(), by));
+    };
+    with("floor_z_mm", "floor_z_m");
+    expect_input_error("inspect cell.yaml", "is over 100 m from the base; is it in mm?");
+    with("speed_deg_per_s", "speed_rad_per_s");
+    expect_input_error("inspect cell.yaml", "is beyond 2000 deg/s, which no joint has");
+}
+
 TEST_F(Units, LimitsInRadUnderDegreesAreRefused) {
     std::string text = arm + rest;
     for (const auto& [degrees, rad] : {std::pair{"170, 170", "2.97, 2.97"},

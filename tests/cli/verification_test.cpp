@@ -67,6 +67,32 @@ TEST_F(VerificationPoses, AreNeverCalibratedWithAndJudgedByThemselves) {
     EXPECT_EQ(count, 6U);
 }
 
+TEST_F(VerificationPoses, OneThatWasMisreadIsNamedAndPosesOfThePlanMayBeMissing) {
+    plan_and_measure();
+    std::string measured = text_of("m.csv");
+    const auto begin = measured.find("\nv1,");
+    const auto end = measured.find('\n', begin + 1);
+    std::string row = measured.substr(begin, end - begin);
+    row.replace(row.rfind(','), std::string::npos, ",0");
+    write_text("zero.csv", measured.substr(0, begin) + row + measured.substr(end));
+    const std::string calibrate = "calibrate " + fanuc_design + " --plan p.json --folds 0 -m ";
+    const std::string text = run_well(calibrate + "zero.csv -o z.json");
+    EXPECT_NE(text.find("beyond chance (up to"), std::string::npos) << text;
+    EXPECT_NE(text.find("most of it is of 'v1', the others have 0."), std::string::npos) << text;
+    EXPECT_EQ(json_of("z.json").at("accuracy").at("judged").at(0).at("worst"), "v1");
+
+    const auto lost = measured.find("\np3,");
+    measured.erase(lost, measured.find('\n', lost + 1) - lost);
+    write_text("lost.csv", measured);
+    const Outcome outcome = run(calibrate + "lost.csv");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err,
+              "posewise: warning: p.json: 1 of 14 poses are not among the measured ones: 'p3'\n");
+    EXPECT_NE(outcome.out.find(": 13 configurations, "), std::string::npos) << outcome.out;
+    EXPECT_NE(run_well(calibrate + "m.csv --exclude p2-p3").find(": 12 configurations, "),
+              std::string::npos);
+}
+
 TEST_F(VerificationPoses, OfAnotherFileThatWereCalibratedWithAreNotJudged) {
     plan_and_measure();
     run_well("simulate " + fanuc_design +

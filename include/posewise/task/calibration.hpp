@@ -89,13 +89,6 @@ struct WithoutOutliers {
     std::optional<double> held_out_angle_rms{};
 };
 
-/// A set-up that is another one than that calibrated with.
-struct Moved {
-    std::vector<std::string> parts;  ///< that it takes to say so: "base", "targets" or both
-    double base = 0;                 ///< m
-    double targets = 0;              ///< the farthest of them in the flange frame, m
-};
-
 /// A calibration: parameters, how sure they are, how accurate the robot is with them.
 struct Calibration {
     /// As calibrated, with the model error found and sizes learned: names, units and scales of what

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,19 @@ struct RmsInterval {
     double degrees_of_freedom = 0;
 };
 
+/// A set-up that is another one than that calibrated with.
+struct Moved {
+    std::vector<std::string> parts;  ///< that it takes to say so: "base", "targets" or both
+    double base = 0;                 ///< m
+    double targets = 0;              ///< the farthest of them in the flange frame, m
+};
+
+/// One that has more than half of the squares of a group beyond chance.
+struct WorstConfiguration {
+    std::string id;
+    double without = 0;  ///< RMS of the others, m or rad
+};
+
 /// The poses of one group, judged by themselves.
 struct JudgedGroup {
     PoseGroup group = PoseGroup::New;
@@ -46,6 +60,7 @@ struct JudgedGroup {
     /// model error found and of the freedom of these poses, at least 1.25.
     double chance = 1;
     ChanceVerdict verdict = ChanceVerdict::NotJudged;
+    std::optional<WorstConfiguration> worst;
 
     /// Found against expected.
     double ratio() const { return found.rms() / expected.value().total(); }
@@ -56,6 +71,14 @@ struct Judgement {
     Metrics found;
     std::optional<ExpectedError> expected;
     std::vector<JudgedGroup> groups;
+    /// Where one of them is beyond chance, what has plainly moved since the calibration.
+    std::optional<Moved> moved;
+
+    bool is_beyond() const {
+        return std::ranges::any_of(groups, [](const JudgedGroup& group) {
+            return group.verdict == ChanceVerdict::Beyond;
+        });
+    }
 };
 
 /// By the interval's ends; nothing for repeated poses, and where there is no interval.

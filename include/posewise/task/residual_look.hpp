@@ -113,6 +113,13 @@ struct ResidualLook {
 ResidualLook look_at_residuals(const Campaign& campaign, const Measurements& measurements,
                                const Estimate& estimate);
 
+/// Configurations that a robust fit calls outliers, a fifth of all and ten at most, if without them
+/// a tenth of what all leave (RMS) is left at most. For measurements that the nominal robot misses
+/// grossly: beside errors so large the look above sees no single one.
+std::optional<OutlyingConfigurations> find_gross_configurations(const Campaign& campaign,
+                                                                const Measurements& measurements,
+                                                                const Estimate& estimate);
+
 /// Rows whose joint values are those of the row before or after, from some row on, if the nominal
 /// robot then misses half of the readings by less than a fifth. For measurements that it misses
 /// grossly.
