@@ -153,7 +153,7 @@ std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
         }
         add("--loss cauchy", campaign).options.loss.kind = LossKind::Cauchy;
     }
-    if (doubts.misfit) return trials;
+    if (options.only_exclusions) return trials;
     if (options.can_learn_sizes && campaign.spread.is_prior && !is_far_above_prior(doubted)) {
         add("--learn-sizes", campaign).learns_sizes = true;
     }
@@ -224,7 +224,7 @@ Cures find_cures(const Doubted& doubted, Doubts& doubts, const CureOptions& opti
     }
     auto& outlying = doubts.look.outlying;
     if (outlying && !cures.found.empty() &&
-        std::ranges::count(cures.found, exclusion_of(outlying->ids), &Cure::option) == 0) {
+        as_good_as * cures.found.front().after < outlying->held_out.after) {
         outlying.reset();
     }
     return cures;

@@ -39,6 +39,8 @@ std::optional<LoneConfiguration> find_lone_configuration(const Doubted& doubted)
 
 /// What may be tried beside what a calibration tells by itself.
 struct CureOptions {
+    /// Nothing says that the model is at fault: only what is left out is tried, and a robust loss.
+    bool only_exclusions = false;
     bool can_learn_sizes = false;
     std::vector<OtherCampaign> campaigns{};
 };

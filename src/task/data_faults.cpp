@@ -64,15 +64,19 @@ Metrics left_over(const Calibration& calibration) {
     return left;
 }
 
-/// Whether it is worth while to look for what would do better. Of another robot nothing would.
-bool asks_for_cures(const Doubts& doubts) {
+/// Whether another model may do better. Of another robot none would.
+bool asks_for_models(const Doubts& doubts) {
     const bool has_large_residuals =
         std::ranges::any_of(doubts.residuals, [](const auto& doubt) { return doubt.ratio > 1; });
-    return doubts.look.outlying ||
-           (!doubts.misfit &&
-            (has_large_residuals || !doubts.model_errors.empty() || !doubts.sizes.empty() ||
-             doubts.missing_errors || doubts.gross_error || doubts.orientations || doubts.scatter ||
-             doubts.held_out));
+    return !doubts.misfit &&
+           (has_large_residuals || !doubts.model_errors.empty() || !doubts.sizes.empty() ||
+            doubts.missing_errors || doubts.gross_error || doubts.orientations || doubts.scatter ||
+            doubts.held_out);
+}
+
+/// Whether it is worth while to look for what would do better.
+bool asks_for_cures(const Doubts& doubts) {
+    return doubts.look.outlying || asks_for_models(doubts);
 }
 
 std::vector<std::string> find_data_faults(const Doubted& doubted, const Calibration& calibration,
@@ -103,9 +107,10 @@ std::vector<std::string> find_data_faults(const Doubted& doubted, const Calibrat
     return faults;
 }
 
-CureOptions cure_options(const CalibrationOptions& options) {
+CureOptions cure_options(const CalibrationOptions& options, const Doubts& doubts) {
     CureOptions cures;
-    if (options.earlier) return cures;  // its sizes and errors are those
+    cures.only_exclusions = !asks_for_models(doubts);
+    if (cures.only_exclusions || options.earlier) return cures;  // its sizes and errors are those
     cures.can_learn_sizes = !options.learns_sizes;
     if (options.richer) cures.campaigns = options.richer();
     return cures;
@@ -135,7 +140,8 @@ void judge_data(const CalibrationData& data, const CalibrationOptions& options,
     const std::vector<std::string> faults = find_data_faults(doubted, calibration, comparison);
     calibration.faults.insert(calibration.faults.begin(), faults.begin(), faults.end());
     if (options.method != CalibrationMethod::Joint || !asks_for_cures(calibration.doubts)) return;
-    calibration.cures = find_cures(doubted, calibration.doubts, cure_options(options));
+    calibration.cures =
+        find_cures(doubted, calibration.doubts, cure_options(options, calibration.doubts));
 }
 
 }  // namespace posewise::detail

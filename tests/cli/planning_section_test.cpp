@@ -37,7 +37,10 @@ TEST_F(PlanningSection, AsksForAsManyPosesAsTheFittedModelNeeds) {
     run_well(plan + "-o p.json --csv p.csv -k " + std::to_string(needed));
     run_well("verify p.json");
     run_well("simulate c.yaml --configurations p.csv -o m.csv");
-    run_well("calibrate c.yaml -m m.csv --folds 0");
+    const Outcome outcome = run("calibrate c.yaml -m m.csv --folds 0");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("too few poses, or too much alike"), std::string::npos)
+        << outcome.err;
 }
 
 TEST_F(PlanningSection, IsSaidWhereItIsUsedAndWhereNot) {
