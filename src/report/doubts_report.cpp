@@ -179,8 +179,9 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     if (doubts.held_out) {
         sentences.push_back(at + describe_held_out(calibration.campaign, *doubts.held_out));
     }
+    constexpr double far_more = 2;
     const auto& workspace = calibration.expected_workspace;
-    if (workspace && workspace->total() > calibration.nominal.rms()) {
+    if (workspace && workspace->total() > far_more * calibration.nominal.rms()) {
         const bool is_angle = !calibration.campaign.sensor->has_lengths();
         sentences.push_back(fmt::format(
             "{}it is expected to miss poses of the workspace by {}, the nominal robot misses those "
