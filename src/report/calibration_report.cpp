@@ -212,11 +212,6 @@ std::string describe_expected(const Calibration& calibration) {
     return text + describe(calibration.predicted_beyond, "to predict");
 }
 
-/// Whether parameters are so little known that leaving a pose out makes a difference.
-bool is_by_few_poses(const ExpectedError& expected) {
-    return std::sqrt(2) * expected.parameters > std::hypot(expected.model, expected.noise);
-}
-
 std::string format_accuracy(const Calibration& calibration) {
     std::vector<std::pair<std::string, Metrics>> columns{{"nominal", calibration.nominal},
                                                          {"calibrated", calibration.estimate.fit},
@@ -236,7 +231,7 @@ std::string format_accuracy(const Calibration& calibration) {
         text += fmt::format(
             "held out: {} folds, {} of them not identifiable{}\n", calibration.held_out->folds,
             calibration.held_out->failures.size(),
-            is_by_few_poses(calibration.expected)
+            detail::is_by_few_poses(calibration.expected)
                 ? "; each tells much that the others do not, so that they are missed by more than "
                   "other poses will be"
                 : "");

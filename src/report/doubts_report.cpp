@@ -181,7 +181,8 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     }
     constexpr double far_more = 2;
     const auto& workspace = calibration.expected_workspace;
-    if (workspace && workspace->total() > far_more * calibration.nominal.rms()) {
+    if (workspace && detail::is_by_few_poses(calibration.expected) &&
+        workspace->total() > far_more * calibration.nominal.rms()) {
         const bool is_angle = !calibration.campaign.sensor->has_lengths();
         sentences.push_back(fmt::format(
             "{}it is expected to miss poses of the workspace by {}, the nominal robot misses those "

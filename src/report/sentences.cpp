@@ -88,6 +88,10 @@ std::string describe(const Cure& cure, const Campaign& campaign) {
                        units_of(is_angle).error);
 }
 
+bool is_by_few_poses(const ExpectedError& expected) {
+    return std::sqrt(2) * expected.parameters > std::hypot(expected.model, expected.noise);
+}
+
 std::string format_error(double value, bool is_angle) {
     if (std::isnan(value)) return "-";
     return format_short(mm_per_m * value, 4) + ' ' + std::string(units_of(is_angle).error);

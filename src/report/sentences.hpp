@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "posewise/calibrator/estimate.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/task/held_out.hpp"
 
@@ -19,6 +20,9 @@ std::string describe_looseness(double efficiency, Index starts_at_best, Index st
 
 /// "with --exclude 5: 0.16 instead of 38 mm held out".
 std::string describe(const Cure& cure, const Campaign& campaign);
+
+/// Whether parameters are so little known that leaving a pose out makes a difference.
+bool is_by_few_poses(const ExpectedError& expected);
 
 /// "1 mm", "-0.5 mrad": a small error with its unit.
 std::string format_error(double value, bool is_angle);

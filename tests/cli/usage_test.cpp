@@ -143,7 +143,7 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
      " is not looked at where --merge puts stores together"},
     {"study a.yaml -m b.csv --splits 0 --holdout 0.4", "--holdout: is of splits"},
     {"select a.yaml -m b.csv -k 8 --relax --proof 5", "--proof: is of a choice"},
-    {"select a.yaml -m b.csv -k 8 --force", "--force requires --from"},
+    {"select a.yaml --random 20 -k 8 --force", "--force: is of an estimate or of measurements"},
     {"calibrate a.yaml -m b.csv --json --all-parameters", "--all-parameters excludes --json"},
 };
 
