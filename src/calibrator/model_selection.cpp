@@ -6,6 +6,7 @@
 
 #include "../core/progress_counter.hpp"
 #include "posewise/jacobian/identifiability.hpp"
+#include "robust.hpp"
 
 namespace posewise {
 namespace {
@@ -139,10 +140,7 @@ ModelSelection select_model(const Campaign& campaign, const Measurements& measur
             selection.not_judged = candidates.back().estimate.outliers;
         }
     }
-    Seen is_judged = times_seen(measurements).array() > 0;
-    for (const Outlier& outlier : selection.not_judged) {
-        is_judged(outlier.configuration, outlier.target) = false;
-    }
+    const Seen is_judged = detail::points_but_outliers(measurements, selection.not_judged);
     detail::ProgressCounter counter(progress, static_cast<Index>(candidates.size()));
     std::vector<MeanError> errors;
     for (Candidate& candidate : candidates) {

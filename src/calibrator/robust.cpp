@@ -110,4 +110,10 @@ std::vector<Outlier> find_outliers(const IdentificationProblem& problem,
     return outliers;
 }
 
+Seen points_but_outliers(const Measurements& measurements, const std::vector<Outlier>& outliers) {
+    Seen points = times_seen(measurements).array() > 0;
+    for (const Outlier& outlier : outliers) points(outlier.configuration, outlier.target) = false;
+    return points;
+}
+
 }  // namespace posewise::detail

@@ -26,4 +26,7 @@ MatrixXd robust_covariance(const IdentificationProblem& problem, const Parameter
 std::vector<Outlier> find_outliers(const IdentificationProblem& problem,
                                    const Parameters& parameters);
 
+/// Points that were seen and are no outliers: configurations x targets.
+Seen points_but_outliers(const Measurements& measurements, const std::vector<Outlier>& outliers);
+
 }  // namespace posewise::detail

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "../calibrator/robust.hpp"
 #include "../core/progress_counter.hpp"
 #include "calibration_options.hpp"
 #include "data_faults.hpp"
@@ -111,10 +112,7 @@ std::optional<CrossValidation> hold_out(Work& work, const Calibration& result) {
 std::optional<WithoutOutliers> judge_without_outliers(const Work& work, const Calibration& result) {
     const Estimate& estimate = result.estimate;
     if (estimate.outliers.empty()) return std::nullopt;
-    Seen is_judged = times_seen(work.used).array() > 0;
-    for (const Outlier& outlier : estimate.outliers) {
-        is_judged(outlier.configuration, outlier.target) = false;
-    }
+    const Seen is_judged = detail::points_but_outliers(work.used, estimate.outliers);
     const auto rms = [&](const RowMatrixXd& squares) {
         return std::sqrt(is_judged.select(squares, 0).sum() /
                          static_cast<double>(is_judged.count()));

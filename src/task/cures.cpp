@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "../calibrator/robust.hpp"
 #include "held_out_doubt.hpp"
 #include "identify_anew.hpp"
 #include "posewise/calibrator/registration.hpp"
@@ -28,21 +29,12 @@ struct Judged {
     Seen is_judged;
 };
 
-/// Points that may judge a calibration of these: what its loss calls outliers does not.
-Seen points_judged(const Measurements& measurements, const Estimate& found) {
-    Seen is_judged = times_seen(measurements).array() > 0;
-    for (const Outlier& outlier : found.outliers) {
-        is_judged(outlier.configuration, outlier.target) = false;
-    }
-    return is_judged;
-}
-
-/// Whether it fits points that may judge it better than the doubted one does: what does not hardly
-/// predicts better.
+/// Whether it fits the points that are no outliers of it better than the doubted one does: what
+/// does not hardly predicts better.
 bool fits_better(const Doubted& doubted, const CureTrial& trial, const Estimate& found) {
     constexpr double hardly = 0.97;
     const Measurements& measured = trial.measurements;
-    const Seen is_judged = points_judged(measured, found);
+    const Seen is_judged = points_but_outliers(measured, found.outliers);
     const auto rms = [&](const Campaign& campaign, const Estimate& estimate) {
         return rms_of(squared_distances(campaign, estimate.parameters, measured), is_judged);
     };
@@ -68,8 +60,9 @@ std::optional<Judged> judge(const Doubted& doubted, const CureTrial& trial) {
         cross_validate(with_model_error(campaign, *found), trial.measurements, found->parameters,
                        std::min(doubted.held_out.folds, count), options);
     const Seen is_held_out = points_held_out(trial.measurements, held_out);
-    return Judged{held_out.squared_distances,
-                  is_held_out.array() && points_judged(trial.measurements, *found).array()};
+    return Judged{
+        held_out.squared_distances,
+        is_held_out.array() && points_but_outliers(trial.measurements, found->outliers).array()};
 }
 
 /// Which configurations of all these are.
