@@ -34,7 +34,7 @@ VALUES = {
     "--workspace-target": "1", "--pool": "30", "--verify-digits": "1", "--verify-robots": "200", "--csv": "out2.csv",
     "--plot": "out2.svg", "--from": "estimate.json", "--drift-mm": "0.5", "--drift-offset-mrad": "0.5", "--drift-mrad": "0.5",
     "--moved": "base", "--only": "base", "--alpha": "0.5", "--max-iterations": "2", "--length-error-percent": "10",
-    "--angle-error-deg": "5", "--search": "esch", "--method": "two-step", "--validate": "few.csv", "--predict": "poses.csv",
+    "--angle-error-deg": "5", "--search": "cmaes", "--method": "two-step", "--validate": "few.csv", "--predict": "poses.csv",
     "--predict-out": "out3.csv", "--folds": "3", "--loss": "cauchy", "--loss-width": "2", "--refit": "base",
     "--validate-campaign": "arm.yaml", "--dh": "out2.yaml", "--urdf": "out2.urdf", "--ur-kinematics": "out3.yaml",
     "--geometry": "estimate", "--base": "campaign", "--tool-mm": "10,20,300", "--mm-per-mrad": "2", "--largest-change-deg": "0.001",
@@ -119,9 +119,9 @@ def prepare():
 
 
 def options_of(command):
-    """All of --help, but for positional ones and those that FREE names."""
-    text = run(command, "--help").stdout.split("Example:")[0]
-    names = re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.MULTILINE)
+    """All that help names, but for positional ones and those that FREE names."""
+    text = run("help", command).stdout
+    names = re.findall(r"^  (?:-\w, )?(--[\w-]+)", text, re.MULTILINE)
     if re.search(r"^  CAMPAIGN", text, re.MULTILINE):
         names.append("CAMPAIGN")
     return [name for name in names if name not in FREE]

@@ -7,8 +7,8 @@
 
 #include "../core/decompositions.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/targets.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/measurement/sensor.hpp"
+#include "posewise/model/chain.hpp"
 
 namespace posewise {
 namespace {

@@ -84,6 +84,10 @@ PredictedError summarise(std::span<const PointError> points, double degrees_of_f
 
 }  // namespace
 
+bool ExpectedError::is_by_few_poses() const {
+    return std::sqrt(2) * parameters > std::hypot(model, noise);
+}
+
 double ExpectedError::total() const {
     return std::sqrt(parameters * parameters + model * model + noise * noise);
 }
@@ -115,8 +119,8 @@ ExpectedError expected_sample_error(const Campaign& campaign, const Estimate& es
         configurations.middleRows(first, measured.sample_count(i)).rowwise() =
             measured.configurations.row(i);
     }
-    return average(point_errors(campaign, estimate, configurations,
-                                measured.is_seen.cast<double>(), !campaign.sensor->has_lengths()));
+    return average(point_errors(campaign, estimate, configurations, measured.is_seen.cast<double>(),
+                                !campaign.sensor->has_lengths()));
 }
 
 std::vector<ErrorPrediction> predict_errors(const Campaign& campaign, const Estimate& estimate,

@@ -8,10 +8,9 @@
 
 #include "../core/parallel.hpp"
 #include "../core/progress_counter.hpp"
+#include "covariance_adaptation.hpp"
 #include "least_squares.hpp"
-#include "population_search.hpp"
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 
@@ -67,7 +66,7 @@ void check_options(const Campaign& campaign, const GlobalOptions& options) {
     if (campaign.spread.is_prior) {
         throw InputError(
             "expected sizes are priors, which say that errors are small; a global search, for a "
-            "robot that is far from nominal, must be without them (prior: false, --no-prior)");
+            "robot that is far from nominal, must be without them (prior: false)");
     }
 }
 
@@ -77,9 +76,9 @@ VectorXd draw_errors(const detail::IdentificationProblem& problem, const VectorX
     VectorXd errors = VectorXd::Zero(bounds.size());
     if (start == 0) return errors;
     RandomStream stream(options.seed, static_cast<std::uint64_t>(start));
-    if (options.search != StartSearch::Random) {
-        return detail::search_population(problem.campaign, problem.means, bounds, options.search,
-                                         options.evaluation_limit, stream);
+    if (options.search == StartSearch::CmaEs) {
+        return detail::adapt_covariance(problem.campaign, problem.means, bounds,
+                                        options.evaluation_limit, stream);
     }
     for (Index k = 0; k < bounds.size(); ++k) errors[k] = stream.uniform(-bounds[k], bounds[k]);
     return errors;

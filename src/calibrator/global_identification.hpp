@@ -1,7 +1,6 @@
 #pragma once
 
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
 
 namespace posewise::detail {
 

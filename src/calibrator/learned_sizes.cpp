@@ -84,7 +84,8 @@ ParameterSpread learn_sizes(const Campaign& campaign, const Measurements& measur
                             const Parameters& start, const LevenbergMarquardtOptions& options) {
     if (!campaign.spread.is_prior) {
         throw InputError(
-            "sizes of errors can be learned only where expected sizes are priors (--prior)");
+            "sizes of errors can be learned only where expected sizes are priors "
+            "(`spread.is_prior`)");
     }
     Campaign learned = campaign;
     Parameters from = start;

@@ -12,7 +12,6 @@
 #include "../measurement/noise.hpp"
 #include "normal_equations.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "robust.hpp"
 #include "variances.hpp"

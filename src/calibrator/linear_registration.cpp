@@ -3,7 +3,7 @@
 #include <Eigen/QR>
 #include <limits>
 
-#include "posewise/model/transforms.hpp"
+#include "posewise/model/chain.hpp"
 
 namespace posewise::detail {
 namespace {

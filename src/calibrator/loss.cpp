@@ -6,17 +6,7 @@
 
 namespace posewise {
 
-std::string_view loss_name(LossKind kind) {
-    switch (kind) {
-        case LossKind::Squares:
-            return "squares";
-        case LossKind::Huber:
-            return "huber";
-        case LossKind::Cauchy:
-            return "cauchy";
-    }
-    return "squares";
-}
+std::string_view loss_name(LossKind kind) { return detail::name_of(detail::loss_names, kind); }
 
 double Loss::value(double u) const {
     switch (kind) {

@@ -1,8 +1,12 @@
 #pragma once
 
+#include "../core/names.hpp"
 #include "posewise/calibrator/estimate.hpp"
 
 namespace posewise::detail {
+
+inline constexpr Names<LossKind, 3> loss_names{
+    {{LossKind::Squares, "squares"}, {LossKind::Huber, "huber"}, {LossKind::Cauchy, "cauchy"}}};
 
 /// The width for which the estimate has 95 % of the efficiency of least squares on normal errors of
 /// `rows` coordinates: 1.345 (Huber) and 2.385 (Cauchy) for one, more for more.

@@ -1,11 +1,10 @@
-#include "posewise/calibrator/model_selection.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "../core/progress_counter.hpp"
-#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/jacobian/identification.hpp"
 #include "robust.hpp"
 
 namespace posewise {

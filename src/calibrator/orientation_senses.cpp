@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "posewise/model/transforms.hpp"
+#include "posewise/model/chain.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "../core/format.hpp"
 #include "length_units.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/model/chain.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -9,7 +9,7 @@
 #include "../core/statistics.hpp"
 #include "length_units.hpp"
 #include "posewise/calibrator/estimate.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 
 namespace posewise::detail {
 namespace {

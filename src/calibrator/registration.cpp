@@ -1,5 +1,3 @@
-#include "posewise/calibrator/registration.hpp"
-
 #include <fmt/format.h>
 
 #include "../core/text.hpp"
@@ -9,9 +7,8 @@
 #include "linear_registration.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/jacobian/identifiability.hpp"
-#include "posewise/jacobian/unknowable.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/measurements.hpp"
 
 namespace posewise {
 namespace {

@@ -1,19 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <optional>
 
+#include "../calibrator/loss.hpp"
 #include "../report/plot.hpp"
+#include "../task/calibration_options.hpp"
 #include "calibrate_report.hpp"
 #include "commands.hpp"
 #include "estimates.hpp"
 #include "files.hpp"
 #include "measured.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/io/estimate_file.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/result_files.hpp"
 #include "posewise/report/reports.hpp"
 #include "validation.hpp"
 
@@ -66,27 +67,16 @@ The method two-step is that of Wu et al. 2015; it heads to the same optimum, slo
 says whether it got there. The method global is for a nominal robot that is far off (lengths by
 --length-error-percent, angles by --angle-error-deg): lm from the nominal robot and from random
 ones, until three starts agree on the best. Errors of 20 deg and 30 % rarely need it; it cannot turn
-round a joint that the campaign file has reversed (inspect --measurements tells). With --search each
-start is the best of a population search of NLopt (crs2, esch, isres) or of covariance matrix adaptation
-(cmaes), which takes hundreds of times as long as a random one and rarely finds more.)";
-
-const std::map<std::string, StartSearch> start_searches{{"random", StartSearch::Random},
-                                                        {"crs2", StartSearch::Crs2},
-                                                        {"esch", StartSearch::Esch},
-                                                        {"isres", StartSearch::Isres},
-                                                        {"cmaes", StartSearch::CmaEs}};
-const std::map<std::string, LossKind> losses{
-    {"squares", LossKind::Squares}, {"huber", LossKind::Huber}, {"cauchy", LossKind::Cauchy}};
-const std::map<std::string, CalibrationMethod> methods{{"lm", CalibrationMethod::Joint},
-                                                       {"two-step", CalibrationMethod::TwoStep},
-                                                       {"global", CalibrationMethod::Global}};
+round a joint that the campaign file has reversed (inspect --measurements tells). With --search
+cmaes each start is the best that covariance matrix adaptation finds, which takes hundreds of times as
+long as a random one and rarely finds more.)";
 
 CalibrationOptions make_options(const CalibrateArguments& arguments, std::uint64_t seed) {
     CalibrationOptions options = arguments.options;
-    options.method = methods.at(arguments.method);
-    options.joint.loss.kind = losses.at(arguments.loss);
+    options.method = detail::find_named(detail::method_names, arguments.method).value();
+    options.joint.loss.kind = detail::find_named(detail::loss_names, arguments.loss).value();
     options.global.seed = seed;
-    options.global.search = start_searches.at(arguments.search);
+    options.global.search = arguments.search == "cmaes" ? StartSearch::CmaEs : StartSearch::Random;
     options.global.length_share = arguments.length_error_percent / 100;
     options.global.angle = to_radians(arguments.angle_error_deg);
     if (arguments.limit_mm) options.limit = *arguments.limit_mm / mm_per_m;
@@ -115,15 +105,6 @@ std::vector<OtherCampaign> richer_campaigns(const io::CampaignFile& file,
     // Without a prior it has more errors than most poses tell apart.
     if (prior.value_or(true)) add(io::ErrorModel::Full);
     return campaigns;
-}
-
-/// The library knows groups, the message the option that asks for them.
-void check_folds(const CalibrationOptions& options, Index all) {
-    const Index count = options.used.empty() ? all : static_cast<Index>(options.used.size());
-    const Index folds = options.folds.value_or(0);
-    if (folds == 0 || (folds >= 2 && folds <= count)) return;
-    throw InputError(fmt::format(
-        "--folds is {}, must be 0 or from 2 to the number of configurations, {}", folds, count));
 }
 
 /// Options of one method beside another would have no effect.
@@ -171,7 +152,6 @@ void check_faults(const CalibrateArguments& arguments, const CommonOptions& comm
 Calibration calibrate_files(const CalibrateArguments& arguments, const io::CampaignFile& file,
                             const Measurements& measured, const CalibrationOptions& options) {
     try {
-        check_folds(options, measured.configuration_count());
         return posewise::calibrate(file, measured, options);
     } catch (const ValidationError& error) {
         throw input_error_at({arguments.validate}, error.what());

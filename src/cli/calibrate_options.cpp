@@ -1,5 +1,7 @@
 #include "calibrate_options.hpp"
 
+#include "../calibrator/loss.hpp"
+#include "../task/calibration_options.hpp"
 #include "measured.hpp"
 #include "options.hpp"
 #include "page.hpp"
@@ -16,7 +18,7 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
         ->check(file_name());
     add_exclude_option(command, options.excluded);
     command.add_option("--method", arguments.method, "lm, two-step or global")
-        ->check(CLI::IsMember({"lm", "two-step", "global"}))
+        ->check(CLI::IsMember(detail::words_of(detail::method_names)))
         ->capture_default_str();
     command
         .add_option("--alpha", options.two_step.alpha, "two-step: part of each robot step taken")
@@ -38,9 +40,9 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
         ->capture_default_str();
     command
         .add_option("--search", arguments.search,
-                    "global: starts are random, or the best of a population search: crs2, esch, "
-                    "isres or cmaes")
-        ->check(CLI::IsMember({"random", "crs2", "esch", "isres", "cmaes"}))
+                    "global: starts are random, or the best of covariance matrix adaptation: "
+                    "random or cmaes")
+        ->check(CLI::IsMember({"random", "cmaes"}))
         ->capture_default_str();
     command.add_option("--starts", options.global.start_limit, "global: most starts")
         ->check(whole_number(1, 1000000))
@@ -72,7 +74,7 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
                     "itself up to 100 of them, else 10)")
         ->check(whole_number(0, 1000000));
     command.add_option("--loss", arguments.loss, "squares, huber or cauchy: robust to outliers")
-        ->check(CLI::IsMember({"squares", "huber", "cauchy"}))
+        ->check(CLI::IsMember(detail::words_of(detail::loss_names)))
         ->capture_default_str();
     command
         .add_option("--loss-width", options.joint.loss.width,

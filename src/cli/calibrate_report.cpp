@@ -5,10 +5,10 @@
 #include "../core/text.hpp"
 #include "../report/plot.hpp"
 #include "plot.hpp"
-#include "posewise/io/json_reports.hpp"
+#include "posewise/io/documents.hpp"
 #include "posewise/report/reports.hpp"
-#include "posewise/task/error_map.hpp"
-#include "posewise/task/residuals.hpp"
+#include "posewise/task/calibration.hpp"
+#include "posewise/task/scene.hpp"
 
 namespace posewise::cli {
 namespace {

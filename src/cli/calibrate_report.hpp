@@ -2,7 +2,7 @@
 
 #include "calibrate_options.hpp"
 #include "page.hpp"
-#include "posewise/io/estimate_file.hpp"
+#include "posewise/io/result_files.hpp"
 
 /// What calibrate says of a calibration.
 namespace posewise::cli {

@@ -12,12 +12,15 @@
 #include "commands.hpp"
 #include "estimates.hpp"
 #include "files.hpp"
+#include "flags.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/threads.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/io/json_reports.hpp"
-#include "posewise/io/plan_file.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/documents.hpp"
+#include "posewise/io/result_files.hpp"
+#include "posewise/report/reports.hpp"
+#include "posewise/task/inspection.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -116,10 +119,15 @@ void print_section(const std::string& title, const detail::Table& table) {
 }
 
 void print_warning(const std::string& text) {
-    const std::string sentence = detail::escape_controls(text);
+    const std::string sentence = with_flags(detail::escape_controls(text));
     const std::string line = "posewise: warning: " + sentence + '\n';
     std::fwrite(line.data(), 1, line.size(), stderr);
     warnings_of_run().push_back(sentence);
+}
+
+void warn_of_limits(const Campaign& campaign) {
+    const std::string words = describe_narrow_limits(campaign, find_narrow_limits(campaign));
+    if (!words.empty()) print_warning(words);
 }
 
 const std::vector<std::string>& given_warnings() { return warnings_of_run(); }

@@ -45,6 +45,8 @@ void print_section(const std::string& title, const detail::Table& table);
 /// "posewise: warning: ..." on standard error, one line whatever it quotes; every document that is
 /// printed or written from then on has the sentence, too.
 void print_warning(const std::string& text);
+/// Warns of limits that seem to be in another unit.
+void warn_of_limits(const Campaign& campaign);
 /// All that was warned of up to now.
 const std::vector<std::string>& given_warnings();
 

@@ -10,8 +10,8 @@
 #include "estimates.hpp"
 #include "files.hpp"
 #include "options.hpp"
-#include "posewise/io/correction_file.hpp"
-#include "posewise/io/json_reports.hpp"
+#include "posewise/io/documents.hpp"
+#include "posewise/io/measurements_file.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {

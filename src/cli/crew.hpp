@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "posewise/task/trials.hpp"
+#include "posewise/task/study.hpp"
 
 /// The processes that work on one study: this one alone in `posewise`, all that mpirun or srun
 /// started in `posewise_mpi`. One leads: it alone prints, reads the store and writes.

@@ -15,8 +15,8 @@
 #include "measured.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/io/estimate_file.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/result_files.hpp"
 #include "posewise/report/reports.hpp"
 #include "posewise/task/doubts.hpp"
 

@@ -9,9 +9,8 @@
 
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/io/estimate_file.hpp"
+#include "posewise/io/result_files.hpp"
 #include "posewise/task/calibration.hpp"
-#include "posewise/task/earlier.hpp"
 #include "posewise/task/plan.hpp"
 
 /// Estimates that may reach a robot or be built on, and such as must not.

@@ -8,8 +8,8 @@
 #include "../core/format.hpp"
 #include "../core/text.hpp"
 #include "common.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/model/chain.hpp"
 
 namespace posewise::cli {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/io/json_reports.hpp"
+#include "posewise/io/documents.hpp"
 
 namespace posewise::cli {
 

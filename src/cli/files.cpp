@@ -11,7 +11,7 @@
 
 #include "../io/atomic_file.hpp"
 #include "../io/text.hpp"
-#include "posewise/io/trial_store.hpp"
+#include "posewise/io/result_files.hpp"
 
 namespace posewise::cli {
 namespace {

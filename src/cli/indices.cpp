@@ -7,7 +7,7 @@
 #include "files.hpp"
 #include "measured.hpp"
 #include "options.hpp"
-#include "posewise/io/json_reports.hpp"
+#include "posewise/io/documents.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {

@@ -14,9 +14,9 @@
 #include "measured.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/io/json_reports.hpp"
+#include "posewise/io/documents.hpp"
 #include "posewise/io/measurements_file.hpp"
-#include "posewise/io/urdf_file.hpp"
+#include "posewise/io/robot_files.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
@@ -131,6 +131,7 @@ void inspect(const InspectArguments& arguments, const CommonOptions& common) {
     if (is_urdf(arguments)) return inspect_urdf(arguments, common);
     io::CampaignFile file = io::read_campaign(arguments.file);
     std::ranges::for_each(file.warnings, print_warning);
+    warn_of_limits(file);
     expect_earlier(file, arguments.earlier);
     ReadingSearch readings;
     if (!arguments.measurements.empty()) {

@@ -11,9 +11,11 @@
 #include "commands.hpp"
 #include "crew.hpp"
 #include "estimates.hpp"
+#include "flags.hpp"
+#include "help.hpp"
 #include "page.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/reproducible.hpp"
+#include "posewise/core/threads.hpp"
 #include "posewise/core/version.hpp"
 #include "threads.hpp"
 
@@ -42,7 +44,7 @@ Start with:
   posewise correct campaign.yaml estimate.json --poses p.csv     joint values that hit the poses
   posewise report plan.json estimate.json --out page.html        a page to look at
 
-posewise COMMAND --help explains each with an example. With --json each prints one JSON document, which
+posewise COMMAND --help lists its options, posewise help COMMAND explains all. With --json each prints one JSON document, which
 designs/json.md explains, and nothing else.
 Exit code: 0 good, 1 unusable input (the last line on standard error), 2 wrong usage,
 3 a calibration that must not be used, 70 internal error, a bug of posewise.)";
@@ -97,12 +99,14 @@ void add_commands(CLI::App& program, posewise::cli::CommonOptions& common) {
     program.require_subcommand(1);
     program.set_version_flag("--version", std::string("posewise ") + posewise::version);
     program.footer(program_footer);
+    program.formatter(make_brief_help());
     for (const auto add :
          {add_inspect, add_indices, add_select, add_plan, add_verify, add_calibrate, add_export,
           add_correct, add_study, add_simulate, add_report}) {
         add(program, common);
     }
     for (CLI::App* command : program.get_subcommands(nullptr)) add_common_options(*command, common);
+    add_help_commands(program);
     program.parse_complete_callback(warn_of_many_threads);
 }
 
@@ -121,9 +125,9 @@ ProgramEnd run(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return fail_usage(program, describe(error));
     } catch (const posewise::InputError& error) {
-        return {input_error, error.what()};
+        return {input_error, posewise::cli::with_flags(error.what())};
     } catch (const posewise::cli::NoCalibration& error) {
-        return {no_calibration, error.what()};
+        return {no_calibration, posewise::cli::with_flags(error.what())};
     } catch (const std::bad_alloc&) {
         return {input_error,
                 "out of memory; take fewer candidates (--random, --pool) or --threads 1"};

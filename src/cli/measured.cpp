@@ -5,8 +5,8 @@
 #include "common.hpp"
 #include "files.hpp"
 #include "options.hpp"
-#include "posewise/measurement/exclusion.hpp"
-#include "posewise/measurement/pool.hpp"
+#include "posewise/measurement/constraints.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {

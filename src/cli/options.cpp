@@ -78,11 +78,11 @@ void add_prior_option(CLI::App& command, std::optional<bool>& prior,
     // Callbacks, since a flag that is not given would set an optional, too.
     CLI::Option* const with = command.add_flag_callback(
         "--prior", [&prior] { prior = true; },
-        "The expected size of each robot error is also its prior standard deviation" + consequence +
-            " (default: the campaign's)");
+        "Sizes of robot errors are priors: the expected size of each is its standard deviation" +
+            consequence + " (default: the campaign's)");
     command
         .add_flag_callback(
-            "--no-prior", [&prior] { prior = false; }, "Whatever the campaign says")
+            "--no-prior", [&prior] { prior = false; }, "No priors, whatever the campaign says")
         ->excludes(with);
 }
 

@@ -9,7 +9,7 @@
 #include "common.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/io/json_reports.hpp"
+#include "posewise/io/documents.hpp"
 
 namespace posewise::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "commands.hpp"
-#include "posewise/io/page_file.hpp"
+#include "posewise/io/documents.hpp"
 
 /// --report: what a command found as a page to look at.
 namespace posewise::cli {

@@ -23,7 +23,7 @@
 #include "plan_verification.hpp"
 #include "plot.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/io/plan_file.hpp"
+#include "posewise/io/result_files.hpp"
 #include "posewise/report/reports.hpp"
 #include "posewise/task/inspection.hpp"
 
@@ -162,7 +162,7 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     check_outputs({&campaign},
                   {arguments.earlier.from, sources.augment, sources.repaired, sources.workspace},
                   {out, arguments.csv, arguments.page, arguments.plot}, common);
-    const PlanRequest request = make_request(arguments, &campaign, Criterion::V);
+    const PlanRequest request = make_request(arguments);
     for (const OnAxis& one : find_on_axis(campaign)) print_warning(describe(one));
     PlanningOptions options = read_planning_inputs(request, campaign);
     check_verification(arguments.verification, campaign, options);
@@ -227,7 +227,7 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
         .add_option("--starts", request.starts,
                     "Plans refined before the best is kicked (default: until five agree, 1 to 16)")
         ->check(whole_number(1, 100000));
-    add_search_options(command, arguments, "Of all draws (default: the campaign's)",
+    add_search_options(command, arguments, "Seed of all draws (default: the campaign's)",
                        "<campaign>.poses.json");
     add_verification_options(command, arguments.verification);
     command

@@ -54,7 +54,8 @@ void read_with_robot(ChoiceInputs& inputs, CandidateKind kind, Index count) {
     }
     options.held = read_held(options, campaign);
     if (kind == CandidateKind::Random) {
-        inputs.candidates = random_candidates(campaign, count, options.seed);
+        inputs.candidates =
+            random_candidates(campaign, count, options.seed.value_or(campaign.seed));
     }
     if (!sources.test_poses.empty()) {
         options.test_poses = io::read_configurations(sources.test_poses, campaign).joints;

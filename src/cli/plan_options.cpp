@@ -16,7 +16,8 @@ void add_criterion_option(CLI::App& command, RequestArguments& arguments, const 
 void add_focus_option(CLI::App& command, RequestArguments& arguments) {
     command
         .add_option("--focus", arguments.focus,
-                    "all, or robot: base and targets are estimated along, but do not count")
+                    "What counts: all parameters, or the robot's; base and targets are then "
+                    "estimated along")
         ->check(CLI::IsMember({"all", "robot"}))
         ->capture_default_str();
 }
@@ -25,7 +26,7 @@ void add_workspace_options(CLI::App& command, PlanRequest& request) {
     CLI::Option* const given =
         command
             .add_option("--workspace", request.sources.workspace,
-                        "Configurations (CSV) where the robot shall be accurate (default: drawn)")
+                        "Where the robot shall be accurate: configurations (CSV) (default: drawn)")
             ->check(file_name());
     command
         .add_option("--workspace-poses", request.workspace_count,
@@ -69,7 +70,10 @@ io::CampaignFile read_planned(const RequestArguments& arguments, const StopSigna
     const EarlierArguments& earlier = arguments.earlier;
     PlanSources sources = arguments.request.sources;
     sources.estimate = earlier.from;
-    return read_planned(sources, earlier.use(), arguments.prior, earlier.is_forced, stop);
+    io::CampaignFile campaign =
+        read_planned(sources, earlier.use(), arguments.prior, earlier.is_forced, stop);
+    warn_of_limits(campaign);
+    return campaign;
 }
 
 void note_overtime(double limit, const StopSignal& stop, std::chrono::steady_clock::time_point read,
@@ -87,16 +91,12 @@ void note_overtime(double limit, const StopSignal& stop, std::chrono::steady_clo
         all, limit, all - planned, planned, what));
 }
 
-PlanRequest make_request(const RequestArguments& arguments, const io::CampaignFile* campaign,
-                         Criterion usual) {
+PlanRequest make_request(const RequestArguments& arguments) {
     PlanRequest request = arguments.request;
-    const bool is_focused = arguments.focus == "robot";
-    if (is_focused && usual == Criterion::V) usual = Criterion::D;
-    request.criterion = arguments.criterion.empty() ? usual : parse_criterion(arguments.criterion);
-    request.has_prior =
-        campaign != nullptr ? campaign->spread.is_prior : arguments.prior.value_or(false);
-    request.seed = arguments.seed.value_or(campaign != nullptr ? campaign->seed : 1);
-    request.is_focused_on_robot = is_focused;
+    if (!arguments.criterion.empty()) request.criterion = parse_criterion(arguments.criterion);
+    request.has_prior = arguments.prior.value_or(false);
+    request.seed = arguments.seed;
+    request.is_focused_on_robot = arguments.focus == "robot";
     request.sources.estimate = arguments.earlier.from;
     request.earlier = arguments.earlier.use();
     return request;

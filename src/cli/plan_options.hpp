@@ -42,9 +42,6 @@ io::CampaignFile read_planned(const RequestArguments& arguments, const StopSigna
 void note_overtime(double limit, const StopSignal& stop, std::chrono::steady_clock::time_point read,
                    const char* what);
 
-/// What is asked for; prior and seed are as the campaign says where the command line does not, the
-/// criterion the `usual` one, or D where that is V and base and targets do not count.
-PlanRequest make_request(const RequestArguments& arguments, const io::CampaignFile* campaign,
-                         Criterion usual);
+PlanRequest make_request(const RequestArguments& arguments);
 
 }  // namespace posewise::cli

@@ -10,9 +10,9 @@
 #include "interrupt.hpp"
 #include "measured.hpp"
 #include "plot.hpp"
-#include "posewise/io/json_reports.hpp"
+#include "posewise/io/documents.hpp"
 #include "posewise/report/reports.hpp"
-#include "posewise/task/error_map.hpp"
+#include "posewise/task/scene.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -89,7 +89,7 @@ io::PagePart show_choice(const Plan& plan, const ChoiceInputs& inputs) {
     part.error_map = map_if_possible([&] {
         const Candidates drawn =
             plan.kind == CandidateKind::Random
-                ? random_candidates(campaign, plan.candidate_count, plan.request.seed)
+                ? random_candidates(campaign, plan.candidate_count, plan.request.seed.value())
                 : inputs.candidates;
         return map_errors(plan, campaign, drawn, inputs.options);
     });

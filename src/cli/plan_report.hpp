@@ -6,8 +6,7 @@
 #include "page.hpp"
 #include "plan_inputs.hpp"
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/task/simulated_plan.hpp"
-#include "posewise/task/target.hpp"
+#include "posewise/task/planning.hpp"
 
 /// What plan says of the plan that it has written.
 namespace posewise::cli {

@@ -4,7 +4,7 @@
 
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
@@ -29,7 +29,8 @@ void add_target_options(CLI::App& command, TargetArguments& arguments,
         ->check(CLI::IsMember(quantities))
         ->capture_default_str()
         ->needs(limit);
-    command.add_option("--assurance", arguments.assurance, "With this probability")
+    command
+        .add_option("--assurance", arguments.assurance, "Probability with which the target is kept")
         ->check(real_number(0.01, 0.999))
         ->capture_default_str()
         ->needs(limit);

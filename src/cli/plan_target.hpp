@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "posewise/task/target.hpp"
+#include "posewise/task/planning.hpp"
 
 /// What plan is asked for in place of a number of poses.
 namespace posewise::cli {

@@ -37,7 +37,7 @@ std::optional<SimulatedPlan> verify_made(const VerificationArguments& arguments,
     simulated.digits = arguments.digits;
     simulated.most_robots = arguments.most_robots;
     simulated.workspace = options.workspace;
-    simulated.seed = options.seed;
+    simulated.seed = made.planning->plan.request.seed.value();
     simulated.stop = options.stop;
     if (made.ending != TargetEnding::NotRun) {
         simulated.quantity = made.target.quantity;

@@ -3,8 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
-#include "posewise/task/simulated_plan.hpp"
-#include "posewise/task/target.hpp"
+#include "posewise/task/planning.hpp"
 
 /// --verify of plan: its prediction on robots that are drawn.
 namespace posewise::cli {

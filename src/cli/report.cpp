@@ -7,7 +7,7 @@
 #include "common.hpp"
 #include "files.hpp"
 #include "options.hpp"
-#include "posewise/io/page_file.hpp"
+#include "posewise/io/documents.hpp"
 #include "saved.hpp"
 
 namespace posewise::cli {

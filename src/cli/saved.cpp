@@ -15,12 +15,11 @@
 #include "plan_inputs.hpp"
 #include "plan_report.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/io/json_reports.hpp"
-#include "posewise/io/plan_file.hpp"
-#include "posewise/io/saved_file.hpp"
-#include "posewise/measurement/exclusion.hpp"
-#include "posewise/task/residuals.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/documents.hpp"
+#include "posewise/io/result_files.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/task/calibration.hpp"
 #include "study_runs.hpp"
 
 namespace posewise::cli {

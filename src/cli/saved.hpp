@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "posewise/io/page_file.hpp"
+#include "posewise/io/documents.hpp"
 
 namespace posewise::cli {
 

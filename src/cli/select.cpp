@@ -16,10 +16,9 @@
 #include "measured.hpp"
 #include "plan_inputs.hpp"
 #include "plan_report.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/io/json_reports.hpp"
-#include "posewise/io/plan_file.hpp"
-#include "posewise/io/weights_file.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/documents.hpp"
+#include "posewise/io/result_files.hpp"
 #include "posewise/report/reports.hpp"
 #include "select_options.hpp"
 
@@ -63,9 +62,8 @@ CandidateKind kind_of(const SelectArguments& arguments) {
     return arguments.blocks.empty() ? CandidateKind::Measurements : CandidateKind::Blocks;
 }
 
-PlanRequest complete_request(const SelectArguments& arguments, const io::CampaignFile* campaign) {
-    PlanRequest request =
-        make_request(arguments, campaign, campaign != nullptr ? campaign->criterion : Criterion::D);
+PlanRequest request_of(const SelectArguments& arguments) {
+    PlanRequest request = make_request(arguments);
     request.sources.candidates = arguments.measurements + arguments.candidates + arguments.blocks;
     request.least_distance = to_radians(arguments.least_distance_deg);
     return request;
@@ -133,7 +131,7 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     const StopSignal stop{interrupted->get(), deadline_after(arguments.request.time_limit)};
     std::optional<io::CampaignFile> file;
     if (!arguments.request.sources.campaign.empty()) file = read_planned(arguments, stop);
-    const PlanRequest request = complete_request(arguments, file ? &*file : nullptr);
+    const PlanRequest request = request_of(arguments);
     const PlanSources& sources = request.sources;
     const bool has_default = arguments.out.empty() && !arguments.relaxes;
     const std::string out = has_default ? default_select_out(sources) : arguments.out;

@@ -11,8 +11,8 @@
 #include "measured.hpp"
 #include "options.hpp"
 #include "posewise/core/version.hpp"
-#include "posewise/io/json_reports.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/io/documents.hpp"
+#include "posewise/measurement/measurements.hpp"
 
 namespace posewise::cli {
 namespace {

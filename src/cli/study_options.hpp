@@ -9,7 +9,7 @@
 #include "common.hpp"
 #include "estimates.hpp"
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/task/simulated_study.hpp"
+#include "posewise/task/study.hpp"
 
 namespace posewise::cli {
 

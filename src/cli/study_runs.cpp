@@ -9,9 +9,9 @@
 #include "crew.hpp"
 #include "files.hpp"
 #include "measured.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/io/campaign_variation.hpp"
-#include "posewise/io/trial_store.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/campaign_file.hpp"
+#include "posewise/io/result_files.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {

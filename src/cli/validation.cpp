@@ -7,7 +7,7 @@
 #include "files.hpp"
 #include "measured.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/io/plan_file.hpp"
+#include "posewise/io/result_files.hpp"
 
 namespace posewise::cli {
 

@@ -4,7 +4,7 @@
 
 #include "calibrate_options.hpp"
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/io/estimate_file.hpp"
+#include "posewise/io/result_files.hpp"
 
 namespace posewise::cli {
 

@@ -11,8 +11,8 @@
 #include "options.hpp"
 #include "plan_inputs.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/io/json_reports.hpp"
-#include "posewise/io/plan_file.hpp"
+#include "posewise/io/documents.hpp"
+#include "posewise/io/result_files.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 
 namespace posewise::detail {
 

@@ -12,20 +12,10 @@ namespace {
 
 nlopt_algorithm algorithm_of(Method method) {
     switch (method) {
-        case Method::Mma:
-            return NLOPT_LD_MMA;
-        case Method::Slsqp:
-            return NLOPT_LD_SLSQP;
         case Method::Sbplx:
             return NLOPT_LN_SBPLX;
         case Method::Cobyla:
             return NLOPT_LN_COBYLA;
-        case Method::Crs2:
-            return NLOPT_GN_CRS2_LM;
-        case Method::Esch:
-            return NLOPT_GN_ESCH;
-        case Method::Isres:
-            return NLOPT_GN_ISRES;
         default:
             return NLOPT_LD_LBFGS;
     }
@@ -119,7 +109,6 @@ Maximum maximise(const BoxProblem& problem, const VectorXd& start, const Maximis
         nlopt_destroy);
     if (!handle) throw std::bad_alloc();
     Run run(problem, options, handle.get(), start, problem.value(start, nullptr));
-    nlopt_srand(options.seed);  // of this thread
     nlopt_set_max_objective(run.handle, value_callback, &run);
     nlopt_set_lower_bounds(run.handle, problem.lower.data());
     nlopt_set_upper_bounds(run.handle, problem.upper.data());

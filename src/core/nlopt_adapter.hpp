@@ -20,13 +20,8 @@ struct BoxProblem {
 
 enum class Method {
     Lbfgs,   ///< gradients, bounds
-    Mma,     ///< gradients, bounds
-    Slsqp,   ///< gradients, bounds
     Sbplx,   ///< derivative-free, bounds
     Cobyla,  ///< derivative-free, bounds and margin
-    Crs2,    ///< population, bounds: controlled random search [Kaelo & Ali 2006]
-    Esch,    ///< population, bounds: evolution [Santos et al. 2010]
-    Isres,   ///< population, bounds: evolution [Runarsson & Yao 2005]
 };
 
 struct MaximiseOptions {
@@ -35,7 +30,6 @@ struct MaximiseOptions {
     double step_tolerance = 1e-9;    ///< change of every coordinate to stop at
     double first_step = 0;           ///< of derivative-free methods; 0: theirs
     int evaluation_limit = 1000;
-    unsigned long seed = 1;  ///< of populations
     StopSignal stop{};
 };
 

@@ -1,4 +1,4 @@
-#include "posewise/core/reproducible.hpp"
+#include "posewise/core/threads.hpp"
 
 namespace posewise {
 

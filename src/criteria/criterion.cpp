@@ -3,7 +3,6 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cctype>
-#include <limits>
 #include <utility>
 
 #include "../core/decompositions.hpp"
@@ -59,11 +58,11 @@ double evaluate(Criterion criterion, const VectorXd& singular_values, Index pose
     }
     const detail::Objective objective = detail::make_objective(criterion, pose_count);
     const auto s = singular_values.array();
-    if (s.size() == 0) return -std::numeric_limits<double>::infinity();
+    if (s.size() == 0) return detail::value_if_singular;
     const double largest = s[0];
     const double least = s[s.size() - 1];
     if (!s.isFinite().all() || !(least > 1e-12 * largest)) {
-        return -std::numeric_limits<double>::infinity();
+        return detail::value_if_singular;
     }
     return spectral_criterion(objective, s.square().reverse().matrix()).value;
 }

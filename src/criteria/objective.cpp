@@ -13,8 +13,6 @@
 namespace posewise::detail {
 namespace {
 
-constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
-
 double log_determinant(const Eigen::LLT<MatrixXd>& cholesky) {
     return 2 * cholesky.matrixLLT().diagonal().unaryExpr(&logarithm).sum();
 }
@@ -57,7 +55,7 @@ double worst_prediction(const Objective& objective, const Eigen::LLT<MatrixXd>& 
 double of_eigenvalues(const Objective& objective, const MatrixXd& M, MatrixXd* slope) {
     const auto eigen = eigen_decomposition(
         M, slope == nullptr ? Eigen::EigenvaluesOnly : Eigen::ComputeEigenvectors);
-    if (!(eigen.eigenvalues()[0] > 0)) return minus_infinity;
+    if (!(eigen.eigenvalues()[0] > 0)) return value_if_singular;
     const Sloped spectral = spectral_criterion(objective, eigen.eigenvalues());
     if (slope != nullptr) {
         *slope =
@@ -117,13 +115,13 @@ double evaluate(const Objective& objective, const MatrixXd& M) {
         return evaluate(without_nuisance(objective), eliminate(M, objective.nuisance).M);
     }
     const Eigen::LLT<MatrixXd> cholesky(M);
-    if (!is_regular(cholesky, M)) return minus_infinity;
+    if (!is_regular(cholesky, M)) return value_if_singular;
     return evaluate_regular(objective, M, cholesky, nullptr);
 }
 
 MatrixXd gradient(const Objective& objective, const MatrixXd& M, double* value) {
     MatrixXd slope = MatrixXd::Zero(M.rows(), M.cols());
-    double result = minus_infinity;
+    double result = value_if_singular;
     if (!objective.nuisance.empty()) {
         const Reduction reduced = eliminate(M, objective.nuisance);
         if (reduced.M.size() > 0) {

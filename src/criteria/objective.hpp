@@ -6,6 +6,9 @@
 
 namespace posewise::detail {
 
+/// A criterion where the parameters cannot be told apart.
+constexpr double value_if_singular = -std::numeric_limits<double>::infinity();
+
 /// A criterion made ready for many information matrices of one problem.
 struct Objective {
     Criterion criterion = Criterion::D;
@@ -25,8 +28,8 @@ struct Objective {
 /// Throws InputError if pose_count is below 1, or for G and V without test poses.
 Objective make_objective(Criterion criterion, Index pose_count, const Blocks* test_poses = nullptr);
 
-/// The criterion of M (parameters square, symmetric). Minus infinity if M is singular, not
-/// positive definite or not finite; never NaN.
+/// The criterion of M (parameters square, symmetric). value_if_singular if M is
+/// singular, not positive definite or not finite; never NaN.
 double evaluate(const Objective& objective, const MatrixXd& M);
 
 /// The symmetric matrix Z with d evaluate(M) = trace(Z dM); zero where evaluate() is not finite.

@@ -11,8 +11,6 @@
 namespace posewise::detail {
 namespace {
 
-constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
-
 /// Columns in the order of elimination: nuisance first, those of interest from the last to the
 /// first.
 std::vector<Index> elimination_order(Index parameter_count, const std::vector<Index>& nuisance) {
@@ -66,9 +64,9 @@ double evaluate_factor(const Objective& objective, const MatrixXd& L) {
 
 double evaluate_rows(const Objective& objective, const RowMatrixXd& stacked) {
     const MatrixXd L = lower_factor(stacked, objective.nuisance);
-    if (L.size() == 0) return minus_infinity;
+    if (L.size() == 0) return value_if_singular;
     const double value = evaluate_factor(objective, L);
-    return std::isfinite(value) ? value : minus_infinity;
+    return std::isfinite(value) ? value : value_if_singular;
 }
 
 }  // namespace posewise::detail

@@ -5,18 +5,25 @@
 #include <algorithm>
 
 #include "../core/checksum.hpp"
+#include "../core/names.hpp"
 #include "../model/complete_model.hpp"
 #include "../model/exact_angles.hpp"
 #include "../model/joint_limits.hpp"
 #include "../model/sampling.hpp"
 #include "atomic_file.hpp"
 #include "campaign_sections.hpp"
-#include "posewise/calibrator/registration.hpp"
-#include "posewise/jacobian/identifiability.hpp"
+#include "file_kind.hpp"
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/jacobian/identification.hpp"
 #include "text.hpp"
 
 namespace posewise::io {
 namespace {
+
+constexpr detail::Names<ErrorModel, 4> error_models{{{ErrorModel::Full, "full"},
+                                                     {ErrorModel::Complete, "geometric"},
+                                                     {ErrorModel::Offsets, "offsets"},
+                                                     {ErrorModel::Stated, "stated"}}};
 
 using detail::Quantity;
 using detail::YamlMap;
@@ -246,21 +253,13 @@ CampaignFile parse(const std::string& content, const std::string& path,
 
 }  // namespace
 
-std::string_view error_model_name(ErrorModel model) {
-    if (model == ErrorModel::Stated) return "stated";
-    if (model == ErrorModel::Offsets) return "offsets";
-    return model == ErrorModel::Complete ? "geometric" : "full";
-}
+std::string_view error_model_name(ErrorModel model) { return detail::name_of(error_models, model); }
 
 ErrorModel parse_error_model(const std::string& name) {
     if (name == "complete") return ErrorModel::Complete;
-    std::vector<std::string> names;
-    for (const auto model :
-         {ErrorModel::Full, ErrorModel::Complete, ErrorModel::Offsets, ErrorModel::Stated}) {
-        names.emplace_back(error_model_name(model));
-        if (names.back() == name) return model;
-    }
-    throw InputError("is " + detail::quote(name) + "; " + detail::suggest(name, names));
+    if (const auto model = detail::find_named(error_models, name)) return *model;
+    throw InputError("is " + detail::quote(name) + "; " +
+                     detail::suggest(name, detail::words_of(error_models)));
 }
 
 void set_prior(CampaignFile& campaign, bool is_prior, const StopSignal& stop) {
@@ -304,6 +303,7 @@ CampaignFile read_planned_campaign(const std::string& path, std::optional<bool> 
 
 CampaignFile parse_campaign(const std::string& content, const std::string& path,
                             const StopSignal& stop) {
+    detail::check_file_kind(content, path, detail::FileKind::Campaign, "a campaign file (YAML)");
     return parse(content, path, std::nullopt, stop);
 }
 

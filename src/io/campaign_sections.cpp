@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "posewise/model/transforms.hpp"
+#include "posewise/model/chain.hpp"
 #include "text.hpp"
 
 namespace posewise::detail {

@@ -1,5 +1,3 @@
-#include "posewise/io/campaign_variation.hpp"
-
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
@@ -8,6 +6,7 @@
 #include <cmath>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/io/campaign_file.hpp"
 #include "text.hpp"
 
 namespace posewise::io {

@@ -1,5 +1,3 @@
-#include "posewise/io/correction_file.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,6 +6,7 @@
 #include "atomic_file.hpp"
 #include "csv_reader.hpp"
 #include "measurement_columns.hpp"
+#include "posewise/io/measurements_file.hpp"
 
 namespace posewise::io {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "atomic_file.hpp"
+#include "file_kind.hpp"
 #include "text.hpp"
 
 namespace posewise::detail {
@@ -29,6 +30,7 @@ std::string_view trim_row(std::string_view row) {
 
 CsvReader::CsvReader(const std::string& path) : path_(path), content_(read_file(path)) {
     if (content_.starts_with("\xEF\xBB\xBF")) content_.erase(0, 3);
+    check_file_kind(content_, path, FileKind::Table, "a table (CSV)");
     if (content_.starts_with("\xFF\xFE") || content_.starts_with("\xFE\xFF")) {
         throw input_error_at({path}, "is UTF-16; must be UTF-8 (or plain ASCII)");
     }

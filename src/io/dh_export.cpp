@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/io/dh_file.hpp"
+#include "posewise/io/robot_files.hpp"
 #include "units.hpp"
 
 namespace posewise::io {

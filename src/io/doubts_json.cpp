@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posewise/core/units.hpp"
+#include "../core/names.hpp"
+#include "posewise/core/types.hpp"
 #include "residual_look_json.hpp"
 
 namespace posewise::detail {
@@ -16,10 +17,9 @@ Json planes_to_json(const std::vector<PlaneDoubt>& planes) {
     return json;
 }
 
-const char* unit_name(PlaceDoubt::Unit unit) {
-    if (unit == PlaceDoubt::Unit::AsRead) return "as read";
-    return unit == PlaceDoubt::Unit::Metres ? "m" : "mm";
-}
+constexpr Names<PlaceDoubt::Unit, 3> unit_names{{{PlaceDoubt::Unit::AsRead, "as read"},
+                                                 {PlaceDoubt::Unit::Metres, "m"},
+                                                 {PlaceDoubt::Unit::Millimetres, "mm"}}};
 
 Json places_to_json(const std::vector<PlaceDoubt>& places) {
     Json json = Json::array();
@@ -27,7 +27,7 @@ Json places_to_json(const std::vector<PlaceDoubt>& places) {
         json.push_back({{"what", place.name},
                         {"stated_mm", vector_to_json(mm_per_m * place.stated)},
                         {"measured_mm", vector_to_json(mm_per_m * place.found)},
-                        {"unit", unit_name(place.unit)}});
+                        {"unit", name_of(unit_names, place.unit)}});
         if (!place.exchanged_with.empty()) json.back()["exchanged_with"] = place.exchanged_with;
         if (place.turn > 0) json.back()["turned_deg"] = to_degrees(place.turn);
     }
@@ -121,6 +121,11 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
                             {"nominal" + unit, mm_per_m * held_out->nominal},
                             {"rank_deviations", held_out->rank_deviations}};
     }
+    if (const auto& workspace = doubts.workspace) {
+        const std::string unit = error_suffix(!campaign.sensor->has_lengths());
+        json["workspace"] = {{"expected" + unit, mm_per_m * workspace->expected},
+                             {"nominal" + unit, mm_per_m * workspace->nominal}};
+    }
     if (!doubts.residuals.empty()) {
         const auto farthest = std::ranges::max(
             doubts.residuals, {},
@@ -143,11 +148,13 @@ Json cures_to_json(const Campaign& campaign, const Cures& cures) {
     const std::string unit = error_suffix(!campaign.sensor->has_lengths());
     Json found = Json::array();
     for (const Cure& cure : cures.found) {
-        found.push_back({{"option", cure.option},
+        found.push_back({{"option", spell(cure.remedy)},
                          {"held_out" + unit, mm_per_m * cure.after},
                          {"held_out_before" + unit, mm_per_m * cure.before}});
     }
-    return {{"found", std::move(found)}, {"without_effect", cures.without_effect}};
+    Json without_effect = Json::array();
+    for (const Remedy& remedy : cures.without_effect) without_effect.push_back(spell(remedy));
+    return {{"found", std::move(found)}, {"without_effect", std::move(without_effect)}};
 }
 
 }  // namespace posewise::detail

@@ -4,7 +4,7 @@
 
 #include "json_reader.hpp"
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/task/earlier.hpp"
+#include "posewise/task/calibration.hpp"
 
 /// What estimate files say of covariances.
 namespace posewise::detail {

@@ -1,5 +1,3 @@
-#include "posewise/io/estimate_file.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,11 +6,11 @@
 #include "atomic_file.hpp"
 #include "csv_reader.hpp"
 #include "doubts_json.hpp"
-#include "estimate_format.hpp"
 #include "json.hpp"
 #include "judgement_json.hpp"
 #include "parameters_json.hpp"
-#include "posewise/io/json_reports.hpp"
+#include "posewise/io/documents.hpp"
+#include "posewise/io/result_files.hpp"
 #include "robot_statement.hpp"
 
 namespace posewise::io {
@@ -143,6 +141,10 @@ Json accuracy_to_json(const Calibration& calibration) {
     }
     if (!calibration.predicted.empty()) {
         accuracy["predicted"] = predictions_to_json(calibration.predicted);
+        if (const auto& beyond = calibration.predicted_beyond) {
+            accuracy["predicted"]["extrapolated"] = {{"count", beyond->count},
+                                                     {"joints", beyond->joints}};
+        }
     }
     if (const auto& others = calibration.without_outliers) {
         accuracy["without_outliers"] = without_outliers_to_json(
@@ -255,7 +257,7 @@ Json estimate_to_json(const Calibration& calibration, const Provenance& made_fro
     const Campaign& campaign = calibration.campaign;
     const Estimate& estimate = calibration.estimate;
     const VectorXd sigmas = standard_deviations(estimate);
-    Json document = detail::make_document("estimate", detail::estimate_format);
+    Json document = detail::make_document("estimate");
     document["campaign"] = campaign.name;
     document["warnings"] = made_from.warnings;
     document["measurements"] = made_from.measurements;
@@ -264,6 +266,10 @@ Json estimate_to_json(const Calibration& calibration, const Provenance& made_fro
     if (!calibration.excluded.empty()) document["excluded"] = calibration.excluded;
     if (!calibration.held.empty()) document["held"] = calibration.held;
     document["method"] = method_name(calibration.method);
+    if (calibration.method == CalibrationMethod::Global) {
+        document["starts"] = calibration.starts;
+        document["starts_at_best"] = calibration.starts_at_best;
+    }
     document["ending"] = ending_name(estimate.ending);
     if (!calibration.faults.empty()) document["faults"] = calibration.faults;
     document["iterations"] = estimate.iterations;

@@ -6,14 +6,13 @@
 #include "../core/text.hpp"
 #include "campaign_sections.hpp"
 #include "estimate_covariance.hpp"
-#include "estimate_format.hpp"
 #include "json.hpp"
 #include "json_reader.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/io/estimate_file.hpp"
-#include "posewise/measurement/exclusion.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/result_files.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/model/chain.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/transforms.hpp"
 #include "robot_statement.hpp"
 #include "units.hpp"
 
@@ -238,12 +237,12 @@ std::vector<std::string> find_changes(const JsonValue& assumes, const Campaign& 
 }  // namespace
 
 Estimate read_estimate(const std::string& path, const Campaign& campaign) {
-    const detail::Json document = detail::read_estimate_document(path);
+    const detail::Json document = detail::read_document(path, "estimate");
     return read_estimate_of(JsonValue(document, path), campaign, {});
 }
 
 EarlierFile read_earlier(const std::string& path, const Campaign& campaign, const EarlierUse& use) {
-    const detail::Json document = detail::read_estimate_document(path);
+    const detail::Json document = detail::read_document(path, "estimate");
     const JsonValue root(document, path);
     EarlierFile earlier;
     earlier.estimate = read_estimate_of(root, campaign, use);
@@ -269,7 +268,7 @@ bool are_of_checksum(const std::string& checksum, const Measurements& measuremen
 }
 
 bool is_made_from(const std::string& estimate_path, const Measurements& measurements) {
-    const detail::Json document = detail::read_estimate_document(estimate_path);
+    const detail::Json document = detail::read_document(estimate_path, "estimate");
     const JsonValue root(document, estimate_path);
     constexpr const char* key = "measurements_checksum";
     if (!root.has("made_from") || !root["made_from"].has(key)) return false;
@@ -279,23 +278,3 @@ bool is_made_from(const std::string& estimate_path, const Measurements& measurem
 }
 
 }  // namespace posewise::io
-
-namespace posewise::detail {
-
-Json read_estimate_document(const std::string& path) {
-    Json document = read_document(path, "estimate");
-    const JsonValue root(document, path);
-    if (!root.has("format")) {
-        throw input_error_at({path}, fmt::format("has no key format; must be {}, as posewise "
-                                                 "writes it",
-                                                 estimate_format));
-    }
-    const JsonValue format = root["format"];
-    if (format.count(0) != estimate_format) {
-        throw format.error(fmt::format("is {}; this posewise reads {}: calibrate again with it",
-                                       format.count(0), estimate_format));
-    }
-    return document;
-}
-
-}  // namespace posewise::detail

@@ -1,14 +1,18 @@
 #include "json.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <set>
 
 #include "../core/text.hpp"
 #include "atomic_file.hpp"
+#include "file_kind.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/core/version.hpp"
+#include "text.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -23,10 +27,6 @@ FileLocation locate(const std::string& path, const std::string& content, std::si
     const std::size_t column =
         line_begin == std::string::npos ? before.size() : before.size() - line_begin - 1;
     return {path, static_cast<long>(line), static_cast<long>(column) + 1};
-}
-
-std::string with_article(const std::string& kind) {
-    return (kind.starts_with('e') ? "an " : "a ") + kind;
 }
 
 /// Indented, but a list of plain values on one line: a matrix reads as one.
@@ -82,13 +82,17 @@ class RepeatedKey {
     std::optional<std::string> key_;
 };
 
+/// The format that we write and read of a kind of document. It grows by one when a key is renamed,
+/// removed or means something else.
+int format_of(const std::string& kind) { return kind == "plan" ? 2 : 1; }
+
 }  // namespace
 
-Json make_document(const std::string& kind, int format) {
+Json make_document(const std::string& kind) {
     Json document;
     document["kind"] = "posewise " + kind;
     document["posewise_version"] = version;
-    document["format"] = format;
+    document["format"] = format_of(kind);
     document["warnings"] = Json::array();
     return document;
 }
@@ -111,6 +115,8 @@ void write_json(const std::string& path, const Json& document) {
 
 Json read_json(const std::string& path, const std::string& what) {
     const std::string content = read_file(path);
+    check_file_kind(content, path, FileKind::Document,
+                    with_article(what) + " as posewise writes it");
     Json document;
     RepeatedKey repeated;
     try {
@@ -138,14 +144,24 @@ Json read_json(const std::string& path, const std::string& what) {
     return document;
 }
 
-Json read_document(const std::string& path, const std::string& kind, const std::string& old_kind) {
+Json read_document(const std::string& path, const std::string& kind) {
+    const int format = format_of(kind);
     Json document = read_json(path, kind);
     const auto found = document.is_object() ? document.find("kind") : document.end();
-    const bool is_old =
-        found != document.end() && !old_kind.empty() && *found == "posewise " + old_kind;
-    if (!is_old && (found == document.end() || *found != "posewise " + kind)) {
+    if (found == document.end() || *found != "posewise " + kind) {
         throw input_error_at({path}, "kind: must be \"posewise " + kind + "\", as in " +
                                          with_article(kind) + " written by posewise");
+    }
+    const auto stated = document.find("format");
+    if (stated == document.end()) {
+        throw input_error_at({path}, fmt::format("has no key format; must be {}, as posewise "
+                                                 "writes it",
+                                                 format));
+    }
+    if (*stated != format) {
+        throw input_error_at({path}, fmt::format("format: is {}; this posewise reads {}: make the "
+                                                 "{} again with it",
+                                                 stated->dump(), format, kind));
     }
     return document;
 }

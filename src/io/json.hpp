@@ -13,9 +13,8 @@ namespace posewise::detail {
 using Json = nlohmann::ordered_json;
 
 /// The beginning of every document we write: what it is, which version wrote it, the format of what
-/// follows, which grows by one when a key is renamed, removed or means something else, and no
-/// warnings.
-Json make_document(const std::string& kind, int format);
+/// follows, and no warnings.
+Json make_document(const std::string& kind);
 
 /// The document as text, each number with as many digits as it takes to read it back exactly; what
 /// is infinite or unknown becomes null. Throws InputError, which names the place it is for, if a
@@ -29,10 +28,9 @@ void write_json(const std::string& path, const Json& document);
 /// else than JSON, and for a key that stands twice.
 Json read_json(const std::string& path, const std::string& what);
 
-/// Reads a document of that kind, or of an old one. Throws InputError for anything else, and for a
-/// key that stands twice.
-Json read_document(const std::string& path, const std::string& kind,
-                   const std::string& old_kind = "");
+/// Reads a document of that kind. Throws InputError for anything else, for another format than
+/// make_document() writes, and for a key that stands twice.
+Json read_document(const std::string& path, const std::string& kind);
 
 /// `_rad` or `_m`.
 std::string si_suffix(bool is_angle);

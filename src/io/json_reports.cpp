@@ -1,5 +1,3 @@
-#include "posewise/io/json_reports.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -8,14 +6,13 @@
 #include "measurement_columns.hpp"
 #include "parameters_json.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/documents.hpp"
 
 namespace posewise::io {
 namespace {
 
 using detail::Json;
-
-constexpr int report_format = 1;
 
 /// What a list is made of, one value each.
 template <class List, class Make>
@@ -82,7 +79,7 @@ Json inspection_to_json(const Inspection& inspection) {
     const Campaign& campaign = inspection.campaign;
     const bool is_stated = inspection.stated.has_value();
     const Identifiability& found = is_stated ? *inspection.stated : inspection.of_complete;
-    Json document = detail::make_document("inspection", report_format);
+    Json document = detail::make_document("inspection");
     document["campaign"] = campaign.name;
     document["model_error_mm"] = mm_per_m * campaign.model_error;
     document["model_error_mrad"] = mrad_per_rad * campaign.model_error_orientation;
@@ -279,7 +276,7 @@ std::string to_json(const Inspection& inspection, const ReadingSearch& readings)
 }
 
 std::string to_json(const Rating& rating, const Campaign& campaign) {
-    Json document = detail::make_document("indices", report_format);
+    Json document = detail::make_document("indices");
     document["campaign"] = campaign.name;
     document["configurations"] = rating.configurations;
     document["parameters"] = rating.parameters;
@@ -294,7 +291,7 @@ std::string to_json(const Rating& rating, const Campaign& campaign) {
 }
 
 std::string to_json(const Verification& verification, const Plan& plan, const std::string& path) {
-    Json document = detail::make_document("verification", report_format);
+    Json document = detail::make_document("verification");
     document["plan_file"] = path;
     document["pose_count"] = plan.request.pose_count;
     document["candidate_count"] = verification.candidate_count;
@@ -316,7 +313,7 @@ std::string to_json(const Verification& verification, const Plan& plan, const st
 
 std::string to_json(const std::vector<Study>& studies) {
     const Study& first = studies.front();
-    Json document = detail::make_document("study", report_format);
+    Json document = detail::make_document("study");
     document["campaign"] = first.campaign;
     document["ending"] = ending_name(first.ending);
     document["splits"] = first.splits;
@@ -334,7 +331,7 @@ std::string to_json(const std::vector<Study>& studies) {
 }
 
 std::string to_json(const Simulation& simulation, const Campaign& campaign) {
-    Json document = detail::make_document("simulation", report_format);
+    Json document = detail::make_document("simulation");
     document["campaign"] = campaign.name;
     document["configurations"] = simulation.measurements.configuration_count();
     document["samples"] = simulation.measurements.observations.rows();
@@ -343,7 +340,7 @@ std::string to_json(const Simulation& simulation, const Campaign& campaign) {
 }
 
 std::string to_json(const CorrectedPoses& poses, const Campaign& campaign) {
-    Json document = detail::make_document("correction", report_format);
+    Json document = detail::make_document("correction");
     document["campaign"] = campaign.name;
     document["uncorrected"] = pose_error_to_json(poses.corrections, &Correction::uncorrected);
     document["corrected"] = pose_error_to_json(poses.corrections, &Correction::residual);
@@ -360,7 +357,7 @@ std::string to_json(const CorrectedPoses& poses, const Campaign& campaign) {
 
 std::string to_json(const ExportedRobot& robot, const Campaign& campaign) {
     const Geometry& written = robot.written();
-    Json document = detail::make_document("export", report_format);
+    Json document = detail::make_document("export");
     document["campaign"] = campaign.name;
     document["geometry"] = robot.is_nearest ? "nearest" : "estimate";
     document["lost"]["nominal"] = loss_to_json(robot.nominal);

@@ -2,8 +2,6 @@
 
 #include <map>
 
-#include "estimate_format.hpp"
-
 namespace posewise::detail {
 namespace {
 

@@ -7,7 +7,7 @@
 
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
-#include "posewise/measurement/seen.hpp"
+#include "posewise/measurement/sensor.hpp"
 #include "units.hpp"
 
 /// Columns of CSV files of measurements and configurations, for reader and writers.

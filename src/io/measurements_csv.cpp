@@ -10,7 +10,7 @@
 #include "measurement_columns.hpp"
 #include "measurement_header.hpp"
 #include "posewise/io/measurements_file.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/model/chain.hpp"
 #include "sample_collector.hpp"
 #include "text.hpp"
 #include "units.hpp"

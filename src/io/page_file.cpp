@@ -1,5 +1,3 @@
-#include "posewise/io/page_file.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -8,14 +6,13 @@
 #include "json.hpp"
 #include "page_template.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/documents.hpp"
 
 namespace posewise::io {
 namespace {
 
 using detail::Json;
-
-constexpr int page_format = 1;
 
 /// Numbers that are drawn need not be read back exactly, and less text loads faster.
 double rounded(double value, double per_unit) { return std::round(per_unit * value) / per_unit; }
@@ -281,7 +278,7 @@ std::string fill_template(std::string_view page, const std::string& document) {
 }
 
 Json page_to_json(const std::vector<PagePart>& parts) {
-    Json document = detail::make_document("page", page_format);
+    Json document = detail::make_document("page");
     Json& list = document["parts"] = Json::array();
     for (const PagePart& part : parts) list.push_back(part_to_json(part));
     return document;

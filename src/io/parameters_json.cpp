@@ -2,8 +2,8 @@
 
 #include <numbers>
 
+#include "posewise/model/chain.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/transforms.hpp"
 
 namespace posewise::detail {
 namespace {

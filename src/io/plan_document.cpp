@@ -3,9 +3,9 @@
 #include <map>
 
 #include "plan_format.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/io/json_reports.hpp"
-#include "posewise/io/saved_file.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/documents.hpp"
+#include "posewise/io/result_files.hpp"
 
 namespace posewise::io {
 namespace {
@@ -161,6 +161,9 @@ void add_counts(Json& document, const Planning& planning) {
     document["new_pose_count"] = planning.search.pose_count;
     document["measured_count"] = planning.measured_count;
     document["workspace_count"] = planning.workspace_count;
+    Json& made_up = document["made_up"] = Json::array();
+    if (!planning.campaign.has_nominal_base) made_up.push_back("base");
+    if (!planning.campaign.has_nominal_targets) made_up.push_back("targets");
 }
 
 Json planning_to_json(const Planning& planning, const std::string& path) {
@@ -202,7 +205,7 @@ std::string to_json(const TargetPlanning& found, const std::string& path,
 }
 
 std::string read_saved_plan(const std::string& path, const Planning& judged) {
-    Json document = detail::read_plan_document(path);
+    Json document = detail::read_document(path, "plan");
     if (!document.contains("accuracy")) {
         add_accuracy(document, judged.plan, path);
         add_counts(document, judged);
@@ -212,7 +215,7 @@ std::string read_saved_plan(const std::string& path, const Planning& judged) {
 }
 
 std::string read_saved_plan(const std::string& path, const Plan& judged) {
-    Json document = detail::read_plan_document(path);
+    Json document = detail::read_document(path, "plan");
     if (!document.contains("accuracy")) add_accuracy(document, judged, path);
     return detail::json_text(document, path);
 }

@@ -1,5 +1,3 @@
-#include "posewise/io/plan_file.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,8 +9,9 @@
 #include "measurement_columns.hpp"
 #include "plan_format.hpp"
 #include "plan_paths.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/measurement/seen.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/result_files.hpp"
+#include "posewise/measurement/sensor.hpp"
 
 namespace posewise::io {
 namespace {
@@ -22,9 +21,7 @@ using detail::Json;
 Json candidates_to_json(const Plan& plan, const std::string& plan_path) {
     const PlanSources& sources = plan.request.sources;
     Json json;
-    json["kind"] = std::find_if(detail::candidate_kinds.begin(), detail::candidate_kinds.end(),
-                                [&](const auto& entry) { return entry.first == plan.kind; })
-                       ->second;
+    json["kind"] = detail::name_of(detail::candidate_kinds, plan.kind);
     json["campaign_file"] = detail::path_to_json(sources.campaign, plan_path);
     json["source"] = detail::path_to_json(sources.candidates, plan_path);
     if (plan.kind == CandidateKind::Blocks) {
@@ -234,14 +231,14 @@ void write_configurations_csv(const std::string& path, const Campaign& campaign,
 namespace posewise::detail {
 
 Json plan_to_json(const Plan& plan, const std::string& path) {
-    Json document = make_document(plan_kind, plan_format);
+    Json document = make_document("plan");
     document["campaign"] = plan.campaign.empty() ? Json(nullptr) : Json(plan.campaign);
     document["candidates"] = io::candidates_to_json(plan, path);
     document["problem"] = io::problem_to_json(plan, path);
     document["criterion"] = criterion_name(plan.request.criterion);
     document["value"] = plan.value;
     io::add_bounds(document, plan);
-    document["search"] = {{"seed", plan.request.seed},
+    document["search"] = {{"seed", plan.request.seed.value_or(1)},
                           {"starts", plan.request.starts},
                           {"starts_at_best", plan.starts_at_best},
                           {"stop_reason", ending_name(plan.ending)}};

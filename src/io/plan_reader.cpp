@@ -9,7 +9,7 @@
 #include "json_reader.hpp"
 #include "plan_format.hpp"
 #include "plan_paths.hpp"
-#include "posewise/io/plan_file.hpp"
+#include "posewise/io/result_files.hpp"
 
 namespace posewise::io {
 namespace {
@@ -46,9 +46,7 @@ double read_efficiency(const JsonValue& json) {
 
 CandidateKind read_kind(const JsonValue& json) {
     const std::string kind = json.text();
-    const auto found = std::find_if(detail::candidate_kinds.begin(), detail::candidate_kinds.end(),
-                                    [&](const auto& entry) { return entry.second == kind; });
-    if (found != detail::candidate_kinds.end()) return found->first;
+    if (const auto found = detail::find_named(detail::candidate_kinds, kind)) return *found;
     throw json.error("is '" + kind + "'; must be measurements, configurations, random or blocks");
 }
 
@@ -354,7 +352,7 @@ void check_poses(const JsonValue& list, const Plan& plan) {
 }  // namespace
 
 Plan read_plan(const std::string& path) {
-    const Json json = detail::read_plan_document(path);
+    const Json json = detail::read_document(path, "plan");
     const JsonValue document(json, path);
     Plan plan;
     read_all_poses(json, path, plan);
@@ -379,20 +377,3 @@ Plan read_plan(const std::string& path) {
 }
 
 }  // namespace posewise::io
-
-namespace posewise::detail {
-
-Json read_plan_document(const std::string& path) {
-    Json json = read_document(path, plan_kind, old_pose_plan_kind);
-    if (json["kind"] != std::string("posewise ") + plan_kind) return upgrade_pose_plan(json);
-    if (!json.contains("format")) return json;  // a choice of format 1, which has the same keys
-    const Index format = JsonValue(json, path)["format"].count(1);
-    if (format > plan_format) {
-        throw input_error_at({path}, "format: is " + std::to_string(format) +
-                                         ", written by a newer posewise; must be at most " +
-                                         std::to_string(plan_format));
-    }
-    return json;
-}
-
-}  // namespace posewise::detail

@@ -1,6 +1,6 @@
 #include "residual_look_json.hpp"
 
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "json.hpp"
-#include "posewise/task/residual_look.hpp"
+#include "posewise/task/doubts.hpp"
 
 namespace posewise::detail {
 

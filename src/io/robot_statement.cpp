@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/gravity_torque.hpp"
 
 namespace posewise::detail {
 namespace {

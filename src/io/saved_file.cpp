@@ -1,5 +1,3 @@
-#include "posewise/io/saved_file.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,10 +5,9 @@
 #include <utility>
 
 #include "../core/text.hpp"
-#include "estimate_format.hpp"
 #include "json_reader.hpp"
 #include "plan_format.hpp"
-#include "posewise/io/trial_store.hpp"
+#include "posewise/io/result_files.hpp"
 
 namespace posewise::io {
 namespace {
@@ -120,9 +117,8 @@ std::string read_checked(const std::string& path, const char* kind,
 SavedKind kind_of_saved(const std::string& path) {
     if (is_trial_store(path)) return SavedKind::Trials;
     const Json document = detail::read_json(path, saved_kinds);
-    static const std::array<std::pair<std::string, SavedKind>, 5> kinds{
+    static const std::array<std::pair<std::string, SavedKind>, 4> kinds{
         {{"posewise plan", SavedKind::Plan},
-         {"posewise pose plan", SavedKind::Plan},
          {"posewise estimate", SavedKind::Estimate},
          {"posewise study", SavedKind::Study},
          {"posewise export", SavedKind::Export}}};
@@ -140,9 +136,9 @@ SavedKind kind_of_saved(const std::string& path) {
 std::string read_saved_document(const std::string& path, SavedKind kind) {
     switch (kind) {
         case SavedKind::Plan:
-            return detail::json_text(detail::read_plan_document(path), path);
+            return detail::json_text(detail::read_document(path, "plan"), path);
         case SavedKind::Estimate:
-            return detail::json_text(detail::read_estimate_document(path), path);
+            return detail::json_text(detail::read_document(path, "estimate"), path);
         case SavedKind::Study:
             return read_checked(path, "study", check_study);
         case SavedKind::Export:
@@ -159,7 +155,7 @@ bool EstimateRecord::has_option(const std::string& name) const {
 }
 
 EstimateRecord read_estimate_record(const std::string& path) {
-    const Json document = detail::read_estimate_document(path);
+    const Json document = detail::read_document(path, "estimate");
     const JsonValue root(document, path);
     EstimateRecord record;
     record.campaign = root["campaign"].text();

@@ -28,6 +28,10 @@ std::size_t find_not_utf8(std::string_view text) {
     return std::string_view::npos;
 }
 
+std::string with_article(const std::string& noun) {
+    return (noun.starts_with('e') ? "an " : "a ") + noun;
+}
+
 bool is_identifier(std::string_view text) {
     return !text.empty() && is_letter(text[0]) && std::all_of(text.begin(), text.end(), [](char c) {
         return is_letter(c) || is_digit(c);

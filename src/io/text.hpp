@@ -13,6 +13,9 @@ std::string_view trim(std::string_view text);
 /// Where the first byte is that is not of UTF-8 text; npos if all are.
 std::size_t find_not_utf8(std::string_view text);
 
+/// "a plan", "an estimate".
+std::string with_article(const std::string& noun);
+
 /// Letters, digits and underscores, not starting with a digit.
 bool is_identifier(std::string_view text);
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "posewise/task/trials.hpp"
+#include "posewise/task/study.hpp"
 
 namespace posewise::detail {
 

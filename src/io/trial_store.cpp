@@ -1,5 +1,3 @@
-#include "posewise/io/trial_store.hpp"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -14,6 +12,7 @@
 #include "database.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/version.hpp"
+#include "posewise/io/result_files.hpp"
 #include "trial_statement.hpp"
 
 namespace posewise::io {

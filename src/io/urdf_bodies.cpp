@@ -9,8 +9,8 @@
 
 #include "../measurement/cell_check.hpp"
 #include "../model/sampling.hpp"
-#include "posewise/io/urdf_file.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/io/robot_files.hpp"
+#include "posewise/model/chain.hpp"
 #include "text.hpp"
 #include "urdf_tree.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "../core/text.hpp"
 #include "json.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/io/urdf_file.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/robot_files.hpp"
 
 namespace posewise::io {
 namespace {

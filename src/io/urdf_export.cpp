@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "posewise/model/chain.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/transforms.hpp"
 #include "urdf_tree.hpp"
 
 namespace posewise::io {

@@ -1,8 +1,7 @@
-#include "posewise/io/urdf_file.hpp"
-
 #include <algorithm>
 
-#include "posewise/model/transforms.hpp"
+#include "posewise/io/robot_files.hpp"
+#include "posewise/model/chain.hpp"
 #include "robot_parts.hpp"
 #include "text.hpp"
 #include "urdf_tree.hpp"

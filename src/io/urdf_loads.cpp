@@ -1,4 +1,4 @@
-#include "posewise/io/urdf_file.hpp"
+#include "posewise/io/robot_files.hpp"
 #include "text.hpp"
 #include "urdf_tree.hpp"
 

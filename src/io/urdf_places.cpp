@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "posewise/model/transforms.hpp"
+#include "posewise/model/chain.hpp"
 #include "urdf_tree.hpp"
 
 namespace posewise::detail {

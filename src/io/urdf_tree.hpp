@@ -1,6 +1,6 @@
 #pragma once
 
-#include "posewise/io/urdf_file.hpp"
+#include "posewise/io/robot_files.hpp"
 #include "xml_document.hpp"
 
 namespace posewise::detail {

@@ -1,5 +1,3 @@
-#include "posewise/io/weights_file.hpp"
-
 #include <fmt/format.h>
 
 #include <iterator>
@@ -8,24 +6,23 @@
 #include "csv_reader.hpp"
 #include "json.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/io/json_reports.hpp"
+#include "posewise/io/documents.hpp"
+#include "posewise/io/result_files.hpp"
 
 namespace posewise::io {
 namespace {
 
 using detail::Json;
 
-constexpr int weights_format = 1;
-
 Json design_to_json(const ApproximateDesign& design) {
     const PlanRequest& request = design.request;
-    Json document = detail::make_document("weights", weights_format);
+    Json document = detail::make_document("weights");
     document["campaign"] = design.campaign.empty() ? Json(nullptr) : Json(design.campaign);
     document["criterion"] = criterion_name(request.criterion);
     document["pose_count"] = request.pose_count;
     document["repeat_limit"] = request.repeat_limit;
     document["prior"] = request.has_prior;
-    document["seed"] = request.seed;
+    document["seed"] = request.seed.value();
     document["candidate_count"] = design.candidate_count;
     document["value"] = design.value;
     document["bound"] = design.bound;

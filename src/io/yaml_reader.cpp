@@ -51,6 +51,17 @@ std::string suggest_key(const std::string& unknown, const std::vector<std::strin
     return suggest(unknown, keys);
 }
 
+/// Whether a line of the file begins with a tab, or with spaces and a tab.
+bool is_indented_by_tab(const std::string& content, const YAML::Mark& mark) {
+    if (mark.is_null()) return false;
+    std::size_t begin = 0;
+    for (int line = 0; line < mark.line && begin < content.size(); ++line) {
+        begin = std::min(content.find('\n', begin), content.size() - 1) + 1;
+    }
+    const std::size_t end = content.find_first_not_of(" \t", begin);
+    return content.substr(begin, end - begin).find('\t') != std::string::npos;
+}
+
 /// UTF-16, which begins with a byte order mark, is left to the parser.
 void check_utf8(const std::string& content, const std::string& path) {
     if (content.starts_with("\xFF\xFE") || content.starts_with("\xFE\xFF")) return;
@@ -265,9 +276,11 @@ YamlValue parse_yaml(const std::string& content, const std::string& path) {
         // another.
         if (parser.HandleNextDocument(starts)) parser.HandleNextDocument(starts);
     } catch (const YAML::Exception& problem) {
-        throw input_error_at(
-            locate(path, problem.mark),
-            "is not YAML: " + escape_controls(problem.msg) + "; correct it there or just before");
+        throw input_error_at(locate(path, problem.mark),
+                             is_indented_by_tab(content, problem.mark)
+                                 ? "the line is indented by a tab; must be by spaces"
+                                 : "is not YAML: " + escape_controls(problem.msg) +
+                                       "; correct it there or just before");
     }
     if (document.IsNull()) {
         throw input_error_at({path}, "is empty, or begins with no key; must be a campaign in YAML");

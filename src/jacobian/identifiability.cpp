@@ -1,5 +1,3 @@
-#include "posewise/jacobian/identifiability.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/QR>
@@ -14,6 +12,7 @@
 #include "../model/complete_model.hpp"
 #include "../model/sampling.hpp"
 #include "nominal_factor.hpp"
+#include "posewise/jacobian/identification.hpp"
 
 namespace posewise {
 namespace {

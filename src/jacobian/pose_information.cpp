@@ -66,7 +66,16 @@ MatrixXd PoseInformation::evaluate(const VectorXd& q, const SeenTargets& is_seen
 
 VectorXd PoseInformation::differentiate(const VectorXd& q, const MatrixXd& Z,
                                         const SeenTargets& is_seen) const {
-    if (is_blind(is_seen)) return VectorXd::Zero(q.size());
+    return differentiate_weighed(
+        q, [&](const RowMatrixXd& B) -> RowMatrixXd { return B * Z; }, is_seen);
+}
+
+VectorXd PoseInformation::differentiate_weighed(const VectorXd& q, const Weigh& weigh,
+                                                const SeenTargets& is_seen) const {
+    if (is_blind(is_seen)) {
+        weigh(RowMatrixXd::Zero(0, parameter_count()));
+        return VectorXd::Zero(q.size());
+    }
     const Sensor& sensor = *campaign_.sensor;
     const std::vector<Index> rows = rows_shown(sensor, is_seen);
     FlangeMotion motion;
@@ -79,8 +88,10 @@ VectorXd PoseInformation::differentiate(const VectorXd& q, const MatrixXd& Z,
     keep_rows(rows, P);
     keep_rows_and_columns(rows, S);
     const Eigen::LLT<MatrixXd> cholesky(S);
-    cholesky.solveInPlace(P);
-    RowMatrixXd PZ = P * Z;
+    cholesky.matrixL().solveInPlace(P);  // the block
+    RowMatrixXd PZ = weigh(P);
+    cholesky.matrixU().solveInPlace(PZ);
+    cholesky.matrixU().solveInPlace(P);
     const MatrixXd X = PZ * P.transpose();
     PZ *= scale_.asDiagonal();
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
+
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/measurement/seen.hpp"
+#include "posewise/measurement/sensor.hpp"
 
 namespace posewise::detail {
 
@@ -30,6 +32,12 @@ class PoseInformation {
     /// d trace = 2 trace(Z P^T dJ) - trace(P Z P^T dS).
     VectorXd differentiate(const VectorXd& q, const MatrixXd& Z,
                            const SeenTargets& is_seen = {}) const;
+
+    /// The same where Z is known by what it makes of a block: `weigh` is called once, with B, and
+    /// returns B Z.
+    using Weigh = std::function<RowMatrixXd(const RowMatrixXd& B)>;
+    VectorXd differentiate_weighed(const VectorXd& q, const Weigh& weigh,
+                                   const SeenTargets& is_seen = {}) const;
 
   private:
     const Campaign& campaign_;

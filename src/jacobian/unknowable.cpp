@@ -1,5 +1,3 @@
-#include "posewise/jacobian/unknowable.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,7 +12,7 @@
 #include "../core/text.hpp"
 #include "nominal_factor.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/jacobian/identification.hpp"
 
 namespace posewise {
 namespace {
@@ -139,7 +137,11 @@ Unknowable find_unknowable(const Campaign& campaign, const StopSignal& stop) {
     Campaign bare = with_robot(campaign, without_parameters(campaign.robot));
     // Most bases stand upright.
     if (!campaign.has_nominal_base) bare.nominal.world_from_base.linear().setIdentity();
-    if (campaign.prior || parameter_count(bare) == 0) return found;
+    const auto& prior = campaign.prior;
+    if ((prior && (prior->has_base || prior->has_sensor)) || parameter_count(bare) == 0) {
+        return found;
+    }
+    bare.prior.reset();
     const Search search(detail::factor_at_nominal(bare, stop), stop);
     const std::vector<std::string> names = parameter_names(bare);
     for (const Index k : search.dropped_without({})) {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/model/chain.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/transforms.hpp"
 
 namespace posewise {
 namespace {

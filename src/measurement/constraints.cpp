@@ -289,7 +289,7 @@ std::string describe_unchecked_bodies(const Campaign& campaign) {
     if (cell.links.empty()) {
         text =
             "the arm is not kept off the cell's obstacles, since cell.links are not stated: "
-            "state them (inspect --write-campaign makes them from a URDF's collision shapes)";
+            "state them (a campaign made from a URDF has them from its collision shapes)";
     }
     if (are_balls && !campaign.has_nominal_targets) {
         text += std::string(text.empty() ? "" : "; ") +

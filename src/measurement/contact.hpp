@@ -5,7 +5,7 @@
 
 #include "../model/joint_limits.hpp"
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/measurement/seen.hpp"
+#include "posewise/measurement/sensor.hpp"
 
 /// Poses that a sensor with has_contacts() can measure: what the robot touches it has to reach.
 namespace posewise::detail {

@@ -1,5 +1,3 @@
-#include "posewise/measurement/exclusion.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/measurements.hpp"
 
 namespace posewise {
 namespace {

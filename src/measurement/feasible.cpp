@@ -5,7 +5,7 @@
 #include "../model/halton.hpp"
 #include "places.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/pool.hpp"
+#include "posewise/measurement/constraints.hpp"
 
 namespace posewise::detail {
 namespace {

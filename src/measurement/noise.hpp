@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/measurement/seen.hpp"
+#include "posewise/measurement/sensor.hpp"
 
 namespace posewise::detail {
 

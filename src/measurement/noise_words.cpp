@@ -6,7 +6,7 @@
 
 #include "../core/format.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "posewise/measurement/point_noise.hpp"
 #include "posewise/measurement/sensor.hpp"
+#include "posewise/measurement/sensors.hpp"
 
 /// What sensors that observe points say of their noise.
 namespace posewise::detail {

@@ -1,9 +1,8 @@
-#include "posewise/measurement/point_noise.hpp"
-
 #include <cmath>
 
 #include "noise_words.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/sensors.hpp"
 
 namespace posewise {
 namespace {

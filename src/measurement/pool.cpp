@@ -1,5 +1,3 @@
-#include "posewise/measurement/pool.hpp"
-
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -8,6 +6,7 @@
 #include "../core/parallel.hpp"
 #include "../model/halton.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/constraints.hpp"
 
 namespace posewise {
 namespace {
@@ -199,7 +198,7 @@ void check_pool_size(const Pool& pool, Index needed) {
             : " or relax " + std::string(constraint_name(static_cast<Constraint>(kinds.front())));
     throw InputError("the pool has only " + std::to_string(count) + " feasible poses of " +
                      std::to_string(pool.candidate_count) + " candidates, " +
-                     std::to_string(needed) + " are needed; raise --pool" + relax);
+                     std::to_string(needed) + " are needed; raise `pool_count`" + relax);
 }
 
 std::string describe_rejections(const Pool& pool) {

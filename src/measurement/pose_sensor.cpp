@@ -5,9 +5,9 @@
 #include "../core/format.hpp"
 #include "noise_words.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/measurement/sensors.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/model/chain.hpp"
 
 namespace posewise {
 

@@ -1,4 +1,4 @@
-#include "posewise/measurement/seen.hpp"
+#include "posewise/measurement/sensor.hpp"
 
 namespace posewise {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "../core/format.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/model/chain.hpp"
 
 namespace posewise {
 namespace {

@@ -1,5 +1,3 @@
-#include "posewise/measurement/simulation.hpp"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -15,6 +13,7 @@
 #include "places.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/model/error_terms.hpp"
 
 namespace posewise {

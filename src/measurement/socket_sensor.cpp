@@ -7,7 +7,7 @@
 #include "../core/text.hpp"
 #include "noise_words.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "tilted_direction.hpp"
 

@@ -1,11 +1,10 @@
-#include "posewise/measurement/targets.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/sensor.hpp"
 
 namespace posewise {
 namespace {

@@ -1,6 +1,6 @@
 #include "tilted_direction.hpp"
 
-#include "posewise/model/transforms.hpp"
+#include "posewise/model/chain.hpp"
 
 namespace posewise::detail {
 

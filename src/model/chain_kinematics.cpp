@@ -3,7 +3,7 @@
 #include "../core/elementary.hpp"
 #include "element_amount.hpp"
 #include "posewise/model/chain.hpp"
-#include "posewise/model/gravity_torque.hpp"
+#include "posewise/model/error_terms.hpp"
 
 namespace posewise {
 namespace {

@@ -1,9 +1,7 @@
-#include "posewise/model/comparison.hpp"
-
 #include <algorithm>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/model/chain.hpp"
 #include "sampling.hpp"
 
 namespace posewise {

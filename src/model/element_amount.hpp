@@ -2,7 +2,7 @@
 
 #include "../core/elementary.hpp"
 #include "posewise/model/chain.hpp"
-#include "posewise/model/gravity_torque.hpp"
+#include "posewise/model/error_terms.hpp"
 
 /// How far an element moves at a configuration.
 namespace posewise::detail {

@@ -1,10 +1,9 @@
-#include "posewise/model/geometry.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/model/cell.hpp"
 
 namespace posewise {
 namespace {

@@ -1,11 +1,10 @@
-#include "posewise/model/gravity_torque.hpp"
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "sampling.hpp"
 
 namespace posewise {

@@ -1,9 +1,8 @@
-#include "posewise/model/transforms.hpp"
-
 #include <Eigen/SVD>
 #include <cmath>
 
 #include "../core/elementary.hpp"
+#include "posewise/model/chain.hpp"
 
 namespace posewise {
 namespace {

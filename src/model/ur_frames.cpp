@@ -1,5 +1,3 @@
-#include "posewise/model/ur_frames.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -7,8 +5,9 @@
 
 #include "driven_axes.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/model/chain.hpp"
+#include "posewise/model/dh.hpp"
 
 namespace posewise {
 namespace {

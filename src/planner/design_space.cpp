@@ -30,6 +30,9 @@ DesignSpace make_design_space(const Campaign& campaign, const Parameters& parame
     space.information_gradient = [pose, seen](const VectorXd& q, const MatrixXd& Z) {
         return pose->differentiate(q, Z, seen(q));
     };
+    space.weighed_gradient = [pose, seen](const VectorXd& q, const DesignSpace::Weigh& weigh) {
+        return pose->differentiate_weighed(q, weigh, seen(q));
+    };
     if (constraints == nullptr) return space;
     space.is_pool_only = constraints->needs_contact();
     space.least_joint_distance = constraints->cell().least_joint_distance;
@@ -80,8 +83,8 @@ void check_all_is_seen(const DesignSpace& space, const RowMatrixXd& rows) {
                       : "unknown";
     throw InputError(fmt::format(
         "the best plan found leaves the parameter direction {} (in expected errors) {}, must be "
-        "known to {} times at worst; take more poses, more starts or a prior (--poses, --starts, "
-        "--prior)",
+        "known to {} times at worst; take more poses, more starts or a prior (`pose_count`, "
+        "`starts`, `spread.is_prior`)",
         describe_combination(directions.rightCols(1), space.parameter_names), deviation,
         largest_deviation));
 }

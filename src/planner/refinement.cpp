@@ -6,6 +6,7 @@
 #include "../core/decompositions.hpp"
 #include "../core/elementary.hpp"
 #include "../core/nlopt_adapter.hpp"
+#include "pose_merit.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::detail {
@@ -134,13 +135,31 @@ class Refiner {
         for (Index i = 0; i < poses_.rows() && !has_stopped(); ++i) move_one(objective, i, method);
     }
 
+    double quick_merit(const PoseMerit& quick, const VectorXd& q, VectorXd* slope) const {
+        if (slope == nullptr) return quick.evaluate(space_.rows(q));
+        double value = 0;
+        *slope = space_.weighed_gradient(q, [&](const RowMatrixXd& B) {
+            RowMatrixXd BZ;
+            value = quick.evaluate(B, &BZ);
+            return BZ;
+        });
+        return value;
+    }
+
     /// The best place of pose i with the others at rest.
     void move_one(const Objective& objective, Index i, Method method) {
         const MatrixXd rest = information_without(i);
         BoxProblem problem;
         problem.lower = space_.lower;
         problem.upper = space_.upper;
+        const auto quick = space_.weighed_gradient
+                               ? PoseMerit::make(objective, rest, space_.rows(pose(i)))
+                               : std::nullopt;
         problem.value = [&](const VectorXd& q, VectorXd* slope) {
+            if (quick) {
+                const double value = quick_merit(*quick, q, slope);
+                if (std::isfinite(value)) return value;
+            }
             const MatrixXd M = rest + information(q);
             if (slope == nullptr) return merit(objective, M);
             const SlopedMerit sloped = sloped_merit(objective, M);

@@ -40,9 +40,20 @@ Maximum climb(const DesignSpace& space, const MatrixXd& Z, const VectorXd& start
     problem.lower = space.lower;
     problem.upper = space.upper;
     problem.margin = space.margin;
+    double value = 0;  // trace(B Z B^T)
+    const auto weigh = [&](const RowMatrixXd& B) {
+        RowMatrixXd BZ = B * Z;
+        value = BZ.cwiseProduct(B).sum();
+        return BZ;
+    };
     problem.value = [&](const VectorXd& q, VectorXd* slope) {
+        if (slope != nullptr && space.weighed_gradient) {
+            *slope = space.weighed_gradient(q, weigh);
+            return value;
+        }
         if (slope != nullptr) *slope = space.information_gradient(q, Z);
-        return Z.cwiseProduct(space.information(q)).sum();
+        weigh(space.rows(q));
+        return value;
     };
     MaximiseOptions options;
     options.stop = stop;

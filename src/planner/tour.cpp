@@ -294,7 +294,7 @@ double straight_tour_time(const Constraints& constraints, const RowMatrixXd& pos
     const StopSignal never;
     return shortest_order(times_between(speed_of(constraints),
                                         nodes_of(constraints.cell().home, poses), Respite(never)),
-               options)
+                          options)
         .time;
 }
 

@@ -9,7 +9,7 @@
 #include "calibration_tables.hpp"
 #include "error_classes.hpp"
 #include "judgement_report.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/report/reports.hpp"
 #include "residual_look_report.hpp"
 #include "sentences.hpp"
@@ -142,7 +142,8 @@ std::string describe_tried(const Calibration& calibration) {
     for (const Cure& cure : calibration.cures.found) {
         text += detail::describe(cure, calibration.campaign) + '\n';
     }
-    const auto& others = calibration.cures.without_effect;
+    std::vector<std::string> others;
+    std::ranges::transform(calibration.cures.without_effect, std::back_inserter(others), &spell);
     if (others.empty()) return text;
     return text + fmt::format("tried, of little or no use: {}\n",
                               detail::escape_controls(fmt::format("{}", fmt::join(others, ", "))));
@@ -231,7 +232,7 @@ std::string format_accuracy(const Calibration& calibration) {
         text += fmt::format(
             "held out: {} folds, {} of them not identifiable{}\n", calibration.held_out->folds,
             calibration.held_out->failures.size(),
-            detail::is_by_few_poses(calibration.expected)
+            calibration.expected.is_by_few_poses()
                 ? "; each tells much that the others do not, so that they are missed by more than "
                   "other poses will be"
                 : "");

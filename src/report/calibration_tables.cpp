@@ -5,10 +5,10 @@
 #include <functional>
 
 #include "../core/format.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/measurement/sensors.hpp"
+#include "posewise/model/chain.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/transforms.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "../core/format.hpp"
 #include "../core/text.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/report/reports.hpp"
 #include "residual_look_report.hpp"
 #include "sentences.hpp"
@@ -179,16 +179,13 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     if (doubts.held_out) {
         sentences.push_back(at + describe_held_out(calibration.campaign, *doubts.held_out));
     }
-    constexpr double far_more = 2;
-    const auto& workspace = calibration.expected_workspace;
-    if (workspace && detail::is_by_few_poses(calibration.expected) &&
-        workspace->total() > far_more * calibration.nominal.rms()) {
+    if (const auto& workspace = doubts.workspace) {
         const bool is_angle = !calibration.campaign.sensor->has_lengths();
         sentences.push_back(fmt::format(
             "{}it is expected to miss poses of the workspace by {}, the nominal robot misses those "
             "measured by {}: too few poses, or too much alike, to calibrate it by",
-            at, detail::format_error(workspace->total(), is_angle),
-            detail::format_error(calibration.nominal.rms(), is_angle)));
+            at, detail::format_error(workspace->expected, is_angle),
+            detail::format_error(workspace->nominal, is_angle)));
     }
     if (sentences.empty() && calibration.faults.empty()) return sentences;
     for (const Cure& cure : calibration.cures.found) {

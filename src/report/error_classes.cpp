@@ -4,7 +4,7 @@
 #include <map>
 
 #include "../core/format.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/model/error_terms.hpp"
 
 namespace posewise::detail {

@@ -7,7 +7,7 @@
 #include "../core/format.hpp"
 #include "../core/text.hpp"
 #include "error_classes.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/report/reports.hpp"
 #include "robot_tables.hpp"
@@ -172,6 +172,17 @@ std::string describe_rounded(Index count) {
 }
 
 }  // namespace
+
+std::string describe_narrow_limits(const Campaign& campaign, const std::vector<Index>& joints) {
+    std::string text;
+    for (const Index j : joints) {
+        const Joint& joint = campaign.robot.joint(j);
+        text += fmt::format("{}{} ({:g} to {:g} deg)", text.empty() ? "" : ", ", joint.name,
+                            to_degrees(joint.lower), to_degrees(joint.upper));
+    }
+    if (text.empty()) return "";
+    return "limits of " + text + " are far narrower than those of the others: are they in rad?";
+}
 
 std::string describe(const OnAxis& on_axis) {
     return fmt::format(

@@ -5,7 +5,7 @@
 
 #include "../core/format.hpp"
 #include "../core/text.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "sentences.hpp"
 
 namespace posewise::detail {

@@ -12,7 +12,7 @@
 #include "../core/format.hpp"
 #include "gnuplot.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 
 namespace posewise::detail {
 namespace {

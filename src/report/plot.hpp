@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
+#include "posewise/task/calibration.hpp"
 #include "posewise/task/plan.hpp"
-#include "posewise/task/residuals.hpp"
 #include "posewise/task/scene.hpp"
 #include "posewise/task/study.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "../core/format.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "sentences.hpp"
 #include "table.hpp"
 

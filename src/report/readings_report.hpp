@@ -3,7 +3,7 @@
 #include <string>
 
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/task/readings.hpp"
+#include "posewise/task/doubts.hpp"
 
 namespace posewise::detail {
 

@@ -8,7 +8,7 @@
 
 #include "../core/format.hpp"
 #include "../core/text.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -40,9 +40,10 @@ std::string describe(const OutlyingConfigurations& outlying, const Cures& cures,
         text += fmt::format(" ({} and {} fit with each other's joint values: rows exchanged?)",
                             outlying.exchanged->first, outlying.exchanged->second);
     }
-    const std::string option = fmt::format("--exclude {}", fmt::join(outlying.ids, ","));
-    if (std::ranges::count(cures.found, option, &Cure::option) > 0) return text;
-    return text + fmt::format("; with {}: {}", option, describe(outlying.held_out, campaign));
+    const Remedy remedy = exclusion(outlying.ids);
+    if (std::ranges::count(cures.found, remedy, &Cure::remedy) > 0) return text;
+    return text +
+           fmt::format("; with {}: {}", spell(remedy), describe(outlying.held_out, campaign));
 }
 
 std::string describe(const SetUpChange& change, const Campaign& campaign) {
@@ -58,7 +59,7 @@ std::string describe(const SetUpChange& change, const Campaign& campaign) {
         is_base || change.part.starts_with("socket") || change.part.starts_with("readings");
     text += is_in_world ? " in the instrument's frame" : " in the flange's frame";
     if (!change.excluded.empty()) {
-        return text + fmt::format("; with --exclude {}: {}", change.excluded,
+        return text + fmt::format("; with {}: {}", spell(exclusion({change.excluded})),
                                   describe(change.held_out, campaign));
     }
     return text +

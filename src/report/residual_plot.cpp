@@ -7,7 +7,7 @@
 #include "gnuplot.hpp"
 #include "plot.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 
 namespace posewise::detail {
 namespace {

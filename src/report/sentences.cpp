@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "../core/format.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -83,13 +83,9 @@ std::string describe_looseness(double efficiency, Index starts_at_best, Index st
 
 std::string describe(const Cure& cure, const Campaign& campaign) {
     const bool is_angle = !campaign.sensor->has_lengths();
-    return fmt::format("with {}: {} instead of {} {} held out", cure.option,
+    return fmt::format("with {}: {} instead of {} {} held out", spell(cure.remedy),
                        format_short(1e3 * cure.after, 3), format_short(1e3 * cure.before, 3),
                        units_of(is_angle).error);
-}
-
-bool is_by_few_poses(const ExpectedError& expected) {
-    return std::sqrt(2) * expected.parameters > std::hypot(expected.model, expected.noise);
 }
 
 std::string format_error(double value, bool is_angle) {

@@ -4,7 +4,7 @@
 
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/task/held_out.hpp"
+#include "posewise/task/judgement.hpp"
 
 /// Sentences about a campaign and about results, as reports and messages use them.
 namespace posewise::detail {
@@ -22,7 +22,6 @@ std::string describe_looseness(double efficiency, Index starts_at_best, Index st
 std::string describe(const Cure& cure, const Campaign& campaign);
 
 /// Whether parameters are so little known that leaving a pose out makes a difference.
-bool is_by_few_poses(const ExpectedError& expected);
 
 /// "1 mm", "-0.5 mrad": a small error with its unit.
 std::string format_error(double value, bool is_angle);

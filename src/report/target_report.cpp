@@ -7,7 +7,7 @@
 
 #include "../core/format.hpp"
 #include "../core/text.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/report/reports.hpp"
 #include "table.hpp"
 

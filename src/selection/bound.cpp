@@ -41,7 +41,7 @@ Objective make_objective(const Blocks& candidates, const SelectOptions& options)
     }
     if (objective.test_poses != nullptr || !has_information_function(options.criterion)) {
         throw InputError("criterion " + std::string(criterion_name(options.criterion)) +
-                         " cannot leave columns out of account (--focus robot, nuisance columns); "
+                         " cannot leave columns out of account (`is_focused_on_robot`, nuisance columns); "
                          "must be d, a, e, o1, o3 or o5");
     }
     objective.nuisance = options.nuisance;

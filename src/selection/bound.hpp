@@ -1,7 +1,7 @@
 #pragma once
 
 #include "../criteria/objective.hpp"
-#include "posewise/selection/exchange.hpp"
+#include "posewise/selection/choice.hpp"
 
 namespace posewise::detail {
 

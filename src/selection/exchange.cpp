@@ -1,5 +1,3 @@
-#include "posewise/selection/exchange.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +15,7 @@
 #include "branch_and_bound.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/selection/choice.hpp"
 #include "recombination.hpp"
 #include "relaxation.hpp"
 #include "validation.hpp"
@@ -54,7 +53,7 @@ ScoredPoses make_first_start(const SearchProblem& problem, const Relaxation& rel
         const bool is_one = poses.size() == 1;
         throw InputError(fmt::format(
             "pose count is {}, but only {} {} found that exclusions, groups and distances "
-            "(--least-distance-deg, of plans the cell's least_joint_distance_deg) allow{}",
+            "(`least_distance`, of plans the cell's least_joint_distance_deg) allow{}",
             problem.options.pose_count, poses.size(), is_one ? "pose was" : "poses were",
             is_one ? "" : " together"));
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "posewise/selection/exchange.hpp"
+#include "posewise/selection/choice.hpp"
 
 namespace posewise::detail {
 

@@ -7,7 +7,7 @@
 
 #include "../core/format.hpp"
 #include "../measurement/places.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -15,7 +15,7 @@
 #include "judgement.hpp"
 #include "moved.hpp"
 #include "nominal_residuals.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "workspace.hpp"
 
@@ -214,6 +214,12 @@ void calibrate_with(Work& work, Calibration& result) {
     }
     result.expected = expected_error(result.campaign, result.estimate, work.used);
     result.expected_workspace = detail::expected_workspace_error(result.campaign, result.estimate);
+    constexpr double far_more = 2;
+    const auto& workspace = result.expected_workspace;
+    if (workspace && result.expected.is_by_few_poses() &&
+        workspace->total() > far_more * result.nominal.rms()) {
+        result.doubts.workspace = WorkspaceDoubt{workspace->total(), result.nominal.rms()};
+    }
 }
 
 /// How many numbers of base and targets.
@@ -322,10 +328,10 @@ void forget_held_out(Calibration& result) {
 
 Calibration calibrate(const Campaign& campaign, const Measurements& measurements,
                       const CalibrationOptions& options) {
-    detail::check_options(options);
     const Measurements part =
         options.used.empty() ? Measurements{} : take(measurements, options.used);
     const Measurements& used = options.used.empty() ? measurements : part;
+    detail::check_options(options, used.configuration_count());
     const Index folds = options.folds.value_or(default_folds(used.configuration_count()));
     const auto& earlier = options.earlier;
     Campaign whole = campaign;

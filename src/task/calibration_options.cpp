@@ -10,15 +10,7 @@
 namespace posewise {
 
 std::string_view method_name(CalibrationMethod method) {
-    switch (method) {
-        case CalibrationMethod::Joint:
-            return "lm";
-        case CalibrationMethod::TwoStep:
-            return "two-step";
-        case CalibrationMethod::Global:
-            return "global";
-    }
-    return "";
+    return detail::name_of(detail::method_names, method);
 }
 
 Index default_folds(Index configuration_count) {
@@ -46,8 +38,14 @@ std::string judge_measured(const Campaign& campaign, const Measurements& measure
     return calibration.estimate.undetermined;
 }
 
-void check_options(const CalibrationOptions& options) {
+void check_options(const CalibrationOptions& options, Index configuration_count) {
     const bool is_joint = options.method == CalibrationMethod::Joint;
+    const Index folds = options.folds.value_or(0);
+    if (folds != 0 && (folds < 2 || folds > configuration_count)) {
+        throw InputError(
+            fmt::format("`folds` is {}, must be 0 or from 2 to the number of configurations, {}",
+                        folds, configuration_count));
+    }
     if (options.earlier && (!is_joint || options.learns_sizes || options.model_selection)) {
         throw InputError(
             "an earlier estimate needs the method lm, without model selection or learning sizes");

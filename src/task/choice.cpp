@@ -9,7 +9,7 @@
 #include "../model/halton.hpp"
 #include "choice_problem.hpp"
 #include "inputs.hpp"
-#include "posewise/jacobian/unknowable.hpp"
+#include "posewise/jacobian/identification.hpp"
 
 namespace posewise {
 namespace {
@@ -110,7 +110,7 @@ Candidates measured_candidates(Measurements measured) {
 
 Candidates random_candidates(const Campaign& campaign, Index count, std::uint64_t seed) {
     detail::check_torques_known(campaign);
-    detail::check_memory(campaign, count, "--random");
+    detail::check_memory(campaign, count, "count");
     Candidates candidates;
     candidates.kind = CandidateKind::Random;
     candidates.ids = detail::number_ids(count);

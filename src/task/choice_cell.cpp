@@ -2,7 +2,7 @@
 
 #include "../measurement/places.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/pool.hpp"
+#include "posewise/measurement/constraints.hpp"
 
 namespace posewise::detail {
 

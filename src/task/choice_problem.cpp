@@ -14,7 +14,7 @@
 #include "choice_cell.hpp"
 #include "inputs.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/planner/planning.hpp"
 
@@ -102,8 +102,8 @@ Parameters find_parameters(const Campaign& campaign, const Candidates& candidate
     if (campaign.sensor->has_contacts()) throw unstated_contacts(campaign);
     throw InputError(campaign.name +
                      ": the campaign file states no base, on which what this sensor tells depends, "
-                     "and nothing was measured to find it from; state base there, or use "
-                     "--measurements");
+                     "and nothing was measured to find it from; state base there, or choose "
+                     "from measured configurations (`measured`)");
 }
 
 /// Throws InputError for a candidate that is nowhere near what it is said to touch.
@@ -122,7 +122,8 @@ void check_contacts(const ChoiceProblem& problem, const Campaign& campaign,
             if (problem.share(i, k) <= 0 || miss <= near) continue;
             throw InputError(fmt::format(
                 "candidate {} is {} mm from {}; must touch it, within 100 mm of where the campaign "
-                "or --from says that it is: plan and --random find poses that do",
+                "or an estimate (`earlier`) says that it is; candidates that are drawn (`count`) "
+                "do",
                 quote(problem.ids[static_cast<std::size_t>(i)]), format_short(mm_per_m * miss, 4),
                 names[static_cast<std::size_t>(k)]));
         }
@@ -151,7 +152,7 @@ void state_limits(ChoiceProblem& problem, const std::vector<Index>& groups) {
     options.pose_count = request.pose_count;
     options.starts = request.starts;
     options.proof = request.proof;
-    options.seed = request.seed;
+    options.seed = request.seed.value();
     options.test_poses = problem.test_poses.get();
     options.repeat_limit = request.repeat_limit;
     options.least_distance = request.least_distance;
@@ -171,12 +172,12 @@ void state_limits(ChoiceProblem& problem, const std::vector<Index>& groups) {
     });
 }
 
-void check_test_poses(const ChoiceOptions& options) {
+void check_test_poses(const ChoiceOptions& options, Criterion criterion) {
     const bool has_any = options.test_poses.rows() > 0 || options.test_blocks.count() > 0;
-    if (!has_any || needs_test_poses(options.criterion)) return;
+    if (!has_any || needs_test_poses(criterion)) return;
     const std::string& name = options.sources.test_poses;
     throw InputError("test poses are " + (name.empty() ? "given" : name) + ", but criterion " +
-                     std::string(criterion_name(options.criterion)) +
+                     std::string(criterion_name(criterion)) +
                      " does not look at them; must be g or v");
 }
 
@@ -239,9 +240,10 @@ Index CandidateIndex::find(const std::string& id, const std::string& what) const
 }
 
 ChoiceProblem state_choice(Blocks candidates, const ChoiceOptions& options) {
-    check_test_poses(options);
     ChoiceProblem problem;
     problem.request = options;
+    complete(problem.request, Criterion::D);
+    check_test_poses(options, problem.request.criterion);
     if (problem.request.repeats == 0) problem.request.repeats = 1;
     problem.blocks = std::move(candidates);
     problem.ids = number_ids(problem.blocks.count());
@@ -263,9 +265,10 @@ ChoiceProblem state_choice(Blocks candidates, const ChoiceOptions& options) {
 
 ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
                            const ChoiceOptions& options, const StopSignal& stop) {
-    check_test_poses(options);
     ChoiceProblem problem;
     PlanRequest& request = problem.request = options;
+    complete(request, campaign.criterion, campaign.seed);
+    check_test_poses(options, request.criterion);
     problem.kind = candidates.kind;
     problem.ids = std::move(candidates.ids);
     problem.configurations = std::move(candidates.configurations);

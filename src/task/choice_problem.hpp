@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "posewise/selection/exchange.hpp"
+#include "posewise/selection/choice.hpp"
 #include "posewise/task/choice.hpp"
 
 namespace posewise::detail {

@@ -4,7 +4,7 @@
 
 #include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/pool.hpp"
+#include "posewise/measurement/constraints.hpp"
 
 namespace posewise {
 namespace {

@@ -9,9 +9,9 @@
 #include "../calibrator/robust.hpp"
 #include "held_out_doubt.hpp"
 #include "identify_anew.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/exclusion.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/model/error_terms.hpp"
 
 namespace posewise::detail {
@@ -92,15 +92,11 @@ Index farthest_configuration(const Doubted& doubted) {
     return farthest;
 }
 
-std::string exclusion_of(const std::vector<std::string>& ids) {
-    return fmt::format("--exclude {}", fmt::join(ids, ","));
-}
-
 /// Nothing where too little would be left.
 std::optional<CureTrial> leave_out_trial(const Doubted& doubted,
                                          const std::vector<std::string>& excluded) {
     try {
-        return CureTrial{exclusion_of(excluded), doubted.campaign,
+        return CureTrial{exclusion(excluded), doubted.campaign,
                          leave_out(doubted.measurements, excluded), doubted.options};
     } catch (const InputError&) {
         return std::nullopt;
@@ -128,8 +124,8 @@ std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
                                    const CureOptions& options) {
     const Campaign& campaign = doubted.campaign;
     std::vector<CureTrial> trials;
-    const auto add = [&](const std::string& option, const Campaign& other) -> CureTrial& {
-        return trials.emplace_back(option, other, doubted.measurements, doubted.options);
+    const auto add = [&](Remedy remedy, const Campaign& other) -> CureTrial& {
+        return trials.emplace_back(std::move(remedy), other, doubted.measurements, doubted.options);
     };
     if (doubted.options.loss.kind == LossKind::Squares) {
         std::vector<std::vector<std::string>> worst;
@@ -144,18 +140,18 @@ std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
                 trials.push_back(*std::move(trial));
             }
         }
-        add("--loss cauchy", campaign).options.loss.kind = LossKind::Cauchy;
+        add({"loss cauchy"}, campaign).options.loss.kind = LossKind::Cauchy;
     }
     if (options.only_exclusions) return trials;
     if (options.can_learn_sizes && campaign.spread.is_prior && !is_far_above_prior(doubted)) {
-        add("--learn-sizes", campaign).learns_sizes = true;
+        add({"learn-sizes"}, campaign).learns_sizes = true;
     }
-    for (const OtherCampaign& other : options.campaigns) add(other.option, other.campaign);
+    for (const OtherCampaign& other : options.campaigns) add({other.key, true}, other.campaign);
     // Without a prior, or before harmonics, tilts are more than most poses tell apart.
     const Chain& robot = campaign.robot;
     if (campaign.spread.is_prior && has_terms(robot, TermKind::Harmonic) &&
         !has_terms(robot, TermKind::Tilt)) {
-        add("robot.axis_tilt: {orders: [1, 2]}",
+        add({"robot.axis_tilt: {orders: [1, 2]}", true},
             with_robot(campaign, with_axis_tilt(robot, {1, 2})));
     }
     return trials;
@@ -173,7 +169,7 @@ std::optional<Cure> try_cure(const Doubted& doubted, const CureTrial& trial) {
     const VectorXd after = common.select(judged->squares, 0).rowwise().sum();
     const double deviations = rank_deviations(after, common.select(before, 0).rowwise().sum());
     if (!(deviations < -beyond_chance)) return std::nullopt;
-    const Cure cure{trial.option, rms_of(doubted.held_out.squared_distances, all),
+    const Cure cure{trial.remedy, rms_of(doubted.held_out.squared_distances, all),
                     rms_of(judged->squares, judged->is_judged)};
     if (!(cure.after < worth_naming * cure.before)) return std::nullopt;
     return cure;
@@ -206,13 +202,13 @@ Cures find_cures(const Doubted& doubted, Doubts& doubts, const CureOptions& opti
         if (const auto cure = try_cure(doubted, trial)) {
             cures.found.push_back(*cure);
         } else {
-            cures.without_effect.push_back(trial.option);
+            cures.without_effect.push_back(trial.remedy);
         }
     }
     std::ranges::stable_sort(cures.found, {}, &Cure::after);
     while (!cures.found.empty() &&
            cures.found.back().after > as_good_as * cures.found.front().after) {
-        cures.without_effect.push_back(cures.found.back().option);
+        cures.without_effect.push_back(cures.found.back().remedy);
         cures.found.pop_back();
     }
     auto& outlying = doubts.look.outlying;
@@ -224,3 +220,15 @@ Cures find_cures(const Doubted& doubted, Doubts& doubts, const CureOptions& opti
 }
 
 }  // namespace posewise::detail
+
+namespace posewise {
+
+Remedy exclusion(const std::vector<std::string>& ids) {
+    return {fmt::format("exclude {}", fmt::join(ids, ","))};
+}
+
+std::string spell(const Remedy& remedy) {
+    return remedy.is_key ? remedy.words : "--" + remedy.words;
+}
+
+}  // namespace posewise

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "posewise/task/doubts.hpp"
-#include "posewise/task/held_out.hpp"
+#include "posewise/task/judgement.hpp"
 
 namespace posewise::detail {
 
@@ -21,7 +21,7 @@ struct Doubted {
 
 /// A calibration to try instead: of the campaign, of fewer measurements, with another loss.
 struct CureTrial {
-    std::string option;
+    Remedy remedy;
     Campaign campaign;
     Measurements measurements;
     LevenbergMarquardtOptions options{};
@@ -29,8 +29,8 @@ struct CureTrial {
 };
 
 /// Calibrates as the trial says and holds out as many groups; nothing unless that lowers the error
-/// by 5 % and beyond chance at the points that both judge. What the trial leaves out, and what its loss calls
-/// outliers, judges nothing.
+/// by 5 % and beyond chance at the points that both judge. What the trial leaves out, and what its
+/// loss calls outliers, judges nothing.
 std::optional<Cure> try_cure(const Doubted& doubted, const CureTrial& trial);
 
 /// The one that is missed most where it is held out, if leaving it out takes what is left over

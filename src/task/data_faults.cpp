@@ -11,7 +11,7 @@
 #include "cures.hpp"
 #include "expected_distance.hpp"
 #include "held_out_doubt.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/task/doubts.hpp"
 
 namespace posewise {

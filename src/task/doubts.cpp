@@ -13,7 +13,7 @@
 #include "absurd_values.hpp"
 #include "gross_errors.hpp"
 #include "plane_doubts.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/planner/prediction.hpp"
 

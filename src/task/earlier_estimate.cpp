@@ -10,10 +10,10 @@
 #include "../core/text.hpp"
 #include "../measurement/known_sensor.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/model/chain.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/transforms.hpp"
 
 namespace posewise {
 namespace {
@@ -134,7 +134,7 @@ void check_known_base(const Campaign& campaign, const Earlier& earlier) {
     if (!is_elsewhere && !is_turned) return;
     throw InputError(fmt::format(
         "the base is at {}, the campaign states one at {} as known; must be stated as when the "
-        "estimate was made, unless '--moved base' says that it is another",
+        "estimate was made, unless `earlier.has_new_base` says that it is another",
         describe(found, is_turned), describe(stated, is_turned)));
 }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "posewise/task/earlier.hpp"
+#include "posewise/task/calibration.hpp"
 
 namespace posewise::detail {
 

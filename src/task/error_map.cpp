@@ -1,5 +1,3 @@
-#include "posewise/task/error_map.hpp"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "planning_problem.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/task/scene.hpp"
 
 namespace posewise {
 namespace {

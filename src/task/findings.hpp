@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "posewise/task/verification.hpp"
+#include "posewise/task/planning.hpp"
 
 /// What verification of both kinds of plans shares.
 namespace posewise::detail {

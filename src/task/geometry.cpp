@@ -1,15 +1,13 @@
-#include "posewise/task/geometry.hpp"
-
 #include <array>
 #include <cmath>
 
 #include "../core/decompositions.hpp"
 #include "nominal_fit.hpp"
-#include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/sensors.hpp"
+#include "posewise/model/chain.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/task/inspection.hpp"
 #include "workspace.hpp"
 
 namespace posewise {
@@ -21,8 +19,8 @@ using namespace detail;
 /// RMS.
 constexpr double change_weight = 1e-6;
 
-RowMatrixXd draw_workspace(const Campaign& campaign, const Parameters& found,
-                           const GeometryOptions& options) {
+RowMatrixXd draw_configurations(const Campaign& campaign, const Parameters& found,
+                                const GeometryOptions& options) {
     if (options.workspace.rows() > 0) {
         for (Index i = 0; i < options.workspace.rows(); ++i) {
             campaign.robot.check_configuration(options.workspace.row(i).transpose());
@@ -220,7 +218,7 @@ Geometry estimated_geometry(const Campaign& campaign, const Parameters& found,
     Geometry geometry{without_terms(campaign.robot), found.robot(constants),
                       found.world_from_base,         target_positions(campaign, found),
                       tool_of(campaign, found),      {}};
-    const RowMatrixXd configurations = draw_workspace(campaign, found, options);
+    const RowMatrixXd configurations = draw_configurations(campaign, found, options);
     const Parameters constant{found.world_from_base, geometry.errors, found.sensor};
     geometry.lost = loss_of(predict_positions(with_robot(campaign, geometry.robot), constant,
                                               geometry.targets, configurations) -
@@ -230,7 +228,7 @@ Geometry estimated_geometry(const Campaign& campaign, const Parameters& found,
 
 Geometry nearest_geometry(const Campaign& campaign, const Parameters& found,
                           const GeometryOptions& options) {
-    const RowMatrixXd configurations = draw_workspace(campaign, found, options);
+    const RowMatrixXd configurations = draw_configurations(campaign, found, options);
     const FlangePoints points = fitted_points(campaign, found);
     Campaign geometric = geometric_campaign(
         campaign, with_constant_errors(campaign.robot, found.robot), found, points);
@@ -262,7 +260,7 @@ namespace detail {
 
 NominalFit fit_nominal(const Campaign& campaign, const Parameters& found,
                        const GeometryOptions& options) {
-    const RowMatrixXd configurations = draw_workspace(campaign, found, options);
+    const RowMatrixXd configurations = draw_configurations(campaign, found, options);
     const FlangePoints points{target_positions(campaign, found), known_axes(campaign)};
     const Campaign nominal = geometric_campaign(
         campaign, without_parameters(without_terms(campaign.robot)), found, points);

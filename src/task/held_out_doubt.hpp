@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "posewise/task/held_out.hpp"
+#include "posewise/task/judgement.hpp"
 
 namespace posewise::detail {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 
 namespace posewise::detail {
 

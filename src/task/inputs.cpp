@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "../measurement/noise.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/doubts.hpp"
@@ -46,7 +46,7 @@ InputError unstated_contacts(const Campaign& campaign) {
                       ": the campaign file does not say where the ball and all that it is to touch "
                       "are; must state it, if only roughly (position_mm of sensor.targets and of "
                       "each of sensor.sockets, base where those are known), or an estimate "
-                      "(--from) or measured poses must tell it");
+                      "(`earlier`) or measured poses must tell it");
 }
 
 Parameters register_measured(const Campaign& campaign, const Measurements& measured,
@@ -73,7 +73,7 @@ void check_torques_known(const Campaign& campaign) {
                      "torques_Nm");
 }
 
-void check_memory(const Campaign& campaign, Index count, const std::string& option) {
+void check_memory(const Campaign& campaign, Index count, const std::string& field) {
     constexpr double bytes_per_gb = 1e9;
     constexpr double beside = 1.25;  // what a search needs beside the blocks
     const double needed = beside * static_cast<double>(sizeof(double)) *
@@ -87,8 +87,8 @@ void check_memory(const Campaign& campaign, Index count, const std::string& opti
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE)));
     if (needed < there) return;
     throw InputError(
-        fmt::format("{} candidates need {:.0f} GB of memory, there are {:.0f} GB; lower {}", count,
-                    needed / bytes_per_gb, there / bytes_per_gb, option));
+        fmt::format("{} candidates need {:.0f} GB of memory, there are {:.0f} GB; lower `{}`",
+                    count, needed / bytes_per_gb, there / bytes_per_gb, field));
 }
 
 void check_enough_poses(const Campaign& campaign, Index count, Index measured,
@@ -96,20 +96,21 @@ void check_enough_poses(const Campaign& campaign, Index count, Index measured,
     const Index least = least_calibration_count(campaign, stop) - measured;
     if (count >= least) return;
     if (campaign.fitted_pose_count > 0) {
-        throw InputError(
-            fmt::format("--poses is {}, must be at least {}: fewer do not identify the errors that "
-                        "calibrate fits, robot.errors",
-                        count, least));
+        throw InputError(fmt::format(
+            "`pose_count` is {}, must be at least {}: fewer do not identify the errors that "
+            "calibrate fits, robot.errors",
+            count, least));
     }
     throw InputError(
         campaign.spread.is_prior
-            ? fmt::format("--poses is {}, must be at least {}: fewer are not enough to register "
-                          "{}{}, which {} no prior",
-                          count, least, base_parameter_count(campaign) > 0 ? "base and " : "",
-                          campaign.sensor->words().place,
-                          base_parameter_count(campaign) > 0 ? "have" : "has")
-            : fmt::format("--poses is {}, must be at least {}: fewer do not identify {} "
-                          "parameters; or let --prior tell the rest",
+            ? fmt::format(
+                  "`pose_count` is {}, must be at least {}: fewer are not enough to register "
+                  "{}{}, which {} no prior",
+                  count, least, base_parameter_count(campaign) > 0 ? "base and " : "",
+                  campaign.sensor->words().place,
+                  base_parameter_count(campaign) > 0 ? "have" : "has")
+            : fmt::format("`pose_count` is {}, must be at least {}: fewer do not identify {} "
+                          "parameters; or let a prior (`spread.is_prior`) tell the rest",
                           count, least, parameter_count(campaign)));
 }
 

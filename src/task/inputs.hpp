@@ -58,7 +58,7 @@ void check_torques_known(const Campaign& campaign);
 
 /// Throws InputError if so many candidates need more memory than this machine has; `option` is
 /// what says how many.
-void check_memory(const Campaign& campaign, Index count, const std::string& option);
+void check_memory(const Campaign& campaign, Index count, const std::string& field);
 
 /// Throws InputError where so many poses beside those measured already are fewer than a calibration
 /// needs (least_calibration_count()).

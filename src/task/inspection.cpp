@@ -1,9 +1,12 @@
 #include "posewise/task/inspection.hpp"
 
+#include <algorithm>
+#include <numbers>
+
 #include "../jacobian/nominal_factor.hpp"
 #include "../model/complete_model.hpp"
 #include "../model/driven_axes.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/model/error_terms.hpp"
 
 namespace posewise {
@@ -26,6 +29,28 @@ std::vector<OnAxis> find_on_axis(const Campaign& campaign) {
         found.push_back({k, bare.joint(last.element->joints.front().joint).name});
     }
     return found;
+}
+
+std::vector<Index> find_narrow_limits(const Campaign& campaign) {
+    constexpr double times = 10;
+    const double whole = to_radians(2 * std::numbers::pi);  // a turn in rad, read as deg
+    const std::vector<Joint>& joints = campaign.robot.joints();
+    std::vector<Index> turning;
+    for (Index j = 0; j < std::ssize(joints); ++j) {
+        if (campaign.robot.joint(j).motion == Motion::Rotation) turning.push_back(j);
+    }
+    const auto range = [&](Index j) {
+        return campaign.robot.joint(j).upper - campaign.robot.joint(j).lower;
+    };
+    std::vector<Index> narrow;
+    for (const Index j : turning) {
+        const Joint& joint = campaign.robot.joint(j);
+        if (joint.lower < -whole || joint.upper > whole) continue;
+        const auto wider = std::ranges::count_if(
+            turning, [&](Index other) { return range(other) >= times * range(j); });
+        if (2 * wider >= std::ssize(turning) - 1) narrow.push_back(j);
+    }
+    return narrow;
 }
 
 Inspection inspect(const Campaign& campaign, const Chain& declared, bool is_stated) {

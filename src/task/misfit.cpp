@@ -10,7 +10,7 @@
 #include "plane_doubts.hpp"
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/task/doubts.hpp"
 
 namespace posewise {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "earlier_estimate.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "posewise/task/geometry.hpp"
+#include "posewise/task/inspection.hpp"
 
 namespace posewise::detail {
 

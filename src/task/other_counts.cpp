@@ -2,7 +2,7 @@
 #include <set>
 
 #include "pool_choices.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/task/planning.hpp"
 
 namespace posewise {
@@ -16,7 +16,12 @@ std::vector<CountAccuracy> predict_other_counts(const Planning& planning, const 
         least_calibration_count(planning.campaign) - planning.search.held_pose_count;
     std::vector<CountAccuracy> rows;
     for (const Index k : std::set<Index>{std::max<Index>(1, count / 2), count, 2 * count}) {
-        const auto chosen = k >= least ? choices.choose(k, stop) : std::nullopt;
+        if (k == count && planning.chosen) {
+            rows.push_back({k, false, planning.chosen});
+            rows.push_back({k, true, planning.plan.predicted});
+            continue;
+        }
+        const auto chosen = k >= least ? choices.choose(k, stop, true) : std::nullopt;
         if (!stop.is_set()) {  // else it may be any choice
             rows.push_back({k, false, std::nullopt});
             if (chosen) {

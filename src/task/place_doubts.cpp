@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "../core/format.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/task/doubts.hpp"
 
 namespace posewise {

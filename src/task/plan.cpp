@@ -7,7 +7,7 @@
 
 #include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "same_pose.hpp"
 
@@ -92,6 +92,12 @@ void check_is_whole(const Plan& plan, const Campaign& campaign) {
 }
 
 }  // namespace
+
+void complete(PlanRequest& request, Criterion usual, std::uint64_t seed) {
+    if (request.is_focused_on_robot && usual == Criterion::V) usual = Criterion::D;
+    request.criterion = request.criterion.value_or(usual);
+    request.seed = request.seed.value_or(seed);
+}
 
 std::optional<double> assumed_model_error(const Plan& plan) {
     for (const NamedNumber& one : plan.assumptions) {

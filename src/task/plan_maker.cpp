@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../core/decompositions.hpp"
 #include "../planner/plan_space.hpp"
 #include "../planner/tour.hpp"
 #include "inputs.hpp"
@@ -101,11 +102,11 @@ std::optional<double> value_rms_of(const PlanningProblem& problem, double value)
 PlanMaker::PlanMaker(PlanningProblem problem, const PlanningOptions& options)
     : problem_(std::move(problem)), options_(options) {
     const Index asked_for = problem_.request.pool_count;
-    pool_ =
-        make_pool(problem_.constraints, asked_for, options.seed, options.stop.with_half_the_time());
+    pool_ = make_pool(problem_.constraints, asked_for, problem_.request.seed.value(),
+                      options.stop.with_half_the_time());
     is_pool_complete_ = pool_.candidate_count >= asked_for;
     problem_.request.pool_count = pool_.candidate_count;
-    check_memory(problem_.campaign, pool_.configurations.rows(), "--pool");
+    check_memory(problem_.campaign, pool_.configurations.rows(), "pool_count");
     plan_tour(problem_.constraints, pool_.configurations.topRows(1));  // throws early if home
     draw_workspace(problem_, options);
 }
@@ -137,6 +138,7 @@ Planning PlanMaker::make(Index pose_count,
     const Candidates from = candidates(pool_.configurations.rows());
     PlannedPoses planned = plan_poses(from.space, from.configurations, from.blocks, search);
     Planning planning = finish(search, planned);
+    planning.chosen = predict_choice(planned.pool_choice.poses, from.blocks);
     if (!needs_bound(planning)) return planning;
     search.bound_iterations = problem_.search.bound_iterations;
     add_searched_bound(from.space, from.configurations, from.blocks, search, planned);
@@ -144,6 +146,19 @@ Planning PlanMaker::make(Index pose_count,
     planning.plan.searched_efficiency = planned.efficiency;
     if (!planning.tour.is_cut_short) planning.plan.ending = ending_of(planned);
     return planning;
+}
+
+PredictedAccuracy PlanMaker::predict_choice(const std::vector<Index>& poses,
+                                            const Blocks& blocks) const {
+    const RowMatrixXd repeats = times_seen(pool_.is_seen, problem_.request.repeats);
+    return predict_accuracy(
+        problem_.errors.by_parameters,
+        information_of(problem_.search.held.rows, blocks.parameter_count()) +
+            information(blocks, poses),
+        problem_.campaign,
+        information_by_noise(problem_.campaign, problem_.campaign.nominal,
+                             RowMatrixXd(pool_.configurations(poses, Eigen::all)),
+                             RowMatrixXd(repeats(poses, Eigen::all))));
 }
 
 Planning PlanMaker::make_quickly(Index pose_count) const {
@@ -165,7 +180,7 @@ Ending PlanMaker::ending_of(const PlannedPoses& planned) const {
 
 Planning PlanMaker::finish(PlanOptions search, const PlannedPoses& planned) const {
     TourOptions tour_options;
-    tour_options.order.seed = options_.seed;
+    tour_options.order.seed = problem_.request.seed.value();
     tour_options.stop = options_.stop;
     Tour tour =
         plan_tour(problem_.constraints, all_poses(problem_, planned.configurations), tour_options);

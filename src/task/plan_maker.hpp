@@ -47,6 +47,8 @@ class PlanMaker {
     PlanOptions search_for(Index pose_count) const;
     Ending ending_of(const PlannedPoses& planned) const;
     Planning finish(PlanOptions search, const PlannedPoses& planned) const;
+    /// Accuracy by poses of the pool, whose blocks these are.
+    PredictedAccuracy predict_choice(const std::vector<Index>& poses, const Blocks& blocks) const;
 
     PlanningProblem problem_;
     const PlanningOptions& options_;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 
 namespace posewise {
 namespace {

@@ -11,11 +11,10 @@
 #include "../measurement/prior_rows.hpp"
 #include "../model/joint_limits.hpp"
 #include "inputs.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/jacobian/unknowable.hpp"
 #include "workspace.hpp"
 
 namespace posewise::detail {
@@ -36,7 +35,7 @@ Campaign with_base(Campaign campaign, const PlanningOptions& options) {
     if (!measured) {
         throw InputError(campaign.name +
                          ": the campaign file states no base, on which what this sensor tells "
-                         "depends; must state base to plan, or measured poses (--augment) must "
+                         "depends; must state base to plan, or measured poses (`held`) must "
                          "tell it");
     }
     campaign.nominal = register_measured(campaign, *measured, name);
@@ -62,7 +61,7 @@ void check_kept(const PlanningProblem& problem, const PlannedPose& pose) {
     const std::string fault = describe_violation(problem, pose);
     if (fault.empty()) return;
     throw input_error_at({problem.request.sources.repaired},
-                         fmt::format("pose {} {}; find another for it with --drop {}",
+                         fmt::format("pose {} {}; find another for it with `dropped` {}",
                                      quote(pose.id), fault, pose.id));
 }
 
@@ -80,14 +79,15 @@ void check_repaired(const PlanningProblem& problem, const Plan& repaired) {
     if (!fault.empty()) throw input_error_at({name}, fault);
     for (const std::string& id : problem.request.dropped) {
         if (std::ranges::count(repaired.verification, id, &PlannedPose::id) > 0) {
-            throw InputError(fmt::format(
-                "--drop {}: is a pose to verify, which need not be replaced; leave it out of what "
-                "is measured",
-                id));
+            throw InputError(
+                fmt::format("`dropped` {}: is a pose to verify, which need not be replaced; leave "
+                            "it out of what "
+                            "is measured",
+                            id));
         }
         const auto has_id = [&](const PlannedPose& pose) { return pose.id == id; };
         if (std::any_of(repaired.poses.begin(), repaired.poses.end(), has_id)) continue;
-        throw InputError(fmt::format("--drop {}: {} has no such pose", id, name));
+        throw InputError(fmt::format("`dropped` {}: {} has no such pose", id, name));
     }
 }
 
@@ -132,12 +132,13 @@ PlanningProblem state_planning(const Campaign& given, const PlanningOptions& opt
     }
     PlanningProblem problem{
         options, campaign, Constraints(campaign, std::move(cell)), {}, 0, 0, {}, {}, {}, {}};
+    complete(problem.request, Criterion::V, campaign.seed);
     problem.request.has_prior = campaign.spread.is_prior;
     if (problem.request.repeats == 0) problem.request.repeats = 1;
-    problem.search.criterion = options.criterion;
+    problem.search.criterion = problem.request.criterion;
     if (options.starts > 0) problem.search.starts = options.starts;
     problem.request.starts = problem.search.starts;
-    problem.search.seed = options.seed;
+    problem.search.seed = problem.request.seed.value();
     if (options.is_focused_on_robot) problem.search.nuisance = nuisance_of_robot(campaign);
     if (campaign.spread.is_prior) hold(problem, prior_rows(campaign), {});
     if (options.held) {
@@ -156,8 +157,9 @@ void count_new_poses(PlanningProblem& problem, const StopSignal& stop) {
     Index& count = problem.request.pose_count;
     if (count == 0) count = kept + static_cast<Index>(problem.request.dropped.size());
     if (count <= kept) {
-        throw InputError(fmt::format("--poses is {}, must be above {}, as many as are kept of {}",
-                                     count, kept, problem.request.sources.repaired));
+        throw InputError(
+            fmt::format("`pose_count` is {}, must be above {}, as many as are kept of {}", count,
+                        kept, problem.request.sources.repaired));
     }
     problem.search.pose_count = count - kept;
     compute_from(problem.request.sources.campaign, [&] {
@@ -176,7 +178,7 @@ RowMatrixXd workspace_of(const PlanningProblem& problem, const PlanningOptions& 
     const PlanRequest& request = problem.request;
     if (options.workspace.rows() > 0) return options.workspace;
     return workspace_configurations(problem.campaign, workspace_box(request),
-                                    request.workspace_count, request.seed + 1);
+                                    request.workspace_count, request.seed.value() + 1);
 }
 
 void draw_workspace(PlanningProblem& problem, const PlanningOptions& options) {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/task/planning.hpp"
 
 namespace posewise::detail {

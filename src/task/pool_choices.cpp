@@ -26,12 +26,16 @@ PoolChoices::PoolChoices(const Campaign& campaign, const Pool& pool, double repe
     select_.seed = search.seed;
 }
 
-std::optional<std::vector<Index>> PoolChoices::choose(Index pose_count,
-                                                      const StopSignal& stop) const {
+std::optional<std::vector<Index>> PoolChoices::choose(Index pose_count, const StopSignal& stop,
+                                                      bool is_rough) const {
     if (pose_count > blocks_.count()) return std::nullopt;
     SelectOptions select = select_;
     select.pose_count = pose_count;
     select.stop = stop;
+    if (is_rough) {
+        select.starts = 1;
+        select.kicks = 0;
+    }
     const Choice choice = select_poses(blocks_, select);
     if (choice.ending == Ending::NotIdentifiable) return std::nullopt;
     return choice.poses;

@@ -11,7 +11,7 @@
 #include "findings.hpp"
 #include "planning_problem.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "verification_poses.hpp"
 
 namespace posewise {

@@ -2,7 +2,7 @@
 
 #include "../core/decompositions.hpp"
 #include "../measurement/prior_rows.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/inspection.hpp"

@@ -1,4 +1,4 @@
-#include "posewise/task/readings.hpp"
+#include "../calibrator/readings.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "../calibrator/readings.hpp"
 #include "../core/format.hpp"
 #include "../core/text.hpp"
 #include "expected_distance.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/task/doubts.hpp"
 
 namespace posewise {
 namespace {

@@ -1,9 +1,8 @@
-#include "posewise/task/residual_look.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "../core/statistics.hpp"
+#include "posewise/task/doubts.hpp"
 #include "residual_patterns.hpp"
 
 namespace posewise {

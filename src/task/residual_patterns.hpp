@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "../calibrator/residual_scores.hpp"
-#include "posewise/task/residual_look.hpp"
+#include "posewise/task/doubts.hpp"
 
 namespace posewise::detail {
 

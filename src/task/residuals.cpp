@@ -1,12 +1,11 @@
-#include "posewise/task/residuals.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "../measurement/noise.hpp"
 #include "nominal_residuals.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/task/calibration.hpp"
 #include "posewise/task/scene.hpp"
 
 namespace posewise {

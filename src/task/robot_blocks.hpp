@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "posewise/task/simulated_plan.hpp"
+#include "posewise/task/planning.hpp"
 
 namespace posewise::detail {
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <vector>
 
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
 #include "residual_patterns.hpp"
 
 namespace posewise::detail {

@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "../measurement/places.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/model/error_terms.hpp"
 
 namespace posewise {

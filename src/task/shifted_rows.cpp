@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "../core/statistics.hpp"
-#include "posewise/calibrator/registration.hpp"
-#include "posewise/task/residual_look.hpp"
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/task/doubts.hpp"
 
 namespace posewise {
 namespace {

@@ -1,5 +1,3 @@
-#include "posewise/task/simulated_plan.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "planning_problem.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/task/planning.hpp"
 #include "robot_blocks.hpp"
 #include "trial_robot.hpp"
 #include "workspace.hpp"
@@ -29,7 +28,7 @@ void check_sensor(const Campaign& campaign) {
     if (!campaign.sensor->has_contacts()) return;
     throw InputError(campaign.name +
                      ": robots that touch sockets cannot be simulated at poses that were planned "
-                     "for another one, so this plan cannot be verified; plan without --verify");
+                     "for another one, so this plan cannot be verified on robots that are drawn");
 }
 
 void check_repeats(double repeats) {
@@ -43,7 +42,8 @@ void check_measured_count(Index count) {
     if (count == 0) return;
     throw InputError(
         "poses measured already are of one robot, those that are drawn to verify a plan are others;"
-        " verify it without them (no --augment), or use what they tell by --from and --as-prior");
+        " verify it without them (`held`), or use what they tell as an estimate that is the prior "
+        "(`earlier`, `earlier.is_prior`)");
 }
 
 void check_options(const Planning& planning, const SimulatedPlanOptions& options) {
@@ -84,7 +84,7 @@ RowMatrixXd judged_at(const Planning& planning, const SimulatedPlanOptions& opti
     const PlanRequest& request = planning.plan.request;
     // Not those that the prediction is over, nor a study's.
     return detail::workspace_configurations(planning.campaign, detail::workspace_box(request),
-                                            planning.workspace_count, request.seed + 3);
+                                            planning.workspace_count, request.seed.value() + 3);
 }
 
 // ---- One robot ----
@@ -171,7 +171,7 @@ ErrorRange predict(const Planning& planning, const SimulatedPlanOptions& options
                                      times_seen(is_seen, planning.plan.request.repeats)));
     }
     return predict_range(planning.errors, campaign, M, planning.by_noise, options.quantity,
-                         options.assurance, planning.plan.request.seed);
+                         options.assurance, planning.plan.request.seed.value());
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "posewise/task/simulated_study.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +8,8 @@
 #include "../core/text.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/task/study.hpp"
 #include "simulation_setting.hpp"
 #include "study_cases.hpp"
 #include "trial_robot.hpp"

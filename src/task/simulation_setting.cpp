@@ -8,7 +8,7 @@
 #include "../core/text.hpp"
 #include "inputs.hpp"
 #include "planning_problem.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/planner/prediction.hpp"

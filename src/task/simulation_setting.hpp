@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "posewise/measurement/pool.hpp"
-#include "posewise/task/simulated_study.hpp"
+#include "posewise/measurement/constraints.hpp"
+#include "posewise/task/study.hpp"
 #include "trial_robot.hpp"
 
 /// What all trials of a simulated study share.

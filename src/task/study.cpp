@@ -10,10 +10,10 @@
 #include "calibration_options.hpp"
 #include "identify_anew.hpp"
 #include "inputs.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
-#include "posewise/selection/exchange.hpp"
+#include "posewise/selection/choice.hpp"
 #include "posewise/task/doubts.hpp"
 #include "study_cases.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "../core/progress_counter.hpp"
 #include "../core/statistics.hpp"
-#include "posewise/selection/exchange.hpp"
+#include "posewise/selection/choice.hpp"
 #include "posewise/task/study.hpp"
 #include "trial_table.hpp"
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "../core/names.hpp"
 #include "../core/statistics.hpp"
 #include "posewise/task/study.hpp"
 #include "study_cases.hpp"
@@ -101,15 +102,10 @@ Verdict verdict_of(const Advantage& advantage) {
 }
 
 std::string_view verdict_name(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::Better:
-            return "better";
-        case Verdict::Loses:
-            return "loses";
-        case Verdict::WithinChance:
-            break;
-    }
-    return "within chance";
+    static constexpr detail::Names<Verdict, 3> names{{{Verdict::Better, "better"},
+                                                      {Verdict::Loses, "loses"},
+                                                      {Verdict::WithinChance, "within chance"}}};
+    return detail::name_of(names, verdict);
 }
 
 std::optional<double> held_out_quantile(const StudyCases& cases, double p) {

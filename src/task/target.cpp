@@ -1,5 +1,3 @@
-#include "posewise/task/target.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,8 +8,9 @@
 #include "../planner/tour.hpp"
 #include "plan_maker.hpp"
 #include "pool_choices.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/task/planning.hpp"
 
 namespace posewise {
 namespace {
@@ -118,7 +117,7 @@ class Search {
             if (std::isinf(dropped.back().rms)) return std::nullopt;
         }
         return predict_range(problem_.errors, problem_.campaign, M, by_noise, target_.quantity,
-                             target_.assurance, options_.seed);
+                             target_.assurance, problem_.request.seed.value());
     }
 
     std::optional<ErrorRange> judge(const Planning& planning) const {
@@ -304,12 +303,11 @@ class Search {
     std::set<Index> finished_;  ///< planned, not stopped early
 };
 
-void find_floor(const PlanningProblem& problem, const PlanningOptions& options,
-                TargetPlanning& result) {
+void find_floor(const PlanningProblem& problem, TargetPlanning& result) {
     const TargetOptions& target = result.target;
     const auto floor_of = [&](const Campaign& campaign) {
         return predict_range(problem.errors, campaign, {}, {}, target.quantity, target.assurance,
-                             options.seed);
+                             problem.request.seed.value());
     };
     result.floor = floor_of(problem.campaign);
     Campaign known = problem.campaign;
@@ -337,7 +335,7 @@ TargetPlanning plan_for_target(const Campaign& campaign, const PlanningOptions& 
     const PlanMaker maker(std::move(problem), options);
     TargetPlanning result;
     result.target = target;
-    find_floor(maker.problem(), options, result);
+    find_floor(maker.problem(), result);
     if (target.limit && result.floor.assured > *target.limit) {
         result.ending = TargetEnding::BelowFloor;
         return result;

@@ -4,7 +4,7 @@
 
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/core/random.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/task/study.hpp"
 
 /// Robots that are drawn, measured, calibrated and judged.

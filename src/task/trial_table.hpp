@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../core/scratch_file.hpp"
-#include "posewise/task/trials.hpp"
+#include "posewise/task/study.hpp"
 
 namespace posewise::detail {
 

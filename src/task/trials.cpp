@@ -1,8 +1,7 @@
-#include "posewise/task/trials.hpp"
-
 #include <mutex>
 
 #include "../core/parallel.hpp"
+#include "posewise/task/study.hpp"
 
 namespace posewise {
 

@@ -1,5 +1,3 @@
-#include "posewise/task/verification.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +10,8 @@
 #include "choice_problem.hpp"
 #include "findings.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/units.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/task/planning.hpp"
 
 namespace posewise {
 namespace {

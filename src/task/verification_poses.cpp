@@ -47,7 +47,7 @@ std::vector<PlannedPose> draw(const PlanningProblem& problem, const RowMatrixXd&
     std::vector<PlannedPose> poses = problem.kept_to_verify;
     for (PlannedPose& pose : poses) pose.is_kept = true;
     NewIds ids('v', problem);
-    for (const Index i : in_random_order(from.rows(), problem.request.seed)) {
+    for (const Index i : in_random_order(from.rows(), problem.request.seed.value())) {
         if (std::ssize(poses) >= count) break;
         const VectorXd q = from.row(i).transpose();
         const auto is_near = [&](const VectorXd& other) {
@@ -75,7 +75,7 @@ void add_verification(const PlanningProblem& problem, const Pool& pool,
     const std::vector<PlannedPose> poses =
         draw(problem, candidates(problem, pool, options), count, others_of(problem, plan));
     TourOptions tour_options;
-    tour_options.order.seed = options.seed;
+    tour_options.order.seed = problem.request.seed.value();
     tour_options.start = plan.poses.back().configuration;
     const Tour tour =
         plan_tour(problem.constraints,

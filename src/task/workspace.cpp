@@ -4,7 +4,7 @@
 
 #include "../model/sampling.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/pool.hpp"
+#include "posewise/measurement/constraints.hpp"
 
 namespace posewise::detail {
 

@@ -10,9 +10,9 @@
 #include "../../src/task/planning_problem.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/io/plan_file.hpp"
-#include "posewise/measurement/simulation.hpp"
-#include "posewise/task/verification.hpp"
+#include "posewise/io/result_files.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/task/planning.hpp"
 #include "support/json_mutants.hpp"
 #include "support/places.hpp"
 #include "support/temporary_folder.hpp"
@@ -153,7 +153,8 @@ class MutatedPlans : public ::testing::Test {
         asked.criterion = Criterion::D;
         asked.proof = 0;
         asked.sources.campaign = design;
-        const Plan made = choose(campaign_, random_candidates(campaign_, 40, asked.seed), asked);
+        const Plan made =
+            choose(campaign_, random_candidates(campaign_, 40, asked.seed.value_or(1)), asked);
         EXPECT_EQ(made.ending, Ending::Converged);
         return {"random choice",
                 write(made),
@@ -162,7 +163,8 @@ class MutatedPlans : public ::testing::Test {
                     ChoiceOptions options;
                     static_cast<PlanRequest&>(options) = plan.request;
                     const Index count = std::min<Index>(plan.candidate_count, 1000);
-                    return verify(plan, campaign, random_candidates(campaign, count, options.seed),
+                    return verify(plan, campaign,
+                                  random_candidates(campaign, count, plan.request.seed.value()),
                                   options);
                 },
                 {"/candidates/kind", "/problem/group_limit", "/poses/#/visible_targets"}};

@@ -7,7 +7,7 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/cell_recheck.hpp"
 #include "support/fanuc_planning.hpp"
 #include "support/parameter_error.hpp"

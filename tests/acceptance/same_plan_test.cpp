@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "../../src/core/simd.hpp"
-#include "posewise/core/reproducible.hpp"
+#include "posewise/core/threads.hpp"
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/io/plan_file.hpp"
+#include "posewise/io/result_files.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/planning.hpp"
 #include "support/places.hpp"

@@ -1,6 +1,4 @@
 // How many poses a target needs, on the designs that are shipped.
-#include "posewise/task/target.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,15 +12,14 @@
 #include "../../src/core/statistics.hpp"
 #include "../../src/model/sampling.hpp"
 #include "../../src/task/inputs.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/io/json_reports.hpp"
-#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/io/documents.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/report/reports.hpp"
-#include "posewise/task/verification.hpp"
+#include "posewise/task/planning.hpp"
 #include "support/campaigns.hpp"
 #include "support/places.hpp"
 

@@ -7,8 +7,7 @@
 #include "../../src/model/complete_model.hpp"
 #include "freed_memory.hpp"
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/task/calibration.hpp"
 #include "support/campaigns.hpp"
 

@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "posewise/selection/exchange.hpp"
+#include "posewise/selection/choice.hpp"
 #include "support/fanuc_pool.hpp"
 
 /// Selections from few poses of the FANUC robot (9 rows and 33 parameters each).

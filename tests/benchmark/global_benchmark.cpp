@@ -6,15 +6,15 @@
 
 #include "../../src/calibrator/global_identification.hpp"
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/random.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/campaigns.hpp"
 
 /// Identification of a FANUC whose nominal parameters are wrong by up to 30 % in lengths and by up
 /// to an angle, the argument, in all angles: how many of the simulated robots each way to find
 /// starts finds, and the mean CPU time it takes. The first is Levenberg-Marquardt from the nominal
-/// robot alone; a population search adds one start, the best of 20 000 robots it has tried.
+/// robot alone; covariance adaptation adds one start, the best of 20 000 robots it has
+/// tried.
 /// POSEWISE_BENCHMARK_ROBOTS: how many robots (default 1000).
 namespace posewise {
 namespace {
@@ -80,9 +80,6 @@ void run(benchmark::State& state, StartSearch search, Index start_limit) {
 
 void BM_levenberg_marquardt(benchmark::State& state) { run(state, StartSearch::Random, 1); }
 void BM_many_starts(benchmark::State& state) { run(state, StartSearch::Random, 200); }
-void BM_crs2(benchmark::State& state) { run(state, StartSearch::Crs2, 2); }
-void BM_esch(benchmark::State& state) { run(state, StartSearch::Esch, 2); }
-void BM_isres(benchmark::State& state) { run(state, StartSearch::Isres, 2); }
 void BM_cmaes(benchmark::State& state) { run(state, StartSearch::CmaEs, 2); }
 
 void with_angles(benchmark::internal::Benchmark* curve) {
@@ -90,9 +87,6 @@ void with_angles(benchmark::internal::Benchmark* curve) {
 }
 BENCHMARK(BM_levenberg_marquardt)->Apply(with_angles);
 BENCHMARK(BM_many_starts)->Apply(with_angles);
-BENCHMARK(BM_crs2)->Apply(with_angles);
-BENCHMARK(BM_esch)->Apply(with_angles);
-BENCHMARK(BM_isres)->Apply(with_angles);
 BENCHMARK(BM_cmaes)->Apply(with_angles);
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "exchange_references.hpp"
-#include "posewise/selection/exchange.hpp"
+#include "posewise/selection/choice.hpp"
 #include "support/designs.hpp"
 
 /// select_poses on single rows beside the textbook exchanges, which restart on the same threads for

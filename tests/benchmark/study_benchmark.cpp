@@ -6,9 +6,8 @@
 
 #include "freed_memory.hpp"
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
-#include "posewise/measurement/simulation.hpp"
-#include "posewise/task/simulated_study.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/task/study.hpp"
 #include "support/campaigns.hpp"
 
 namespace posewise {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "../../src/calibrator/least_squares.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/robots.hpp"
 #include "support/sensors.hpp"
 

@@ -3,10 +3,9 @@
 #include "../../src/model/complete_model.hpp"
 #include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/sensors.hpp"
-#include "posewise/measurement/simulation.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/model/chain.hpp"
 #include "support/campaigns.hpp"
 
 // How many steps an identification takes where gross errors meet directions that only priors hold.

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "../../src/model/complete_model.hpp"
-#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/jacobian/identification.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "support/sensors.hpp"
 

@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include "../../src/model/sampling.hpp"
-#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/campaigns.hpp"
 #include "support/parameter_error.hpp"
 

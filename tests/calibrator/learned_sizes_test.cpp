@@ -2,10 +2,9 @@
 
 #include "../../src/model/complete_model.hpp"
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/jacobian/identifiability.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/campaigns.hpp"
 
 // How large a robot's errors are, learned from measurements.

@@ -6,10 +6,9 @@
 
 #include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/campaigns.hpp"
 #include "support/parameter_error.hpp"
 
@@ -41,7 +40,7 @@ Measurements simulate_with_gaps(const Campaign& campaign, const Parameters& trut
     return measurements;
 }
 
-Estimate calibrate(const Campaign& campaign, const Measurements& measurements) {
+Estimate identify_registered(const Campaign& campaign, const Measurements& measurements) {
     return identify(campaign, measurements,
                     register_base_and_targets(campaign, measurements).parameters);
 }
@@ -58,7 +57,7 @@ TEST(MissingTargets, ExactMeasurementsGiveTheTruth) {
         std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(3, std::nullopt), 1e-14);
     const Parameters truth = draw_truth(exact, 3);
     const Estimate estimate =
-        calibrate(tracker_campaign(), simulate_with_gaps(exact, truth, 24, 2, 5));
+        identify_registered(tracker_campaign(), simulate_with_gaps(exact, truth, 24, 2, 5));
     EXPECT_EQ(estimate.ending, Ending::Converged);
     EXPECT_LT(error_of(estimate.parameters, truth).norm(), 1e-10);
 }
@@ -95,7 +94,7 @@ TEST(MissingTargets, ADroppedTargetIsOneOfWeightZero) {
         simulate_measurements(campaign, truth, random_configurations(campaign.robot, 20, 4), 1, 5);
     measurements.is_seen(7, 1) = false;
     measurements.observations.row(7).segment<3>(3).setConstant(99);
-    const Estimate estimate = calibrate(campaign, measurements);
+    const Estimate estimate = identify_registered(campaign, measurements);
 
     // The normal equations of all rows, written out: at the optimum J^T W r = 0.
     VectorXd weights = VectorXd::Constant(180, 1 / (5e-5 * 5e-5 + 1e-4 * 1e-4));
@@ -130,8 +129,8 @@ TEST(MissingTargets, WhatStandsInTheirPlaceDoesNotMatter) {
     Measurements with_numbers = with_nan;
     with_numbers.observations =
         with_nan.observations.array().isNaN().select(1e6, with_nan.observations);
-    const Estimate a = calibrate(campaign, with_nan);
-    const Estimate b = calibrate(campaign, with_numbers);
+    const Estimate a = identify_registered(campaign, with_nan);
+    const Estimate b = identify_registered(campaign, with_numbers);
     EXPECT_TRUE(a.covariance.allFinite());
     EXPECT_EQ(a.covariance, b.covariance);
     EXPECT_EQ(a.parameters.sensor, b.parameters.sensor);

@@ -2,8 +2,7 @@
 
 #include "../../src/model/complete_model.hpp"
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/campaigns.hpp"
 
 // The model error that is found beside priors, and what follows from it.

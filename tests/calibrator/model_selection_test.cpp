@@ -1,14 +1,12 @@
-#include "posewise/calibrator/model_selection.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "../../src/model/sampling.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "support/campaigns.hpp"
 

@@ -9,11 +9,11 @@
 
 #include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/estimate.hpp"
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/jacobian/identifiability.hpp"
-#include "posewise/measurement/simulation.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/model/chain.hpp"
 #include "support/campaigns.hpp"
 #include "support/sweep.hpp"
 

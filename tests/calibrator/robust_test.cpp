@@ -8,9 +8,8 @@
 #include "../../src/calibrator/loss.hpp"
 #include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/campaigns.hpp"
 #include "support/parameter_error.hpp"
 

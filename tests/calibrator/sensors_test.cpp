@@ -7,9 +7,8 @@
 
 #include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
-#include "posewise/jacobian/identifiability.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/sweep.hpp"
 #include "support/temporary_folder.hpp"
 

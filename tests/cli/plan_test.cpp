@@ -113,9 +113,9 @@ TEST_F(PlanCommand, ChecksThePlanItRepairs) {
     plan = sound;
     plan.at("campaign") = "another cell";
     expect_refused(plan, "campaign: is 'another cell'; must be a plan of 'FANUC");
-    const std::string blocks = "/tests/golden/plan_format_1/blocks.plan.json";
-    expect_input_error("plan " + cell_design + " --plan '" + source_folder() + blocks +
-                           "' --drop p2" + quick + "-o x.json",
+    write_text("b.csv", "1,0\n0,1\n1,1\n1,-1\n2,1\n1,2\n");
+    run("select --blocks b.csv --rows 1 -k 3 -o b.json");
+    expect_input_error("plan " + cell_design + " --plan b.json --drop p2" + quick + "-o x.json",
                        "is a choice from plain blocks; must be a plan of continuous poses");
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <sstream>
 
 #include "program.hpp"
 
@@ -26,6 +27,40 @@ TEST_F(Usage, HelpOfEveryCommandHasAnExample) {
         const std::string help = run_well(command + " --help");
         EXPECT_NE(help.find("Example:\n  posewise " + command), std::string::npos) << help;
     }
+}
+
+TEST_F(Usage, HelpOfEveryCommandFitsAScreen) {
+    for (const auto& command : commands) {
+        const std::string help = run_well(command + " --help");
+        EXPECT_LE(std::count(help.begin(), help.end(), '\n'), 60) << command;
+        std::istringstream lines(help);
+        for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
+    }
+}
+
+TEST_F(Usage, HelpExplainsEveryOptionAndEverySectionOfTheManual) {
+    const std::string topics = run_well("help");
+    EXPECT_NE(topics.find("\n  plan "), std::string::npos) << topics;
+    EXPECT_NE(topics.find("\n  cell "), std::string::npos) << topics;
+    EXPECT_NE(run_well("help plan").find("\n  --drift-mrad X\n"), std::string::npos);
+    EXPECT_EQ(run_well("help cell").rfind("## cell\n", 0), 0u);
+    const Outcome unknown = run("help plans");
+    EXPECT_EQ(unknown.code, 2);
+    EXPECT_NE(unknown.err.find("'plans' is no topic; did you mean 'plan'?"), std::string::npos)
+        << unknown.err;
+}
+
+TEST_F(Usage, CompletionIsAScriptThatKnowsTheOptions) {
+    for (const std::string shell : {"bash", "zsh"}) {
+        write_text("completion.sh", run_well("completion " + shell));
+        EXPECT_NE(text_of("completion.sh").find("--target-mm"), std::string::npos);
+    }
+    write_text(
+        "try.sh",
+        "set -e\nsource completion.sh 2>/dev/null || true\nCOMP_WORDS=(posewise plan --targ)\n"
+        "COMP_CWORD=2\n_posewise\necho \"${COMPREPLY[*]}\"\n");
+    write_text("completion.sh", run_well("completion bash"));
+    EXPECT_EQ(run_line("bash try.sh > .out 2> .err").out, "--target-mm\n");
 }
 
 /// Arguments, and words of what is said of them.

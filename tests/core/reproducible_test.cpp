@@ -1,6 +1,6 @@
-#include "posewise/core/reproducible.hpp"
-
 #include <gtest/gtest.h>
+
+#include "posewise/core/threads.hpp"
 
 namespace posewise {
 namespace {

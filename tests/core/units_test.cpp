@@ -1,6 +1,6 @@
-#include "posewise/core/units.hpp"
-
 #include <gtest/gtest.h>
+
+#include "posewise/core/types.hpp"
 
 namespace posewise {
 namespace {

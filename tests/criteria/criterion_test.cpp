@@ -7,13 +7,12 @@
 #include <cmath>
 #include <limits>
 
+#include "../../src/criteria/objective.hpp"
 #include "posewise/core/errors.hpp"
 #include "support/designs.hpp"
 
 namespace posewise {
 namespace {
-
-constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
 
 /// All that need no test poses.
 constexpr std::array spectral = {Criterion::O1, Criterion::O2, Criterion::O3, Criterion::O4,
@@ -136,13 +135,14 @@ TEST(Criterion, IsMinusInfinityForEverySingularMatrix) {
     for (const MatrixXd& M : {MatrixXd(few.transpose() * few), MatrixXd(MatrixXd::Zero(4, 4)),
                               not_a_number, indefinite}) {
         for (const Criterion criterion : spectral) {
-            EXPECT_EQ(evaluate(criterion, M, 3), minus_infinity) << criterion_name(criterion);
+            EXPECT_EQ(evaluate(criterion, M, 3), detail::value_if_singular)
+                << criterion_name(criterion);
         }
-        EXPECT_EQ(evaluate(Criterion::G, M, 3, &test_poses), minus_infinity);
-        EXPECT_EQ(evaluate(Criterion::V, M, 3, &test_poses), minus_infinity);
+        EXPECT_EQ(evaluate(Criterion::G, M, 3, &test_poses), detail::value_if_singular);
+        EXPECT_EQ(evaluate(Criterion::V, M, 3, &test_poses), detail::value_if_singular);
     }
     for (const Criterion criterion : spectral) {
-        EXPECT_EQ(evaluate(criterion, singular_values(few), 3), minus_infinity);
+        EXPECT_EQ(evaluate(criterion, singular_values(few), 3), detail::value_if_singular);
     }
 }
 

@@ -9,8 +9,6 @@
 namespace posewise {
 namespace {
 
-constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
-
 TEST(EvaluateRows, HasTheDigitsThatTheSingularValuesOfTheRowsHave) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         for (const double condition : {1.0, 1e3, 1e5, 1e8}) {
@@ -42,8 +40,9 @@ TEST(EvaluateRows, IsMinusInfinityForFewerRowsThanParametersHoweverTheyAreDrawn)
         const Blocks few = test::random_blocks(2, 3, 7, seed);
         const Blocks dependent = take(few, {0, 1, 0, 1});
         for (const Criterion criterion : all_criteria) {
-            EXPECT_EQ(evaluate_rows(criterion, few.matrix, 2, &few), minus_infinity);
-            EXPECT_EQ(evaluate_rows(criterion, dependent.matrix, 4, &few), minus_infinity);
+            EXPECT_EQ(evaluate_rows(criterion, few.matrix, 2, &few), detail::value_if_singular);
+            EXPECT_EQ(evaluate_rows(criterion, dependent.matrix, 4, &few),
+                      detail::value_if_singular);
         }
     }
 }
@@ -64,9 +63,9 @@ TEST(EvaluateRows, DoesNotDependOnTheUnitsOfParametersByDAndV) {
 TEST(EvaluateRows, IsMinusInfinityForWhatIsNoNumber) {
     RowMatrixXd rows = RowMatrixXd::Identity(3, 3);
     rows(1, 1) = std::nan("");
-    EXPECT_EQ(evaluate_rows(Criterion::D, rows, 1), minus_infinity);
+    EXPECT_EQ(evaluate_rows(Criterion::D, rows, 1), detail::value_if_singular);
     rows(1, 1) = 0;
-    EXPECT_EQ(evaluate_rows(Criterion::D, rows, 1), minus_infinity);
+    EXPECT_EQ(evaluate_rows(Criterion::D, rows, 1), detail::value_if_singular);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "fuzzed_file.hpp"
-#include "posewise/io/estimate_file.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/io/result_files.hpp"
+#include "posewise/measurement/measurements.hpp"
 
 using namespace posewise;
 

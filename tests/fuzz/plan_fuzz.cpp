@@ -1,5 +1,5 @@
 #include "fuzzed_file.hpp"
-#include "posewise/io/plan_file.hpp"
+#include "posewise/io/result_files.hpp"
 
 using namespace posewise;
 

@@ -1,5 +1,5 @@
 #include "fuzzed_file.hpp"
-#include "posewise/io/urdf_file.hpp"
+#include "posewise/io/robot_files.hpp"
 
 using namespace posewise;
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "campaign_text.hpp"
-#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "support/places.hpp"

@@ -1,11 +1,10 @@
-#include "posewise/io/campaign_variation.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/io/campaign_file.hpp"
 
 namespace posewise::io {
 namespace {

@@ -4,8 +4,8 @@
 #include "mat_writer.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/model/chain.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/transforms.hpp"
 #include "support/temporary_folder.hpp"
 
 // Compliances in a campaign file, the torques they need, and the masses of a URDF.

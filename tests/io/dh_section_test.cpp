@@ -2,8 +2,8 @@
 
 #include "../../src/model/complete_model.hpp"
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/io/dh_file.hpp"
-#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/io/robot_files.hpp"
+#include "posewise/jacobian/identification.hpp"
 #include "support/robots.hpp"
 #include "support/slips.hpp"
 #include "support/sweep.hpp"

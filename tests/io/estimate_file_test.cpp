@@ -1,5 +1,3 @@
-#include "posewise/io/estimate_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -7,6 +5,7 @@
 #include "../../src/io/atomic_file.hpp"
 #include "campaign_text.hpp"
 #include "posewise/io/campaign_file.hpp"
+#include "posewise/io/result_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -173,7 +172,7 @@ TEST_F(EstimateFile, IsRefusedInAFormatThatIsNotKnown) {
     for (const int format : {0, 2}) {
         document["format"] = format;
         EXPECT_EQ(error(), "estimate.json: format: is " + std::to_string(format) +
-                               "; this posewise reads 1: calibrate again with it");
+                               "; this posewise reads 1: make the estimate again with it");
     }
     document["format"] = "1";
     EXPECT_NE(error().find("format: "), std::string::npos);

@@ -2,7 +2,7 @@
 
 #include "../../src/model/complete_model.hpp"
 #include "lift_urdf.hpp"
-#include "posewise/io/urdf_file.hpp"
+#include "posewise/io/robot_files.hpp"
 #include "support/mutate.hpp"
 #include "support/sweep.hpp"
 #include "support/urdf_text.hpp"

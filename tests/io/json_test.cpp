@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "posewise/io/plan_file.hpp"
+#include "posewise/io/result_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -18,7 +18,7 @@ TEST(ReadJson, RefusesDeepNesting) {
     const testing::TemporaryFolder folder;
     const auto error_of = [&](std::size_t depth) {
         const std::string path =
-            folder.write("p.json", R"({"kind": "posewise plan", "x": )" + std::string(depth, '[') +
+            folder.write("p.json", R"({"kind": "posewise plan", "format": 2, "x": )" + std::string(depth, '[') +
                                        '1' + std::string(depth, ']') + R"(, "a": 1})");
         return testing::input_error_of([&] { read_plan(path); });
     };

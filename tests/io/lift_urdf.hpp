@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "posewise/io/urdf_file.hpp"
+#include "posewise/io/robot_files.hpp"
 #include "support/slips.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,14 +1,12 @@
-#include "posewise/io/page_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "../../src/io/atomic_file.hpp"
-#include "posewise/io/json_reports.hpp"
-#include "posewise/io/saved_file.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/io/documents.hpp"
+#include "posewise/io/result_files.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/cells.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -167,7 +165,6 @@ TEST(KindOfSaved, IsFoundFromTheContent) {
         return kind_of_saved(folder.write("f", text));
     };
     EXPECT_EQ(kind_of(R"({"kind": "posewise plan"})"), SavedKind::Plan);
-    EXPECT_EQ(kind_of(R"({"kind": "posewise pose plan"})"), SavedKind::Plan);
     EXPECT_EQ(kind_of(R"({"kind": "posewise estimate"})"), SavedKind::Estimate);
     EXPECT_EQ(kind_of(R"({"kind": "posewise study"})"), SavedKind::Study);
     EXPECT_EQ(kind_of(R"({"kind": "posewise export"})"), SavedKind::Export);

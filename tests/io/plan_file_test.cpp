@@ -1,5 +1,3 @@
-#include "posewise/io/plan_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -8,8 +6,9 @@
 #include "campaign_text.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/io/json_reports.hpp"
+#include "posewise/io/documents.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/io/result_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -29,6 +28,7 @@ class PlanFileTest : public ::testing::Test {
         plan_.campaign = campaign.name;
         plan_.columns = configuration_columns(campaign);
         plan_.assumptions = assumptions_of(campaign);
+        plan_.request.criterion = Criterion::D;
         plan_.kind = CandidateKind::Measurements;
         plan_.request.sources.campaign = path;
         plan_.request.sources.candidates = "absent.csv";
@@ -76,7 +76,7 @@ class PlanFileTest : public ::testing::Test {
     }
 
     std::string error_with_poses(const std::string& poses) const {
-        return error_of(R"({"kind": "posewise plan", "poses": )" + poses + "}");
+        return error_of(R"({"kind": "posewise plan", "format": 2, "poses": )" + poses + "}");
     }
 
     TemporaryFolder folder_;
@@ -349,7 +349,7 @@ TEST_F(PlanFileTest, IsRefusedIfItIsAnotherDocument) {
 
 TEST_F(PlanFileTest, IsRefusedWithoutPoses) {
     const std::string message = "p.json: poses: must be a list of at least one pose";
-    EXPECT_EQ(error_of(R"({"kind": "posewise plan"})"), message);
+    EXPECT_EQ(error_of(R"({"kind": "posewise plan", "format": 2})"), message);
     EXPECT_EQ(error_with_poses("{}"), message);
     EXPECT_EQ(error_with_poses("[]"), message);
 }

@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/sensors.hpp"
-#include "posewise/measurement/simulation.hpp"
 #include "support/slips.hpp"
 #include "support/temporary_folder.hpp"
 

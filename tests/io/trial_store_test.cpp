@@ -1,5 +1,3 @@
-#include "posewise/io/trial_store.hpp"
-
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
@@ -11,6 +9,7 @@
 #include "../../src/io/atomic_file.hpp"
 #include "../../src/io/trial_statement.hpp"
 #include "posewise/core/version.hpp"
+#include "posewise/io/result_files.hpp"
 #include "trials.hpp"
 
 namespace posewise::io {

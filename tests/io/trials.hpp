@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "posewise/core/random.hpp"
-#include "posewise/io/trial_store.hpp"
+#include "posewise/io/result_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::testing {

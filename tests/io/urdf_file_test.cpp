@@ -1,12 +1,11 @@
-#include "posewise/io/urdf_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include <sstream>
 
 #include "../../src/model/complete_model.hpp"
 #include "lift_urdf.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/io/robot_files.hpp"
+#include "posewise/model/chain.hpp"
 #include "support/sweep.hpp"
 #include "support/urdf_text.hpp"
 

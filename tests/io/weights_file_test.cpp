@@ -1,9 +1,8 @@
-#include "posewise/io/weights_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include "../../src/io/atomic_file.hpp"
-#include "posewise/io/json_reports.hpp"
+#include "posewise/io/documents.hpp"
+#include "posewise/io/result_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -13,6 +12,8 @@ class WeightsFile : public ::testing::Test {
   protected:
     WeightsFile() {
         design_.campaign = "crane";
+        design_.request.criterion = Criterion::D;
+        design_.request.seed = 1;
         design_.request.pose_count = 1;
         design_.weights = {{"second, \"the\" heavy", 2.0 / 3}, {"b", 1.0 / 3}};
     }

@@ -1,5 +1,3 @@
-#include "posewise/jacobian/identifiability.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

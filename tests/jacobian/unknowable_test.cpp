@@ -1,11 +1,10 @@
-#include "posewise/jacobian/unknowable.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/jacobian/identification.hpp"
 #include "support/campaigns.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,10 +1,9 @@
-#include "posewise/measurement/point_noise.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "support/derivative_check.hpp"
 #include "support/sweep.hpp"
 

@@ -1,10 +1,9 @@
-#include "posewise/measurement/pool.hpp"
-
 #include <gtest/gtest.h>
 #include <omp.h>
 
 #include "../../src/model/halton.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/constraints.hpp"
 #include "support/cell_recheck.hpp"
 #include "support/cells.hpp"
 
@@ -70,10 +69,10 @@ TEST(MakePool, SaysWhatToDoAboutTooFew) {
         check_pool_size(pool, 190);
         FAIL() << "enough";
     } catch (const InputError& error) {
-        EXPECT_NE(
-            std::string(error.what())
-                .find("feasible poses of 200 candidates, 190 are needed; raise --pool or relax "),
-            std::string::npos)
+        EXPECT_NE(std::string(error.what())
+                      .find("feasible poses of 200 candidates, 190 are needed; raise `pool_count` "
+                            "or relax "),
+                  std::string::npos)
             << error.what();
     }
 }

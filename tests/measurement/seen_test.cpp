@@ -1,6 +1,6 @@
-#include "posewise/measurement/seen.hpp"
-
 #include <gtest/gtest.h>
+
+#include "posewise/measurement/sensor.hpp"
 
 namespace posewise {
 namespace {

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/simulation.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/model/chain.hpp"
 #include "support/derivative_check.hpp"
 #include "support/sensors.hpp"
 #include "support/sweep.hpp"

@@ -1,5 +1,3 @@
-#include "posewise/measurement/simulation.hpp"
-
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -8,6 +6,7 @@
 #include "../../src/model/sampling.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/constraints.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "support/campaigns.hpp"
 #include "support/cells.hpp"

@@ -4,7 +4,7 @@
 
 #include "../../src/measurement/contact.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/robots.hpp"
 #include "support/sensors.hpp"
 

@@ -1,8 +1,7 @@
-#include "posewise/model/comparison.hpp"
-
 #include <gtest/gtest.h>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/model/chain.hpp"
 #include "support/robots.hpp"
 
 namespace posewise {

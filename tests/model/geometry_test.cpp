@@ -1,10 +1,9 @@
-#include "posewise/model/geometry.hpp"
-
 #include <gtest/gtest.h>
 
 #include <functional>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/model/cell.hpp"
 #include "support/sweep.hpp"
 
 namespace posewise {

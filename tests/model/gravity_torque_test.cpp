@@ -1,9 +1,8 @@
-#include "posewise/model/gravity_torque.hpp"
-
 #include <gtest/gtest.h>
 
 #include "../../src/model/sampling.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "support/derivative_check.hpp"
 #include "support/robots.hpp"
 #include "support/sweep.hpp"

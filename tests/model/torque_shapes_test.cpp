@@ -6,7 +6,6 @@
 #include "../../src/model/sampling.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/gravity_torque.hpp"
 #include "support/derivative_check.hpp"
 #include "support/robots.hpp"
 #include "support/sweep.hpp"

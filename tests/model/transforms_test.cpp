@@ -1,9 +1,8 @@
-#include "posewise/model/transforms.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "posewise/model/chain.hpp"
 #include "support/sweep.hpp"
 
 namespace posewise {

@@ -1,13 +1,11 @@
-#include "posewise/model/ur_frames.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "../../src/model/complete_model.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/model/comparison.hpp"
-#include "posewise/model/transforms.hpp"
+#include "posewise/model/chain.hpp"
+#include "posewise/model/dh.hpp"
 #include "support/robots.hpp"
 #include "support/sweep.hpp"
 #include "support/temporary_folder.hpp"

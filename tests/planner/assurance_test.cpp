@@ -1,5 +1,3 @@
-#include "posewise/planner/assurance.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/threads.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/planner/prediction.hpp"
 #include "support/fanuc_planning.hpp"
 
 namespace posewise {

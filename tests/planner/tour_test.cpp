@@ -6,7 +6,7 @@
 
 #include "../../src/model/halton.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/pool.hpp"
+#include "posewise/measurement/constraints.hpp"
 #include "support/cells.hpp"
 #include "support/sweep.hpp"
 

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "posewise/jacobian/identifiability.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/sensors.hpp"
-#include "posewise/measurement/simulation.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/report/reports.hpp"
 #include "support/campaigns.hpp"
@@ -103,7 +103,8 @@ TEST(FormatCalibration, NamesOnlyCuresThatWereTriedWithTheirFigures) {
     const Example example(16);
     Calibration calibration = calibrate(example.campaign, example.measurements, {.folds = 0});
     EXPECT_FALSE(holds(format(calibration), "of little or no use"));
-    calibration.cures = {{{"--exclude 5", 0.038, 1.6e-4}}, {"--loss cauchy", "errors: full"}};
+    calibration.cures = {{{exclusion({"5"}), 0.038, 1.6e-4}},
+                         {{"loss cauchy"}, {"errors: full", true}}};
     const std::string cure = "with --exclude 5: 0.16 instead of 38 mm held out";
     EXPECT_TRUE(holds(format(calibration),
                       cure + "\ntried, of little or no use: --loss cauchy, errors: full\n"))

@@ -25,6 +25,7 @@ TEST(FormatChoice, SaysWhatTheValueMeansWhereItMeansMillimetres) {
 
 TEST(FormatChoice, HasAsManyDigitsAsAsked) {
     Plan plan;
+    plan.request.criterion = Criterion::D;
     plan.value = 1.0 / 3;
     plan.bound = 2.0 / 3;
     EXPECT_NE(format_choice(plan).find("value:      0.33333333\nbound:      0.66666667\n"),
@@ -36,6 +37,7 @@ TEST(FormatChoice, HasAsManyDigitsAsAsked) {
 
 TEST(FormatDesign, ListsTheWeights) {
     ApproximateDesign design;
+    design.request.criterion = Criterion::D;
     design.request.pose_count = 2;
     design.candidate_count = 40;
     design.weights = {{"a", 1}, {"b", 2.0 / 3}, {"c", 1.0 / 3}};
@@ -53,6 +55,7 @@ TEST(FormatDesign, ListsTheWeights) {
 
 TEST(FormatChoice, SaysThatNoStartEndedBeforeTheStop) {
     Plan plan;
+    plan.request.criterion = Criterion::D;
     plan.ending = Ending::Interrupted;
     plan.efficiency = 0.5;
     const std::string text = format_choice(plan);

@@ -7,7 +7,7 @@
 
 #include "../../src/report/plot.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/cells.hpp"
 #include "support/temporary_folder.hpp"
 

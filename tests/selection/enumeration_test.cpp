@@ -7,7 +7,7 @@
 #include <atomic>
 
 #include "../../src/selection/bound.hpp"
-#include "posewise/selection/exchange.hpp"
+#include "posewise/selection/choice.hpp"
 #include "support/designs.hpp"
 
 /// The search against all 38 760 choices of 6 out of 20, enumerated independently of the library.

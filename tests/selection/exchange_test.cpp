@@ -1,5 +1,3 @@
-#include "posewise/selection/exchange.hpp"
-
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -10,6 +8,7 @@
 #include "../../src/core/decompositions.hpp"
 #include "../../src/selection/bound.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/selection/choice.hpp"
 #include "support/designs.hpp"
 
 namespace posewise {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "posewise/selection/exchange.hpp"
+#include "posewise/selection/choice.hpp"
 #include "support/designs.hpp"
 
 /// Optimal designs that are known in closed form or by proof.

@@ -5,7 +5,7 @@
 
 #include "../../src/core/decompositions.hpp"
 #include "../../src/selection/bound.hpp"
-#include "posewise/selection/exchange.hpp"
+#include "posewise/selection/choice.hpp"
 #include "support/ill_conditioned.hpp"
 #include "support/svd_reference.hpp"
 #include "support/sweep.hpp"

@@ -7,9 +7,8 @@
 #include "../../src/measurement/noise.hpp"
 #include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 
 /// How often what simulated calibrations say is within their 95 % intervals of what is true.
 namespace posewise::testing {

@@ -2,7 +2,7 @@
 
 #include "../../src/model/complete_model.hpp"
 #include "../../src/model/sampling.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/task/calibration.hpp"
 #include "support/campaigns.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "posewise/core/random.hpp"
 #include "posewise/model/chain.hpp"
-#include "posewise/model/gravity_torque.hpp"
+#include "posewise/model/error_terms.hpp"
 
 /// Robots in code, so that tests of the lower modules need no files.
 namespace posewise::testing {

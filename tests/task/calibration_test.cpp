@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/campaigns.hpp"
 #include "support/sensors.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "posewise/core/errors.hpp"
 #include "posewise/task/choice.hpp"
-#include "posewise/task/verification.hpp"
+#include "posewise/task/planning.hpp"
 #include "support/campaigns.hpp"
 #include "support/ill_conditioned.hpp"
 #include "support/sweep.hpp"

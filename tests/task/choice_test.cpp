@@ -5,12 +5,12 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/pool.hpp"
-#include "posewise/measurement/simulation.hpp"
-#include "posewise/selection/exchange.hpp"
-#include "posewise/task/verification.hpp"
+#include "posewise/measurement/constraints.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/selection/choice.hpp"
+#include "posewise/task/planning.hpp"
 #include "support/campaigns.hpp"
 #include "support/cells.hpp"
 #include "support/designs.hpp"

@@ -4,7 +4,7 @@
 
 #include "../../src/model/sampling.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/campaigns.hpp"
 #include "support/temporary_folder.hpp"
 

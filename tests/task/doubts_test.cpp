@@ -9,8 +9,8 @@
 #include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/jacobian/identifiability.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "support/campaigns.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/jacobian/identification.hpp"

@@ -1,12 +1,11 @@
-#include "posewise/task/error_map.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/task/calibration.hpp"
+#include "posewise/task/scene.hpp"
 #include "support/cells.hpp"
 
 namespace posewise {

@@ -1,15 +1,14 @@
-#include "posewise/task/geometry.hpp"
-
 #include <gtest/gtest.h>
 
 #include "../../src/model/complete_model.hpp"
 #include "../../src/model/sampling.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/jacobian/identifiability.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/model/chain.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/model/transforms.hpp"
 #include "posewise/task/calibration.hpp"
+#include "posewise/task/inspection.hpp"
 #include "support/campaigns.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "../../src/task/expected_distance.hpp"
 #include "posewise/core/random.hpp"
-#include "posewise/jacobian/identifiability.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/task/calibration.hpp"
 #include "support/campaigns.hpp"
 
@@ -79,7 +79,7 @@ TEST(Calibrate, NamesTheConfigurationThatSpoilsItAndWhatIsLeftWithoutIt) {
                   0U)
             << found.faults.front();
         const auto cure =
-            std::ranges::find(found.cures.found, "--exclude " + measured.ids[5], &Cure::option);
+            std::ranges::find(found.cures.found, exclusion({measured.ids[5]}), &Cure::remedy);
         ASSERT_NE(cure, found.cures.found.end());
         EXPECT_LT(cure->after, 0.4e-3);
         EXPECT_GT(cure->before, 10e-3);

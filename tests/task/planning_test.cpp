@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/task/verification.hpp"
 #include "support/cells.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -187,9 +186,10 @@ TEST_F(MakePlan, KeepsPosesToVerifyOfThePlanItRepairs) {
     };
     EXPECT_TRUE(std::ranges::all_of(first.verification, has));
     options_.dropped = {"v2"};
-    EXPECT_EQ(testing::input_error_of([&] { make_plan(campaign_, options_); }),
-              "--drop v2: is a pose to verify, which need not be replaced; leave it out of what is "
-              "measured");
+    EXPECT_EQ(
+        testing::input_error_of([&] { make_plan(campaign_, options_); }),
+        "`dropped` v2: is a pose to verify, which need not be replaced; leave it out of what is "
+        "measured");
 }
 
 TEST_F(MakePlan, FindsPosesToVerifyAmongThoseMeasured) {

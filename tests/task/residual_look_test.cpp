@@ -1,12 +1,10 @@
-#include "posewise/task/residual_look.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/registration.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/task/doubts.hpp"
 #include "support/campaigns.hpp"
 
 namespace posewise {

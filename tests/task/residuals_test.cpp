@@ -1,10 +1,9 @@
-#include "posewise/task/residuals.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/task/calibration.hpp"
 #include "posewise/task/scene.hpp"
 #include "support/sensors.hpp"
 

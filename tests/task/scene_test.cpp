@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "../../src/model/sampling.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "support/cells.hpp"
 #include "support/sensors.hpp"
 

@@ -1,5 +1,3 @@
-#include "posewise/task/simulated_plan.hpp"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -10,7 +8,8 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/threads.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/task/earlier.hpp"
+#include "posewise/task/calibration.hpp"
+#include "posewise/task/planning.hpp"
 #include "support/held_robot.hpp"
 
 namespace posewise {

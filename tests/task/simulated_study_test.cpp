@@ -1,5 +1,3 @@
-#include "posewise/task/simulated_study.hpp"
-
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -8,8 +6,9 @@
 #include <map>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/simulation.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "posewise/task/study.hpp"
 #include "support/campaigns.hpp"
 #include "support/robots.hpp"
 

@@ -6,12 +6,11 @@
 #include <atomic>
 #include <set>
 
-#include "posewise/calibrator/registration.hpp"
+#include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/jacobian/identifiability.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/measurement/simulation.hpp"
-#include "posewise/selection/exchange.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/selection/choice.hpp"
 #include "support/campaigns.hpp"
 
 namespace posewise {

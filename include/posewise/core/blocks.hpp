@@ -7,9 +7,9 @@
 
 namespace posewise {
 
-/// What each pose tells about the parameters: the rows of the identification Jacobian, divided by
-/// the noise and multiplied by the expected size of each parameter's error, hence without units.
-/// Criteria, selection and certificates see only this; they never hear of a robot.
+/// The rows that each pose contributes to the identification Jacobian, divided by the noise and
+/// multiplied by each parameter's expected error, so they have no units. Criteria, selection and
+/// certificates see only these rows; they know nothing about a robot.
 struct Blocks {
     /// All poses stacked: row_count() x parameter_count().
     RowMatrixXd matrix;
@@ -26,23 +26,23 @@ struct Blocks {
     }
 };
 
-/// Throws InputError, with row and column from 1, for a value that is not finite or beyond 1e50,
-/// whose squares would overflow, and for a column of values so small that its squares would vanish,
-/// other than 0.
+/// Throws InputError for a value that is not finite or exceeds 1e50 in magnitude, because its
+/// square would overflow; the message names row and column, from 1. Also throws for a column, other
+/// than 0, whose values are so small that their squares underflow.
 void check_values(const RowMatrixXd& matrix);
 
-/// Blocks of equal height from a plain matrix: each `rows_per_block` consecutive rows are one pose.
-/// Throws InputError if the row count is not a multiple, or as check_values() does.
+/// Splits a plain matrix into blocks of equal height: every `rows_per_block` consecutive rows are
+/// one pose. Throws InputError if the row count is not a multiple of it, or as check_values() does.
 Blocks make_equal_blocks(const RowMatrixXd& matrix, Index rows_per_block);
 
-/// The blocks of some poses, in the order asked for; an index may occur more than once.
+/// The blocks of the listed poses, in that order; an index may occur more than once.
 Blocks take(const Blocks& blocks, const std::vector<Index>& poses);
 
-/// The information matrix sum_i B_i^T B_i over the given poses, parameter_count() square. A pose
+/// Information matrix sum_i B_i^T B_i over the listed poses, parameter_count() square. A pose
 /// listed twice counts twice.
 MatrixXd information(const Blocks& blocks, const std::vector<Index>& poses);
 
-/// The information matrix over all poses.
+/// Information matrix over all poses.
 MatrixXd information(const Blocks& blocks);
 
 }  // namespace posewise

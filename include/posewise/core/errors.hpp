@@ -6,13 +6,13 @@
 namespace posewise {
 
 /// Thrown for every input the library cannot use. The message gives the name, the value and the
-/// rule it breaks; readers of files put `path:line:column: ` in front.
+/// rule it breaks; file readers put `path:line:column: ` in front.
 class InputError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/// Where a value stands in a text file. Lines and columns count from 1; 0 means "the whole file".
+/// Position of a value in a text file. Lines and columns count from 1; 0 means "the whole file".
 struct FileLocation {
     std::string path;
     long line = 0;

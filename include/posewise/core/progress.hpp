@@ -9,28 +9,28 @@
 
 #include "posewise/core/types.hpp"
 
-/// How a long computation is watched, stopped early, and how it ended.
+/// Progress, early stopping and endings of long computations.
 namespace posewise {
 
-/// How something that iterates or searches ended. Whatever stopped it, its result is the best met.
+/// How an iteration or search ended. Whatever stopped it, the result is the best one found.
 enum class Ending {
     NotRun,
-    Converged,        ///< nothing near improves it any more
-    Optimal,          ///< all choices that could be better were ruled out or tried: none is
+    Converged,        ///< no small change improves it any more
+    Optimal,          ///< every choice that could be better was ruled out or tried: none is
     RoundoffLimited,  ///< no step improves beyond rounding: as good as converged
     IterationLimit,   ///< still improving: usable, not the optimum
     Stalled,          ///< no step improves although the gradient is not zero
-    TimeLimit,        ///< the best so far when the time was up
-    Interrupted,      ///< the best so far when the caller asked to stop
-    NotIdentifiable,  ///< the data leave a direction of the parameters open
+    TimeLimit,        ///< the best result when time ran out
+    Interrupted,      ///< the best result when the caller asked to stop
+    NotIdentifiable,  ///< the data leave a direction of the parameters undetermined
     Failed,           ///< the optimiser gave up
 };
 
-/// In words, "time limit".
+/// The ending in words: "time limit".
 std::string_view ending_name(Ending ending);
 
-/// What makes a long computation stop early, with the best found so far. With a deadline, results
-/// depend on the machine.
+/// Stops a long computation early; its result is then the best one found so far. With a deadline,
+/// results depend on the machine.
 struct StopSignal {
     const std::atomic<bool>* interrupted = nullptr;  ///< set by a signal handler or another thread
     std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
@@ -41,9 +41,10 @@ struct StopSignal {
                std::chrono::steady_clock::now() >= deadline;
     }
     bool is_set() const { return is_interrupted() || is_late(); }
-    /// With half of the time that is left.
+    /// This signal with half of the remaining time.
     StopSignal with_half_the_time() const;
-    /// Throws InputError if it is set: for `what`, of which nothing is of use before its end.
+    /// Throws InputError "interrupted while `what`" (or out of time) if the signal is set. For
+    /// computations whose partial results are useless.
     void check(const std::string& what) const;
     /// Interrupted or TimeLimit if it is set, else `ending`.
     Ending ending_or(Ending ending) const;
@@ -52,17 +53,18 @@ struct StopSignal {
 /// The deadline `seconds` from now; 0: none. Throws InputError for less than 0.
 std::chrono::steady_clock::time_point deadline_after(double seconds);
 
-/// How far a long computation has come, in parts of it (starts, folds, cases). Computations fill
-/// in what they know.
+/// Progress of a long computation, counted in its parts (starts, folds, cases). Each computation
+/// fills in what it knows.
 struct Progress {
     Index done = 0;
     Index total = 0;
-    double value = -std::numeric_limits<double>::infinity();  ///< of the best plan so far
+    double value = -std::numeric_limits<double>::infinity();  ///< value of the best plan so far
     double bound = std::numeric_limits<double>::infinity();   ///< no plan has a larger value
-    double efficiency = 0;  ///< of the value against the bound, from 0 to 1
+    double efficiency = 0;  ///< efficiency of the value against the bound, from 0 to 1
 };
 
-/// Called from one thread at a time. What it throws ends the computation and reaches its caller.
+/// Called from one thread at a time. An exception it throws ends the computation and reaches the
+/// caller.
 using ProgressCallback = std::function<void(const Progress&)>;
 
 }  // namespace posewise

@@ -9,24 +9,24 @@
 
 namespace posewise {
 
-/// A seeded stream of random numbers that is the same on every platform and for any number of
-/// threads: item i of a parallel loop draws from RandomStream(seed, i). The distributions are our
-/// own because those of the standard library differ between vendors.
+/// A seeded stream of random numbers, identical on every platform and for any number of threads:
+/// item i of a parallel loop draws from RandomStream(seed, i). The distributions are our own
+/// because those of the standard library differ between vendors.
 class RandomStream {
   public:
     explicit RandomStream(std::uint64_t seed, std::uint64_t item = 0);
 
-    /// Those of items first, ..., first + 3, seeded side by side in a third of the time.
+    /// Streams of the items first, ..., first + 3, seeded together in a third of the time.
     static std::array<RandomStream, 4> of_four_items(std::uint64_t seed, std::uint64_t first);
 
     /// Uniform in [lower, upper).
     double uniform(double lower = 0, double upper = 1);
-    /// As many as there is room for, in order, in [0, 1).
+    /// Fills `numbers` in order, uniform in [0, 1).
     void fill_uniform(std::span<double> numbers);
 
     /// Standard normal (Box-Muller).
     double normal();
-    /// So many of them, in order.
+    /// `count` standard normal numbers, in order.
     VectorXd normals(Index count);
 
     /// Uniform in {0, ..., count - 1}; count must be positive.
@@ -36,12 +36,11 @@ class RandomStream {
     std::vector<Index> subset(Index count, Index k);
 
   private:
-    /// The numbers of std::mt19937_64 [Nishimura 2000], each made when it is asked for, not 312 at
-    /// once: streams of a few numbers, of which studies take one a configuration, cost as much
-    /// less.
+    /// The numbers of std::mt19937_64 [Nishimura 2000], generated one at a time instead of 312 at
+    /// once. That makes short streams cheap; studies use one per configuration.
     class Engine {
       public:
-        /// Seeds engines side by side: each number of a state waits for the last one.
+        /// Seeds engines side by side, because each number of a state depends on the previous one.
         template <std::size_t count>
         static void seed(const std::array<Engine*, count>& engines,
                          const std::array<std::uint64_t, count>& seeds);
@@ -52,7 +51,7 @@ class RandomStream {
       private:
         static constexpr std::size_t size = 312;
 
-        /// Makes number i of the state anew, from the one after and the one half a state on.
+        /// Renews number i of the state from the next number and the one half a state further on.
         std::uint64_t renew(std::size_t i, std::size_t after, std::size_t half_on);
 
         std::array<std::uint64_t, size> state_;

@@ -9,8 +9,8 @@
 
 namespace posewise {
 
-/// A number for an information matrix; larger is better. s1 >= ... >= sL are the singular values
-/// of the stacked blocks of m poses, M = J^T J their information matrix.
+/// A scalar rating of an information matrix; larger is better. s1 >= ... >= sL are the singular
+/// values of the stacked blocks of m poses, and M = J^T J is their information matrix.
 enum class Criterion {
     O1,  ///< (s1 ... sL)^(1/L) / sqrt(m) [Borm & Menq 1991]: overall; same ranking as D at fixed m
     O2,  ///< sL / s1 [Driels & Pathre 1990]: inverse condition number
@@ -24,49 +24,49 @@ enum class Criterion {
     V,   ///< 1 / mean trace(B0 M^-1 B0^T) over test poses (also called I): mean prediction
 };
 
-/// All of them, in the order that reports show.
+/// All criteria, in the order that reports show.
 inline constexpr std::array all_criteria{Criterion::O1, Criterion::O2, Criterion::O3, Criterion::O4,
                                          Criterion::O5, Criterion::A,  Criterion::D,  Criterion::E,
                                          Criterion::G,  Criterion::V};
 
-/// Whether it judges predictions at test poses.
+/// Whether the criterion rates predictions at test poses.
 constexpr bool needs_test_poses(Criterion criterion) {
     return criterion == Criterion::G || criterion == Criterion::V;
 }
 
-/// Whether it has a derivative at every regular M; the others have kinks where the extreme
-/// eigenvalue or the worst test pose changes.
+/// Whether the criterion has a derivative at every regular M; the others have kinks where the
+/// extreme eigenvalue or the worst test pose changes.
 constexpr bool is_smooth(Criterion criterion) {
     return criterion == Criterion::O1 || criterion == Criterion::O5 || criterion == Criterion::A ||
            criterion == Criterion::D || criterion == Criterion::V;
 }
 
-/// Whether it is a logarithm already, so that differences of it, not ratios, compare plans.
+/// Whether the value is a logarithm, so that plans compare by differences, not ratios.
 constexpr bool is_logarithm(Criterion criterion) { return criterion == Criterion::D; }
 
 /// Lower-case name as on the command line ("o1", ..., "v").
 std::string_view criterion_name(Criterion criterion);
 
-/// Reverse of criterion_name(), upper case accepted, "i" means V. Throws InputError listing all.
+/// Inverse of criterion_name(). Accepts upper case, and "i" for V. Throws InputError listing all.
 Criterion parse_criterion(std::string_view name);
 
-/// Singular values of stacked blocks, largest first, computed from the blocks themselves (QR, then
-/// SVD of R), so small ones keep their digits. Padded with zeros to parameter_count().
+/// Singular values of stacked blocks, largest first, by QR and SVD of R, so that small ones keep
+/// their digits. Padded with zeros to parameter_count().
 VectorXd singular_values(const RowMatrixXd& stacked);
 
-/// The criterion from singular values, largest first, of m poses. Singular (sL <= 1e-12 s1) gives
-/// minus infinity. G and V need test poses: InputError.
+/// The criterion from the singular values of m poses, largest first. Returns minus infinity if they
+/// are singular (sL <= 1e-12 s1). Throws InputError for G and V, which need test poses.
 double evaluate(Criterion criterion, const VectorXd& singular_values, Index pose_count);
 
-/// The criterion of stacked blocks (rows x parameters) of m poses, by QR of the rows: more digits
-/// than their information matrix gives. `test_poses` is needed by G and V only. Never NaN: rows
-/// that do not identify all parameters (what is left of a column beside the others is at most 1e-10
-/// of it) give minus infinity.
+/// The criterion of the stacked blocks (rows x parameters) of m poses, by QR of the rows, which
+/// keeps more digits than their information matrix. Only G and V need `test_poses`. Never NaN:
+/// returns minus infinity if the rows do not identify all parameters (at most 1e-10 of a column is
+/// independent of the others).
 double evaluate_rows(Criterion criterion, const RowMatrixXd& stacked, Index pose_count,
                      const Blocks* test_poses = nullptr);
 
-/// The criterion from an information matrix of m poses. `test_poses` is needed by G and V only.
-/// Never NaN: a singular (or not positive definite) M gives minus infinity.
+/// The criterion from the information matrix of m poses. Only G and V need `test_poses`. Never NaN:
+/// returns minus infinity if M is singular or not positive definite.
 double evaluate(Criterion criterion, const MatrixXd& M, Index pose_count,
                 const Blocks* test_poses = nullptr);
 

@@ -4,117 +4,107 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "posewise/core/progress.hpp"
-#include "posewise/criteria/criterion.hpp"
-#include "posewise/io/urdf_file.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/robot_files.hpp"
 #include "posewise/measurement/campaign.hpp"
 
 namespace posewise::io {
 
-/// Which variables of a MATLAB file hold what.
+/// Names of the variables in a MATLAB file.
 struct MatMapping {
     std::string joints = "q";         ///< samples x joints
-    std::vector<std::string> points;  ///< one variable a target, samples x 3
+    std::vector<std::string> points;  ///< one variable per target, samples x 3
     std::string torques = "tau";      ///< samples x measured torques, N m
-    double angle_unit = 1;            ///< of revolute joints, in rad
-    double length_unit = 1;           ///< of points and prismatic joints, in m
+    double angle_unit = 1;            ///< unit of revolute joints, in rad
+    double length_unit = 1;           ///< unit of points and prismatic joints, in m
 };
 
-/// Which error parameters the robot of a campaign has.
+/// The error parameters that the robot of a campaign has.
 enum class ErrorModel {
     Stated,    ///< those that the file names in brackets
-    Offsets,   ///< the joints' zeros, reduced to those that can be told apart
-    Complete,  ///< every geometric error of a rigid link, reduced to an irreducible set
-    Full,      ///< full_model(), with the sizes of errors that robots have as priors: the default
+    Offsets,   ///< joint zeros, reduced to those that can be told apart
+    Complete,  ///< all geometric errors of rigid links, reduced to an irreducible set
+    Full,      ///< geometric errors, torque shapes, harmonics; sizes are priors: the default
 };
 
-/// "stated", "offsets", "geometric" or "full", as files state it under `errors`.
+/// "stated", "offsets", "geometric" or "full", as in files under `errors`.
 std::string_view error_model_name(ErrorModel model);
-/// The model of that name ("complete" is geometric, too). Throws InputError for any other.
+/// The model with that name ("complete" is geometric, too). Throws InputError for any other.
 ErrorModel parse_error_model(const std::string& name);
 
-/// A campaign, what else its file says, and the defaults of the command line.
+/// A campaign, the rest of its file, and defaults for the command line.
 struct CampaignFile : Campaign {
     std::string path;
-    std::string checksum;  ///< of the file's text
-    /// The robot as the file's elements state it. With ErrorModel::Complete, `robot` is the
-    /// irreducible form of its complete model, with ErrorModel::Offsets that of its joints' zeros,
-    /// with ErrorModel::Full its full model, else the same.
+    std::string checksum;  ///< checksum of the file's text
+    /// The robot as the file's elements state it. `robot` is the irreducible form of its complete
+    /// model with ErrorModel::Complete, that of its joint zeros with ErrorModel::Offsets, its full
+    /// model with ErrorModel::Full, else the same.
     Chain declared_robot;
-    /// Angles of the robot that the file rounds, within 1e-6 rad of a multiple of 90 deg: they are
-    /// taken as that.
+    /// Number of robot angles that the file rounds; within 1e-6 rad of a multiple of 90 deg they
+    /// are taken as that.
     Index rounded_angle_count = 0;
     ErrorModel error_model = ErrorModel::Stated;
-    /// What select and plan reckon with instead, as the file says under `planning`.
+    /// What select and plan use instead, as the file states under `planning`.
     std::optional<ErrorModel> planned_model;
-    std::optional<UrdfSource> urdf;     ///< where the robot comes from, if from a URDF
-    std::vector<std::string> warnings;  ///< what was not understood of it, a sentence each
-    Criterion criterion = Criterion::V;
-    std::uint64_t seed = 1;
+    std::optional<UrdfSource> urdf;     ///< source of the robot, if it comes from a URDF
+    std::vector<std::string> warnings;  ///< parts of it that were not understood, a sentence each
     MatMapping mat;
 };
 
-/// Says whether the expected sizes are priors, whatever the file says. Without them a full model is
-/// reduced to what poses can tell apart. Throws InputError if it is stopped at that.
+/// Overrides whether the expected sizes are priors. A full model without priors is reduced to what
+/// poses can tell apart; throws InputError if that is stopped.
 void set_prior(CampaignFile& campaign, bool is_prior, const StopSignal& stop = {});
 
-/// Reads a campaign from YAML. Throws InputError with path:line:column for anything missing,
-/// misspelt or out of range.
-///
-/// An element of the robot is written `kind amount [parameter]`: the kind is T or R and an axis,
-/// the amount a sum of lengths or angles with their unit and of joints, each with an optional
-/// coefficient, the bracket names its error parameter and may be missing:
-/// `Rz q1`, `Tx 312 mm [Tx1]`, `Ry q2 + 0.5 deg [dq2]`, `Ry -q3 + 0.98*q2`, `Ty 0 [Ty1]`. Further
-/// brackets hold errors that depend on the configuration, a parameter times a function of joints:
-/// `Ry q2 [dq2] [k1*sin(q2)] [k2*cos(q2 - q3 + 28 deg)]`, `Ry -q3 [coupling*(q2 - 0.5*q4)]`.
-///
-/// `gravity: true` adds the terms of with_gravity_terms(); `gravity: {direction: [0, 0, -1],
-/// joints: [q2]}` says which way gravity acts in the base frame and on which joints. `harmonics:
-/// {orders: [1, 2], joints: [q4]}` adds those of with_harmonics(). `compliance: {links: {q2:
-/// {mass_kg: 20, center_mm: [0, 0, 150]}}, payload: {mass_kg: 5, center_mm: [0, 0, 80]}}` adds
-/// those of with_compliance(), with centres of mass in the frame after the joint and of the
-/// flange; `direction` and `joints` as for gravity; `links: urdf` takes masses and centres from the
-/// URDF. `compliance: {torques_Nm: {q2: 300, q3: 120}}` adds those of with_measured_compliance(),
-/// with the largest torques that occur. Their sizes in `spread` are `gravity_mrad` (compliance too)
-/// and `harmonic_mrad`.
-///
-/// Instead of elements and joints the robot may have a Denavit-Hartenberg table, `dh`, with its
-/// `convention` (standard or modified) and `rows` from base to flange:
-/// `{joint: q1, a_mm: 0, alpha_deg: 90, d_mm: 127.3, theta_deg: 0, limits_deg: [-360, 360]}`.
-/// All four amounts must be stated, of the driven one the joint's offset. A row may have
-/// `kind: prismatic` (the joint drives d), `drive: -q3 + q2` (reversed, coupled), and no joint.
-///
-/// Or it may come from a URDF: `urdf` (a path from the campaign file's folder), `base_link` and
-/// `tip_link`; `joints` may then replace limits and add repeatabilities. The speeds of the URDF are
-/// those of the cell unless that states its own.
-///
-/// The sensor is of `kind: points` (with `targets`), `poses` (`tool`, `sigma_orientation_mrad`),
-/// `distances` (`anchors`, `targets`), `planes` (`planes`, `known_planes`, `targets`) or `sockets`
-/// (`sockets`, `known_sockets`, `targets`). `known` is a boolean or lists what is: of targets axes,
-/// of the base x .. rz, of a plane `normal` and `offset`.
-///
-/// The sensor's noise is `sigma_mm` (one number, or three for x, y and z) or that of a laser
-/// tracker, `noise: {range_um: 10, angle_urad: 15}`. The section `cell` states the constraints of
-/// poses; designs/cell_demo/campaign.yaml has each of its keys.
-///
-/// What stops it ends the search for an irreducible model, with an error.
+/// Reads a campaign from YAML; designs/README.md explains every key. Throws InputError with
+/// path:line:column for anything missing, misspelt or out of range. A stop ends the search for an
+/// irreducible model with an error.
 CampaignFile read_campaign(const std::string& path, const StopSignal& stop = {});
 
-/// The same from a text that is not in its file (yet). Paths in it are from the folder of `path`.
+/// Reads a text that is not in its file (yet). Its paths are relative to the folder of `path`.
 CampaignFile parse_campaign(const std::string& content, const std::string& path,
                             const StopSignal& stop = {});
 
-/// The campaign of a file as poses are planned for it: with the error model that it states under
-/// `planning`, if it does, and then with the Campaign::fitted_pose_count of the one that it states
-/// under `robot`. The expected sizes are priors as asked, else as the file says.
+/// Reads a campaign for planning poses: with the error model that the file states under `planning`,
+/// if any, and then with the Campaign::fitted_pose_count of the model under `robot`. The expected
+/// sizes are priors as asked, else as the file states.
 CampaignFile read_planned_campaign(const std::string& path, std::optional<bool> prior = {},
                                    const StopSignal& stop = {});
 
-/// The campaign of a file with each of these error models in turn, whatever it states under
-/// `errors`; expected sizes of single parameters that a model does not have are left out.
+/// Reads a campaign with each of these error models in turn, whatever the file states under
+/// `errors`. Expected sizes of single parameters that a model does not have are ignored.
 std::vector<CampaignFile> read_campaign(const std::string& path,
                                         const std::vector<ErrorModel>& models);
+
+/// One key of a campaign file, and the values it takes in turn.
+struct VariedKey {
+    std::string key;                  ///< with the keys it stands under: "sensor.sigma_mm"
+    std::vector<std::string> values;  ///< as YAML: "0.05", "[1, 2, 3]", "full"
+    std::optional<std::pair<double, double>> range{};  ///< instead: any number in between
+};
+
+/// Parses "sensor.sigma_mm=0.01,0.05" or "sensor.sigma_mm=0.01..0.05". Throws InputError for any
+/// other text, and for an empty range.
+VariedKey parse_varied_key(const std::string& text);
+
+/// A campaign file's text with other values for some keys.
+struct Variation {
+    std::string name;  ///< "sensor.sigma_mm=0.01 sensor.targets.count=3"; empty: as it is
+    std::string content;
+};
+
+/// Makes every combination of the values, the last key's changing fastest; without keys the text
+/// unchanged. A number in a key is an index in a list, from 1: "sensor.targets.1.position_mm".
+/// Missing keys are added; parse_campaign() checks whether they are allowed. Ranges, if any, are
+/// filled together by `point_count` points, each with every combination of the values. The points
+/// are an additive recurrence with the powers of the root of x^(d+1) = x + 1 for d ranges, so fewer
+/// points are the first of more. They are even by ratio if the upper end is at least ten times a
+/// positive lower one. Throws InputError if the text at `path` is no YAML, for a key under
+/// something that is not a map or list, and for ranges without points or points without ranges.
+std::vector<Variation> vary_campaign(const std::string& content, const std::string& path,
+                                     const std::vector<VariedKey>& keys, Index point_count = 0);
 
 }  // namespace posewise::io

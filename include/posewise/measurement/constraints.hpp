@@ -1,99 +1,105 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "posewise/core/errors.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/measurement/seen.hpp"
+#include "posewise/measurement/sensor.hpp"
 #include "posewise/model/cell.hpp"
 
 namespace posewise {
 
 enum class Constraint {
-    JointLimits,    ///< with their margin
-    FixedJoints,    ///< at their value to 1e-9 rad or m
-    TargetBoxes,    ///< every target in one of them
-    KeepOuts,       ///< links that move and the balls at targets, against keep-outs
-    SelfCollision,  ///< links against links, but for those fixed to the same or the next frame;
-                    ///< balls against links, but for those that a joint at most parts from them
-    Contact,        ///< of sensors with has_contacts(): one of them is touched, to 1 nm
-    Range,          ///< this and the next four: as many targets as must be seen, each by itself
+    JointLimits,  ///< including their margin
+    FixedJoints,  ///< at their value to 1e-9 rad or m
+    TargetBoxes,  ///< every target lies in one of them
+    KeepOuts,     ///< moving links and balls at targets against keep-outs
+    /// Links against links, unless fixed to the same or adjacent frames; balls against links,
+    /// unless at most one joint is between them.
+    SelfCollision,
+    Contact,  ///< for sensors with has_contacts(): one of them is touched, to 1 nm
+    /// This and the next four, each by itself: as many targets as must be visible.
+    Range,
     Azimuth,
     Elevation,
     Incidence,
     LineOfSight,
-    VisibleTargets,  ///< all five at once for as many targets as must be seen
+    VisibleTargets,  ///< all five at once for as many targets as must be visible
 };
 inline constexpr std::size_t constraint_count = 12;
 
-/// As campaign files call it: "tracker.elevation".
+/// Name for messages, like that in campaign files: "tracker.elevation".
 const char* constraint_name(Constraint constraint);
 
-/// How far a configuration is from breaking each constraint.
+/// How far a configuration is from violating each constraint.
 struct ConstraintReport {
-    /// By Constraint, in m or rad: at least 0 if it is met; infinite if the cell has no such
+    /// Indexed by Constraint, m or rad: at least 0 if it is met; infinite if the cell has no such
     /// constraint.
     std::array<double, constraint_count> clearance;
-    /// What is touched; else what is seen, to 1e-9 m or rad; all if the cell does not speak of
-    /// sight.
+    /// The target touched, for sensors with contacts; else the visible targets, to 1e-9 m or rad.
+    /// All if the cell states no sight.
     SeenTargets is_seen;
 
     double operator[](Constraint constraint) const {
         return clearance[static_cast<std::size_t>(constraint)];
     }
-    /// The smallest clearance. A metre counts as a radian: at arm's length they are alike.
+    /// The smallest clearance. A metre counts like a radian: at arm's length they are similar.
     double margin() const;
     bool is_feasible() const { return margin() >= 0; }
 };
 
-/// What is not kept off a cell's obstacles since the campaign does not say where it is, a sentence
-/// that says what to state; empty if there is nothing.
+/// A sentence that says what is not checked against the cell's obstacles, because its place is not
+/// stated, and what to state; empty if there is nothing.
 std::string describe_unchecked_bodies(const Campaign& campaign);
 
-/// "target 1 is 12.3 mm from fence left, must be 30": bodies nearer to each other than the cell's
+/// "target 1 is 12.30 mm from fence left, must be 30 mm away": for bodies closer than the cell's
 /// safety distance.
 std::string describe_clearance(const Clearance& nearest, double safety_distance);
 
-/// A cell around the robot of a campaign, checked once and then asked for many configurations.
-/// Calls have no side effects, so threads may share one.
+/// A cell around a campaign's robot: validated once, then queried for many configurations. Calls
+/// have no side effects, so threads may share one.
 class Constraints {
   public:
     /// Throws InputError if the cell contradicts itself or does not fit the campaign: intervals
     /// out of order, shapes without extent, a margin that leaves no range, a fixed value outside
-    /// the limits, a number of normals other than that of targets, targets within a link that
-    /// hides them, a cell that speaks of targets or the tracker where the sensor has no targets or
-    /// the campaign does not state its base and targets.
-    /// `needs_contact`: whether a sensor with has_contacts() is to measure there.
+    /// the limits, a number of normals other than that of targets, targets inside a link that hides
+    /// them, or a cell that mentions targets or the tracker if the sensor has no targets or the
+    /// campaign does not state its base and targets. `needs_contact`: whether a sensor with
+    /// has_contacts() is to measure there.
     Constraints(const Campaign& campaign, Cell cell, bool needs_contact = true);
 
     const Cell& cell() const { return cell_; }
     /// Whether the cell allows less than the joint limits (less margin, fixed joints at theirs).
     bool restricts_places() const;
-    /// The robot with its limits drawn in by the margin; fixed joints keep theirs.
+    /// The robot with its limits reduced by the margin; fixed joints keep theirs.
     const Chain& robot() const { return robot_; }
     Index target_count() const { return target_count_; }
-    /// Whether something must be touched: hardly any pose is feasible then.
+    /// Whether something must be touched; hardly any pose is feasible then.
     bool needs_contact() const { return contact_.has_value(); }
-    /// Candidates, the first of index `first`, brought to what is to be touched, one after another;
-    /// as they are, if nothing is. Those that cannot be are left out.
+    /// Moves candidates to the contacts, one contact after another; `first` is the index of the
+    /// first candidate. Unchanged if nothing must be touched. Candidates that reach no contact are
+    /// left out.
     RowMatrixXd bring_to_contacts(const RowMatrixXd& candidates, Index first) const;
 
-    /// Nominal geometry throughout. Throws InputError as Chain::check_configuration().
+    /// Checks q with nominal geometry. Throws InputError as Chain::check_configuration().
     ConstraintReport check(const VectorXd& q) const;
     /// check(q).margin(): at least 0 where q is feasible, continuous in q.
     double margin(const VectorXd& q) const { return check(q).margin(); }
     /// check(q).is_seen.
     SeenTargets seen(const VectorXd& q) const;
-    /// The smaller of the clearances KeepOuts and SelfCollision.
+    /// The smaller of the KeepOuts and SelfCollision clearances.
     double collision_clearance(const VectorXd& q) const;
-    /// Which bodies are nearest to each other; their distance is that clearance and the cell's
-    /// safety distance together.
+    /// The two bodies nearest to each other; their distance is collision_clearance() plus the
+    /// cell's safety distance.
     Clearance nearest(const VectorXd& q) const;
-    /// A bound on the rate of collision_clearance() along a joint: m per rad (m per m), by the
+    /// Bound on the rate of collision_clearance() along each joint: m per rad (m per m), from the
     /// length of the arm after it.
     const VectorXd& clearance_rates() const { return clearance_rates_; }
 
@@ -117,12 +123,58 @@ class Constraints {
     Isometry3d tracker_from_base_;
     std::vector<Vector3d> targets_;  // in the flange frame
     std::vector<Link> bodies_;       // the cell's links, then the balls at the targets
-    std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // of bodies that may collide
+    std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // bodies that may collide
     std::vector<std::size_t> screens_;                        // keep-outs that hide
     VectorXd clearance_rates_;
 };
 
-/// Largest difference of a joint between two configurations, rad or m.
+/// Largest joint difference between two configurations, rad or m.
 double joint_distance(const VectorXd& a, const VectorXd& b);
+
+/// How many candidates a constraint removed.
+struct Rejections {
+    Index first = 0;   ///< candidates whose first violation it is, in Constraint order
+    Index in_all = 0;  ///< candidates that violate it, whatever else they violate
+};
+
+/// The candidates that satisfy all constraints, in the order they were drawn.
+struct Pool {
+    RowMatrixXd configurations;  ///< feasible x joints
+    Seen is_seen;                ///< feasible x targets
+    Index candidate_count = 0;
+    std::array<Rejections, constraint_count> rejections{};  ///< indexed by Constraint
+};
+
+/// Draws `count` configurations of a scrambled Halton sequence within limits and margins, with
+/// fixed joints at their values, and keeps the feasible ones. Independent of the number of threads.
+/// Draws fewer if `stop` is set, see Pool::candidate_count. Throws InputError for a count below 1,
+/// or if none is feasible, naming the constraints to blame.
+Pool make_pool(const Constraints& constraints, Index count, std::uint64_t seed,
+               const StopSignal& stop = {});
+
+/// Throws InputError if a pool has fewer poses than a plan needs, naming the constraint to blame.
+void check_pool_size(const Pool& pool, Index needed);
+
+/// The error to throw if `needed` poses are needed and only those of this pool were found. It names
+/// the constraint to blame and, for a collision, the bodies that collide most often.
+InputError few_feasible(const Constraints& constraints, const Pool& pool, Index needed);
+
+/// Configurations that the cell does not allow, as rows from 0. Violations by rounding to twelve
+/// digits are accepted.
+struct CellViolations {
+    std::vector<Index> rows;
+    Pool allowed;  ///< the others; its rejections are those of the rows above
+};
+CellViolations find_violations(const Constraints& constraints, const RowMatrixXd& configurations);
+
+/// "3 of 20 configurations violate the campaign's cell: 4, 7, 9 (keep_out: 2, tracker.range: 1)",
+/// with their ids; empty if there is none.
+std::string describe(const CellViolations& violations, const std::vector<std::string>& ids);
+
+/// One line per constraint that removed anything, the largest first: "keep_out: 812 (310 first)".
+std::string describe_rejections(const Pool& pool);
+
+/// The feasible ones among given configurations.
+Pool filter_pool(const Constraints& constraints, const RowMatrixXd& candidates);
 
 }  // namespace posewise

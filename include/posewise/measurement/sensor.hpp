@@ -1,65 +1,148 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "posewise/core/types.hpp"
-#include "posewise/measurement/targets.hpp"
 #include "posewise/model/chain.hpp"
 
 namespace posewise {
 
-/// A number that a sensor's noise depends on, by a name that ends with its unit: one value or one
-/// an axis.
+/// Which targets each pose (or each sample) shows: poses x targets, stored like RowMatrixXd.
+using Seen = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// The targets that one pose shows, a row of Seen.
+using SeenTargets = Eigen::Array<bool, 1, Eigen::Dynamic>;
+
+/// Every pose shows every target.
+Seen all_seen(Index pose_count, Index target_count);
+
+/// How often each target is observed, `repeats` times or never: poses x targets.
+RowMatrixXd times_seen(const Seen& is_seen, double repeats);
+
+/// The targets that a pose shows, from 0, ascending.
+std::vector<Index> targets_seen(const SeenTargets& is_seen);
+
+/// A pose that shows the listed targets (from 0) out of `target_count`.
+SeenTargets seen_targets(const std::vector<Index>& targets, Index target_count);
+
+/// Rows of an observation that belong to the targets seen, `rows_per_target` each. Ascending.
+std::vector<Index> seen_rows(const SeenTargets& is_seen, Index rows_per_target);
+
+/// Numbers of the targets seen as text, from 1: "1 3".
+std::string target_numbers(const SeenTargets& is_seen);
+
+/// Radius of the ball that a laser tracker follows (1.5 inch in diameter), m.
+inline constexpr double tracker_ball_radius = 0.01905;
+
+/// Points fixed to the flange. Each coordinate in the flange frame is known, or an unknown of the
+/// sensor that observes them; the targets' unknowns come first among the sensor's.
+class Targets {
+  public:
+    /// Whole positions, known (m) or not. Throws InputError if there is none or one is not finite.
+    explicit Targets(const std::vector<std::optional<Vector3d>>& known_positions);
+    /// Positions (m) with only the marked coordinates known; the others are ignored.
+    Targets(std::vector<Vector3d> positions, std::vector<std::array<bool, 3>> is_known);
+
+    /// The points as centres of balls with this radius, m. Throws InputError if it is negative, not
+    /// finite or above 1 m.
+    Targets with_radius(double radius) const;
+    /// Radius of the balls; nothing: not stated.
+    std::optional<double> radius() const { return radius_; }
+
+    Index count() const { return static_cast<Index>(known_.size()); }
+    Index unknown_count() const { return unknown_count_; }
+    /// Names of the unknown coordinates: "target1.x", ...
+    std::vector<std::string> unknown_names() const;
+
+    /// Index of a coordinate among the unknowns; -1 if it is known.
+    Index unknown_index(Index target, Index axis) const {
+        return unknown_index_[static_cast<std::size_t>(target)][static_cast<std::size_t>(axis)];
+    }
+    /// Whether all coordinates of the target are known.
+    bool is_known(Index target) const;
+    /// Position in the flange frame, m.
+    Vector3d position(Index target, const VectorXd& unknowns) const;
+
+    /// Derivative of the world positions by flange motions and unknowns: 3 count() x (twists.cols()
+    /// + any number of unknowns, with zero columns after unknown_count()), or without the unknowns'
+    /// columns.
+    void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                       const VectorXd& unknowns,
+                       Eigen::Ref<RowMatrixXd> J_positions_parameters) const;
+    /// Rate of differentiate() while the flange moves by `direction` and the twists change at
+    /// `twist_rates`.
+    void differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                             const Twist& direction, const TwistMatrix& twist_rates,
+                             const VectorXd& unknowns, Eigen::Ref<RowMatrixXd> J_rate) const;
+
+  private:
+    std::vector<Vector3d> known_;  ///< unknown coordinates hold any finite value
+    std::vector<std::array<Index, 3>> unknown_index_;
+    Index unknown_count_ = 0;
+    std::optional<double> radius_;
+};
+
+/// "3 targets (1 known, 2 to be identified)".
+std::string describe(const Targets& targets);
+
+/// Velocity of a point that moves with a twist (angular w; velocity v of the point at the origin).
+inline Vector3d velocity_of(const Vector3d& point, const Twist& twist) {
+    return twist.tail<3>() + twist.head<3>().cross(point);
+}
+
+/// A number that determines a sensor's noise; its name ends with its unit. One value, or one per
+/// axis.
 struct NoiseNumber {
     std::string name;  ///< "sigma_m", "angle_sigma_rad"
     std::vector<double> values;
 };
 
-/// What messages call a sensor's readings and unknowns.
+/// Words for a sensor's readings and unknowns in messages.
 struct SensorWords {
     std::string readings = "points";
-    std::string place = "targets";  ///< what is registered with the base
+    std::string place = "targets";  ///< what is registered together with the base
     std::string unknowns = "targets in the flange frame";
-    std::string key = "sensor.targets.position_mm";  ///< of the campaign file, places `place`
-    /// Keys that say what is known of the base and of the sensor's unknowns.
+    std::string key = "sensor.targets.position_mm";  ///< key of `place` in the campaign file
+    /// Keys that state what is known of the base and of the sensor's unknowns.
     std::vector<std::string> known{"base.known", "sensor.targets.known"};
     std::string sentence;  ///< "points of 3 targets (0 known, 3 to be identified), sigma 0.05 mm"
 };
 
-/// Points fixed to the flange whose positions in the world an observation tells. A registration
-/// then needs no first guess: its equations are linear.
+/// Points fixed to the flange whose world positions follow from an observation. Registration then
+/// needs no first guess, because its equations are linear.
 struct ObservedPoints {
-    /// As many of each target, one after another; their coordinates are known or not.
+    /// Equally many points for each target, one target after another; coordinates may be unknown.
     Targets points;
-    /// Positions in the world (m, 3 a point) as an observation tells them.
+    /// World positions (m, 3 per point) from an observation.
     std::function<VectorXd(const VectorXd& observation)> positions;
-    /// The sensor's unknowns, from the unknown coordinates of the points.
+    /// The sensor's unknowns from the points' unknown coordinates.
     std::function<VectorXd(const VectorXd& coordinates)> unknowns;
 };
 
-/// Numbers of an observation, wherever they stand.
+/// Numbers of an observation, wherever they are stored.
 using ConstNumbers = Eigen::Ref<const VectorXd>;
 
-/// What one measurement of a pose returns, how noisy it is, and which unknowns of its own it
-/// brings. The only virtual type of the library: a new kind of instrument is a new subclass and
-/// nothing else. It must say what it looks at and returns (targets, names, prediction, derivative,
-/// covariance); everything else has a default that is right for any sensor. What is asked of it for
-/// each pose it writes to where the caller has room, so that a calibration takes no memory a pose.
+/// What one measurement of a pose returns, how noisy it is, and which unknowns it adds. The only
+/// virtual type in the library: a new kind of instrument is a new subclass and nothing else. A
+/// subclass must define targets, names, prediction, derivative and covariance; everything else has
+/// a default that is right for any sensor. Results for a pose are written into memory of the
+/// caller, so that a calibration allocates nothing per pose.
 class Sensor {
   public:
     virtual ~Sensor() = default;
 
-    // ---- What a sensor must say ----
+    // ---- What a sensor must define ----
 
-    /// The points on the flange that it looks at. Their unknown coordinates come first among the
+    /// The points on the flange that it observes. Their unknown coordinates come first among the
     /// sensor's unknowns.
     virtual const Targets& targets() const = 0;
-    /// Numbers one complete observation has, in the order of observation_names().
+    /// Length of one complete observation, in the order of observation_names().
     virtual Index row_count() const = 0;
-    /// Column names of an observation without unit, e.g. "p1_x".
+    /// Column names of an observation without units, e.g. "p1_x".
     virtual std::vector<std::string> observation_names() const = 0;
     /// Names of the sensor's own unknowns, e.g. "target1.x".
     virtual std::vector<std::string> unknown_names() const = 0;
@@ -77,77 +160,76 @@ class Sensor {
     virtual void covariance(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                             Eigen::Ref<MatrixXd> covariance) const = 0;
 
-    /// Radius of the ball about each of targets(), m: a body of the robot, which keeps off what
-    /// stands in its cell. Nothing: they are no bodies, as the tip of a probe that is to touch.
+    /// Radius of the ball at each of targets(), m: a body of the robot that must not hit the cell's
+    /// obstacles. Nothing: the targets are no bodies, like the tip of a probe that must touch.
     virtual std::optional<double> target_radius() const { return std::nullopt; }
 
-    // ---- What kinds of numbers these are: lengths, unless it says otherwise ----
+    // ---- Kinds of numbers: lengths by default ----
 
-    /// Whether the number in this row of an observation is an angle (rad), else a length (m). Of
-    /// each target lengths come first.
+    /// Whether the number in this row of an observation is an angle (rad); else it is a length (m).
+    /// For each target, lengths come first.
     virtual bool is_angle(Index) const { return false; }
-    /// Whether there is an angle among them, and a length.
+    /// Whether there are angles, or lengths, in an observation.
     bool has_angles() const { return count_angles() > 0; }
     bool has_lengths() const { return count_angles() < row_count(); }
-    /// Whether it is a distance, which is above 0.
+    /// Whether the number in this row is a distance, which is positive.
     virtual bool is_distance(Index) const { return false; }
     /// Whether the last three numbers of an observation are the rotation vector of one body.
     virtual bool has_orientation() const { return false; }
-    /// Whether each unknown is an angle (rad), else a length (m).
+    /// Whether each unknown is an angle (rad); else it is a length (m).
     virtual std::vector<bool> unknown_is_angle() const;
 
-    // ---- What is seen or missed as a whole: the targets, unless it says otherwise ----
+    // ---- What is seen or missed as a whole: the targets by default ----
 
-    /// An observation holds row_count() / target_count() numbers of each, one after another, and
-    /// the errors of two are independent. A multiple of targets().count(), those of a point
-    /// follow each other.
+    /// An observation holds row_count() / target_count() numbers for each, one after another; the
+    /// errors of two are independent. A multiple of targets().count(); those of one point are
+    /// consecutive.
     virtual Index target_count() const { return targets().count(); }
     Index rows_per_target() const { return row_count() / target_count(); }
     Index lengths_per_target() const { return rows_per_target() - count_angles() / target_count(); }
-    /// What the robot touches, if each pose shows one of these and no other, and that it is there:
-    /// all readings are 0, and files have a column of these names instead. Empty: readings differ.
+    /// Names of the contacts, for a sensor whose poses show only that the robot touches one of
+    /// these: all readings are 0, and files have a column of these names instead. Empty: readings
+    /// differ.
     virtual std::vector<std::string> contact_names() const { return {}; }
     bool has_contacts() const { return !contact_names().empty(); }
-    /// Whether its readings are those of a probe that is brought to what it measures: about 0.
+    /// Whether readings are about 0, because a probe is moved to what it measures.
     virtual bool touches() const { return has_contacts(); }
-    /// How many a pose can show at once.
+    /// How many targets a pose can show at once.
     Index seen_at_once() const { return has_contacts() ? 1 : target_count(); }
-    /// Which of targets() it belongs to.
+    /// Index in targets() of the point that a target belongs to.
     Index point_of(Index target) const { return target * targets().count() / target_count(); }
-    /// Where the point of each target is in the flange frame, m.
+    /// Position of a target's point in the flange frame, m.
     Vector3d target_position(Index target, const VectorXd& unknowns) const {
         return targets().position(point_of(target), unknowns);
     }
-    /// Derivative of the targets' positions in the world, whatever of them is measured: as
-    /// differentiate(), 3 * target_count() rows in m.
+    /// Derivative of the targets' world positions, whatever is measured of them: as
+    /// differentiate(), with 3 * target_count() rows in m.
     void differentiate_positions(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                                  const VectorXd& unknowns,
                                  Eigen::Ref<RowMatrixXd> J_positions_parameters) const;
 
-    // ---- How observations differ: as numbers do, unless they are orientations, or angles that
-    //      go round ----
+    // ---- Differences of observations: plain, except for orientations and periodic angles ----
 
-    /// By how much an observation deviates from another: the step that leads there, row_count()
-    /// values in m or rad. `deviation` is neither of the two.
+    /// Deviation of an observation from another: the step that leads there, row_count() values in m
+    /// or rad. `deviation` must be neither of the two.
     virtual void deviation(const ConstNumbers& observation, const ConstNumbers& reference,
                            Eigen::Ref<VectorXd> deviation) const {
         deviation = observation - reference;
     }
-    /// The observation with this deviation from `reference`; neither of the two.
+    /// The observation with this deviation from `reference`; must be neither of the two.
     virtual void deviate(const ConstNumbers& reference, const ConstNumbers& deviation,
                          Eigen::Ref<VectorXd> observation) const {
         observation = reference + deviation;
     }
 
-    // ---- The same as values of their own, where memory does not matter ----
+    // ---- The same with return values, where memory does not matter ----
 
     VectorXd predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const;
     MatrixXd covariance(const Isometry3d& world_from_flange, const VectorXd& unknowns) const;
     VectorXd deviation(const ConstNumbers& observation, const ConstNumbers& reference) const;
     VectorXd deviate(const ConstNumbers& reference, const ConstNumbers& deviation) const;
 
-    // ---- How derivative and covariance change with the pose: by differences, exact to about ten
-    //      digits; a sensor that says it itself is quicker to plan for ----
+    // ---- Rates with the pose: by differences, to about ten digits; override to plan faster ----
 
     /// Rate of differentiate() while the flange moves by `direction` and the twists change at
     /// `twist_rates` (6 x twists.cols()); same shape.
@@ -161,20 +243,19 @@ class Sensor {
     /// Whether covariance() is the same at every pose, so that its rate is zero.
     virtual bool has_constant_covariance() const { return false; }
 
-    // ---- What files, messages and registration ask ----
+    // ---- For files, messages and registration ----
 
-    /// What its noise depends on. By default the standard deviations of the numbers observed, with
-    /// flange and world in one and all unknowns 0.
+    /// What the noise depends on. Default: standard deviations of the observed numbers, with the
+    /// flange frame equal to the world and all unknowns 0.
     virtual std::vector<NoiseNumber> noise_numbers() const;
-    /// By default in terms of numbers and targets.
+    /// Default: words about numbers and targets.
     virtual SensorWords words() const;
-    /// Nothing, if an observation does not tell positions by itself: registration then begins at
-    /// the campaign's nominal values.
+    /// Nothing if an observation does not determine positions by itself; registration then starts
+    /// at the campaign's nominal values.
     virtual std::optional<ObservedPoints> observed_points() const { return std::nullopt; }
-    /// Whether its unknowns are not found from whatever values they begin at, even where the base
-    /// is known.
+    /// Whether the unknowns need good initial values, even if the base is known.
     virtual bool needs_first_guess() const { return true; }
-    /// Whether those are the targets, and nothing else is unknown: a sensor of points.
+    /// Whether the observed points are the targets and nothing else is unknown: a sensor of points.
     bool observes_targets() const;
 
   private:

@@ -3,21 +3,62 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "posewise/measurement/point_noise.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/measurement/sensor.hpp"
 
-/// The instruments there are; another one is a subclass of Sensor.
 namespace posewise {
 
-/// An instrument that returns the position of n targets fixed to the flange, in its own frame
-/// (laser tracker with SMRs, stereo camera).
+/// Isotropic noise: standard deviation of one coordinate, m.
+struct IsotropicNoise {
+    double sigma = 0;
+};
+
+/// Standard deviations along the axes of the instrument, whose frame is that of the observations
+/// (the world), m.
+struct PerAxisNoise {
+    Vector3d sigma = Vector3d::Zero();
+};
+
+/// Laser tracker: a point at distance d in direction u has covariance
+/// range_sigma^2 u u^T + (angle_sigma d)^2 (I - u u^T).
+struct LaserTrackerNoise {
+    double range_sigma = 0;  ///< m, along the beam
+    double angle_sigma = 0;  ///< rad, for each of the two angles
+    /// Start of the beam in the frame of the observations (the world): its origin, unless the
+    /// observations were moved to another frame.
+    Vector3d position = Vector3d::Zero();
+};
+
+/// Noise of one observed point.
+using PointNoise = std::variant<IsotropicNoise, PerAxisNoise, LaserTrackerNoise>;
+
+/// Throws InputError if a sigma is not finite or below 1e-15 (m or rad), or a position not finite.
+void check_noise(const PointNoise& noise);
+
+/// Covariance of an observed point (m, in the world), m^2. Positive definite: a point less than
+/// 1 mm from a tracker counts as 1 mm away.
+Matrix3d point_covariance(const PointNoise& noise, const Vector3d& point);
+
+/// Rate of point_covariance() while the point moves with `velocity`.
+Matrix3d point_covariance_rate(const PointNoise& noise, const Vector3d& point,
+                               const Vector3d& velocity);
+
+/// Standard deviation of one coordinate (root mean square over the axes) at `distance` (m) from the
+/// instrument.
+double coordinate_sigma(const PointNoise& noise, double distance);
+
+// The built-in instruments; another one is a subclass of Sensor.
+
+/// An instrument that returns the positions of n targets on the flange in its own frame (laser
+/// tracker with SMRs, stereo camera).
 class PointSensor final : public Sensor {
   public:
     /// Throws InputError as check_noise() does.
     PointSensor(Targets targets, PointNoise noise);
-    /// `known_targets[i]` is target i's position in the flange frame (m), or nothing if it is
+    /// `known_targets[i]` is the position of target i in the flange frame (m), or nothing if it is
     /// unknown. Throws InputError as Targets does.
     PointSensor(const std::vector<std::optional<Vector3d>>& known_targets, PointNoise noise);
     /// With isotropic noise of standard deviation sigma (m).
@@ -60,10 +101,10 @@ class PointSensor final : public Sensor {
     PointNoise noise_;
 };
 
-/// An instrument that returns position and orientation of one body fixed to the flange (a tool or
-/// a six-degree-of-freedom probe) in its own frame. Observations are x, y, z and the rotation
-/// vector; deviations of orientation are rotation vectors in the world. The body's position and its
-/// orientation (rotation vector) in the flange frame are six unknowns, tool.x to tool.rz, or known.
+/// An instrument that returns position and orientation of one body on the flange (a tool or a
+/// six-degree-of-freedom probe) in its own frame. Observations are x, y, z and the rotation vector;
+/// deviations of orientation are rotation vectors in the world. Position and orientation (rotation
+/// vector) of the body in the flange frame are known or six unknowns, tool.x to tool.rz.
 class PoseSensor final : public Sensor {
   public:
     /// `known_tool` is the body in the flange frame. Throws InputError if it is not finite, if
@@ -74,10 +115,10 @@ class PoseSensor final : public Sensor {
 
     const PointNoise& noise() const { return noise_; }
     double sigma_orientation() const { return sigma_orientation_; }
-    /// The body in the flange frame.
+    /// Pose of the body in the flange frame.
     Isometry3d tool(const VectorXd& unknowns) const;
 
-    /// The origin of the body.
+    /// The body's origin.
     const Targets& targets() const override { return origin_; }
     Index row_count() const override { return 6; }
     std::vector<std::string> observation_names() const override;
@@ -114,17 +155,17 @@ class PoseSensor final : public Sensor {
 
   private:
     std::optional<Isometry3d> known_tool_;
-    Targets origin_;  ///< of the body: a target whose unknowns are tool.x to tool.z
+    Targets origin_;  ///< the body's: a target with the unknowns tool.x to tool.z
     PointNoise noise_;
     double sigma_orientation_;
 };
 
-/// A tool as the six unknowns of a PoseSensor.
+/// A tool pose as the six unknowns of a PoseSensor.
 VectorXd tool_unknowns(const Isometry3d& flange_from_tool);
 
-/// An instrument with features fixed in the world (anchors, planes), that returns one length of a
-/// target at a feature. What is seen or missed is such a pair: those of the first target come
-/// first. Every length has the same standard deviation.
+/// An instrument with features fixed in the world (anchors, planes) that returns one length per
+/// target and feature. Each such pair is seen or missed by itself; those of the first target come
+/// first. All lengths have the same standard deviation.
 class ScalarSensor : public Sensor {
   public:
     double sigma() const { return sigma_; }
@@ -152,38 +193,38 @@ class ScalarSensor : public Sensor {
     SensorWords words() const final;
 
   protected:
-    /// What the features are called, and the three values that describe one.
+    /// Names of the features and of the three values that describe one.
     struct FeatureWords {
-        std::string name;                    ///< of unknowns: "anchor", "plane"
-        std::string letter;                  ///< of observations: "a", "plane"
+        std::string name;                    ///< in unknowns: "anchor", "plane"
+        std::string letter;                  ///< in observations: "a", "plane"
         std::array<std::string, 3> values;   ///< "x", "y", "z"
-        std::array<bool, 3> value_is_angle;  ///< (rad), else a length (m)
-        std::string known_key;               ///< of the campaign file: that they are known
+        std::array<bool, 3> value_is_angle;  ///< an angle (rad), else a length (m)
+        std::string known_key;               ///< in the campaign file: states that they are known
     };
-    /// A length as a function of the target's position x in the world and of the feature.
+    /// A length as a function of the target's world position x and of the feature.
     struct Length {
         double value = 0;
-        Vector3d gradient;       ///< by x
+        Vector3d gradient;       ///< derivative by x
         Matrix3d gradient_by_x;  ///< derivative of the gradient by x
-        Vector3d by_feature;     ///< by the feature's three values
+        Vector3d by_feature;     ///< derivative by the feature's three values
         Matrix3d feature_by_x;   ///< row k: derivative of by_feature[k] by x
     };
-    /// `stated[k]` are the values of feature k, of which those marked are known; others are
-    /// unknowns and not looked at. Throws InputError if there is no feature, if a value that is
-    /// known is not finite, or if sigma (m) is not finite or below 1e-15.
+    /// `stated[k]` are the values of feature k. Only the marked ones are known; the others are
+    /// unknowns and ignored. Throws InputError if there is no feature, if a known value is not
+    /// finite, or if sigma (m) is not finite or below 1e-15.
     ScalarSensor(Targets targets, std::vector<Vector3d> stated,
                  const std::vector<std::array<bool, 3>>& is_known, FeatureWords feature_words,
                  double sigma);
-    /// The length of a target at x to the feature with these values.
+    /// The length from the feature with these values to a target at x.
     virtual Length measure(const Vector3d& x, Index feature, const Vector3d& values) const = 0;
 
-    /// The values of a feature: those that are known, and the others among the unknowns.
+    /// The values of a feature: known ones as stated, others from the unknowns.
     Vector3d feature_values(Index feature, const VectorXd& unknowns) const;
     bool is_known(Index feature, Index value) const { return unknown_index(feature, value) < 0; }
 
   private:
     Index feature_count() const { return static_cast<Index>(stated_.size()); }
-    /// Where a value is among the unknowns, after the targets'; -1 if it is known.
+    /// Index of a value among the unknowns, after the targets'; -1 if it is known.
     Index unknown_index(Index feature, Index value) const {
         return unknown_index_[static_cast<std::size_t>(feature)][static_cast<std::size_t>(value)];
     }
@@ -195,12 +236,12 @@ class ScalarSensor : public Sensor {
     double sigma_;
 };
 
-/// Distances of n targets from anchors fixed in the world (draw-wires, ball-bars), m. Anchors'
-/// positions are known or three unknowns each, anchor1.x, ...
+/// Distances (m) of n targets from anchors fixed in the world (draw-wires, ball-bars). Each
+/// anchor's position is known or three unknowns, anchor1.x, ...
 class DistanceSensor final : public ScalarSensor {
   public:
-    /// `anchors`: positions in the world (m), not looked at if unknown. Throws InputError as
-    /// ScalarSensor does, or if one that is known is not finite.
+    /// `anchors`: positions in the world (m), ignored if unknown. Throws InputError as ScalarSensor
+    /// does, or if a known one is not finite.
     DistanceSensor(Targets targets, std::vector<Vector3d> anchors, bool are_known, double sigma);
 
     bool is_distance(Index) const override { return true; }
@@ -216,23 +257,23 @@ class DistanceSensor final : public ScalarSensor {
 struct Plane {
     Vector3d normal = Vector3d::UnitZ();
     double offset = 0;  ///< m
-    /// What of it is as stated; the rest is unknown.
+    /// Which parts are exact as stated; the others are unknown.
     bool normal_is_known = false;
     bool offset_is_known = false;
 };
 
-/// Signed distances of n targets from planes fixed in the world (a touch probe on ground faces:
-/// 0 where it touches), m, positive on the side the normal points to. What is not known of a plane
-/// is unknown: its normal plane1.tilt1 and .tilt2 (rad, from the stated normal, about two axes in
-/// the plane; a rotation vector), its offset plane1.offset (m).
+/// Signed distances (m) of n targets from planes fixed in the world, positive on the side the
+/// normal points to (a touch probe on ground faces: 0 where it touches). Unknown parts of a plane
+/// are parameters: its normal plane1.tilt1 and .tilt2 (rad, a rotation vector from the stated
+/// normal about two axes in the plane), its offset plane1.offset (m).
 class PlaneSensor final : public ScalarSensor {
   public:
     /// Throws InputError as ScalarSensor does, or if a plane is not finite or a normal zero.
     PlaneSensor(Targets targets, std::vector<Plane> planes, double sigma);
 
-    /// As stated.
+    /// The planes as stated.
     const std::vector<Plane>& planes() const { return planes_; }
-    /// With these values of the unknowns.
+    /// A plane with these values of the unknowns.
     Plane plane(Index plane, const VectorXd& unknowns) const;
     bool touches() const override { return true; }
 
@@ -243,32 +284,32 @@ class PlaneSensor final : public ScalarSensor {
     std::vector<Plane> planes_;  ///< normals of length 1
 };
 
-/// A place fixed in the world where a ball sits.
+/// A place fixed in the world that holds a ball.
 struct Socket {
     std::string name;
-    Vector3d position = Vector3d::Zero();  ///< in the world, m: where it is, or is expected
-    /// The distance of its centre from that of an earlier socket, where that is known: the index of
-    /// the other (-1: there is none) and the distance, m.
+    Vector3d position = Vector3d::Zero();  ///< in the world, m: exact or expected
+    /// Known distance of its centre from that of an earlier socket: the other's index (-1: there is
+    /// none) and the distance, m.
     Index from = -1;
     double distance = 0;
 };
 
-/// No instrument: a ball fixed to the flange, its one target, is put into sockets fixed in the
-/// world. A pose shows one of them, and that the ball's centre is where the socket's is: readings
-/// are ball less socket, three lengths each, 0. Sockets are known, or have three unknowns each,
-/// socket.NAME.x to .z; at a known distance from another two, socket.NAME.tilt1 and .tilt2 (rad,
-/// from the expected direction, about two axes across it; a rotation vector).
+/// No instrument: a ball on the flange, its only target, is put into sockets fixed in the world. A
+/// pose shows one socket, and that the ball's centre is where the socket's is: readings are ball
+/// minus socket, three lengths each, 0. Sockets are known or have three unknowns each,
+/// socket.NAME.x to .z; at a known distance from another one, two: socket.NAME.tilt1 and .tilt2
+/// (rad, a rotation vector from the expected direction about two axes across it).
 class SocketSensor final : public Sensor {
   public:
-    /// Throws InputError if there is no socket, if a name is empty or there twice, if there is more
-    /// than one target, if sigma (standard deviation of each coordinate, m) is not finite or below
-    /// 1e-15, or if a distance is not above 0 or not from an earlier socket at another place.
+    /// Throws InputError if there is no socket, if a name is empty or occurs twice, if there is
+    /// more than one target, if sigma (standard deviation of each coordinate, m) is not finite or
+    /// below 1e-15, or if a distance is not above 0 or not from an earlier socket at another place.
     SocketSensor(Targets ball, std::vector<Socket> sockets, bool are_known, double sigma);
 
     double sigma() const { return sigma_; }
     const std::vector<Socket>& sockets() const { return sockets_; }
     Vector3d socket_position(Index socket, const VectorXd& unknowns) const;
-    /// Whether its unknowns are two tilts.
+    /// Whether the socket's unknowns are two tilts.
     bool has_distance(Index socket) const { return of(socket).from >= 0 && !are_known_; }
 
     const Targets& targets() const override { return ball_; }
@@ -303,7 +344,7 @@ class SocketSensor final : public Sensor {
     std::vector<Socket> sockets_;
     bool are_known_;
     double sigma_;
-    std::vector<Index> unknown_index_;  ///< the first of each socket's unknowns
+    std::vector<Index> unknown_index_;  ///< index of each socket's first unknown
 };
 
 }  // namespace posewise

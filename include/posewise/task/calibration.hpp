@@ -3,73 +3,111 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "posewise/calibrator/estimate.hpp"
 #include "posewise/calibrator/identification.hpp"
-#include "posewise/calibrator/model_selection.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/progress.hpp"
 #include "posewise/task/doubts.hpp"
-#include "posewise/task/earlier.hpp"
 #include "posewise/task/judgement.hpp"
 
 namespace posewise {
+
+/// How much a robot's errors may have changed since its calibration, as standard deviations.
+struct Drift {
+    double length = 2e-5;  ///< m
+    double offset = 1e-4;  ///< for a revolute joint's offset (rad)
+    double angle = 2e-5;   ///< for all other angles (rad)
+};
+
+/// How an earlier estimate is used.
+struct EarlierUse {
+    bool is_prior = false;  ///< the prior is its covariance, plus drift of the robot's errors
+    Drift drift{};
+    bool has_new_base = false;     ///< the base has moved: the estimate does not cover it
+    bool has_new_targets = false;  ///< so have the targets (the sensor's unknowns)
+    /// What is still to be identified: "base", "targets" (the sensor's unknowns), "robot" or
+    /// names of its errors; everything else is known to be as it was. Empty: all.
+    std::vector<std::string> only{};
+};
+
+/// An earlier estimate of the same robot.
+struct Earlier {
+    Estimate estimate;  ///< with the campaign's parameter names
+    EarlierUse use{};
+    std::optional<ParameterSpread> spread{};  ///< the sizes of errors learned with it, if any
+};
+
+/// The campaign as an earlier estimate describes it, to select, plan, study and identify with.
+/// Base, targets and robot errors are expected where it found them; what has moved since is as the
+/// campaign states it. The model error and the sizes of errors are as found. What shall not be
+/// identified is no parameter any more. EarlierUse::is_prior makes the estimate the prior. Throws
+/// InputError for unknown names in EarlierUse::only, if they leave nothing to identify, for an
+/// estimate of other parameters, and if its base is not where the campaign states it as known,
+/// unless that has moved.
+Campaign with_earlier(const Campaign& campaign, const Earlier& earlier);
+
+/// Converts a robot's errors to the same robot with other loads: compliances are given at the
+/// largest torque that occurs. Throws InputError for a robot with other errors.
+VectorXd errors_under_loads(const Chain& robot, const VectorXd& errors, const Chain& loaded);
 
 /// How parameters are identified.
 enum class CalibrationMethod {
     Joint,    ///< all together, identify()
     TwoStep,  ///< identify_two_step(): to compare with the literature
-    Global,   ///< identify_globally(): a robot that is far from nominal
+    Global,   ///< identify_globally(): for a robot that is far from nominal
 };
 /// "lm", "two-step", "global".
 std::string_view method_name(CalibrationMethod method);
 
 struct CalibrationOptions {
     CalibrationMethod method = CalibrationMethod::Joint;
-    /// Of the joint identification; its loss also of the nominal fit and of what is held out. Other
-    /// methods know squares only.
+    /// For the joint identification; its loss also for the nominal fit and for what is held out.
+    /// Other methods only know squares.
     LevenbergMarquardtOptions joint{};
     TwoStepOptions two_step{};
     GlobalOptions global{};
-    /// Configurations to calibrate with, such as those of a plan; it is judged on the others, too.
-    /// Empty: all.
+    /// Configurations to calibrate with, such as those of a plan; the calibration is judged on the
+    /// others, too. Empty: all.
     std::vector<Index> used{};
-    /// Configurations that are not used but to judge by themselves, such as the poses that a plan
-    /// has to verify; none of `used`, which must be stated.
+    /// Configurations that are not used but judged separately, such as a plan's verification poses.
+    /// None may be in `used`, which must be stated.
     std::vector<Index> verification{};
-    /// What was left out of the measurements by hand, with leave_out(): for the record.
+    /// What leave_out() removed from the measurements by hand, for the record.
     std::vector<std::string> excluded{};
-    /// Needs Joint.
+    /// An earlier estimate; needs Joint.
     std::optional<Earlier> earlier{};
-    /// More measurements, to judge on only; the caller keeps them alive. Null: none.
+    /// More measurements, only to judge on; the caller keeps them alive. Null: none.
     const Measurements* validation = nullptr;
-    /// What is identified anew for them, since they were measured with another set-up: "base",
+    /// What is identified anew for them, because they were measured with another set-up: "base",
     /// "targets" or both. The rest stays. Empty: nothing.
     std::vector<std::string> refitted{};
-    /// The campaign they are of: the same robot, perhaps with another payload, and its errors, but
-    /// other targets or another sensor. Then base and targets must both be refitted. Null: the
-    /// same.
+    /// Their campaign: the same robot, perhaps with another payload, and the same errors, but other
+    /// targets or another sensor. Then base and targets must both be refitted. Null: the same
+    /// campaign.
     const Campaign* validation_campaign = nullptr;
-    /// That the RMS of distances is to keep where the calibration is judged (judge_limit()), m.
+    /// Limit for the RMS of distances where the calibration is judged (judge_limit()), m.
     std::optional<double> limit{};
-    /// Configurations that need not be measured, to say what to expect there (m x joints, and
-    /// measured torques; rad, m, N m). Empty: none.
+    /// Configurations, measured or not, for which to predict the error (m x joints, and measured
+    /// torques; rad, m, N m). Empty: none.
     RowMatrixXd predicted{};
     /// Groups of configurations to hold out in turn; 0: none. Nothing: default_folds().
     std::optional<Index> folds{};
-    bool model_selection = false;  ///< compare nested parameter sets, too; needs folds and Joint
-    /// Replaces the expected sizes of the robot's errors by those they have, learn_sizes(); the
-    /// groups held out are predicted with the same sizes. Needs Joint and a spread that is a prior.
+    bool model_selection = false;  ///< also compares nested parameter sets; needs folds and Joint
+    /// Replaces the expected sizes of the robot's errors by its actual ones, learn_sizes();
+    /// held-out groups are predicted with the same sizes. Needs Joint and a spread that is a prior.
     bool learns_sizes = false;
-    /// Where there are doubts: campaigns that richer errors would make, to try. Nothing: none.
+    /// Called if there are doubts: campaigns with richer errors to try. Nothing: none.
     std::function<std::vector<OtherCampaign>()> richer{};
-    /// Ends the identification with the best so far; figures that are not complete are left out.
+    /// Ends the identification with the best result so far; incomplete figures are left out.
     StopSignal stop{};
-    ProgressCallback progress{};  ///< of the identification, the groups held out and the sets
+    ProgressCallback progress{};  ///< counts the identification, the groups held out and the sets
 };
 
-/// Each configuration by itself up to 100 of them, else ten groups; 0 of one.
+/// One group per configuration up to 100 of them, else ten groups; 0 for one configuration.
 Index default_folds(Index configuration_count);
 
 /// What was measured.
@@ -77,11 +115,11 @@ struct MeasuredCount {
     Index configurations = 0;
     Index samples = 0;
     Index readings = 0;       ///< samples x targets that one shows at most
-    Index readings_seen = 0;  ///< less those of targets that were not seen
+    Index readings_seen = 0;  ///< without those of targets that were not seen
 };
 
-/// RMS of the means that are no outliers: distances, m (angles, rad, where no length is measured),
-/// and, where both are measured, angles, rad.
+/// RMS of the means that are no outliers: of distances, m (of angles, rad, where no length is
+/// measured), and also of angles where both are measured.
 struct WithoutOutliers {
     double fit_rms = 0;
     std::optional<double> held_out_rms;
@@ -89,79 +127,121 @@ struct WithoutOutliers {
     std::optional<double> held_out_angle_rms{};
 };
 
-/// A calibration: parameters, how sure they are, how accurate the robot is with them.
+/// A calibration: parameters, their uncertainty, and the robot's accuracy with them.
 struct Calibration {
-    /// As calibrated, with the model error found and sizes learned: names, units and scales of what
-    /// follows.
+    /// As calibrated, with the model error found and sizes learned: names, units and scales of
+    /// everything below.
     Campaign campaign;
-    std::optional<ParameterSpread> stated_spread;  ///< where others were learned
+    std::optional<ParameterSpread> stated_spread;  ///< if others were learned
     CalibrationMethod method = CalibrationMethod::Joint;
-    MeasuredCount measured;             ///< that was calibrated with
+    MeasuredCount measured;             ///< what was calibrated with
     std::vector<std::string> excluded;  ///< CalibrationOptions::excluded
-    std::vector<std::string> held;      ///< parameters that are as the earlier estimate has them
-    /// Where some are held: standard deviations of the others (m, rad), were those held exact.
+    std::vector<std::string> held;      ///< parameters kept from the earlier estimate
+    /// If some are held: standard deviations of the others (m, rad), as if the held ones were
+    /// exact.
     std::map<std::string, double> sigmas_beside_held;
-    /// Its ending says whether there is a calibration: where it is NotIdentifiable, nothing below
-    /// but `selection` is filled in, and `undetermined` says why.
+    /// Its ending says whether there is a calibration. If it is NotIdentifiable, nothing below but
+    /// `selection` is filled in, and `undetermined` says why.
     Estimate estimate;
-    Index starts = 0;                            ///< of Global
-    Index starts_at_best = 0;                    ///< of Global; one alone: there may be better ones
-    Metrics nominal;                             ///< base and targets fitted only, all samples
-    RowMatrixXd nominal_residuals;               ///< of these, as residuals() has them
+    Index starts = 0;                            ///< for Global
+    Index starts_at_best = 0;                    ///< for Global; only one: there may be better ones
+    Metrics nominal;                             ///< only base and targets fitted, all samples
+    RowMatrixXd nominal_residuals;               ///< like residuals(), for the same fit
     std::optional<Repeatability> repeatability;  ///< nothing: no configuration was repeated
     std::optional<CrossValidation> held_out;
-    /// Of means at poses like those measured; of samples over the workspace as estimated_geometry()
-    /// draws it (nothing where it cannot, and for contacts).
+    /// For means at poses like the measured ones; for samples over the workspace that
+    /// estimated_geometry() draws (nothing where it cannot, and for contacts).
     ExpectedError expected;
     std::optional<ExpectedError> expected_workspace;
-    /// At CalibrationOptions::predicted: of distances, of angles.
+    /// At CalibrationOptions::predicted: for distances, for angles.
     std::vector<ErrorPrediction> predicted;
     std::optional<double> limit;            ///< CalibrationOptions::limit
     std::optional<Judgement> verification;  ///< at CalibrationOptions::verification
     std::optional<Judgement> left_out;      ///< at the other configurations not used
     std::optional<Judgement> validation;    ///< at CalibrationOptions::validation
-    /// Where poses to predict are unlike those calibrated with.
+    /// If poses to predict are unlike those calibrated with.
     std::optional<BeyondMeasured> predicted_beyond;
-    /// With CalibrationOptions::refitted: the validation's campaign, which may have other targets,
-    /// at the parameters that it was judged with.
+    /// With CalibrationOptions::refitted: the validation's campaign, perhaps with other targets, at
+    /// the parameters it was judged with.
     std::optional<Campaign> refitted;
-    /// Standard deviations of them, m and rad; those of another campaign's count the robot's errors
+    /// Standard deviations of these, m and rad; for another campaign they take the robot's errors
     /// as exact.
     std::map<std::string, double> refitted_sigmas;
-    /// By how much base and targets have moved up to the validation, where that is plain.
+    /// How far base and targets have moved up to the validation, if that is plain.
     std::optional<Moved> moved;
-    /// The same since the earlier estimate, if that tells of both.
+    /// Likewise since the earlier estimate, if it covers both.
     std::optional<Moved> moved_since;
     std::optional<WithoutOutliers> without_outliers;  ///< if there are some
     std::optional<ModelSelection> selection;          ///< if asked for
     Doubts doubts;
-    Cures cures;  ///< that were tried where there are doubts, of Joint
-    /// What makes it none that may reach a robot: find_faults(), a calibrated robot that predicts
-    /// others worse than the nominal one (or no better, with residuals far beyond those stated),
-    /// that leaves more over than a robot misses before it is calibrated, or ten times more than
-    /// without one configuration. Of Global, which expects large errors, values of any size are
-    /// taken.
+    Cures cures;  ///< tried where there are doubts, for Joint
+    /// Why the calibration must not reach a robot: find_faults(); it predicts held-out poses worse
+    /// than the nominal robot (or no better, with residuals far beyond those stated); it leaves
+    /// more over than a robot misses before it is calibrated, or ten times more than without one
+    /// configuration; all lengths are off by over 0.5 %. Global expects large errors and takes
+    /// values of any size.
     std::vector<std::string> faults;
 
     bool is_identified() const { return estimate.ending != Ending::NotIdentifiable; }
 };
 
-/// Looks at the calibration by all that was measured before something is built on it.
+/// Judges the calibration with all that was measured, before anything is built on it.
 using JudgeCalibration = std::function<void(const Calibration&)>;
 /// Throws InputError, with what is wrong, if it has faults.
 void refuse_faults(const Calibration& calibration);
 
-/// What is wrong with CalibrationOptions::validation, not with what is calibrated with.
+/// An error in CalibrationOptions::validation, not in what is calibrated with.
 struct ValidationError : InputError {
     using InputError::InputError;
 };
 
 /// Finds base and targets from nothing, once, then identifies all parameters together and judges
-/// them: on the samples, on configurations held out, on those not used, on the validation.
-/// Throws InputError for measurements that do not fit the campaign (ValidationError for those of
-/// the validation) and for options that contradict each other; measurements that do not identify
-/// the model are a result.
+/// them: on the samples, on configurations held out, on those not used, on the validation. Throws
+/// InputError for measurements that do not fit the campaign (ValidationError for those of the
+/// validation) and for options that contradict each other; measurements that do not identify the
+/// model are a result.
 Calibration calibrate(const Campaign& campaign, const Measurements& measurements,
                       const CalibrationOptions& options = {});
+
+// Residuals of each reading, to look for what a calibration does not explain.
+
+/// Where a target is, seen from the instrument.
+struct Direction {
+    double range = 0;      ///< m
+    double azimuth = 0;    ///< atan2(y, x) in the instrument's axes, which are the world's, rad
+    double elevation = 0;  ///< above the xy plane, rad
+};
+
+/// One sample of one target. Each vector has Sensor::rows_per_target() numbers, m or rad: observed
+/// minus predicted.
+struct ReadingResidual {
+    Index configuration = 0;
+    Index sample = 0;  ///< row of Measurements::observations
+    Index target = 0;
+    VectorXd calibrated;
+    VectorXd nominal;                  ///< by the robot that is not calibrated
+    std::optional<VectorXd> held_out;  ///< predicted without its configuration
+    VectorXd standardised;             ///< calibrated, divided by its expected standard deviation
+    std::optional<Direction> direction;
+};
+
+/// The residuals of a calibration that was made with these measurements, in their order.
+std::vector<ReadingResidual> list_residuals(const Calibration& calibration,
+                                            const Measurements& measurements);
+
+/// How a stored estimate is judged again.
+struct ResidualOptions {
+    Loss loss{};      ///< the loss it was made with
+    Index folds = 0;  ///< groups held out; 0: none
+};
+/// As above for an estimate of the campaign, which has its model error: nominal and held-out
+/// residuals are fitted again. Throws InputError as calibrate() does.
+std::vector<ReadingResidual> list_residuals(const Campaign& campaign, const Estimate& estimate,
+                                            const Measurements& measurements,
+                                            const ResidualOptions& options = {});
+
+/// Names of a residual's numbers: "x", "y", "z", "rx", ...; "distance" for readings that are one
+/// length.
+std::vector<std::string> residual_axes(const Campaign& campaign);
 
 }  // namespace posewise

@@ -1,59 +1,63 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "posewise/core/progress.hpp"
 #include "posewise/measurement/measurements.hpp"
-#include "posewise/planner/assurance.hpp"
 #include "posewise/planner/planning.hpp"
+#include "posewise/planner/prediction.hpp"
+#include "posewise/task/choice.hpp"
+#include "posewise/task/judgement.hpp"
 #include "posewise/task/plan.hpp"
 
 namespace posewise {
 
-/// What is asked for, what there is besides the campaign, and when to stop.
+/// What is asked for, further inputs besides the campaign, and when to stop.
 struct PlanningOptions : PlanRequest {
     explicit PlanningOptions(Index poses = 0) {
         pose_count = poses;
-        criterion = Criterion::V;
         repeats = 1;
     }
     std::optional<Measurements> held;  ///< measured already: their information counts
-    std::optional<Plan> repaired;      ///< its poses are kept, but for those dropped
+    std::optional<Plan> repaired;      ///< its poses are kept, except those dropped
     RowMatrixXd workspace;     ///< configurations where accuracy matters; empty: drawn in the cell
     Index drop_out_count = 1;  ///< poses that may be missing, see Planning::drop_outs
     StopSignal stop{};         ///< ends the search with the best so far
     ProgressCallback progress{};
 };
 
-/// A plan, and what became of its making.
+/// A plan, and how its making went.
 struct Planning {
     Plan plan;
     Pool pool;
     Tour tour;
-    Index measured_count = 0;     ///< poses measured already
-    Index workspace_count = 0;    ///< configurations the prediction is over
-    Campaign campaign;            ///< base and targets registered if only held poses tell them
-    PositionErrors errors;        ///< of target positions over the workspace
-    PlanOptions search;           ///< criterion, new poses, nuisance and what was held
-    MatrixXd information;         ///< of all poses and what is held (scaled parameters)
-    InformationByNoise by_noise;  ///< of all poses
+    Index measured_count = 0;   ///< poses measured already
+    Index workspace_count = 0;  ///< workspace configurations of the prediction
+    Campaign campaign;          ///< base and targets registered, if only held poses show them
+    PositionErrors errors;      ///< errors of target positions over the workspace
+    PlanOptions search;         ///< criterion, new poses, nuisance and what was held
+    MatrixXd information;       ///< from all poses and what is held (scaled parameters)
+    std::optional<PredictedAccuracy> chosen;  ///< by the best choice from the pool, not moved
+    InformationByNoise by_noise;              ///< for all poses
     ErrorBudget budget;
-    std::vector<DropOut> without_each;  ///< each pose of the plan missing, in its order
-    std::vector<DropOut>
-        drop_outs;        ///< poses of the plan that hurt most, missing one after another
-    double duration = 0;  ///< s: all moves, and the cell's dwell for each sample
+    std::vector<DropOut> without_each;  ///< with each pose of the plan missing, in its order
+    std::vector<DropOut> drop_outs;     ///< the poses that hurt most, missing one after another
+    double duration = 0;                ///< s: all moves, and the cell's dwell for each sample
 };
 
 /// Proposes configurations to measure in the campaign's cell: draws a pool, chooses from it,
-/// refines each pose continuously and orders the poses for a quick tour. Half of the time there is
-/// goes to the pool at most. Throws InputError for a cell without a feasible pose, for kept poses
+/// refines each pose continuously and orders the poses for a quick tour. The pool takes at most
+/// half of the available time. Throws InputError for a cell without a feasible pose, for kept poses
 /// that cannot be measured, for fewer poses than identify the parameters, and as plan_poses().
 Planning make_plan(const Campaign& campaign, const PlanningOptions& options);
 
-/// A plan that make_plan() made with these options and that was kept: what it predicts, what the
-/// error consists of and what each pose is worth. Of the pool nothing is known, of the tour its
-/// time. Throws InputError as make_plan(), and where the poses do not identify the parameters.
+/// A stored plan that make_plan() made with these options: its predictions, its error budget and
+/// the value of each pose. The pool is unknown; the tour has only its time. Throws InputError as
+/// make_plan(), and if the poses do not identify the parameters.
 Planning judge_again(const Plan& plan, const Campaign& campaign, const PlanningOptions& options);
 
-/// Predicted accuracy of a number of new poses.
+/// Predicted accuracy for a number of new poses.
 struct CountAccuracy {
     Index pose_count = 0;
     bool is_planned = false;  ///< as planned; else chosen from a part of the pool: an estimate
@@ -61,9 +65,176 @@ struct CountAccuracy {
     std::optional<PredictedAccuracy> accuracy;
 };
 
-/// Of half, as many and twice as many new poses as were planned, by count; after a stop of those
-/// that are known by then.
+/// For half, as many and twice as many new poses as planned, by count; after a stop for those known
+/// by then.
 std::vector<CountAccuracy> predict_other_counts(const Planning& planning,
                                                 const StopSignal& stop = {});
+
+/// What a plan shall reach, or how long it may take, instead of a number of poses.
+struct TargetOptions {
+    std::optional<double> limit;  ///< for the position error over the workspace, m
+    double assurance = 0.95;      ///< probability of keeping it, before measuring
+    ErrorQuantity quantity = ErrorQuantity::Rms;
+    std::optional<double> duration;  ///< s, see Planning::duration
+    Index most_poses = 1000;         ///< new poses
+    /// Keep the limit even if this many poses, the most important ones, drop out.
+    Index robust_to = 0;
+};
+
+/// What a number of new poses is expected to reach, with drop-outs.
+struct CountPrediction {
+    Index pose_count = 0;
+    bool is_planned = false;  ///< as planned; else chosen from a part of the pool: an estimate
+    /// Nothing: too few to identify the parameters. For chosen poses, never above that of fewer.
+    std::optional<ErrorRange> error;
+    double duration = 0;  ///< s; for chosen poses straight moves, ignoring collisions
+};
+
+/// Numbers of poses that suffice if the errors turn out small or large (1 in 20 each): how
+/// uncertain the number is that a target needs. Chosen from a part of the pool, see
+/// CountPrediction::is_planned.
+struct CountRange {
+    std::optional<Index> lower;  ///< suffices with 5 % probability
+    std::optional<Index> upper;  ///< with 95 %; nothing: more than `most`, or no number
+    Index most = 0;              ///< largest number looked at
+};
+
+/// How a search for the number of poses ended.
+enum class TargetEnding {
+    NotRun,
+    Reached,       ///< the plan keeps the limit, one with fewer poses does not; or as many as fit
+    BelowFloor,    ///< no number of poses keeps the limit
+    TooManyPoses,  ///< neither TargetOptions::most_poses nor the pool suffices
+    TooLong,       ///< what keeps the limit takes longer than there is time
+};
+
+/// A plan with as many poses as a target needs.
+struct TargetPlanning {
+    TargetOptions target;
+    TargetEnding ending = TargetEnding::NotRun;
+    std::optional<Planning> planning;  ///< if Reached
+    std::optional<ErrorRange> error;   ///< error of that plan
+    /// No plan with one pose less keeps the limit (without a limit: none with one more fits), as
+    /// far as a completed search found. False: stopped early, there may be one.
+    bool is_settled = false;
+    std::optional<CountRange> counts;       ///< for a limit; nothing: stopped early
+    std::vector<CountPrediction> curve;     ///< by count, as far as looked at
+    ErrorRange floor;                       ///< error left if the parameters are known exactly
+    double floor_of_known_model_error = 0;  ///< m; likewise if the model error is as expected
+    double left_over = 0;                   ///< m; share of the model error in the expected floor
+    double repeatability = 0;               ///< m; that of the joints
+    bool has_error_terms = false;  ///< the model has errors that depend on the configuration
+};
+
+/// Finds the least number of poses whose plan keeps the limit, and that plan: first by choices from
+/// a part of the pool, then by quick plans, finally by plans like those of make_plan(). Without a
+/// limit: as many poses as fit in the duration. Ignores options.pose_count. A stop ends the search
+/// with the last plan that keeps the target, marked as stopped early. Throws InputError for options
+/// that no number can meet (a limit, assurance or duration out of range, none of them, a plan to
+/// repair, a duration too short for the least number of poses), if it is stopped before there is a
+/// plan, and as make_plan().
+TargetPlanning plan_for_target(const Campaign& campaign, const PlanningOptions& options,
+                               const TargetOptions& target);
+
+/// How to check the closed-form prediction of a plan.
+struct SimulatedPlanOptions {
+    ErrorQuantity quantity = ErrorQuantity::Rms;
+    double assurance = 0.95;
+    Index missing = 0;  ///< this many of Planning::drop_outs, from the first on, are not measured
+    /// Configurations to judge at: the plan's workspace, if it was stated. Empty: as many as the
+    /// plan has, drawn anew.
+    RowMatrixXd workspace;
+    std::uint64_t seed = 1;  ///< robot i draws from stream (seed, i)
+    /// Digits of the standard deviation over the robots that must be certain; results are certain
+    /// to half a unit of the last one.
+    Index digits = 2;
+    Index most_robots = 100000;
+    StopSignal stop{};            ///< ends it with the complete blocks
+    ProgressCallback progress{};  ///< counts robots; the total is a guess
+};
+
+/// One number of an ErrorRange, m.
+struct SimulatedNumber {
+    double predicted = 0;    ///< by the closed form
+    double found = 0;        ///< infinity: too many robots were not calibrated
+    double uncertainty = 0;  ///< standard deviation of `found`; infinity: unknown
+};
+
+/// Results of simulated robots, measured at a plan's poses and calibrated.
+struct SimulatedPlan {
+    ErrorQuantity quantity = ErrorQuantity::Rms;
+    double assurance = 0.95;
+    /// As in ErrorRange; for the RMS, `expected` is the root mean square over robots whose model
+    /// error and sizes are as the campaign expects them.
+    SimulatedNumber expected, lower, upper, assured;
+    Index robot_count = 0;         ///< in complete blocks; 0: it was stopped before the first ended
+    Index expected_count = 0;      ///< additional robots of expected sizes, for `expected`
+    Index block_count = 0;         ///< with equally many robots
+    Index uncalibrated_count = 0;  ///< among all robots; they count as the worst
+    double deviation = 0;          ///< over the calibrated robots, m
+    double tolerance = 0;          ///< bound on twice each uncertainty, m
+    Ending ending = Ending::NotRun;  ///< Converged: kept; IterationLimit: most_robots came first
+    Index digits = 2;
+
+    bool is_sure() const { return ending == Ending::Converged; }
+};
+
+/// Whether a limit on the error (m) is kept with the assurance asked for; open within twice the
+/// uncertainty.
+LimitVerdict judge_limit(const SimulatedPlan& simulated, double limit);
+
+/// Throws InputError, saying what to do instead, if robots cannot be simulated for plans of this
+/// campaign: its sensor has contacts, poses were measured already (on one robot; the simulated ones
+/// are others), or the repeats are no whole number.
+void check_simulable(const Campaign& campaign, const PlanningOptions& options);
+
+/// Checks the closed-form prediction of a plan by a Monte Carlo simulation of full calibrations.
+/// Each robot is drawn as in draw_robot(), measured at all poses of the plan and calibrated from
+/// these measurements only. It is judged at workspace configurations that the plan was not made
+/// with: where each target is at one visit, including model error and repeatability, against where
+/// the calibrated model has it. In each block of robots, model error and sizes fill their range
+/// evenly (a Kronecker sequence, shifted at random). Blocks are added until twice the standard
+/// deviation of each number over the blocks, divided by the root of their count, is at most the
+/// numerical tolerance [JCGM 101:2008, 7.9]; the result is that of all robots at once.
+/// Independent of the number of threads, unless it is stopped. Throws InputError as
+/// check_simulable(), for options out of range, and if the plan's workspace was stated but is not
+/// given.
+SimulatedPlan simulate_plan(const Planning& planning, const SimulatedPlanOptions& options);
+
+/// Whether one item of a plan is as stated.
+struct Finding {
+    std::string name;  ///< "poses", "bound"
+    bool is_right = true;
+    std::string text;  ///< empty: the two numbers say it
+    double stated = 0;
+    double actual = 0;
+};
+
+/// What was found about a plan, in the order it was checked.
+struct Verification {
+    Index candidate_count = 0;  ///< candidates to choose from; for continuous plans: poses
+    std::vector<Finding> findings;
+    /// Why checking ended there: "poses[2].id: 'p9' is not among the candidates". Empty: it did
+    /// not.
+    std::string obstacle;
+
+    /// Names of what is not as stated, each once.
+    std::vector<std::string> wrong() const;
+    bool is_right() const { return obstacle.empty() && wrong().empty(); }
+};
+
+/// Recomputes value, bound and efficiency of a choice from its inputs and its certificate; checks
+/// the candidates by their checksum, the poses and the limits. `options` are the plan's request
+/// with its inputs. If a plan claims to be optimal beyond its certificate, that search is repeated.
+/// Throws InputError as choose().
+Verification verify(const Plan& plan, const Campaign& campaign, const Candidates& candidates,
+                    const ChoiceOptions& options);
+/// As above for plain blocks.
+Verification verify(const Plan& plan, const Blocks& candidates, const ChoiceOptions& options);
+
+/// Checks every pose of a continuous plan (joint limits, the cell's constraints, targets seen), its
+/// value and its predicted accuracy. Its bounds cannot be proven from what a plan holds. Throws
+/// InputError as make_plan(), and for a plan of another campaign.
+Verification verify(const Plan& plan, const Campaign& campaign, const PlanningOptions& options);
 
 }  // namespace posewise

@@ -12,14 +12,81 @@
 
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/progress.hpp"
+#include "posewise/core/types.hpp"
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/task/calibration.hpp"
-#include "posewise/task/trials.hpp"
 
 namespace posewise {
 
-/// Distances that a calibrated robot is off by at configurations it was not calibrated with, m.
+/// Trials that differ only in their number: of one campaign, with the same options and seed. Two
+/// series are equal if all of this is; each trial then has the same result, wherever it runs.
+struct TrialSeries {
+    bool is_simulated = false;        ///< simulated robots; else subsets of what was measured
+    std::string campaign;             ///< its name
+    std::string variation;            ///< "sensor.sigma_mm=0.05"; empty: none
+    std::string checksum;             ///< for all else that a trial's numbers depend on
+    std::uint64_t seed = 1;           ///< trial i draws from streams of `seed` and i
+    std::vector<Criterion> criteria;  ///< by which poses are chosen
+    std::vector<Index> pose_counts;   ///< in increasing order
+    Index random_subsets = 0;         ///< for each count: in all, or (simulated) in each trial
+    Index splits = 0;                 ///< for measured configurations
+    Index test_count = 0;             ///< configurations that a trial is judged on
+    std::vector<std::string> ids;     ///< measured configurations
+
+    bool operator==(const TrialSeries&) const = default;
+};
+
+/// Result of one trial.
+struct Trial {
+    Index number = 0;  ///< in its series, from 0
+    std::vector<double> values;
+};
+
+using VisitTrial = std::function<void(const Trial&)>;
+
+/// Where finished trials are kept, so that they never run again. All functions throw if they fail;
+/// they are called by one thread at a time.
+struct TrialStore {
+    /// Visits all finished trials of the series, in the order of their numbers.
+    std::function<void(const TrialSeries&, const VisitTrial&)> finished;
+    /// Once this returns, the trial is kept, whatever happens to the process.
+    std::function<void(const TrialSeries&, const Trial&)> keep;
+};
+
+/// The share of all trials to run: numbers `number` - 1, `number` - 1 + `count`, ...
+struct Shard {
+    Index number = 1;
+    Index count = 1;
+
+    bool has(Index trial) const { return trial % count == number - 1; }
+};
+
+/// One of the trials to run: its series, by position in a list, and its number there.
+struct TrialId {
+    Index series = 0;
+    Index number = 0;
+};
+
+/// Runs one trial; called by any thread, of any process of the crew.
+using ComputeTrial = std::function<std::vector<double>(const TrialId&)>;
+/// Receives the result of the trial at that position of a list; called by one thread at a time.
+using AcceptTrial = std::function<void(std::size_t position, std::vector<double> values)>;
+/// Runs trials in any order; returns when all are accepted or, if stopped, after those in flight.
+/// What one throws is thrown here.
+using RunTrials =
+    std::function<void(const std::vector<TrialId>&, const AcceptTrial&, const StopSignal& stop)>;
+
+/// Who runs the trials of a study. It calls `lead` in the leading process, with a function to run
+/// trials by; other processes compute what the leader hands them until it returns. All processes
+/// must come here with the same `compute`, and only once: those that do not lead may end here.
+using TrialCrew = std::function<void(const ComputeTrial& compute,
+                                     const std::function<void(const RunTrials&)>& lead)>;
+
+/// The crew of one process: its threads.
+void run_on_threads(const ComputeTrial& compute, const std::function<void(const RunTrials&)>& lead);
+
+/// How far a calibrated robot is off at configurations it was not calibrated with: distances, m.
 struct HeldOut {
     Index point_count = 0;  ///< 0: there were none
     double distance_rms = 0;
@@ -31,18 +98,18 @@ struct HeldOut {
 struct StudyCase {
     std::vector<Index> poses;
     bool identified = false;  ///< false: these poses cannot identify the model
-    /// Means of the configurations held out of the split, else of all that were not chosen (so that
-    /// repeat noise does not blur the comparison); no points if none is left.
+    /// Means of the configurations that the split holds out, else of all that were not chosen;
+    /// means, so that repeat noise does not blur the comparison. No points if none is left.
     HeldOut held_out;
-    double expected = 0;  ///< what the calibration says held_out.distance_rms will be
+    double expected = 0;  ///< held_out.distance_rms as the calibration expects it
     Index split = 0;
 };
 
-/// Cases in order. Those of simulated studies, of which there may be millions, are not in memory:
-/// each is read when it is asked for.
+/// Cases in order. Those of simulated studies, perhaps millions, are not in memory: each is read on
+/// demand.
 class StudyCases {
   public:
-    using Read = std::function<StudyCase(std::size_t)>;  ///< the case of that number
+    using Read = std::function<StudyCase(std::size_t)>;  ///< the case with that number
 
     StudyCases() = default;
     StudyCases(std::vector<StudyCase> cases);
@@ -83,70 +150,70 @@ class StudyCases {
     Read read_;
 };
 
-/// All subsets of one size, of those splits that are finished.
+/// All subsets of one size, from the splits that are finished.
 struct StudyRow {
     Index pose_count = 0;
-    StudyCases optimal;  ///< of each asked criterion one for each split
-    StudyCases random;   ///< in turn of each split
+    StudyCases optimal;  ///< for each criterion, one per split
+    StudyCases random;   ///< for each split in turn
 };
-/// How many splits are finished, of a study of so many criteria; 1 if nothing is held out.
+/// Number of finished splits, in a study of `criterion_count` criteria; 1 if nothing is held out.
 Index split_count(const StudyRow& row, std::size_t criterion_count);
 
 struct StudyOptions {
     std::vector<Criterion> criteria{Criterion::D};
-    /// Empty: from the least identifying count to all but one; with splits 8, 12, 16, 20, 30, 50
-    /// up to a third of what there is to choose from.
+    /// Empty: from the least identifying count to all but one; with splits 8, 12, 16, 20, 30, 50 up
+    /// to a third of the configurations to choose from.
     std::vector<Index> pose_counts;
     Index random_subsets = 100;
-    /// Splits of the configurations at random into those to choose from and those to judge all
-    /// subsets on. 0: none, each subset is judged on all that it leaves, so that a plan that takes
-    /// the telling configurations is judged on easier ones than others are. Nothing: 10, if what a
-    /// split leaves to choose from is three times the largest pose count, else 0.
+    /// Random splits of the configurations into those to choose from and those to judge all subsets
+    /// on. 0: none; each subset is judged on all that it leaves, so a plan that takes the
+    /// informative configurations is judged on easier ones. Nothing: 10 if a split leaves three
+    /// times the largest pose count to choose from, else 0.
     std::optional<Index> splits{};
-    double holdout = 0.3;       ///< part of the configurations that a split judges on
-    double least_distance = 0;  ///< rad, of any two in a planned subset, as PlanRequest has it
-    Index starts = 4;           ///< of the exchange
+    double holdout = 0.3;       ///< share of the configurations that a split judges on
+    double least_distance = 0;  ///< rad, between any two in a planned subset, see PlanRequest
+    Index starts = 4;           ///< for the exchange
     std::uint64_t seed = 1;
-    /// Of measured configurations: what all of them calibrate, before any case is run.
+    /// For measured configurations: judges the calibration with all of them, before any case is
+    /// run.
     JudgeCalibration judge = refuse_faults;
-    TrialStore store{};               ///< of cases that are finished; none: they are run anew
+    TrialStore store{};               ///< keeps finished cases; none: they are run anew
     TrialCrew crew = run_on_threads;  ///< runs the cases
-    Shard shard{};                    ///< of the cases that are run
-    StopSignal stop{};                ///< ends it with the splits that are finished
-    ProgressCallback progress{};      ///< of the cases
+    Shard shard{};                    ///< share of the cases to run
+    StopSignal stop{};                ///< ends it with the finished splits
+    ProgressCallback progress{};      ///< counts cases
 };
 
 /// Accuracy against number of poses.
 struct Study {
     std::string campaign;             ///< its name
-    std::vector<std::string> ids;     ///< of the configurations
-    std::vector<Criterion> criteria;  ///< by which were chosen, as StudyRow::optimal has them
+    std::vector<std::string> ids;     ///< names of the configurations
+    std::vector<Criterion> criteria;  ///< that chose poses, in StudyRow::optimal's order
     std::vector<StudyRow> rows;       ///< none if there is nothing to study
     Ending ending = Ending::NotRun;
-    /// Where it is NotIdentifiable, why not even all configurations identify the model.
+    /// If it is NotIdentifiable: why not even all configurations identify the model.
     std::string undetermined;
-    Index splits = 0;           ///< 0: each subset was judged on what it leaves
+    Index splits = 0;           ///< 0: each subset was judged on the rest
     Index test_count = 0;       ///< configurations that each split judges on
-    std::string model{};        ///< which of several error models (compare_models()), or variations
-    bool is_simulated = false;  ///< a split is a robot that was drawn (simulate_study())
+    std::string model{};        ///< which of several error models (compare_models()) or variations
+    bool is_simulated = false;  ///< each split is a simulated robot (simulate_study())
 };
 
 /// Chooses k of the measured configurations by each criterion and at random, calibrates with them
-/// from registration on, and judges on configurations held out: the same ones for all subsets of a
-/// split. The same result for any number of threads.
-/// Throws InputError for measurements of another robot (check_is_of_robot()), for those that are no
-/// calibration (StudyOptions::judge), for a pose count that
-/// is not in [1, configurations], for a least distance that as many configurations do not keep, and
+/// from registration on, and judges on held-out configurations: the same ones for all subsets of a
+/// split. Independent of the number of threads. Throws InputError for measurements of another robot
+/// (check_is_of_robot()), for those that are no calibration (StudyOptions::judge), for a pose count
+/// that is not in [1, configurations], for a least distance that so large a plan cannot keep, and
 /// for other options out of range.
 Study study(const Campaign& campaign, const Measurements& measurements,
             const StudyOptions& options = {});
 
-/// The study that the finished trials of a series make which a store has; they may be fewer than
-/// the series has. Splits of measured configurations that are not finished are left out, and pose
-/// counts without any. Throws InputError for trials that are none of it.
+/// Builds a study from the finished trials of a series in a store, which may be fewer than the
+/// series has. Unfinished splits of measured configurations are left out, and pose counts without
+/// any. Throws InputError for trials that do not belong to it.
 Study study_of_trials(const TrialSeries& series, const TrialStore& store);
 
-/// Leaves those pose counts and splits that all of the studies have.
+/// Keeps only the pose counts and splits that all studies have; no change if one is simulated.
 void keep_common(std::vector<Study>& studies);
 
 /// A robot with one of the error models to compare.
@@ -154,49 +221,94 @@ struct RobotModel {
     std::string name;
     Campaign campaign;
 };
-/// The same study with each error model of one robot: the same splits and random subsets, and the
-/// same pose counts (by default from the largest of the models' least ones). One study each, in
-/// that order; if it is stopped, with the splits that are finished in all. Throws as study() does.
+/// The study with each error model of one robot: same splits and random subsets, and same pose
+/// counts (by default from the largest of the models' least ones). One study each, in that order;
+/// if it is stopped, with the splits that are finished in all. Throws as study() does.
 std::vector<Study> compare_models(const std::vector<RobotModel>& models,
                                   const Measurements& measurements,
                                   const StudyOptions& options = {});
 
-/// The planned subsets against random ones.
+/// Planned subsets against random ones.
 struct Advantage {
-    double ratio = 1;  ///< geometric mean over the splits, planned / median of the random ones
-    double lower = 1;  ///< its 95 % interval, by Student's t of the logarithms; of one split the
-    double upper = 1;  ///< ratio itself
+    double ratio = 1;  ///< geometric mean over the splits of planned / median of random
+    /// 95 % interval of the ratio, by Student's t of the logarithms; for one split the ratio
+    /// itself.
+    double lower = 1;
+    double upper = 1;  ///< upper end
 
     bool is_of_one_split() const { return lower == upper; }
 };
-/// Of the criterion of that number in one row of a study with splits. Nothing where a planned
-/// subset or half of the random ones of a split do not identify the model.
+/// For the criterion of that number in one row of a study with splits. Nothing if a planned subset,
+/// or half of the random ones, of a split do not identify the model.
 std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
                                            std::size_t criterion);
 
-/// The same against the random subsets of another row, that of another error model, over the splits
+/// As above, against the random subsets of another row (of another error model), over the splits
 /// that both have.
 std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
                                            std::size_t criterion, const StudyRow& other_row);
 
-/// What an advantage says, its whole interval: below 1, above 1, or neither.
+/// What the whole interval of an advantage says: below 1, above 1, or neither (as with one split).
 enum class Verdict { Better, WithinChance, Loses };
 Verdict verdict_of(const Advantage& advantage);
 /// "better", "within chance", "loses".
 std::string_view verdict_name(Verdict verdict);
 
-/// The planned cases of one of so many criteria in a row.
+/// The planned cases of one criterion in a row, out of `criterion_count` criteria.
 StudyCases planned_cases(const StudyRow& row, std::size_t criterion, std::size_t criterion_count);
 
-/// The p-quantile (0..1, linear between order statistics) of the held-out distance RMS. Cases that
-/// are not identified count as worse than any other, so that dropping them cannot flatter the rest;
-/// nothing if the quantile falls among them or nothing was left out.
+/// p-quantile (0..1, linear between order statistics) of the held-out distance RMS. Unidentified
+/// cases count as worse than any other, so that dropping them cannot flatter the rest. Nothing if
+/// the quantile falls among them or nothing was held out.
 std::optional<double> held_out_quantile(const StudyCases& cases, double p);
 
-/// The median of StudyCase::expected over those that are identified, m; nothing if none is.
+/// Median of StudyCase::expected over the identified cases, m; nothing if there is none.
 std::optional<double> median_expected(const StudyCases& cases);
 
-/// How many cases are not identified.
+/// Number of cases that are not identified.
 Index count_unidentified(const StudyCases& cases);
+
+/// A campaign to simulate, one of several variations.
+struct SimulatedCampaign {
+    std::string variation;  ///< what is its own: "sensor.sigma_mm=0.05"; empty: it is alone
+    Campaign campaign;      ///< what poses are chosen for and robots are calibrated with
+    /// Robots are drawn from this campaign. It may have errors that the other does not know,
+    /// but the same joints and targets. It takes base and targets from the other if it states none.
+    /// Nothing: the other.
+    std::optional<Campaign> truth{};
+};
+
+/// Ignores StudyOptions::splits and holdout; random_subsets are those of each trial.
+struct SimulatedStudyOptions : StudyOptions {
+    SimulatedStudyOptions() {
+        criteria = {Criterion::V};
+        random_subsets = 1;
+    }
+    /// Number of simulated robots; with a precision, at most.
+    Index trials = 100;
+    /// Relative half width of the 95 % interval of planned against random that every pose count and
+    /// criterion must reach (without random subsets, that of the planned error's geometric mean).
+    /// The trials of a campaign end when it is reached. 0: all trials are run.
+    double precision = 0;
+    Index pool_count = 2000;  ///< configurations to choose from, minus those the cell forbids
+    Index test_count = 200;   ///< workspace configurations that each robot is judged at
+    Index repeats = 1;        ///< samples per configuration
+    bool is_refined = false;  ///< planned like make_plan(), not only chosen from the pool
+};
+
+/// Accuracy against number of poses for a robot that nobody has measured yet. Draws robots
+/// (draw_robot()), measures each at configurations chosen for the nominal one by each criterion and
+/// at equally many random ones, calibrates, and judges target positions at workspace configurations
+/// that were not chosen for: true positions, with model error and repeatability of one visit,
+/// against the calibrated model's. The poses to choose from are those that the cell allows.
+///
+/// One study per campaign, in their order, with one split per robot; robots are as alike as the
+/// campaigns are, draw by draw. Campaigns stopped before their first robot are left out, unless all
+/// were. Empty in a process of a crew that does not lead. The same result for any crew, shards and
+/// order. Throws InputError for options out of range, for a campaign that make_plan() would refuse
+/// or whose sensor has contacts, if the truth is another robot, and if the nominal poses do not
+/// identify the model for any pose count.
+std::vector<Study> simulate_study(const std::vector<SimulatedCampaign>& campaigns,
+                                  const SimulatedStudyOptions& options = {});
 
 }  // namespace posewise

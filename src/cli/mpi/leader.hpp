@@ -1,6 +1,6 @@
 #pragma once
 
-#include "posewise/task/trials.hpp"
+#include "posewise/task/study.hpp"
 
 namespace posewise::cli::mpi {
 

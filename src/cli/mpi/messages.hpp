@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "posewise/task/trials.hpp"
+#include "posewise/task/study.hpp"
 
 /// What the processes of a crew tell each other. Only the main thread sends and receives.
 namespace posewise::cli::mpi {

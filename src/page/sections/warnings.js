@@ -12,13 +12,14 @@ const warnedTexts = {
   planes: (numbers) => `Stated otherwise than measured: plane ${numbers.join(', ')}.`,
   places: (places) => `Measured elsewhere than stated: ${list(places, (one) => one.what)}.`,
   gross_error_mm: (value) => `The nominal robot misses by ${short(value, 4)} mm: outliers, or a wrong robot?`,
-  orientations: (one) => `The nominal robot misses the orientations by ${short(one.rms_deg, 3)} deg (${one.sense}: ${short(one.rms_in_sense_deg, 3)} deg).`,
+  orientations: (one) => `The nominal robot misses the orientations by ${short(one.rms_deg, 3)} deg.`,
   sizes: (sizes) => `Far above the expected size: ${list(sizes, (one) => `${one.parameter} (${short(one.times_expected, 3)} times)`)}.`,
   model_errors: (errors) => `The model error found is large: ${list(errors, (one) => `${errorOf(one)}, ${short(one.times_expected, 3)} times what is expected`)}.`,
   scatter: (one) => `Repeats differ by ${short(one.ratio, 3)} times sigma${one.sample ? `; the farthest is ${one.sample}` : ''}.`,
   lacks_length: () => 'No distance is stated: nothing says how large everything is.',
   distance: (one) => `Socket ${one.socket} is stated ${short(one.stated_mm, 4)} mm from ${one.from}, measured at ${short(one.measured_mm, 4)} mm.`,
   held_back_size: (one) => `The size stated for ${one.key} is too small to be learned.`,
+  workspace: (one) => `It is expected to miss poses of the workspace by ${errorOf({ value_mm: one.expected_mm, value_mrad: one.expected_mrad })}, more than twice what the nominal robot misses: too few poses.`,
   small_residuals: () => 'Residuals are far smaller than stated: sigma or model error in another unit?',
 };
 

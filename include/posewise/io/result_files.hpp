@@ -1,0 +1,161 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/task/calibration.hpp"
+#include "posewise/task/choice.hpp"
+#include "posewise/task/plan.hpp"
+#include "posewise/task/planning.hpp"
+#include "posewise/task/study.hpp"
+
+namespace posewise::io {
+
+/// Writes a plan as JSON (format 2): the request and the candidates; value, bounds and the matrix
+/// that proves them; how it was made; what it assumes (noise, scales); and the poses, with joint
+/// values exactly in rad (m) and readably in degrees (mm). Relative paths are stored relative to
+/// the plan's folder; infinite numbers are null. `warnings` are those given meanwhile, a sentence
+/// each.
+void write_plan(const std::string& path, const Plan& plan,
+                const std::vector<std::string>& warnings = {});
+/// As above, together with the CSV file of write_configurations_csv(), unless `csv_path` is empty:
+/// both files or none.
+void write_plan(const std::string& path, const Plan& plan, const std::string& csv_path,
+                const Campaign& campaign, const std::vector<std::string>& warnings = {});
+
+/// Reads a plan of format 2 or 1 (which had two kinds: "posewise plan" and "posewise pose plan"),
+/// reading the file once. Relative paths lead from the plan's folder or else from the current one.
+/// Throws InputError with the place for whatever is missing, of another type or out of range.
+Plan read_plan(const std::string& path);
+
+/// Writes the poses as CSV, in visiting order: config, then each joint in degrees or mm with enough
+/// digits to read the numbers back exactly, then visible_targets ("1 3"), purpose, way and, if the
+/// cell has obstacles, clearance_mm and nearest. The purpose is calibrate, or verify for a plan's
+/// verification poses, which come last. A via point before p3 is a row of its own, p3.via, with
+/// purpose via. The way is straight, or BLOCKED if none was found. read_configurations() skips via
+/// points, read_program() reads all.
+void write_configurations_csv(const std::string& path, const Campaign& campaign,
+                              const std::vector<PlannedPose>& poses);
+
+/// The inputs of an estimate: paths, and checksums where they are known.
+struct Provenance {
+    std::string measurements{};
+    std::string measurements_checksum{};  ///< checksum_of()
+    std::string campaign_file{};
+    std::string campaign_checksum{};  ///< CampaignFile::checksum
+    /// Command-line options: name and values.
+    std::vector<std::pair<std::string, std::vector<std::string>>> options{};
+    std::vector<std::string> warnings{};  ///< those given meanwhile, a sentence each
+};
+
+/// Checksum of configurations, their ids and observations, to tell whether measurements are the
+/// same.
+std::string checksum_of(const Measurements& measurements);
+
+/// Writes a calibration as JSON, with units in the names (accuracy in mm, all else in m and rad)
+/// and enough digits to read the numbers back exactly. Same input, same bytes. The calibration must
+/// be identified.
+void write_estimate(const std::string& path, const Calibration& calibration,
+                    const Provenance& made_from);
+
+/// Writes CSV, one row per configuration: config, then parameters, left_over, noise, total (RMS)
+/// and p95 (95 % of points are off by less), each with _mm, or _mrad for orientations. `ids` are
+/// those of the predicted configurations.
+void write_predictions_csv(const std::string& path, const std::vector<std::string>& ids,
+                           const std::vector<ErrorPrediction>& predictions);
+
+/// Reads an estimate exactly as it was written: parameters, names, covariance, ending, variance
+/// factor, degrees of freedom, model errors. Throws InputError with the place if the file is none,
+/// or is for another robot than the campaign's (see designs/README.md) or another kind of sensor.
+/// find_faults() and EarlierFile::faults tell whether it can be used.
+Estimate read_estimate(const std::string& path, const Campaign& campaign);
+
+/// An earlier estimate, with the sizes of errors that were learned with it. Targets (the sensor's
+/// unknowns) that have moved since may be others now, seen by another kind of sensor: they are as
+/// the campaign states them, with covariance 0.
+struct EarlierFile : Earlier {
+    /// Changes since in the campaign's noise or expected sizes: "sigma_m was 1e-05, is 2e-05".
+    std::vector<std::string> changes;
+    std::vector<std::string> warnings;  ///< those given when it was made, a sentence each
+    /// Calibration::faults, if it was written nevertheless: it must not be used.
+    std::vector<std::string> faults;
+};
+EarlierFile read_earlier(const std::string& path, const Campaign& campaign, const EarlierUse& use);
+
+/// Whether the checksum is that of these measurements, with or without those excluded.
+bool are_of_checksum(const std::string& checksum, const Measurements& measurements,
+                     const std::vector<std::string>& excluded);
+
+/// Whether an estimate states that it was made from these measurements, with or without those that
+/// it lists as excluded.
+bool is_made_from(const std::string& estimate_path, const Measurements& measurements);
+
+/// Writes the weights as CSV (config, weight; with enough digits to read them back exactly) or as
+/// JSON (to_json() of the design, with the warnings given), by the file's ending. Throws InputError
+/// unless it is .csv or .json.
+void write_weights(const std::string& path, const ApproximateDesign& design,
+                   const std::vector<std::string>& warnings = {});
+
+/// Opens or creates an SQLite file for finished trials; a new one that stays empty is removed
+/// again. It belongs to one version of posewise, and to one process at a time; others may read it
+/// meanwhile. Kept trials survive a killed process. A power failure may lose the last ones, but
+/// never the file. A trial may be kept again if the numbers are the same. Throws InputError, and so
+/// do the functions, for a file that is no store, damaged, of another version, being written, or
+/// that cannot be written.
+TrialStore open_trial_store(const std::string& path);
+
+/// Opens a store only for reading: of any version of posewise, even while another process writes
+/// it. Its `keep` throws.
+TrialStore read_trial_store(const std::string& path);
+
+/// The series that a store has trials of; their order does not depend on how the trials came there.
+std::vector<TrialSeries> series_in_store(const std::string& path);
+
+/// Puts all trials of some stores into one more, which may be new or have trials already: all or,
+/// if it throws, none. Throws InputError as open_trial_store(), and if a trial has different
+/// numbers in two of them.
+void merge_trial_stores(const std::vector<std::string>& from, const std::string& into);
+
+/// Whether the file exists and is a store of trials, of any format, by its first bytes. Not for one
+/// that this process has open: closing a file ends all SQLite locks on it.
+bool is_trial_store(const std::string& path);
+
+// Files written by commands, read again to inspect them.
+
+enum class SavedKind {
+    Plan,      ///< a plan file, or what select --json or plan --json printed
+    Estimate,  ///< from calibrate
+    Study,     ///< what study --json printed
+    Export,    ///< what export --json printed
+    Trials,    ///< a store, from study --store
+};
+
+/// The kind of a file, by its content. Throws InputError for any other.
+SavedKind kind_of_saved(const std::string& path);
+
+/// The document in the file of a plan, an estimate, a study or an export. Throws InputError for
+/// another kind or format.
+std::string read_saved_document(const std::string& path, SavedKind kind);
+
+/// The document of a plan with the results of judge_again(), unless it has them already.
+std::string read_saved_plan(const std::string& path, const Planning& judged);
+/// As above for a choice.
+std::string read_saved_plan(const std::string& path, const Plan& judged);
+
+/// How an estimate was made, as its file states.
+struct EstimateRecord {
+    std::string campaign;  ///< its name
+    Provenance made_from;  ///< paths as they were typed
+    std::vector<std::string> excluded;
+    Index folds = 0;  ///< groups held out; 0: none
+    Loss loss;
+
+    /// Whether that option was given.
+    bool has_option(const std::string& name) const;
+};
+EstimateRecord read_estimate_record(const std::string& path);
+
+}  // namespace posewise::io

@@ -1,0 +1,39 @@
+#include "flags.hpp"
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace posewise::cli {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 14> flags{
+    {{"count", "--random"},
+     {"dropped", "--drop"},
+     {"earlier", "--from"},
+     {"earlier.has_new_base", "--moved base"},
+     {"earlier.is_prior", "--as-prior"},
+     {"folds", "--folds"},
+     {"held", "--augment"},
+     {"is_focused_on_robot", "--focus robot"},
+     {"least_distance", "--least-distance-deg"},
+     {"measured", "--measurements"},
+     {"pool_count", "--pool"},
+     {"pose_count", "--poses"},
+     {"spread.is_prior", "--prior"},
+     {"starts", "--starts"}}};
+
+}  // namespace
+
+std::string with_flags(std::string message) {
+    for (const auto& [field, flag] : flags) {
+        const std::string quoted = '`' + std::string(field) + '`';
+        for (std::size_t at = message.find(quoted); at != std::string::npos;
+             at = message.find(quoted, at + flag.size())) {
+            message.replace(at, quoted.size(), flag);
+        }
+    }
+    return message;
+}
+
+}  // namespace posewise::cli

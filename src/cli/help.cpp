@@ -1,0 +1,423 @@
+#include "help.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "../core/text.hpp"
+#include "common.hpp"
+#include "manual.hpp"
+#include "posewise/core/version.hpp"
+
+namespace posewise::cli {
+namespace {
+
+constexpr std::size_t page_width = 100;
+constexpr std::size_t name_width = 34;
+
+/// In the order they are shown. What stands in none is an input.
+constexpr std::array groups{"Input",  "What is asked for", "Robot errors", "Earlier estimate",
+                            "Search", "Judgement",         "Output",       ""};
+enum Group : std::size_t { Input, Asked, Errors, Earlier, Search, Judged, Output, Rare };
+
+/// The group of each option, by its long name; it means the same in every command. Rare ones are
+/// named only.
+constexpr std::array<std::pair<std::string_view, Group>, 86> group_of_option{
+    {{"poses", Asked},
+     {"criterion", Asked},
+     {"criteria", Asked},
+     {"focus", Asked},
+     {"target-mm", Asked},
+     {"quantity", Asked},
+     {"assurance", Asked},
+     {"minutes", Asked},
+     {"poses-at-most", Rare},
+     {"robust-to", Asked},
+     {"drop", Asked},
+     {"verification", Asked},
+     {"repeats", Asked},
+     {"random", Asked},
+     {"splits", Asked},
+     {"holdout", Asked},
+     {"models", Asked},
+     {"per-group", Asked},
+     {"repeat-limit", Asked},
+     {"least-distance-deg", Asked},
+     {"relax", Asked},
+     {"simulate", Asked},
+     {"trials", Asked},
+     {"precision", Asked},
+     {"truth", Asked},
+     {"vary", Asked},
+     {"points", Rare},
+     {"refine", Asked},
+     {"geometry", Asked},
+     {"largest-change-deg", Rare},
+     {"largest-change-mm", Rare},
+     {"mm-per-mrad", Rare},
+     {"workspace", Input},
+     {"workspace-poses", Rare},
+     {"workspace-box-mm", Input},
+     {"workspace-target", Rare},
+     {"prior", Errors},
+     {"no-prior", Errors},
+     {"learn-sizes", Errors},
+     {"method", Errors},
+     {"loss", Errors},
+     {"loss-width", Rare},
+     {"model-selection", Errors},
+     {"directions", Errors},
+     {"alpha", Rare},
+     {"max-iterations", Rare},
+     {"length-error-percent", Rare},
+     {"angle-error-deg", Rare},
+     {"search", Rare},
+     {"from", Earlier},
+     {"as-prior", Earlier},
+     {"moved", Earlier},
+     {"only", Earlier},
+     {"drift-mm", Rare},
+     {"drift-offset-mrad", Rare},
+     {"drift-mrad", Rare},
+     {"force", Rare},
+     {"pool", Search},
+     {"starts", Search},
+     {"proof", Search},
+     {"seed", Search},
+     {"time", Search},
+     {"threads", Search},
+     {"store", Search},
+     {"shard", Search},
+     {"merge", Search},
+     {"progress", Rare},
+     {"verify", Judged},
+     {"verify-digits", Rare},
+     {"verify-robots", Rare},
+     {"folds", Judged},
+     {"validate", Judged},
+     {"validate-campaign", Rare},
+     {"refit", Judged},
+     {"limit-mm", Judged},
+     {"predict", Judged},
+     {"predict-out", Rare},
+     {"out", Output},
+     {"csv", Output},
+     {"report", Output},
+     {"plot", Output},
+     {"strict", Rare},
+     {"json", Output},
+     {"digits", Output},
+     {"all-parameters", Output},
+     {"help", Rare}}};
+
+Group group_of(const CLI::Option& option) {
+    if (option.get_positional()) return Input;
+    const auto& names = option.get_lnames();
+    for (const auto& [name, group] : group_of_option) {
+        if (!names.empty() && names.front() == name) return group;
+    }
+    return Input;
+}
+
+/// Text that begins in a column, in lines that all begin there, to the page's width.
+std::string wrap(std::string_view text, std::size_t indent) {
+    std::string wrapped;
+    std::size_t column = indent;
+    while (!text.empty()) {
+        const std::string_view word = text.substr(0, text.find(' '));
+        text.remove_prefix(std::min(word.size() + 1, text.size()));
+        if (column > indent) {
+            const bool fits = column + 1 + word.size() <= page_width;
+            wrapped += fits ? " " : '\n' + std::string(indent, ' ');
+            column = fits ? column + 1 : indent;
+        }
+        wrapped += word;
+        column += word.size();
+    }
+    return wrapped;
+}
+
+/// "N" of a whole number, "X" of any, the words where some are allowed.
+std::string value_of(const CLI::Option& option) {
+    if (option.get_items_expected_max() == 0) return "";
+    const std::string type = option.get_type_name();
+    if (const auto open = type.find('{'); open != std::string::npos) {
+        std::string words = type.substr(open + 1, type.find('}') - open - 1);
+        std::ranges::replace(words, ',', '|');
+        return ' ' + words;
+    }
+    if (type.starts_with("INT") || type.starts_with("UINT")) return " N";
+    if (type.starts_with("FLOAT")) return " X";
+    return " ...";
+}
+
+/// "-k, --poses N"; of positional ones their name.
+std::string spell(const CLI::Option& option) {
+    if (option.get_positional()) return option.get_name(true);
+    std::string names;
+    for (const std::string& name : option.get_snames()) names += '-' + name + ", ";
+    return names + "--" + option.get_lnames().front() + value_of(option);
+}
+
+/// The first clause, of what goes with another option behind that.
+std::string shorten(std::string description) {
+    if (description.starts_with("With --")) description.erase(0, description.find(": ") + 2);
+    description[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(description[0])));
+    std::size_t end = description.size();
+    for (const char* const stop : {": ", "; ", " (", ". "}) {
+        end = std::min(end, description.find(stop));
+    }
+    constexpr std::size_t most = page_width - name_width;
+    if (end <= most) return description.substr(0, end);
+    return description.substr(0, description.rfind(' ', most - 3)) + "...";
+}
+
+/// A footer's examples, a line each, and what comes behind them.
+struct Footer {
+    std::vector<std::string> examples;
+    std::string notes;
+};
+Footer split_footer(const CLI::App& command) {
+    Footer footer;
+    const std::string whole = command.get_footer();
+    std::string_view text = whole;
+    constexpr std::string_view heading = "Example:\n";
+    text.remove_prefix(std::min(text.find(heading) + heading.size(), text.size()));
+    while (text.starts_with("  ")) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        footer.examples.emplace_back(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    footer.notes = text.substr(std::min(text.find_first_not_of('\n'), text.size()));
+    return footer;
+}
+
+std::string usage_of(const CLI::App& command) {
+    std::string usage = "posewise " + command.get_name() + " [OPTIONS]";
+    for (const CLI::Option* const one : command.get_options()) {
+        if (!one->get_positional()) continue;
+        const std::string name = one->get_name(true);
+        usage += one->get_required() ? ' ' + name : " [" + name + ']';
+        if (one->get_items_expected_max() > 1) usage += "...";
+    }
+    return usage;
+}
+
+std::string title_of(const CLI::App& command) {
+    return fmt::format("{}\n\nUsage: {}\n", command.get_description(), usage_of(command));
+}
+
+std::string examples_of(const Footer& footer, std::size_t most) {
+    std::string text = "\nExample:\n";
+    for (std::size_t k = 0; k < std::min(most, footer.examples.size()); ++k) {
+        text += footer.examples[k] + '\n';
+    }
+    return text;
+}
+
+/// One group's options, as `describe` has each.
+template <typename Describe>
+std::string list_group(const CLI::App& command, Group group, const Describe& describe) {
+    std::string text;
+    for (const CLI::Option* const option : command.get_options()) {
+        if (group_of(*option) == group) text += describe(*option);
+    }
+    return text.empty() ? "" : fmt::format("\n{}:\n{}", groups[group], text);
+}
+
+std::string brief_line(const CLI::Option& option) {
+    const std::string name = "  " + spell(option);
+    const std::string words = shorten(option.get_description());
+    if (name.size() < name_width) return fmt::format("{:<{}}{}\n", name, name_width, words);
+    return fmt::format("{}\n{:<{}}{}\n", name, "", name_width, words);
+}
+
+std::string brief_help_of(const CLI::App& command) {
+    constexpr std::size_t most_examples = 3;
+    const Footer footer = split_footer(command);
+    std::string text = title_of(command) + examples_of(footer, most_examples);
+    for (std::size_t group = Input; group < Rare; ++group) {
+        text += list_group(command, static_cast<Group>(group), &brief_line);
+    }
+    std::string others;
+    for (const CLI::Option* const option : command.get_options()) {
+        if (group_of(*option) == Rare) others += " --" + option->get_lnames().front();
+    }
+    if (!others.empty()) text += "\nAlso: " + wrap(others.substr(1), 6) + '\n';
+    return text + fmt::format("\nAll of it in full: posewise help {}\n", command.get_name());
+}
+
+/// What an option's value may be, and which others it goes with.
+std::string rules_of(const CLI::Option& option) {
+    std::vector<std::string> rules;
+    const std::string type = option.get_type_name();
+    if (const auto colon = type.find(':'); colon != std::string::npos && type[colon + 1] != '{') {
+        rules.push_back(type.substr(colon + 1));
+    }
+    if (!option.get_default_str().empty()) rules.push_back("default " + option.get_default_str());
+    const auto list = [&](const char* words, const std::set<CLI::Option*>& others) {
+        std::string names;
+        for (const CLI::Option* const other : others) names += ' ' + other->get_name();
+        if (!names.empty()) rules.push_back(words + names);
+    };
+    list("needs", option.get_needs());
+    list("not with", option.get_excludes());
+    std::string text;
+    for (const std::string& rule : rules) text += (text.empty() ? "" : "; ") + rule;
+    return text.empty() ? "" : " [" + text + ']';
+}
+
+std::string full_entry(const CLI::Option& option) {
+    constexpr std::size_t indent = 6;
+    return fmt::format("  {}\n{:<{}}{}\n", spell(option), "", indent,
+                       wrap(option.get_description() + rules_of(option), indent));
+}
+
+std::string full_help_of(const CLI::App& command) {
+    const Footer footer = split_footer(command);
+    std::string text = title_of(command) + examples_of(footer, footer.examples.size());
+    if (!footer.notes.empty()) text += '\n' + footer.notes + '\n';
+    for (std::size_t group = Input; group < Rare; ++group) {
+        text += list_group(command, static_cast<Group>(group), &full_entry);
+    }
+    const std::string others = list_group(command, Rare, &full_entry);
+    return text + (others.empty() ? "" : "\nRarely needed:" + others.substr(2));
+}
+
+class BriefHelp : public CLI::Formatter {
+  public:
+    std::string make_help(const CLI::App* app, std::string name,
+                          CLI::AppFormatMode mode) const override {
+        return app->get_parent() == nullptr ? Formatter::make_help(app, std::move(name), mode)
+                                            : brief_help_of(*app);
+    }
+};
+
+std::vector<const CLI::App*> commands_of(const CLI::App& program) {
+    return program.get_subcommands([](const CLI::App*) { return true; });
+}
+
+std::string topics(const CLI::App& program) {
+    std::string text = "posewise help TOPIC prints one of these.\n\nCommands:\n";
+    for (const CLI::App* const command : commands_of(program)) {
+        text += fmt::format("  {:<22}{}\n", command->get_name(), command->get_description());
+    }
+    text += "\nSections of the manual:\n";
+    for (const ManualSection& section : manual_sections()) {
+        text += fmt::format("  {:<22}{}\n", section.topic, section.title);
+    }
+    return text;
+}
+
+void print_help(const CLI::App& program, const std::string& topic) {
+    if (topic.empty()) return print(topics(program));
+    std::vector<std::string> names;
+    for (const CLI::App* const command : commands_of(program)) {
+        if (command->get_name() == topic) return print(full_help_of(*command));
+        names.push_back(command->get_name());
+    }
+    for (const ManualSection& section : manual_sections()) {
+        if (section.topic == topic) return print(std::string(section.text));
+        names.push_back(section.topic);
+    }
+    throw CLI::ValidationError(
+        "TOPIC", detail::quote(topic) + " is no topic; " + detail::suggest(topic, names));
+}
+
+/// `a) words="--x --y";;` for each command.
+std::string bash_completion(const CLI::App& program) {
+    std::string commands;
+    std::string cases;
+    for (const CLI::App* const command : commands_of(program)) {
+        commands += ' ' + command->get_name();
+        std::string options;
+        for (const CLI::Option* const option : command->get_options()) {
+            for (const std::string& name : option->get_lnames()) options += " --" + name;
+        }
+        cases += fmt::format("    {}) words=\"{}\" ;;\n", command->get_name(), options.substr(1));
+    }
+    return fmt::format(
+        R"(# Completion of posewise {}: source it, or keep it in the folder of completions.
+_posewise() {{
+  local word=${{COMP_WORDS[COMP_CWORD]}} words=""
+  if ((COMP_CWORD == 1)); then
+    COMPREPLY=($(compgen -W "{} --help --version" -- "$word"))
+    return
+  fi
+  case ${{COMP_WORDS[1]}} in
+{}  esac
+  if [[ $word == -* ]]; then
+    COMPREPLY=($(compgen -W "$words" -- "$word"))
+  else
+    COMPREPLY=($(compgen -f -- "$word"))
+  fi
+}}
+complete -o filenames -F _posewise posewise
+)",
+        version, commands.substr(1), cases);
+}
+
+/// Text of roff: a backslash and a point at a line's beginning mean something else there.
+std::string roff(std::string_view text) {
+    std::string escaped;
+    for (const char letter : text) {
+        const bool begins = escaped.empty() || escaped.back() == '\n';
+        if (begins && (letter == '.' || letter == '\'')) escaped += "\\&";
+        escaped += letter == '\\' ? "\\e" : letter == '-' ? "\\-" : std::string(1, letter);
+    }
+    return escaped;
+}
+
+std::string man_page(const CLI::App& program) {
+    std::string page = fmt::format(
+        ".TH POSEWISE 1 \"\" \"posewise {}\"\n.SH NAME\nposewise \\- {}\n.SH COMMANDS\n", version,
+        roff(program.get_description()));
+    for (const CLI::App* const command : commands_of(program)) {
+        page +=
+            fmt::format(".SS {}\n.nf\n{}.fi\n", command->get_name(), roff(full_help_of(*command)));
+    }
+    return page + fmt::format(".SH MORE\n.nf\n{}.fi\n", roff(program.get_footer() + '\n'));
+}
+
+void print_completion(const CLI::App& program, const std::string& shell) {
+    const bool is_zsh = shell == "zsh";
+    print((is_zsh ? "autoload -U +X bashcompinit && bashcompinit\n" : "") +
+          bash_completion(program));
+}
+
+}  // namespace
+
+std::shared_ptr<CLI::FormatterBase> make_brief_help() { return std::make_shared<BriefHelp>(); }
+
+void add_help_commands(CLI::App& program) {
+    auto topic = std::make_shared<std::string>();
+    auto is_man = std::make_shared<bool>(false);
+    CLI::App* const help = program.add_subcommand("help", "Explain a command or a topic in full");
+    help->add_option("TOPIC", *topic,
+                     "A command, or a section of the manual (default: lists them)");
+    help->footer("\nExample:\n  posewise help plan\n  posewise help cell\n");
+    help->add_flag("--man", *is_man, "Print the man page");
+    help->callback([&program, topic, is_man] {
+        if (*is_man) return print(man_page(program));
+        print_help(program, *topic);
+    });
+
+    auto shell = std::make_shared<std::string>();
+    CLI::App* const completion =
+        program.add_subcommand("completion", "Print what completes commands in a shell");
+    completion->add_option("SHELL", *shell, "bash or zsh")
+        ->required()
+        ->check(CLI::IsMember({"bash", "zsh"}));
+    completion->footer(
+        "\nExample:\n  posewise completion bash > "
+        "~/.local/share/bash-completion/completions/posewise\n");
+    completion->callback([&program, shell] { print_completion(program, *shell); });
+}
+
+}  // namespace posewise::cli
