@@ -1,11 +1,12 @@
-"""The includes obey the table of modules, which stands alike in CMakeLists.txt and README.md.
+"""The includes obey the table of modules, which stands alike in CMakeLists.txt and ARCHITECTURE.md.
 
     layering_test.py REPOSITORY
 
-The table is the posewise_module(<module> <modules it may use>...) lines, and README's lines
+The table is the posewise_module(<module> <modules it may use>...) lines, and ARCHITECTURE's lines
 | module | holds | may use |; "../core/x.hpp" is a private header of core. Public headers moreover
 include no third-party header but Eigen's, so that no dependency of ours becomes everyone's. What
-`task` computes must be of use without a file or a terminal, so it may use neither io nor report.
+`task` computes must be of use without a file or a terminal, so it may use neither io nor report, and
+neither it nor what it uses speaks of options of the command line: it names fields, `pose_count`.
 Private headers hold posewise::detail and nothing else, and public ones nothing of it, so that what
 is no promise to users can be seen from its name.
 """
@@ -15,6 +16,7 @@ import re
 import sys
 
 NAMESPACE = re.compile(r"^(?:inline )?namespace ([\w:]*) ?\{", re.MULTILINE)
+FLAG = re.compile(r'"[^"\n]*--[a-z][^"\n]*"')
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
@@ -24,18 +26,18 @@ def read_table(repository):
     return {line.split()[0]: set(line.split()) for line in lines}
 
 
-def read_readme_table(repository):
-    text = (repository / "README.md").read_text()
+def read_stated_table(repository):
+    text = (repository / "ARCHITECTURE.md").read_text()
     table = text.partition("| module | holds | may use |\n")[2].partition("\n\n")[0]
     rows = re.findall(r"^\| ([a-z]+) \| [^|]* \| ([a-z -]*) \|$", table, re.MULTILINE)
     return {module: {module} | set(used.replace("-", "").split()) for module, used in rows}
 
 
-def table_faults(table, readme):
-    """Where README's table is not that of CMakeLists.txt, and what no table may allow."""
-    for module in sorted((table.keys() | readme.keys()) - {"cli"}):
-        if table.get(module) != readme.get(module):
-            yield (f"README.md: module {module} may use {sorted(readme.get(module, []))}, by "
+def table_faults(table, stated):
+    """Where ARCHITECTURE's table is not that of CMakeLists.txt, and what no table may allow."""
+    for module in sorted((table.keys() | stated.keys()) - {"cli"}):
+        if table.get(module) != stated.get(module):
+            yield (f"ARCHITECTURE.md: module {module} may use {sorted(stated.get(module, []))}, by "
                    f"CMakeLists.txt {sorted(table.get(module, []))}")
     for module in ("io", "report", "cli"):
         if module in table.get("task", set()):
@@ -83,9 +85,16 @@ def namespace_faults(path, is_public):
             yield f"namespace '{name}': names in a private header are in posewise::detail"
 
 
+def flag_faults(text):
+    """Options of the command line in texts of a module that knows no command line."""
+    text = re.sub(r"//.*", "", text)
+    for match in FLAG.finditer(text):
+        yield text.count("\n", 0, match.start()) + 1, f"{match[0]}: names an option; name the field"
+
+
 def check(repository):
     table = read_table(repository)
-    faults, count = list(table_faults(table, read_readme_table(repository))), 0
+    faults, count = list(table_faults(table, read_stated_table(repository))), 0
     for path in sorted(repository.glob("include/posewise/**/*.hpp*")) + sorted(
             repository.glob("src/**/*.[ch]pp")):
         name = path.relative_to(repository)
@@ -101,6 +110,8 @@ def check(repository):
             continue
         if ".hpp" in path.suffixes:
             faults += [f"{name}: {fault}" for fault in namespace_faults(path, is_public)]
+        if module not in ("io", "report"):
+            faults += [f"{name}:{line}: {fault}" for line, fault in flag_faults(path.read_text())]
         for line, bracket, included in includes(path):
             found = list(layering_faults(table, module, included))
             if is_public:

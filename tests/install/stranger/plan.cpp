@@ -4,8 +4,5 @@ using namespace posewise;
 int main() {
     fix_cache_sizes();  // the digits of the program
     const auto campaign = io::read_campaign("campaign.yaml");
-    const auto measured = io::read_measurements("measurements.csv", campaign);
-    const Plan best = choose(campaign, measured_candidates(measured), {{.pose_count = 12}});
-    const Planning fresh = make_plan(campaign, PlanningOptions(12));
-    std::cout << format_choice(best) << format_planning(fresh);
+    std::cout << format_planning(make_plan(campaign, PlanningOptions(12)));
 }
