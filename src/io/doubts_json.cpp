@@ -17,7 +17,7 @@ Json planes_to_json(const std::vector<PlaneDoubt>& planes) {
     return json;
 }
 
-constexpr Names<PlaceDoubt::Unit, 3> unit_names{{{PlaceDoubt::Unit::AsRead, "as read"},
+constexpr Names<PlaceDoubt::Unit, 3> place_units{{{PlaceDoubt::Unit::AsRead, "as read"},
                                                  {PlaceDoubt::Unit::Metres, "m"},
                                                  {PlaceDoubt::Unit::Millimetres, "mm"}}};
 
@@ -27,7 +27,7 @@ Json places_to_json(const std::vector<PlaceDoubt>& places) {
         json.push_back({{"what", place.name},
                         {"stated_mm", vector_to_json(mm_per_m * place.stated)},
                         {"measured_mm", vector_to_json(mm_per_m * place.found)},
-                        {"unit", name_of(unit_names, place.unit)}});
+                        {"unit", name_of(place_units, place.unit)}});
         if (!place.exchanged_with.empty()) json.back()["exchanged_with"] = place.exchanged_with;
         if (place.turn > 0) json.back()["turned_deg"] = to_degrees(place.turn);
     }
