@@ -154,7 +154,7 @@ class MutatedPlans : public ::testing::Test {
         asked.proof = 0;
         asked.sources.campaign = design;
         const Plan made =
-            choose(campaign_, random_candidates(campaign_, 40, asked.seed.value_or(1)), asked);
+            choose(campaign_, random_candidates(campaign_, 40, campaign_.seed), asked);
         EXPECT_EQ(made.ending, Ending::Converged);
         return {"random choice",
                 write(made),

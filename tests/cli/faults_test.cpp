@@ -120,7 +120,7 @@ TEST_F(Faults, OfABaseThatIsKnownElsewhere) {
     const std::string words =
         "posewise: e.json: the base is at (-557.6, -563.2, 561.4) mm, the campaign states one at "
         "(-357.6, -563.2, 561.4) mm as known; must be stated as when the estimate was made, unless "
-        "'--moved base' says that it is another\n";
+        "--moved base says that it is another\n";
     expect_input_error("calibrate other.yaml -m m.csv --folds 0 --from e.json", words);
     expect_input_error("select other.yaml --random 50 -k 9 --from e.json", words);
     expect_input_error("plan other.yaml -k 9 --pool 50 --from e.json", words);

@@ -42,7 +42,7 @@ TEST_F(Global, FindsTheRobotFromABadCampaignFile) {
 
 TEST_F(Global, RefusesAPriorOfSmallErrors) {
     expect_input_error("calibrate " + fanuc_design + " -m m.csv --method global --prior",
-                       "must be without them (prior: false, --no-prior)");
+                       "must be without them (prior: false)");
     EXPECT_EQ(run("calibrate " + fanuc_design + " -m m.csv --method global --starts 0").code, 2);
     EXPECT_EQ(run("calibrate " + fanuc_design + " -m m.csv --method global --loss huber").code, 2);
 }

@@ -217,6 +217,7 @@ TEST_F(ChooseWithRobot, SaysWhatItChoseAndWhatItRestsOn) {
 TEST_F(ChooseWithRobot, SaysWhatTheValueOfVMeansInMetresWhereThatIsExact) {
     const Candidates candidates = measured_candidates(measured_);
     ChoiceOptions options = choice_of(10);
+    options.criterion = Criterion::D;
     EXPECT_FALSE(choose(campaign_, candidates, options).value_rms);
     options.criterion = Criterion::V;
     const Plan plan = choose(campaign_, candidates, options);

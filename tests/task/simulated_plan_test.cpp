@@ -27,6 +27,7 @@ Planning plan_of(const Campaign& campaign, Index count = 12, double repeats = 1)
     Planning planning;
     planning.campaign = campaign;
     Plan& plan = planning.plan;
+    plan.request.seed = 1;
     plan.request.pose_count = count;
     plan.request.repeats = repeats;
     const RowMatrixXd poses = detail::random_configurations(campaign.robot, count, 7);
