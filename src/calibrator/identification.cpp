@@ -175,8 +175,8 @@ bool is_alike(const Campaign& a, const Campaign& b) {
 /// Under which model error the first step is taken, where that is to be found.
 enum class FirstError { Stated, Found };
 
-/// Of `first` what was used is left: nothing is found before the first step where little is left
-/// over.
+/// identify() that begins as `first` says. Sets `first` to Stated where nothing was found before
+/// the first step, since little is left over.
 Estimate identify_from(const Campaign& campaign, const Measurements& measurements,
                        const Parameters& start, const LevenbergMarquardtOptions& options,
                        FirstError& first) {

@@ -1,6 +1,7 @@
 #include "help.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -23,7 +24,7 @@ constexpr std::size_t name_width = 34;
 
 /// In the order they are shown. What stands in none is an input.
 constexpr std::array groups{"Input",  "What is asked for", "Robot errors", "Earlier estimate",
-                            "Search", "Judgement",         "Output",       ""};
+                            "Search", "Judgement",         "Output",       "Rarely needed"};
 enum Group : std::size_t { Input, Asked, Errors, Earlier, Search, Judged, Output, Rare };
 
 /// The group of each option, by its long name; it means the same in every command. Rare ones are
@@ -268,9 +269,7 @@ std::string rules_of(const CLI::Option& option) {
     };
     list("needs", option.get_needs());
     list("not with", option.get_excludes());
-    std::string text;
-    for (const std::string& rule : rules) text += (text.empty() ? "" : "; ") + rule;
-    return text.empty() ? "" : " [" + text + ']';
+    return rules.empty() ? "" : fmt::format(" [{}]", fmt::join(rules, "; "));
 }
 
 std::string full_entry(const CLI::Option& option) {
@@ -283,11 +282,10 @@ std::string full_help_of(const CLI::App& command) {
     const Footer footer = split_footer(command);
     std::string text = title_of(command) + examples_of(footer, footer.examples.size());
     if (!footer.notes.empty()) text += '\n' + footer.notes + '\n';
-    for (std::size_t group = Input; group < Rare; ++group) {
+    for (std::size_t group = Input; group <= Rare; ++group) {
         text += list_group(command, static_cast<Group>(group), &full_entry);
     }
-    const std::string others = list_group(command, Rare, &full_entry);
-    return text + (others.empty() ? "" : "\nRarely needed:" + others.substr(2));
+    return text;
 }
 
 class BriefHelp : public CLI::Formatter {

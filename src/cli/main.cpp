@@ -44,8 +44,8 @@ Start with:
   posewise correct campaign.yaml estimate.json --poses p.csv     joint values that hit the poses
   posewise report plan.json estimate.json --out page.html        a page to look at
 
-posewise COMMAND --help lists its options, posewise help COMMAND explains all. With --json each prints one JSON document, which
-designs/json.md explains, and nothing else.
+posewise COMMAND --help lists its options, posewise help COMMAND explains all. With --json each
+prints one JSON document, which posewise help json explains, and nothing else.
 Exit code: 0 good, 1 unusable input (the last line on standard error), 2 wrong usage,
 3 a calibration that must not be used, 70 internal error, a bug of posewise.)";
 

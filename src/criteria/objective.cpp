@@ -13,10 +13,6 @@
 namespace posewise::detail {
 namespace {
 
-double log_determinant(const Eigen::LLT<MatrixXd>& cholesky) {
-    return 2 * cholesky.matrixLLT().diagonal().unaryExpr(&logarithm).sum();
-}
-
 /// The same objective on a matrix without nuisance.
 Objective without_nuisance(Objective objective) {
     objective.nuisance.clear();

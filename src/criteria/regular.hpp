@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "../core/elementary.hpp"
 #include "../core/products.hpp"
 
 namespace posewise::detail {
@@ -12,6 +13,10 @@ inline bool is_regular(const Eigen::LLT<MatrixXd>& cholesky, const MatrixXd& M) 
     if (M.rows() == 0 || cholesky.info() != Eigen::Success) return false;
     const auto pivots = cholesky.matrixLLT().diagonal().array().square();
     return ((pivots > 1e-13 * M.diagonal().array()) && pivots.isFinite()).all();
+}
+
+inline double log_determinant(const Eigen::LLT<MatrixXd>& cholesky) {
+    return 2 * cholesky.matrixLLT().diagonal().unaryExpr(&logarithm).sum();
 }
 
 inline MatrixXd inverse(const Eigen::LLT<MatrixXd>& cholesky) {

@@ -33,8 +33,8 @@ class PoseInformation {
     VectorXd differentiate(const VectorXd& q, const MatrixXd& Z,
                            const SeenTargets& is_seen = {}) const;
 
-    /// The same where Z is known by what it makes of a block: `weigh` is called once, with B, and
-    /// returns B Z.
+    /// As differentiate(), for a Z that is not at hand: `weigh` takes B and returns B Z. It is
+    /// called once.
     using Weigh = std::function<RowMatrixXd(const RowMatrixXd& B)>;
     VectorXd differentiate_weighed(const VectorXd& q, const Weigh& weigh,
                                    const SeenTargets& is_seen = {}) const;

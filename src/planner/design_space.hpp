@@ -24,8 +24,8 @@ struct DesignSpace {
     std::function<MatrixXd(const VectorXd& q)> information;
     /// Derivative of trace(Z information(q)) by q, for symmetric Z.
     std::function<VectorXd(const VectorXd& q, const MatrixXd& Z)> information_gradient;
-    /// The same where Z is known by what it makes of the rows: `weigh` is called once, with
-    /// rows(q), and returns rows(q) Z. Empty: there is only the other.
+    /// As information_gradient, for a Z that is not at hand: `weigh` takes rows(q) and returns
+    /// rows(q) Z. It is called once. Empty: there is only information_gradient.
     using Weigh = std::function<RowMatrixXd(const RowMatrixXd& rows)>;
     std::function<VectorXd(const VectorXd& q, const Weigh& weigh)> weighed_gradient{};
     /// At least 0 where a pose is feasible; may have kinks. Empty: everywhere within the limits.

@@ -20,7 +20,7 @@ std::optional<PoseMerit> PoseMerit::make(const Objective& objective, const Matri
     const MatrixXd W = inverse(cholesky);
     if (is_determinant) {
         merit.WK_ = W;
-        merit.base_ = 2 * cholesky.matrixLLT().diagonal().unaryExpr(&logarithm).sum();
+        merit.base_ = log_determinant(cholesky);
         if (criterion == Criterion::O1) {
             merit.factor_ = 1 / (2.0 * static_cast<double>(R.rows()));
             merit.shift_ = -logarithm(static_cast<double>(objective.pose_count)) / 2;
@@ -55,9 +55,8 @@ double PoseMerit::evaluate(const RowMatrixXd& B, RowMatrixXd* BZ) const {
     G.diagonal().array() += 1;
     const Eigen::LLT<MatrixXd> cholesky(G);
     if (!is_trace_) {
-        const double added = 2 * cholesky.matrixLLT().diagonal().unaryExpr(&logarithm).sum();
         if (BZ != nullptr) *BZ = factor_ * cholesky.solve(U);
-        return factor_ * (base_ + added) + shift_;
+        return factor_ * (base_ + log_determinant(cholesky)) + shift_;
     }
     const auto BK = BWK.rightCols(L);
     const MatrixXd Q = BK * B.transpose();

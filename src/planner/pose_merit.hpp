@@ -19,8 +19,8 @@ namespace posewise::detail {
 /// where Z is the derivative of log det M, and of -log trace C M^-1, by M.
 class PoseMerit {
   public:
-    /// Nothing where R is singular or evaluate() says nothing of this block, for other criteria than
-    /// D, O1, A and V, and with nuisance.
+    /// Nothing where R is singular or evaluate() says nothing of this block, for other criteria
+    /// than D, O1, A and V, and with nuisance.
     static std::optional<PoseMerit> make(const Objective& objective, const MatrixXd& R,
                                          const RowMatrixXd& block);
 
@@ -33,7 +33,7 @@ class PoseMerit {
 
     bool is_trace_ = false;
     double base_ = 0;    ///< log det R, or trace C W
-    double factor_ = 1;  ///< of log det M in the merit
+    double factor_ = 1;  ///< D and O1: the merit is factor_ log det M + shift_
     double shift_ = 0;
     MatrixXd WK_;  ///< [W K], or W
 };

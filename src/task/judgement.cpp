@@ -72,7 +72,7 @@ bool shows_any(const Measurements& others, const std::vector<Index>& members) {
     return times_seen(others)(members, Eigen::all).sum() > 0;
 }
 
-/// Of three at least, one that has more than half of the squares.
+/// The configuration that has more than half of the sum of squares, if there are three at least.
 std::optional<WorstConfiguration> worst_of(const Judge& judge, const Measurements& part) {
     constexpr Index least = 3;
     const Index count = part.configuration_count();

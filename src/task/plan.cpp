@@ -70,8 +70,8 @@ std::optional<Index> find_measured(const Plan& plan, const PlannedPose& pose,
     const auto value = [&](double x) { return is_angle ? to_degrees(x) : mm_per_m * x; };
     throw InputError(fmt::format(
         "configuration {} is planned with {} = {:.4f} {}, measured with {:.4f}; must be within "
-        "{:.2f}: "
-        "the plan must be of this robot and campaign, and a pose that was missed be left out",
+        "{:.2f}: the plan must be of this robot and campaign, and a pose that was missed be left "
+        "out",
         detail::quote(pose.id), campaign.robot.joint(joint).name, value(pose.configuration[joint]),
         is_angle ? "deg" : "mm", value(q[joint]), value(tolerance)));
 }

@@ -150,15 +150,15 @@ Planning PlanMaker::make(Index pose_count,
 
 PredictedAccuracy PlanMaker::predict_choice(const std::vector<Index>& poses,
                                             const Blocks& blocks) const {
-    const RowMatrixXd repeats = times_seen(pool_.is_seen, problem_.request.repeats);
+    const RowMatrixXd repeats =
+        times_seen(Seen(pool_.is_seen(poses, Eigen::all)), problem_.request.repeats);
     return predict_accuracy(
         problem_.errors.by_parameters,
         information_of(problem_.search.held.rows, blocks.parameter_count()) +
             information(blocks, poses),
         problem_.campaign,
         information_by_noise(problem_.campaign, problem_.campaign.nominal,
-                             RowMatrixXd(pool_.configurations(poses, Eigen::all)),
-                             RowMatrixXd(repeats(poses, Eigen::all))));
+                             RowMatrixXd(pool_.configurations(poses, Eigen::all)), repeats));
 }
 
 Planning PlanMaker::make_quickly(Index pose_count) const {

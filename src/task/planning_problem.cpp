@@ -81,8 +81,7 @@ void check_repaired(const PlanningProblem& problem, const Plan& repaired) {
         if (std::ranges::count(repaired.verification, id, &PlannedPose::id) > 0) {
             throw InputError(
                 fmt::format("`dropped` {}: is a pose to verify, which need not be replaced; leave "
-                            "it out of what "
-                            "is measured",
+                            "it out of what is measured",
                             id));
         }
         const auto has_id = [&](const PlannedPose& pose) { return pose.id == id; };
