@@ -10,11 +10,11 @@ set(posewise_definitions EIGEN_DONT_PARALLELIZE)
 set(posewise_options -ffp-contract=off -fno-math-errno)
 
 # posewise_module(<name> <modules it may use>...)
-# An object library of src/<name>/*.cpp. Modules compile against the whole include tree; that they
+# An object library of all of src/<name>. Modules compile against the whole include tree; that they
 # include only what they may is tested (tests/layering_test.py), and each module's tests link only
 # the module and those it may use.
 function(posewise_module name)
-  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp")
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp")
   add_library(posewise_${name} OBJECT ${sources})
   target_include_directories(posewise_${name} PUBLIC
     "${PROJECT_SOURCE_DIR}/include" "${PROJECT_BINARY_DIR}/include")

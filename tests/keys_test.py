@@ -18,7 +18,7 @@ KEY = re.compile(r'"([A-Za-z_]+(?:<[a-z]+>)?[A-Za-z_]*)"')
 
 def keys_of_readers(repository):
     keys = {}
-    for path in sorted((repository / "src/io").glob("*.[ch]pp")):
+    for path in sorted((repository / "src/io").rglob("*.[ch]pp")):
         for lists in LISTS.finditer(path.read_text()):
             for key in KEY.findall(lists[1] or lists[2] or ""):
                 keys.setdefault(key, path.name)

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/decompositions.hpp"
+#include "core/decompositions.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/sensor.hpp"
 #include "posewise/model/chain.hpp"

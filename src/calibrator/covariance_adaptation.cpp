@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/decompositions.hpp"
+#include "core/decompositions.hpp"
 #include "global_identification.hpp"
 
 namespace posewise::detail {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "../core/parallel.hpp"
-#include "../core/progress_counter.hpp"
+#include "core/parallel.hpp"
+#include "core/progress_counter.hpp"
 #include "model_error.hpp"
 #include "normal_equations.hpp"
 #include "posewise/calibrator/identification.hpp"

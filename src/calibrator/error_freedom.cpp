@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../measurement/noise.hpp"
+#include "measurement/noise.hpp"
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/jacobian/identification.hpp"
 

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <span>
 
-#include "../core/statistics.hpp"
-#include "../measurement/noise.hpp"
+#include "core/statistics.hpp"
+#include "measurement/noise.hpp"
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/jacobian/identification.hpp"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "../core/parallel.hpp"
-#include "../core/progress_counter.hpp"
+#include "core/parallel.hpp"
+#include "core/progress_counter.hpp"
 #include "covariance_adaptation.hpp"
 #include "least_squares.hpp"
 #include "posewise/calibrator/identification.hpp"

@@ -4,8 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "../core/decompositions.hpp"
-#include "../measurement/noise.hpp"
+#include "core/decompositions.hpp"
+#include "measurement/noise.hpp"
 #include "model_error.hpp"
 #include "normal_equations.hpp"
 #include "posewise/core/errors.hpp"

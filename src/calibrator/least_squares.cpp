@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
-#include "../core/decompositions.hpp"
-#include "../core/products.hpp"
-#include "../core/text.hpp"
-#include "../measurement/noise.hpp"
+#include "core/decompositions.hpp"
+#include "core/products.hpp"
+#include "core/text.hpp"
+#include "measurement/noise.hpp"
 #include "normal_equations.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"

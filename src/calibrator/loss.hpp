@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../core/names.hpp"
+#include "core/names.hpp"
 #include "posewise/calibrator/estimate.hpp"
 
 namespace posewise::detail {

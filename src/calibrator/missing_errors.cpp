@@ -4,8 +4,8 @@
 #include <numeric>
 #include <utility>
 
-#include "../core/decompositions.hpp"
-#include "../core/statistics.hpp"
+#include "core/decompositions.hpp"
+#include "core/statistics.hpp"
 #include "posewise/model/error_terms.hpp"
 
 namespace posewise::detail {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "../core/products.hpp"
-#include "../measurement/noise.hpp"
+#include "core/products.hpp"
+#include "measurement/noise.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "robust.hpp"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../core/progress_counter.hpp"
+#include "core/progress_counter.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "robust.hpp"

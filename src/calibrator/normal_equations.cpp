@@ -1,6 +1,6 @@
 #include "normal_equations.hpp"
 
-#include "../core/products.hpp"
+#include "core/products.hpp"
 
 namespace posewise::detail {
 

@@ -1,6 +1,6 @@
 #include "parameter_units.hpp"
 
-#include "../core/products.hpp"
+#include "core/products.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::detail {

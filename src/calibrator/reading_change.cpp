@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "../core/format.hpp"
+#include "core/format.hpp"
 #include "length_units.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/model/chain.hpp"

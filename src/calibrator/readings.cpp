@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "../core/parallel.hpp"
-#include "../core/statistics.hpp"
+#include "core/parallel.hpp"
+#include "core/statistics.hpp"
 #include "length_units.hpp"
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/calibrator/identification.hpp"

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include "../core/text.hpp"
-#include "../measurement/known_sensor.hpp"
-#include "../model/sampling.hpp"
+#include "core/text.hpp"
 #include "least_squares.hpp"
 #include "linear_registration.hpp"
+#include "measurement/known_sensor.hpp"
+#include "model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"

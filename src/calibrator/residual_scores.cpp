@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/decompositions.hpp"
-#include "../core/products.hpp"
-#include "../core/statistics.hpp"
+#include "core/decompositions.hpp"
+#include "core/products.hpp"
+#include "core/statistics.hpp"
 #include "normal_equations.hpp"
 
 namespace posewise::detail {

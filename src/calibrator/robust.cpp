@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "../core/decompositions.hpp"
-#include "../core/statistics.hpp"
+#include "core/decompositions.hpp"
+#include "core/statistics.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::detail {

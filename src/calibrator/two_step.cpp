@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "../core/decompositions.hpp"
+#include "core/decompositions.hpp"
 #include "least_squares.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"

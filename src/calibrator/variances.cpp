@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "../core/decompositions.hpp"
-#include "../core/products.hpp"
+#include "core/decompositions.hpp"
+#include "core/products.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -4,10 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "../calibrator/loss.hpp"
-#include "../report/plot.hpp"
-#include "../task/calibration_options.hpp"
 #include "calibrate_report.hpp"
+#include "calibrator/loss.hpp"
 #include "commands.hpp"
 #include "estimates.hpp"
 #include "files.hpp"
@@ -16,6 +14,8 @@
 #include "posewise/core/types.hpp"
 #include "posewise/io/result_files.hpp"
 #include "posewise/report/reports.hpp"
+#include "report/plot.hpp"
+#include "task/calibration/calibration_options.hpp"
 #include "validation.hpp"
 
 namespace posewise::cli {

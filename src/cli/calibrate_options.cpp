@@ -1,11 +1,11 @@
 #include "calibrate_options.hpp"
 
-#include "../calibrator/loss.hpp"
-#include "../task/calibration_options.hpp"
+#include "calibrator/loss.hpp"
 #include "measured.hpp"
 #include "options.hpp"
 #include "page.hpp"
 #include "plot.hpp"
+#include "task/calibration/calibration_options.hpp"
 
 namespace posewise::cli {
 

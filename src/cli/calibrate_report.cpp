@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "../core/text.hpp"
-#include "../report/plot.hpp"
+#include "core/text.hpp"
 #include "plot.hpp"
 #include "posewise/io/documents.hpp"
 #include "posewise/report/reports.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/scene.hpp"
+#include "report/plot.hpp"
 
 namespace posewise::cli {
 namespace {

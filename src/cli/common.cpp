@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <limits>
 
-#include "../core/format.hpp"
-#include "../core/text.hpp"
 #include "commands.hpp"
+#include "core/format.hpp"
+#include "core/text.hpp"
 #include "estimates.hpp"
 #include "files.hpp"
 #include "flags.hpp"

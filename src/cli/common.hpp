@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "../report/sentences.hpp"
-#include "../report/table.hpp"
 #include "posewise/core/progress.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/task/plan.hpp"
+#include "report/sentences.hpp"
+#include "report/table.hpp"
 
 /// What several subcommands share: their arguments, how they print.
 namespace posewise::cli {

@@ -4,9 +4,9 @@
 #include <memory>
 #include <numbers>
 
-#include "../core/text.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "core/text.hpp"
 #include "estimates.hpp"
 #include "files.hpp"
 #include "options.hpp"

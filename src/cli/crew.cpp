@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "../core/text.hpp"
+#include "core/text.hpp"
 
 namespace posewise::cli {
 

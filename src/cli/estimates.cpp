@@ -7,9 +7,8 @@
 #include <set>
 #include <tuple>
 
-#include "../core/text.hpp"
-#include "../task/earlier_estimate.hpp"
 #include "common.hpp"
+#include "core/text.hpp"
 #include "crew.hpp"
 #include "files.hpp"
 #include "measured.hpp"
@@ -19,6 +18,7 @@
 #include "posewise/io/result_files.hpp"
 #include "posewise/report/reports.hpp"
 #include "posewise/task/doubts.hpp"
+#include "task/calibration/earlier_estimate.hpp"
 
 namespace posewise::cli {
 namespace {

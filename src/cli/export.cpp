@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "../core/text.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "core/text.hpp"
 #include "estimates.hpp"
 #include "export_text.hpp"
 #include "files.hpp"

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "../core/format.hpp"
-#include "../core/text.hpp"
 #include "common.hpp"
+#include "core/format.hpp"
+#include "core/text.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/model/chain.hpp"
 

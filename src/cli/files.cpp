@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <string_view>
 
-#include "../io/atomic_file.hpp"
-#include "../io/text.hpp"
+#include "io/format/atomic_file.hpp"
+#include "io/format/text.hpp"
 #include "posewise/io/result_files.hpp"
 
 namespace posewise::cli {

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "../core/text.hpp"
 #include "common.hpp"
+#include "core/text.hpp"
 #include "manual.hpp"
 #include "posewise/core/version.hpp"
 

@@ -4,13 +4,12 @@
 #include <filesystem>
 #include <memory>
 
-#include "../core/text.hpp"
-#include "../io/atomic_file.hpp"
-#include "../report/readings_report.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "core/text.hpp"
 #include "estimates.hpp"
 #include "files.hpp"
+#include "io/format/atomic_file.hpp"
 #include "measured.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
@@ -18,6 +17,7 @@
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/io/robot_files.hpp"
 #include "posewise/report/reports.hpp"
+#include "report/readings_report.hpp"
 
 namespace posewise::cli {
 namespace {

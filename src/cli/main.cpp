@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "../core/text.hpp"
 #include "commands.hpp"
+#include "core/text.hpp"
 #include "crew.hpp"
 #include "estimates.hpp"
 #include "flags.hpp"

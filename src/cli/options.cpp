@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "../core/text.hpp"
+#include "core/text.hpp"
 
 namespace posewise::cli {
 namespace {

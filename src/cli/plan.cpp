@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 
-#include "../report/plot.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "files.hpp"
@@ -26,6 +25,7 @@
 #include "posewise/io/result_files.hpp"
 #include "posewise/report/reports.hpp"
 #include "posewise/task/inspection.hpp"
+#include "report/plot.hpp"
 
 namespace posewise::cli {
 namespace {

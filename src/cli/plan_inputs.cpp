@@ -1,9 +1,9 @@
 #include "plan_inputs.hpp"
 
-#include "../io/groups_file.hpp"
-#include "../io/matrix_file.hpp"
 #include "common.hpp"
 #include "files.hpp"
+#include "io/measurements/groups_file.hpp"
+#include "io/measurements/matrix_file.hpp"
 #include "measured.hpp"
 #include "posewise/core/errors.hpp"
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <string>
 
-#include "../core/format.hpp"
+#include "core/format.hpp"
 #include "posewise/core/progress.hpp"
 
 namespace posewise::cli {

@@ -4,8 +4,7 @@
 
 #include <cstdio>
 
-#include "../core/text.hpp"
-#include "../report/plot.hpp"
+#include "core/text.hpp"
 #include "estimates.hpp"
 #include "interrupt.hpp"
 #include "measured.hpp"
@@ -13,6 +12,7 @@
 #include "posewise/io/documents.hpp"
 #include "posewise/report/reports.hpp"
 #include "posewise/task/scene.hpp"
+#include "report/plot.hpp"
 
 namespace posewise::cli {
 namespace {

@@ -3,11 +3,11 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "../io/atomic_file.hpp"
-#include "../io/signal_delay.hpp"
-#include "../report/plot.hpp"
+#include "io/format/atomic_file.hpp"
+#include "io/measurements/signal_delay.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
+#include "report/plot.hpp"
 
 namespace posewise::cli {
 namespace {

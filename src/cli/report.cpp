@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "../core/text.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "core/text.hpp"
 #include "files.hpp"
 #include "options.hpp"
 #include "posewise/io/documents.hpp"

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <functional>
 
-#include "../core/text.hpp"
 #include "calibrate_report.hpp"
 #include "common.hpp"
+#include "core/text.hpp"
 #include "estimates.hpp"
 #include "measured.hpp"
 #include "page.hpp"

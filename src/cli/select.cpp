@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include "../core/text.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "core/text.hpp"
 #include "files.hpp"
 #include "interrupt.hpp"
 #include "measured.hpp"

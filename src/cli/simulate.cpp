@@ -3,16 +3,16 @@
 #include <memory>
 #include <optional>
 
-#include "../core/text.hpp"
-#include "../report/calibration_tables.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "core/text.hpp"
 #include "files.hpp"
 #include "measured.hpp"
 #include "options.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/io/documents.hpp"
 #include "posewise/measurement/measurements.hpp"
+#include "report/calibration_tables.hpp"
 
 namespace posewise::cli {
 namespace {

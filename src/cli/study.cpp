@@ -5,16 +5,16 @@
 #include <filesystem>
 #include <memory>
 
-#include "../core/text.hpp"
-#include "../io/atomic_file.hpp"
-#include "../report/plot.hpp"
 #include "commands.hpp"
+#include "core/text.hpp"
 #include "files.hpp"
 #include "interrupt.hpp"
+#include "io/format/atomic_file.hpp"
 #include "plot.hpp"
 #include "posewise/io/documents.hpp"
 #include "posewise/io/result_files.hpp"
 #include "posewise/report/reports.hpp"
+#include "report/plot.hpp"
 #include "study_options.hpp"
 #include "study_runs.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "../core/text.hpp"
+#include "core/text.hpp"
 #include "measured.hpp"
 #include "options.hpp"
 #include "page.hpp"

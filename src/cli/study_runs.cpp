@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <chrono>
 
-#include "../io/atomic_file.hpp"
 #include "crew.hpp"
 #include "files.hpp"
+#include "io/format/atomic_file.hpp"
 #include "measured.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/io/campaign_file.hpp"
@@ -59,10 +59,9 @@ std::vector<RobotModel> list_models(const std::vector<io::CampaignFile>& files) 
 
 /// What both kinds of study have in common.
 void complete_options(StudyOptions& options, const StudyArguments& arguments,
-                      const io::CampaignFile& file, const StopSignal& stop) {
-    options.seed = arguments.seed.value_or(file.seed);
-    options.criteria = arguments.criteria;
-    if (options.criteria.empty()) options.criteria = {file.criterion};
+                      const StopSignal& stop) {
+    options.seed = arguments.seed;
+    if (!arguments.criteria.empty()) options.criteria = arguments.criteria;
     options.least_distance = to_radians(arguments.least_distance_deg);
     options.stop = stop;
     options.crew = trial_crew();
@@ -143,7 +142,7 @@ std::vector<Study> study_measured(const StudyArguments& arguments, const CommonO
         read_measured_without(arguments.excluded, paths.measurements, file, arguments.earlier);
     StudyOptions options = arguments.options;
     options.random_subsets = arguments.random_subsets.value_or(StudyOptions().random_subsets);
-    complete_options(options, arguments, file, stop);
+    complete_options(options, arguments, stop);
     options.judge = judge_of(paths.measurements, arguments.earlier.is_forced);
     ProgressLine line("calibrating", arguments.progress);
     options.progress = [&](const Progress& progress) { line(progress); };
@@ -177,7 +176,7 @@ std::vector<Study> study_simulated(const StudyArguments& arguments, const Common
     constexpr Index most_trials = 100000;  // where a precision says when it ends
     options.trials =
         arguments.trials.value_or(options.precision > 0 ? most_trials : options.trials);
-    complete_options(options, arguments, file, stop);
+    complete_options(options, arguments, stop);
     extras.notes = describe_earlier(arguments.earlier) + describe_exact(arguments.earlier.use()) +
                    describe_unused_planning(file);
     extras.page.scene = make_scene(file);

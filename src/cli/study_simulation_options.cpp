@@ -1,6 +1,6 @@
 #include <charconv>
 
-#include "../core/text.hpp"
+#include "core/text.hpp"
 #include "options.hpp"
 #include "study_options.hpp"
 

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "../io/robot_statement.hpp"
 #include "common.hpp"
 #include "files.hpp"
+#include "io/campaign/robot_statement.hpp"
 #include "measured.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/io/result_files.hpp"

@@ -4,9 +4,9 @@
 #include <memory>
 #include <optional>
 
-#include "../core/text.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "core/text.hpp"
 #include "estimates.hpp"
 #include "options.hpp"
 #include "plan_inputs.hpp"

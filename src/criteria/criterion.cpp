@@ -5,8 +5,8 @@
 #include <cctype>
 #include <utility>
 
-#include "../core/decompositions.hpp"
-#include "../core/text.hpp"
+#include "core/decompositions.hpp"
+#include "core/text.hpp"
 #include "posewise/core/errors.hpp"
 #include "row_value.hpp"
 #include "spectral.hpp"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "../core/elementary.hpp"
+#include "core/elementary.hpp"
 #include "prediction.hpp"
 #include "regular.hpp"
 

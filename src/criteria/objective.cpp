@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "../core/decompositions.hpp"
-#include "../core/elementary.hpp"
-#include "../core/products.hpp"
+#include "core/decompositions.hpp"
+#include "core/elementary.hpp"
+#include "core/products.hpp"
 #include "posewise/core/errors.hpp"
 #include "prediction.hpp"
 #include "regular.hpp"

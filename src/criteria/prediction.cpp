@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "../core/sensitivities.hpp"
+#include "core/sensitivities.hpp"
 #include "regular.hpp"
 
 namespace posewise::detail {

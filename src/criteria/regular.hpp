@@ -2,8 +2,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "../core/elementary.hpp"
-#include "../core/products.hpp"
+#include "core/elementary.hpp"
+#include "core/products.hpp"
 
 namespace posewise::detail {
 

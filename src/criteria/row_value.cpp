@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "../core/decompositions.hpp"
-#include "../core/elementary.hpp"
-#include "../core/products.hpp"
-#include "../core/sensitivities.hpp"
+#include "core/decompositions.hpp"
+#include "core/elementary.hpp"
+#include "core/products.hpp"
+#include "core/sensitivities.hpp"
 #include "spectral.hpp"
 
 namespace posewise::detail {

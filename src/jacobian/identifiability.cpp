@@ -8,9 +8,9 @@
 #include <numeric>
 #include <utility>
 
-#include "../core/decompositions.hpp"
-#include "../model/complete_model.hpp"
-#include "../model/sampling.hpp"
+#include "core/decompositions.hpp"
+#include "model/complete_model.hpp"
+#include "model/sampling.hpp"
 #include "nominal_factor.hpp"
 #include "posewise/jacobian/identification.hpp"
 

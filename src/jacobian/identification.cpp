@@ -1,7 +1,7 @@
 #include "posewise/jacobian/identification.hpp"
 
-#include "../core/parallel.hpp"
-#include "../measurement/noise.hpp"
+#include "core/parallel.hpp"
+#include "measurement/noise.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "../core/decompositions.hpp"
+#include "core/decompositions.hpp"
 #include "posewise/jacobian/identification.hpp"
 
 namespace posewise::detail {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../measurement/contact.hpp"
+#include "measurement/contact.hpp"
 #include "posewise/core/progress.hpp"
 #include "posewise/measurement/campaign.hpp"
 

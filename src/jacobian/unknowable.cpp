@@ -8,8 +8,8 @@
 #include <numeric>
 #include <optional>
 
-#include "../core/decompositions.hpp"
-#include "../core/text.hpp"
+#include "core/decompositions.hpp"
+#include "core/text.hpp"
 #include "nominal_factor.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"

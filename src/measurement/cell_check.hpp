@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "../model/joint_limits.hpp"
+#include "model/joint_limits.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/model/cell.hpp"
 

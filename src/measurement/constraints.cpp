@@ -6,11 +6,11 @@
 #include <cmath>
 #include <functional>
 
-#include "../core/elementary.hpp"
-#include "../core/format.hpp"
-#include "../model/halton.hpp"
 #include "cell_check.hpp"
 #include "contact.hpp"
+#include "core/elementary.hpp"
+#include "core/format.hpp"
+#include "model/halton.hpp"
 
 namespace posewise {
 namespace {

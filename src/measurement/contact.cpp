@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "../model/sampling.hpp"
+#include "model/sampling.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::detail {

@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "../model/joint_limits.hpp"
+#include "model/joint_limits.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/sensor.hpp"
 

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "../core/text.hpp"
+#include "core/text.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/measurements.hpp"
 

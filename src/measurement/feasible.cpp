@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "../model/halton.hpp"
+#include "model/halton.hpp"
 #include "places.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/constraints.hpp"

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "../core/decompositions.hpp"
+#include "core/decompositions.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::detail {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "../core/format.hpp"
+#include "core/format.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/sensors.hpp"
 

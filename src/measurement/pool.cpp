@@ -3,8 +3,8 @@
 #include <numeric>
 #include <utility>
 
-#include "../core/parallel.hpp"
-#include "../model/halton.hpp"
+#include "core/parallel.hpp"
+#include "model/halton.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/constraints.hpp"
 

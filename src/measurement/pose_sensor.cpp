@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "../core/format.hpp"
+#include "core/format.hpp"
 #include "noise_words.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "../core/elementary.hpp"
-#include "../core/normals.hpp"
-#include "../model/sampling.hpp"
 #include "contact.hpp"
+#include "core/elementary.hpp"
+#include "core/normals.hpp"
 #include "feasible.hpp"
+#include "model/sampling.hpp"
 #include "noise.hpp"
 #include "places.hpp"
 #include "posewise/core/errors.hpp"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/format.hpp"
-#include "../core/text.hpp"
+#include "core/format.hpp"
+#include "core/text.hpp"
 #include "noise_words.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"

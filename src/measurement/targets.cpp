@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "../core/text.hpp"
+#include "core/text.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/sensor.hpp"
 

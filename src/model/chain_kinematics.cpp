@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "../core/elementary.hpp"
+#include "core/elementary.hpp"
 #include "element_amount.hpp"
 #include "posewise/model/chain.hpp"
 #include "posewise/model/error_terms.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../core/elementary.hpp"
+#include "core/elementary.hpp"
 #include "posewise/model/chain.hpp"
 #include "posewise/model/error_terms.hpp"
 

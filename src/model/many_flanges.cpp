@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "../core/elementary_vectors.hpp"
+#include "core/elementary_vectors.hpp"
 #include "element_amount.hpp"
 
 namespace posewise {

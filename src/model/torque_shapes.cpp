@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "../core/statistics.hpp"
 #include "chain_checks.hpp"
+#include "core/statistics.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "sampling.hpp"
 

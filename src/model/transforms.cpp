@@ -1,7 +1,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "../core/elementary.hpp"
+#include "core/elementary.hpp"
 #include "posewise/model/chain.hpp"
 
 namespace posewise {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "../core/parallel.hpp"
-#include "../core/statistics.hpp"
+#include "core/parallel.hpp"
+#include "core/statistics.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/jacobian/identification.hpp"

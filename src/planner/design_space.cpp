@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "../core/decompositions.hpp"
-#include "../core/parallel.hpp"
-#include "../core/text.hpp"
-#include "../jacobian/pose_information.hpp"
-#include "../measurement/cell_check.hpp"
+#include "core/decompositions.hpp"
+#include "core/parallel.hpp"
+#include "core/text.hpp"
+#include "jacobian/pose_information.hpp"
+#include "measurement/cell_check.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::detail {

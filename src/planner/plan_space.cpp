@@ -7,14 +7,14 @@
 #include <limits>
 #include <numeric>
 
-#include "../core/decompositions.hpp"
-#include "../core/parallel.hpp"
-#include "../core/progress_counter.hpp"
-#include "../criteria/row_value.hpp"
-#include "../selection/bound.hpp"
+#include "core/decompositions.hpp"
+#include "core/parallel.hpp"
+#include "core/progress_counter.hpp"
+#include "criteria/row_value.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "searched_bound.hpp"
+#include "selection/bound.hpp"
 
 namespace posewise::detail {
 namespace {

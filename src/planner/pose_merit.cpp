@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "../core/elementary.hpp"
-#include "../core/products.hpp"
-#include "../criteria/regular.hpp"
+#include "core/elementary.hpp"
+#include "core/products.hpp"
+#include "criteria/regular.hpp"
 
 namespace posewise::detail {
 

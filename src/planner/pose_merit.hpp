@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "../criteria/objective.hpp"
+#include "criteria/objective.hpp"
 
 namespace posewise::detail {
 

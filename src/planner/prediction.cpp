@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/decompositions.hpp"
-#include "../core/elementary.hpp"
-#include "../core/statistics.hpp"
+#include "core/decompositions.hpp"
+#include "core/elementary.hpp"
+#include "core/statistics.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/jacobian/identification.hpp"

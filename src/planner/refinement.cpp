@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/decompositions.hpp"
-#include "../core/elementary.hpp"
-#include "../core/nlopt_adapter.hpp"
+#include "core/decompositions.hpp"
+#include "core/elementary.hpp"
+#include "core/nlopt_adapter.hpp"
 #include "pose_merit.hpp"
 #include "posewise/core/errors.hpp"
 

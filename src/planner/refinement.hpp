@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "../criteria/objective.hpp"
+#include "criteria/objective.hpp"
 #include "design_space.hpp"
 #include "posewise/planner/planning.hpp"
 

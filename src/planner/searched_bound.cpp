@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "../core/nlopt_adapter.hpp"
-#include "../core/parallel.hpp"
-#include "../core/sensitivities.hpp"
-#include "../criteria/information_function.hpp"
-#include "../selection/objective_bound.hpp"
-#include "../selection/relaxation.hpp"
+#include "core/nlopt_adapter.hpp"
+#include "core/parallel.hpp"
+#include "core/sensitivities.hpp"
+#include "criteria/information_function.hpp"
+#include "selection/objective_bound.hpp"
+#include "selection/relaxation.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-#include "../core/parallel.hpp"
+#include "core/parallel.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/format.hpp"
-#include "../core/text.hpp"
 #include "calibration_tables.hpp"
+#include "core/format.hpp"
+#include "core/text.hpp"
 #include "error_classes.hpp"
 #include "judgement_report.hpp"
 #include "posewise/core/types.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "../core/format.hpp"
+#include "core/format.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/chain.hpp"

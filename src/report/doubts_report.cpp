@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "../core/format.hpp"
-#include "../core/text.hpp"
+#include "core/format.hpp"
+#include "core/text.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/report/reports.hpp"
 #include "residual_look_report.hpp"

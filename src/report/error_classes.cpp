@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "../core/format.hpp"
+#include "core/format.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/model/error_terms.hpp"
 

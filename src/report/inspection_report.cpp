@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "../core/format.hpp"
-#include "../core/text.hpp"
+#include "core/format.hpp"
+#include "core/text.hpp"
 #include "error_classes.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/model/error_terms.hpp"

@@ -9,7 +9,7 @@
 #include <limits>
 #include <optional>
 
-#include "../core/format.hpp"
+#include "core/format.hpp"
 #include "gnuplot.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "../core/format.hpp"
-#include "../core/text.hpp"
+#include "core/format.hpp"
+#include "core/text.hpp"
 #include "posewise/report/reports.hpp"
 #include "sentences.hpp"
 #include "table.hpp"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "../core/format.hpp"
+#include "core/format.hpp"
 #include "posewise/core/types.hpp"
 #include "sentences.hpp"
 #include "table.hpp"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/format.hpp"
-#include "../core/text.hpp"
+#include "core/format.hpp"
+#include "core/text.hpp"
 #include "posewise/core/types.hpp"
 
 namespace posewise::detail {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "../core/format.hpp"
+#include "core/format.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/model/chain.hpp"
 

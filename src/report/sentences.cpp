@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../core/format.hpp"
+#include "core/format.hpp"
 #include "posewise/core/types.hpp"
 
 namespace posewise::detail {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/format.hpp"
-#include "../core/text.hpp"
+#include "core/format.hpp"
+#include "core/text.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/report/reports.hpp"
 #include "table.hpp"

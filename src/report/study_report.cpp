@@ -5,8 +5,8 @@
 #include <set>
 #include <span>
 
-#include "../core/format.hpp"
-#include "../core/text.hpp"
+#include "core/format.hpp"
+#include "core/text.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/report/reports.hpp"
 #include "study_table.hpp"

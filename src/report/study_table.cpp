@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "../core/format.hpp"
+#include "core/format.hpp"
 
 namespace posewise::detail {
 namespace {

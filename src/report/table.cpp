@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "../core/text.hpp"
+#include "core/text.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/decompositions.hpp"
-#include "../core/elementary.hpp"
-#include "../core/sensitivities.hpp"
-#include "../criteria/information_function.hpp"
-#include "../criteria/regular.hpp"
-#include "../criteria/row_value.hpp"
+#include "core/decompositions.hpp"
+#include "core/elementary.hpp"
+#include "core/sensitivities.hpp"
+#include "criteria/information_function.hpp"
+#include "criteria/regular.hpp"
+#include "criteria/row_value.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -40,9 +40,10 @@ Objective make_objective(const Blocks& candidates, const SelectOptions& options)
                          " columns are nuisance, at least one must be of interest");
     }
     if (objective.test_poses != nullptr || !has_information_function(options.criterion)) {
-        throw InputError("criterion " + std::string(criterion_name(options.criterion)) +
-                         " cannot leave columns out of account (`is_focused_on_robot`, nuisance columns); "
-                         "must be d, a, e, o1, o3 or o5");
+        throw InputError(
+            "criterion " + std::string(criterion_name(options.criterion)) +
+            " cannot leave columns out of account (`is_focused_on_robot`, nuisance columns); "
+            "must be d, a, e, o1, o3 or o5");
     }
     objective.nuisance = options.nuisance;
     return objective;

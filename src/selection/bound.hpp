@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../criteria/objective.hpp"
+#include "criteria/objective.hpp"
 #include "posewise/selection/choice.hpp"
 
 namespace posewise::detail {

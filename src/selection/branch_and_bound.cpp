@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "../core/elementary.hpp"
-#include "../core/parallel.hpp"
+#include "core/elementary.hpp"
+#include "core/parallel.hpp"
 #include "explorer.hpp"
 #include "objective_bound.hpp"
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/decompositions.hpp"
-#include "../core/elementary.hpp"
-#include "../criteria/prediction.hpp"
+#include "core/decompositions.hpp"
+#include "core/elementary.hpp"
+#include "criteria/prediction.hpp"
 #include "lane_kernels.hpp"
 
 namespace posewise::detail {

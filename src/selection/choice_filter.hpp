@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../criteria/objective.hpp"
+#include "criteria/objective.hpp"
 #include "lanes.hpp"
 
 namespace posewise::detail {

@@ -8,11 +8,11 @@
 #include <optional>
 #include <span>
 
-#include "../core/elementary.hpp"
-#include "../core/parallel.hpp"
-#include "../core/progress_counter.hpp"
-#include "../core/sensitivities.hpp"
 #include "branch_and_bound.hpp"
+#include "core/elementary.hpp"
+#include "core/parallel.hpp"
+#include "core/progress_counter.hpp"
+#include "core/sensitivities.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/selection/choice.hpp"

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/decompositions.hpp"
-#include "../core/elementary.hpp"
-#include "../criteria/information_function.hpp"
+#include "core/decompositions.hpp"
+#include "core/elementary.hpp"
+#include "criteria/information_function.hpp"
 #include "projected_gradient.hpp"
 
 namespace posewise::detail {

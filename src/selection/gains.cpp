@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "../core/products.hpp"
+#include "core/products.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 /// least such a part of the information, what is cached is right to nine digits.
 constexpr int most_updates = 32;
 constexpr double least_left_by_updates = 1e-6;
-constexpr double singular = 1e-13;    // of the information in some direction, left by a removal
+constexpr double singular = 1e-13;  // of the information in some direction, left by a removal
 // Relative, above what is lost, so that nothing better is ruled out.
 constexpr double gain_margin = 1e-8;
 constexpr double variance_margin = 1e-7;

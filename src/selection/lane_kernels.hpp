@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "../core/simd.hpp"
+#include "core/simd.hpp"
 #include "lanes.hpp"
 
 namespace posewise::detail {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/products.hpp"
+#include "core/products.hpp"
 #include "objective_bound.hpp"
 
 namespace posewise::detail {

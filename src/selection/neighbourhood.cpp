@@ -6,8 +6,8 @@
 #include <limits>
 #include <numeric>
 
-#include "../core/decompositions.hpp"
-#include "../core/sensitivities.hpp"
+#include "core/decompositions.hpp"
+#include "core/sensitivities.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "../criteria/objective.hpp"
+#include "criteria/objective.hpp"
 #include "gains.hpp"
 #include "limits.hpp"
 #include "posewise/core/progress.hpp"

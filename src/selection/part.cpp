@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "../criteria/information_function.hpp"
+#include "criteria/information_function.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/decompositions.hpp"
-#include "../criteria/information_function.hpp"
-#include "../criteria/spectral.hpp"
 #include "bound.hpp"
+#include "core/decompositions.hpp"
+#include "criteria/information_function.hpp"
+#include "criteria/spectral.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "../criteria/objective.hpp"
+#include "criteria/objective.hpp"
 #include "limits.hpp"
 
 namespace posewise::detail {

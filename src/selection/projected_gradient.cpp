@@ -5,8 +5,8 @@
 #include <deque>
 #include <numeric>
 
-#include "../core/elementary.hpp"
-#include "../criteria/information_function.hpp"
+#include "core/elementary.hpp"
+#include "criteria/information_function.hpp"
 
 namespace posewise::detail {
 namespace {

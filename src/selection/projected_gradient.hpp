@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../criteria/objective.hpp"
+#include "criteria/objective.hpp"
 #include "posewise/core/progress.hpp"
 #include "working_set.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/decompositions.hpp"
-#include "../criteria/information_function.hpp"
+#include "core/decompositions.hpp"
+#include "criteria/information_function.hpp"
 #include "lane_kernels.hpp"
 
 namespace posewise::detail {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "../criteria/objective.hpp"
+#include "criteria/objective.hpp"
 #include "gains.hpp"
 
 namespace posewise::detail {

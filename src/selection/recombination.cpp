@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "../core/parallel.hpp"
+#include "core/parallel.hpp"
 
 namespace posewise::detail {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "../core/sensitivities.hpp"
-#include "../criteria/information_function.hpp"
+#include "core/sensitivities.hpp"
+#include "criteria/information_function.hpp"
 #include "limits.hpp"
 #include "objective_bound.hpp"
 #include "projected_gradient.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../core/inverse_root.hpp"
+#include "core/inverse_root.hpp"
 #include "lanes.hpp"
 
 namespace posewise::detail {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <functional>
 
-#include "../core/decompositions.hpp"
-#include "../core/text.hpp"
+#include "core/decompositions.hpp"
+#include "core/text.hpp"
 #include "limits.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"

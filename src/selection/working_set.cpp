@@ -1,6 +1,6 @@
 #include "working_set.hpp"
 
-#include "../core/parallel.hpp"
+#include "core/parallel.hpp"
 
 namespace posewise::detail {
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "../../src/model/joint_limits.hpp"
-#include "../../src/task/planning_problem.hpp"
+#include "../../src/task/plan/planning_problem.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/result_files.hpp"

@@ -11,7 +11,7 @@
 #include "../../src/core/elementary.hpp"
 #include "../../src/core/statistics.hpp"
 #include "../../src/model/sampling.hpp"
-#include "../../src/task/inputs.hpp"
+#include "../../src/task/calibration/inputs.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"

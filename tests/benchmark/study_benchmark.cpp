@@ -44,7 +44,7 @@ BENCHMARK(BM_calibration_alone)->Unit(benchmark::kMillisecond);
 double seconds_of(const Campaign& campaign, Index trials) {
     SimulatedStudyOptions options;
     options.pose_counts = {24};
-    options.criteria.clear();
+    options.criteria.emplace();
     options.random_subsets = 2;
     options.trials = trials;
     const auto begin = std::chrono::steady_clock::now();

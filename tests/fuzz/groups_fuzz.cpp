@@ -1,4 +1,4 @@
-#include "../../src/io/groups_file.hpp"
+#include "../../src/io/measurements/groups_file.hpp"
 #include "fuzzed_file.hpp"
 
 using namespace posewise;

@@ -1,4 +1,4 @@
-#include "../../src/io/matrix_file.hpp"
+#include "../../src/io/measurements/matrix_file.hpp"
 #include "fuzzed_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 

@@ -1,4 +1,4 @@
-#include "../../src/io/atomic_file.hpp"
+#include "../../src/io/format/atomic_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

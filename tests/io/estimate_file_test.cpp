@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "../../src/io/atomic_file.hpp"
+#include "../../src/io/format/atomic_file.hpp"
 #include "campaign_text.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/result_files.hpp"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "../../src/io/json.hpp"
+#include "../../src/io/format/json.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "support/parameter_error.hpp"
@@ -44,8 +44,9 @@ TEST(FileKind, OfACampaignInAnotherPlaceIsNamed) {
 TEST(FileKind, ALineThatATabIndentsIsNamed) {
     const TemporaryFolder folder;
     const std::string path = folder.write("c.yaml", "name: a\nrobot:\n\turdf: a.urdf\n");
-    EXPECT_NE(input_error_of([&] { read_campaign(path); })
-                  .find("the line is indented by a tab; must be by spaces"),
+    EXPECT_NE(input_error_of([&] {
+                  read_campaign(path);
+              }).find("the line is indented by a tab; must be by spaces"),
               std::string::npos);
 }
 

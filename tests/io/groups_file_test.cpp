@@ -1,4 +1,4 @@
-#include "../../src/io/groups_file.hpp"
+#include "../../src/io/measurements/groups_file.hpp"
 
 #include <gtest/gtest.h>
 

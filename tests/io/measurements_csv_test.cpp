@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "../../src/io/atomic_file.hpp"
+#include "../../src/io/format/atomic_file.hpp"
 #include "campaign_text.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "support/slips.hpp"
@@ -264,7 +264,8 @@ TEST(BadMeasurementsCsv, Rows) {
     expect_messages_of({
         {"b,0,0.1,0.25,0.3,7,8,9,10,11,12",
          "b,0,0.1,0.2,0.3,1,2,3,4,5,6\nb,1,0.1,0.2,0.3,1.5,2,3,4,5,6",
-         "4:5: configuration 'b' has the same joint values and readings as 'a' (line 2), and 1 of 2 "
+         "4:5: configuration 'b' has the same joint values and readings as 'a' (line 2), and 1 of "
+         "2 "
          "are such copies; every reading must be in the file once"},
         {"4,5,6\na,1", "4,5\na,1", "2:26: row has 10 fields; must have 11 as the header"},
         {"4,5,6\na,1", "4,5,6,7\na,1",

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "../../src/io/atomic_file.hpp"
+#include "../../src/io/format/atomic_file.hpp"
 #include "campaign_text.hpp"
 #include "mat_writer.hpp"
 #include "posewise/io/measurements_file.hpp"

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "../../src/io/atomic_file.hpp"
+#include "../../src/io/format/atomic_file.hpp"
 #include "posewise/io/documents.hpp"
 #include "posewise/io/result_files.hpp"
 #include "posewise/measurement/measurements.hpp"

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "../../src/io/atomic_file.hpp"
+#include "../../src/io/format/atomic_file.hpp"
 #include "campaign_text.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/io/campaign_file.hpp"

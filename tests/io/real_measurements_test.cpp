@@ -3,7 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "../../src/io/atomic_file.hpp"
+#include "../../src/io/format/atomic_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "support/places.hpp"
 #include "support/temporary_folder.hpp"

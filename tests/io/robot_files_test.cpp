@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "../../src/io/atomic_file.hpp"
+#include "../../src/io/format/atomic_file.hpp"
 #include "../../src/model/complete_model.hpp"
 #include "campaign_text.hpp"
 #include "posewise/model/error_terms.hpp"

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "../../src/core/checksum.hpp"
-#include "../../src/io/atomic_file.hpp"
-#include "../../src/io/trial_statement.hpp"
+#include "../../src/io/campaign/trial_statement.hpp"
+#include "../../src/io/format/atomic_file.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/io/result_files.hpp"
 #include "trials.hpp"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "../../src/io/atomic_file.hpp"
+#include "../../src/io/format/atomic_file.hpp"
 #include "posewise/io/documents.hpp"
 #include "posewise/io/result_files.hpp"
 #include "support/temporary_folder.hpp"

@@ -1,4 +1,4 @@
-#include "../../src/task/held_out_doubt.hpp"
+#include "../../src/task/doubt/held_out_doubt.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "../../src/task/expected_distance.hpp"
+#include "../../src/task/calibration/expected_distance.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/measurements.hpp"

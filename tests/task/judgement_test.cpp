@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "../../src/model/sampling.hpp"
-#include "../../src/task/judgement.hpp"
+#include "../../src/task/calibration/judgement.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/measurements.hpp"

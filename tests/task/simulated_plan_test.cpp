@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../../src/task/robot_blocks.hpp"
+#include "../../src/task/choice/robot_blocks.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/threads.hpp"
 #include "posewise/jacobian/identification.hpp"

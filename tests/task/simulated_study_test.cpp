@@ -192,7 +192,7 @@ TEST(SimulatedStudy, DrawsTheSameRobotsForEveryVariation) {
     Campaign noisy = tracked_fanuc();
     noisy.model_error *= 1.000001;
     SimulatedStudyOptions options = few_trials();
-    options.criteria = {};  // random poses are the same, too
+    options.criteria.emplace();  // random poses are the same, too
     const auto studies = simulate_study({{"a", tracked_fanuc(), {}}, {"b", noisy, {}}}, options);
     for (std::size_t i = 0; i < 6; ++i) {
         const double a = studies[0].rows[0].random[i].held_out.distance_rms;
@@ -271,7 +271,7 @@ TEST(SimulatedStudy, RefusesWhatItCannotDo) {
     options.pose_counts = {101};
     refuses(fanuc, options, "100");
     options = few_trials();
-    options.criteria.clear();
+    options.criteria.emplace();
     options.random_subsets = 0;
     refuses(fanuc, options, "neither planned nor random");
     const Campaign arm = testing::tracked_campaign(testing::planar_arm({1, 0.8}));

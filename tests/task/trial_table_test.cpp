@@ -1,4 +1,4 @@
-#include "../../src/task/trial_table.hpp"
+#include "../../src/task/study/trial_table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -20,6 +20,7 @@ struct Candidates {
     RowMatrixXd share;           ///< share of each one's samples that show each target, 0 to 1
     /// What was observed there, for kind Measurements.
     std::optional<Measurements> measured;
+    std::optional<std::uint64_t> seed{};  ///< that random ones were drawn with
 };
 Candidates measured_candidates(Measurements measured);
 /// Candidates named 0, 1, ..., from a scrambled Halton sequence within the joint limits: those that

@@ -160,7 +160,8 @@ struct StudyRow {
 Index split_count(const StudyRow& row, std::size_t criterion_count);
 
 struct StudyOptions {
-    std::vector<Criterion> criteria{Criterion::D};
+    /// By which poses are chosen; nothing: the campaign's. An empty list: random subsets only.
+    std::optional<std::vector<Criterion>> criteria{};
     /// Empty: from the least identifying count to all but one; with splits 8, 12, 16, 20, 30, 50 up
     /// to a third of the configurations to choose from.
     std::vector<Index> pose_counts;
@@ -173,7 +174,7 @@ struct StudyOptions {
     double holdout = 0.3;       ///< share of the configurations that a split judges on
     double least_distance = 0;  ///< rad, between any two in a planned subset, see PlanRequest
     Index starts = 4;           ///< for the exchange
-    std::uint64_t seed = 1;
+    std::optional<std::uint64_t> seed{};  ///< for all draws; nothing: the campaign's
     /// For measured configurations: judges the calibration with all of them, before any case is
     /// run.
     JudgeCalibration judge = refuse_faults;
@@ -280,10 +281,7 @@ struct SimulatedCampaign {
 
 /// Ignores StudyOptions::splits and holdout; random_subsets are those of each trial.
 struct SimulatedStudyOptions : StudyOptions {
-    SimulatedStudyOptions() {
-        criteria = {Criterion::V};
-        random_subsets = 1;
-    }
+    SimulatedStudyOptions() { random_subsets = 1; }
     /// Number of simulated robots; with a precision, at most.
     Index trials = 100;
     /// Relative half width of the 95 % interval of planned against random that every pose count and

@@ -1,4 +1,4 @@
-#include "../crew.hpp"
+#include "cli/crew.hpp"
 
 #include <mpi.h>
 
@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "../launcher.hpp"
+#include "cli/launcher.hpp"
 #include "leader.hpp"
 #include "messages.hpp"
 #include "posewise/core/threads.hpp"

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "../crew.hpp"
+#include "cli/crew.hpp"
 #include "messages.hpp"
 #include "posewise/core/threads.hpp"
 

@@ -1,11 +1,11 @@
-#include "../crew.hpp"
+#include "cli/crew.hpp"
 
 #include <unistd.h>
 
 #include <filesystem>
 #include <system_error>
 
-#include "../launcher.hpp"
+#include "cli/launcher.hpp"
 
 namespace posewise::cli {
 namespace {

@@ -1,0 +1,310 @@
+#include "posewise/io/campaign_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "campaign_sections.hpp"
+#include "core/checksum.hpp"
+#include "core/names.hpp"
+#include "io/format/atomic_file.hpp"
+#include "io/format/file_kind.hpp"
+#include "io/format/text.hpp"
+#include "model/complete_model.hpp"
+#include "model/exact_angles.hpp"
+#include "model/joint_limits.hpp"
+#include "model/sampling.hpp"
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/jacobian/identification.hpp"
+
+namespace posewise::io {
+namespace {
+
+constexpr detail::Names<ErrorModel, 4> error_models{{{ErrorModel::Full, "full"},
+                                                     {ErrorModel::Complete, "geometric"},
+                                                     {ErrorModel::Offsets, "offsets"},
+                                                     {ErrorModel::Stated, "stated"}}};
+
+using detail::Quantity;
+using detail::YamlMap;
+using detail::YamlValue;
+
+constexpr std::size_t most_bytes = 1 << 20;  // of a file
+
+void read_base(const YamlMap& map, bool is_world, Campaign& campaign) {
+    const std::optional<YamlValue> value = map.find("base");
+    if (is_world) {
+        if (value) {
+            throw value->error(
+                "is stated beside sockets at unknown places, which are found in the robot's base "
+                "frame; must be left out, or known_sockets: true");
+        }
+        campaign.base_is_known.fill(true);
+        campaign.has_nominal_base = true;
+        return;
+    }
+    if (!value && campaign.sensor->has_contacts()) {
+        throw map.require("sensor").error(
+            "has known_sockets: true, whose places are in the frame of base; base must be stated, "
+            "if only roughly");
+    }
+    if (!value) return;
+    const YamlMap base(*value, {"position_<length>", "rpy_<angle>", "known"});
+    campaign.nominal.world_from_base = read_frame(base);
+    campaign.has_nominal_base = true;
+    const auto known = base.find("known");
+    if (!known) return;
+    const auto marks = read_known(*known, {"x", "y", "z", "rx", "ry", "rz"});
+    std::copy(marks.begin(), marks.end(), campaign.base_is_known.begin());
+}
+
+/// Places that the robot reaches, for those that the file does not state.
+void place_within_reach(const std::vector<Index>& reached, Campaign& campaign) {
+    constexpr std::uint64_t seed = 20154;  // any: it only has to be the same every time
+    const Chain& robot = campaign.robot;
+    const RowMatrixXd drawn =
+        detail::random_configurations(robot, static_cast<Index>(reached.size()), seed);
+    const detail::JointRange range = detail::limits_of(robot);
+    VectorXd middle = drawn.row(0).transpose();
+    middle.head(robot.joint_count()) = (range.lower + range.upper) / 2;
+    const Targets& targets = campaign.sensor->targets();
+    for (std::size_t k = 0; k < reached.size(); ++k) {
+        const VectorXd q = (middle + drawn.row(static_cast<Index>(k)).transpose()) / 2;
+        campaign.nominal.sensor.segment<3>(reached[k]) =
+            world_from_flange(campaign, campaign.nominal, q) *
+            targets.position(0, campaign.nominal.sensor);
+    }
+}
+
+/// `has_stated_errors`: the campaign has no other error parameters than the file says.
+ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
+                            bool has_stated_errors) {
+    const YamlMap map(value, {"length_<length>", "angle_<angle>", "gravity_<angle>",
+                              "harmonic_<angle>", "tilt_<angle>", "offset_<angle>", "parameters"});
+    ParameterSpread spread = campaign.spread;
+    const auto read = [&map](std::string_view key, double& size) {
+        const auto measure = map.find_measure(key);
+        if (measure)
+            size = read_positive(*measure, false, detail::largest_error(measure->unit->quantity));
+    };
+    read("length", spread.length);
+    read("angle", spread.angle);
+    read("gravity", spread.gravity);
+    read("harmonic", spread.harmonic);
+    read("tilt", spread.tilt);
+    if (map.find_measure("offset")) read("offset", spread.offset.emplace());
+    const auto parameters = map.find("parameters");
+    if (!parameters) return spread;
+    const std::vector<std::string> names = parameter_names(campaign);
+    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    for (const detail::YamlEntry& entry : parameters->entries()) {
+        const auto found = std::find(names.begin(), names.end(), entry.key);
+        if (found == names.end()) {
+            if (!has_stated_errors) continue;
+            throw input_error_at(entry.key_location, detail::quote(entry.key) +
+                                                         " is no parameter of this campaign; " +
+                                                         detail::suggest(entry.key, names));
+        }
+        const auto index = static_cast<std::size_t>(found - names.begin());
+        const auto quantity = is_angle[index] ? Quantity::Angle : Quantity::Length;
+        spread.by_name[entry.key] = read_amount(entry.value, quantity, detail::Sign::Positive,
+                                                detail::largest_error(quantity));
+    }
+    return spread;
+}
+
+/// "auto" is the default: beside priors it is found from what is measured.
+void read_model_error(const YamlMap& map, std::string_view key, double& error) {
+    const auto measure = map.find_measure(key);
+    if (!measure || measure->value.is_text("auto")) return;
+    measure->value.number(", or auto");
+    error = read_positive(*measure, true);
+}
+
+double read_unit(const YamlMap& map, std::string_view key, Quantity quantity) {
+    const auto value = map.find(key);
+    if (!value) return 1;
+    const detail::Unit* const unit = detail::find_unit(value->text());
+    if (unit == nullptr || unit->quantity != quantity) {
+        throw value->error("is " + detail::quote(value->text()) + "; must be " +
+                           detail::list_words(unit_names(quantity)));
+    }
+    return unit->to_si(1);
+}
+
+MatMapping read_mat_mapping(const YamlValue& measurements, Index target_count) {
+    const YamlValue value = YamlMap(measurements, {"mat"}).require("mat");
+    const YamlMap map(value, {"joints", "points", "torques", "angle_unit", "length_unit"});
+    MatMapping mapping;
+    mapping.joints = map.require("joints").text();
+    if (const auto torques = map.find("torques")) mapping.torques = torques->text();
+    for (const YamlValue& point : map.require("points").list()) {
+        mapping.points.push_back(point.text());
+    }
+    if (static_cast<Index>(mapping.points.size()) != target_count) {
+        throw map.require("points").error("names " + std::to_string(mapping.points.size()) +
+                                          " variables; must name " + std::to_string(target_count) +
+                                          ", one for each target of the sensor");
+    }
+    mapping.angle_unit = read_unit(map, "angle_unit", Quantity::Angle);
+    mapping.length_unit = read_unit(map, "length_unit", Quantity::Length);
+    return mapping;
+}
+
+Criterion read_criterion(const YamlValue& value) {
+    const std::string name = value.text();
+    try {
+        return parse_criterion(name);
+    } catch (const InputError& problem) {
+        throw input_error_at(value.location(), std::string("criterion: ") + problem.what());
+    }
+}
+
+Campaign make_irreducible(const Campaign& campaign, ErrorModel model, const YamlValue& robot,
+                          const StopSignal& stop) {
+    try {
+        return with_robot(campaign, model == ErrorModel::Offsets
+                                        ? irreducible_offsets(campaign, stop)
+                                        : irreducible_model(campaign, stop));
+    } catch (const InputError& problem) {
+        throw robot.error(std::string("no irreducible model was found: ") + problem.what());
+    }
+}
+
+/// One line of text: it becomes the title of plots and a comment of other files.
+std::string read_name(const YamlValue& value) {
+    const std::string name = value.text();
+    if (detail::escape_controls(name) != name) {
+        throw value.error("is " + detail::quote(name) +
+                          "; must be one line without control characters");
+    }
+    return name;
+}
+
+/// The model to plan with. Poses chosen for a poorer one than is fitted may not identify it.
+ErrorModel read_planned_model(const YamlValue& value, ErrorModel fitted) {
+    const YamlMap planning(value, {"errors"});
+    const YamlValue errors = planning.require("errors");
+    const ErrorModel planned = detail::read_error_model(errors);
+    if (planned >= fitted) return planned;
+    throw errors.error(fmt::format("is {}, poorer than robot.errors, {}; must be full or left out",
+                                   error_model_name(planned), error_model_name(fitted)));
+}
+
+/// With that error model, if one is asked for, else with the one that the file says.
+CampaignFile parse(const std::string& content, const std::string& path,
+                   std::optional<ErrorModel> errors, const StopSignal& stop) {
+    const YamlMap map(
+        detail::parse_yaml(content, path),
+        {"name", "robot", "sensor", "model_error_<length>", "model_error_orientation_<angle>",
+         "base", "spread", "prior", "planning", "criterion", "seed", "measurements", "cell"});
+    CampaignFile file;
+    file.path = path;
+    file.checksum = detail::checksum_of(content);
+    Campaign& campaign = file;
+    campaign.name = read_name(map.require("name"));
+
+    detail::RobotSection robot = read_robot(map.require("robot"), errors);
+    detail::ExactAngles exact = detail::with_exact_angles(robot.declared);
+    robot.declared = std::move(exact.chain);
+    file.rounded_angle_count = exact.count;
+    file.declared_robot = robot.declared;
+    file.error_model = robot.error_model;
+    file.urdf = robot.urdf;
+    file.warnings = robot.warnings;
+    campaign.joint_repeatability = robot.joint_repeatability;
+    const detail::SensorSection sensor = read_sensor(map.require("sensor"));
+    campaign.sensor = sensor.sensor;
+    campaign.nominal.sensor = sensor.unknowns;
+    campaign.has_nominal_targets = sensor.has_positions;
+    read_base(map, sensor.is_in_base_frame, campaign);
+    campaign = with_robot(campaign, robot.declared);
+    if (!sensor.reached.empty()) place_within_reach(sensor.reached, campaign);
+    if (robot.error_model == ErrorModel::Complete || robot.error_model == ErrorModel::Offsets) {
+        campaign = make_irreducible(campaign, robot.error_model, map.require("robot"), stop);
+    }
+    if (robot.error_model == ErrorModel::Full) {
+        const Chain full = detail::full_model(robot.declared, robot.gravity);
+        campaign =
+            with_robot(campaign, sensor.is_in_base_frame ? without_errors_of_base(full) : full);
+        campaign.spread = population_spread(robot.declared);
+    }
+    read_model_error(map, "model_error", campaign.model_error);
+    read_model_error(map, "model_error_orientation", campaign.model_error_orientation);
+    if (const auto spread = map.find("spread")) {
+        campaign.spread = read_spread(*spread, campaign, !errors);
+    }
+    if (const auto prior = map.find("prior")) set_prior(file, prior->boolean(), stop);
+    if (const auto planning = map.find("planning")) {
+        file.planned_model =
+            read_planned_model(*planning, errors ? ErrorModel::Stated : file.error_model);
+    }
+    if (const auto criterion = map.find("criterion")) file.criterion = read_criterion(*criterion);
+    if (const auto seed = map.find("seed")) file.seed = seed->natural_number();
+    if (const auto measurements = map.find("measurements")) {
+        file.mat = read_mat_mapping(*measurements, sensor.sensor->target_count());
+    }
+    if (const auto cell = map.find("cell")) {
+        file.cell = read_cell(*cell, campaign.robot, *sensor.sensor);
+    }
+    if (file.cell.speed.size() == 0) file.cell.speed = robot.speed;
+    return file;
+}
+
+}  // namespace
+
+std::string_view error_model_name(ErrorModel model) { return detail::name_of(error_models, model); }
+
+ErrorModel parse_error_model(const std::string& name) {
+    if (name == "complete") return ErrorModel::Complete;
+    if (const auto model = detail::find_named(error_models, name)) return *model;
+    throw InputError("is " + detail::quote(name) + "; " +
+                     detail::suggest(name, detail::words_of(error_models)));
+}
+
+void set_prior(CampaignFile& campaign, bool is_prior, const StopSignal& stop) {
+    const bool is_dropped = campaign.spread.is_prior && !is_prior;
+    campaign.spread.is_prior = is_prior;
+    if (!is_dropped || campaign.error_model != ErrorModel::Full) return;
+    static_cast<Campaign&>(campaign) = with_robot(campaign, irreducible_model(campaign, stop));
+}
+
+CampaignFile read_campaign(const std::string& path, const StopSignal& stop) {
+    return parse_campaign(detail::read_file(path, most_bytes), path, stop);
+}
+
+std::vector<CampaignFile> read_campaign(const std::string& path,
+                                        const std::vector<ErrorModel>& models) {
+    const std::string content = detail::read_file(path, most_bytes);
+    const CampaignFile stated = parse_campaign(content, path);  // says what is wrong with it
+    std::vector<CampaignFile> files;
+    for (const ErrorModel model : models) {
+        files.push_back(parse(content, path, model, {}));
+        if (model == stated.error_model || files.back().robot.parameter_count() > 0) continue;
+        throw input_error_at({path},
+                             fmt::format("has no errors to fit as {}, none is named in brackets; "
+                                         "must be compared without that model",
+                                         error_model_name(model)));
+    }
+    return files;
+}
+
+CampaignFile read_planned_campaign(const std::string& path, std::optional<bool> prior,
+                                   const StopSignal& stop) {
+    const std::string content = detail::read_file(path, most_bytes);
+    CampaignFile file = parse_campaign(content, path, stop);
+    set_prior(file, prior.value_or(file.spread.is_prior), stop);
+    if (!file.planned_model) return file;
+    CampaignFile planned = parse(content, path, file.planned_model, stop);
+    set_prior(planned, prior.value_or(planned.spread.is_prior), stop);
+    planned.fitted_pose_count = least_calibration_count(file, stop);
+    return planned;
+}
+
+CampaignFile parse_campaign(const std::string& content, const std::string& path,
+                            const StopSignal& stop) {
+    detail::check_file_kind(content, path, detail::FileKind::Campaign, "a campaign file (YAML)");
+    return parse(content, path, std::nullopt, stop);
+}
+
+}  // namespace posewise::io

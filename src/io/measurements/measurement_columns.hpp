@@ -1,0 +1,90 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/format/units.hpp"
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/measurement/sensor.hpp"
+
+/// Columns of CSV files of measurements and configurations, for reader and writers.
+namespace posewise::detail {
+
+/// Of a configuration: the numbers of the targets it shows, from 1, separated by blanks.
+inline constexpr std::string_view visible_targets = "visible_targets";
+/// Of a sample or a configuration: the name of what the robot touches, of sensors with
+/// has_contacts(); it stands for the columns observed, and for visible_targets.
+inline constexpr std::string_view contact = "socket";
+
+/// Of a row of configurations: what the robot is sent there for.
+inline constexpr std::string_view purpose_column = "purpose";
+inline constexpr std::string_view to_calibrate = "calibrate";
+inline constexpr std::string_view to_verify = "verify";
+inline constexpr std::string_view on_the_way = "via";  ///< nothing is measured there
+
+/// What plan writes beside the configurations: it is not read.
+inline constexpr std::string_view way_column = "way";
+inline constexpr std::string_view clearance_column = "clearance_mm";
+inline constexpr std::string_view nearest_column = "nearest";
+
+/// What correct writes beside the joints, and configurations may hold: it is not read.
+inline constexpr std::array<std::string_view, 5> correction_columns{
+    "residual_mm", "residual_mrad", "uncorrected_mm", "uncorrected_mrad", "note"};
+
+enum class Role {
+    Configuration,
+    Sample,
+    VisibleTargets,
+    Purpose,
+    Contact,
+    Joint,  ///< or a measured torque: a number of the configuration
+    Observation,
+    Orientation,
+    Unused,  ///< torque that the campaign makes no use of, or what plan and correct write beside
+};
+
+/// Other columns for an orientation than its rotation vector: a quaternion without units, or turns
+/// about the fixed axes x, y and z.
+struct OrientationForm {
+    std::vector<std::string> stems;
+    bool has_unit;
+    OrientationNotation notation;
+};
+inline const std::array<OrientationForm, 2> orientation_forms{
+    {{{"qw", "qx", "qy", "qz"}, false, OrientationNotation::Quaternion},
+     {{"roll", "pitch", "yaw"}, true, OrientationNotation::RollPitchYaw}}};
+
+/// A column with a unit that a campaign's measurements must have.
+struct WantedColumn {
+    std::string stem;
+    Role role = Role::Joint;
+    Index index = 0;
+    Quantity quantity = Quantity::Angle;
+
+    std::string example() const;
+};
+
+/// Joints, measured torques, then observations, but for contacts.
+std::vector<WantedColumn> wanted_columns(const Campaign& campaign);
+
+/// The name of the column of a joint's torque without unit, "tau_q2".
+std::string torque_stem(const Joint& joint);
+
+/// A joint value in degrees or millimetres, a torque as it is.
+double for_people(const Campaign& campaign, Index joint, double value);
+
+/// Columns of a configuration for people and controllers: "q1_deg", "q2_mm", "tau_q2_Nm".
+std::vector<std::string> reading_columns(const Campaign& campaign);
+
+/// The same, each after a comma, and the values (rad or m, N m) for them to 12 digits.
+std::string joint_header(const Campaign& campaign);
+std::string joint_cells(const Campaign& campaign, const VectorXd& q);
+
+/// The column that says which targets a configuration shows, and its cell.
+std::string_view seen_header(const Campaign& campaign);
+std::string seen_cell(const Campaign& campaign, const SeenTargets& is_seen);
+
+}  // namespace posewise::detail

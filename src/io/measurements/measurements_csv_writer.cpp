@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "core/text.hpp"
+#include "io/format/atomic_file.hpp"
+#include "io/format/csv_reader.hpp"
+#include "measurement_columns.hpp"
+#include "posewise/io/measurements_file.hpp"
+
+namespace posewise::io {
+
+namespace {
+
+/// Joint values of a configuration, each after a comma.
+std::string joint_cells(const Measurements& measurements, Index configuration,
+                        const std::vector<double>& factors) {
+    std::string cells;
+    for (Index j = 0; j < measurements.configurations.cols(); ++j) {
+        fmt::format_to(
+            std::back_inserter(cells), ",{}",
+            measurements.configurations(configuration, j) * factors[static_cast<std::size_t>(j)]);
+    }
+    return cells;
+}
+
+/// The observation of a sample, empty where it does not show a target.
+std::string observation_cells(const Sensor& sensor, const Measurements& measurements,
+                              Index sample) {
+    std::string cells;
+    Index row = 0;
+    for (Index target = 0; target < measurements.is_seen.cols(); ++target) {
+        const bool is_seen = measurements.is_seen(sample, target);
+        for (const double value : measurements.observation(sample, target)) {
+            const double factor = sensor.is_angle(row++) ? 1 : 1e3;
+            cells += is_seen ? fmt::format(",{}", factor * value) : ",";
+        }
+    }
+    return cells;
+}
+
+bool is_finite(const Measurements& measurements) {
+    if (!measurements.configurations.allFinite()) return false;
+    for (Index sample = 0; sample < measurements.is_seen.rows(); ++sample) {
+        for (Index target = 0; target < measurements.is_seen.cols(); ++target) {
+            if (measurements.is_seen(sample, target) &&
+                !measurements.observation(sample, target).allFinite()) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+void write_measurements_csv(const std::string& path, const Campaign& campaign,
+                            const Measurements& measurements,
+                            const std::vector<std::string>& comment_lines) {
+    if (!is_finite(measurements)) {
+        throw input_error_at({path},
+                             "is not written, since a measurement is not a finite number; the "
+                             "campaign's amounts must be smaller");
+    }
+    std::string text;
+    const auto out = std::back_inserter(text);
+    for (const std::string& line : comment_lines) {
+        fmt::format_to(out, "# {}\n", detail::escape_controls(line));
+    }
+    text += "config,sample";
+    std::vector<double> joint_factors;  // to the unit written
+    for (const detail::WantedColumn& column : detail::wanted_columns(campaign)) {
+        text += ',' + column.example();
+        if (column.role == detail::Role::Joint) {
+            joint_factors.push_back(column.quantity == detail::Quantity::Length ? 1e3 : 1);
+        }
+    }
+    const bool has_contact = campaign.sensor->has_contacts();
+    if (has_contact) fmt::format_to(out, ",{}", detail::contact);
+    text += '\n';
+    for (Index i = 0; i < measurements.configuration_count(); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const std::string joints = joint_cells(measurements, i, joint_factors);
+        for (Index sample = 0; sample < measurements.sample_count(i); ++sample) {
+            const Index row = measurements.first_sample[k] + sample;
+            fmt::format_to(
+                out, "{},{}{}{}\n", detail::csv_field(measurements.ids[k]), sample, joints,
+                has_contact ? ',' + detail::seen_cell(campaign, measurements.is_seen.row(row))
+                            : observation_cells(*campaign.sensor, measurements, row));
+        }
+    }
+    detail::write_file(path, text);
+}
+
+}  // namespace posewise::io

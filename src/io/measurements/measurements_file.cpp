@@ -1,0 +1,52 @@
+#include "posewise/io/measurements_file.hpp"
+
+#include "core/text.hpp"
+#include "model/joint_limits.hpp"
+#include "posewise/core/errors.hpp"
+
+namespace posewise::io {
+namespace {
+
+bool is_matlab(const std::string& path) { return path.ends_with(".mat") || path.ends_with(".MAT"); }
+
+Configurations read_matlab(const std::string& path, const CampaignFile& file) {
+    Measurements read = read_measurements_mat(path, file, file.mat);
+    const Index count = read.configuration_count();
+    return {std::move(read.ids),
+            std::move(read.configurations),
+            all_seen(count, file.sensor->target_count()),
+            {}};
+}
+
+}  // namespace
+
+Measurements read_measurements(const std::string& path, const CampaignFile& file) {
+    return is_matlab(path) ? read_measurements_mat(path, file, file.mat)
+                           : read_measurements_csv(path, file);
+}
+
+Configurations read_configurations(const std::string& path, const CampaignFile& file) {
+    Configurations read =
+        is_matlab(path) ? read_matlab(path, file) : read_configurations_csv(path, file);
+    check_within_limits(path, file, read);
+    return read;
+}
+
+void check_within_limits(const std::string& path, const CampaignFile& file,
+                         const Configurations& configurations) {
+    for (Index i = 0; i < configurations.joints.rows(); ++i) {
+        const std::string violation =
+            detail::describe_limit_violation(file.robot, configurations.joints.row(i).transpose());
+        if (violation.empty()) continue;
+        throw input_error_at({path},
+                             "configuration " +
+                                 detail::quote(configurations.ids[static_cast<std::size_t>(i)]) +
+                                 " is beyond the joint limits: " + violation);
+    }
+}
+
+Configurations read_program(const std::string& path, const CampaignFile& file) {
+    return is_matlab(path) ? read_matlab(path, file) : read_program_csv(path, file);
+}
+
+}  // namespace posewise::io

@@ -1,0 +1,346 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/checksum.hpp"
+#include "doubts_json.hpp"
+#include "io/campaign/robot_statement.hpp"
+#include "io/format/atomic_file.hpp"
+#include "io/format/csv_reader.hpp"
+#include "io/format/json.hpp"
+#include "judgement_json.hpp"
+#include "parameters_json.hpp"
+#include "posewise/io/documents.hpp"
+#include "posewise/io/result_files.hpp"
+
+namespace posewise::io {
+namespace {
+
+using detail::Json;
+
+constexpr double mm = 1e3;
+
+/// Standard deviations of base and targets, by parameter name and unit.
+Json other_sigmas_to_json(const Campaign& campaign, const Estimate& estimate,
+                          const VectorXd& sigmas) {
+    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const auto robot_begin = static_cast<std::size_t>(base_parameter_count(campaign));
+    const auto robot_end = robot_begin + static_cast<std::size_t>(estimate.parameters.robot.size());
+    Json others = Json::object();
+    for (std::size_t i = 0; i < estimate.names.size(); ++i) {
+        if (i >= robot_begin && i < robot_end) continue;
+        others[estimate.names[i] + detail::si_suffix(is_angle[i])] = sigmas[static_cast<Index>(i)];
+    }
+    return others;
+}
+
+/// All parameters' names, and the rows of their covariance up to its diagonal.
+Json covariance_to_json(const Estimate& estimate) {
+    Json rows = Json::array();
+    for (Index k = 0; k < estimate.covariance.rows(); ++k) {
+        rows.push_back(
+            detail::vector_to_json(VectorXd(estimate.covariance.row(k).head(k + 1).transpose())));
+    }
+    return {{"parameters", estimate.names}, {"rows_si", std::move(rows)}};
+}
+
+Json correlations_to_json(const Estimate& estimate) {
+    constexpr Index count = 10;
+    Json list = Json::array();
+    for (const Correlation& pair : strongest_correlations(estimate, count)) {
+        list.push_back({{"first", estimate.names[static_cast<std::size_t>(pair.first)]},
+                        {"second", estimate.names[static_cast<std::size_t>(pair.second)]},
+                        {"coefficient", pair.coefficient}});
+    }
+    return list;
+}
+
+Json held_out_to_json(const CrossValidation& held_out) {
+    return {{"folds", held_out.folds},
+            {"samples", detail::metrics_to_json(held_out.samples)},
+            {"means", detail::metrics_to_json(held_out.means)},
+            {"failures", held_out.failures}};
+}
+
+/// Numbers of an expected error, RMS and 95 %, by name without unit: for JSON and CSV.
+std::vector<std::pair<std::string, double>> list_numbers(const PredictedError& error) {
+    return {{"parameters", error.parameters},
+            {"left_over", error.model},
+            {"noise", error.noise},
+            {"total", error.total()},
+            {"p95", error.percentile95}};
+}
+
+Json predictions_to_json(const std::vector<ErrorPrediction>& predictions) {
+    Json json = {{"configuration_count", predictions.front().each.size()}};
+    for (const ErrorPrediction& prediction : predictions) {
+        for (const auto& [name, value] : list_numbers(prediction.overall)) {
+            json[name + detail::error_suffix(prediction.is_angle)] = 1e3 * value;
+        }
+    }
+    return json;
+}
+
+/// What points not used are expected to be off by, mm (mrad where no length is measured).
+Json expected_to_json(const Calibration& calibration) {
+    const std::string unit = detail::error_suffix(!calibration.campaign.sensor->has_lengths());
+    const auto one = [&](const ExpectedError& error) {
+        return Json{{"parameters" + unit, mm * error.parameters},
+                    {"left_over" + unit, mm * error.model},
+                    {"noise" + unit, mm * error.noise},
+                    {"total" + unit, mm * error.total()}};
+    };
+    Json json = {{"at_measured", one(calibration.expected)}};
+    if (const auto& error = calibration.expected_workspace) json["over_workspace"] = one(*error);
+    const auto add = [&](const std::optional<Judgement>& judged, const char* where) {
+        if (judged && judged->expected) json[where] = one(*judged->expected);
+    };
+    add(calibration.verification, "at_verification");
+    add(calibration.left_out, "at_left_out");
+    add(calibration.validation, "at_validation");
+    return json;
+}
+
+Json without_outliers_to_json(const WithoutOutliers& others, const std::string& unit) {
+    Json json = {{"fit_means_rms" + unit, mm * others.fit_rms}};
+    if (others.held_out_rms) json["held_out_means_rms" + unit] = mm * *others.held_out_rms;
+    if (others.fit_angle_rms) json["fit_means_rms_mrad"] = 1e3 * *others.fit_angle_rms;
+    if (others.held_out_angle_rms) {
+        json["held_out_means_rms_mrad"] = 1e3 * *others.held_out_angle_rms;
+    }
+    return json;
+}
+
+Json moved_to_json(const Moved& moved) {
+    return {
+        {"parts", moved.parts}, {"base_mm", mm * moved.base}, {"targets_mm", mm * moved.targets}};
+}
+
+Json accuracy_to_json(const Calibration& calibration) {
+    Json accuracy = {{"nominal", detail::metrics_to_json(calibration.nominal)},
+                     {"fit", detail::metrics_to_json(calibration.estimate.fit)},
+                     {"fit_means", detail::metrics_to_json(calibration.estimate.fit_means)}};
+    if (calibration.repeatability) {
+        accuracy["repeatability_mm"] = mm * calibration.repeatability->length;
+        if (calibration.nominal.has_orientation) {
+            accuracy["repeatability_mrad"] = 1e3 * calibration.repeatability->orientation;
+        }
+    }
+    if (calibration.held_out) accuracy["held_out"] = held_out_to_json(*calibration.held_out);
+    accuracy["expected"] = expected_to_json(calibration);
+    if (const auto& lengths = calibration.doubts.look.lengths) {
+        accuracy["length_factor"] = {{"excess", lengths->excess},
+                                     {"deviation", lengths->deviation}};
+    }
+    detail::add_judgements(accuracy, calibration);
+    if (calibration.moved) {
+        accuracy["moved_before_validation"] = moved_to_json(*calibration.moved);
+    }
+    if (calibration.moved_since) {
+        accuracy["moved_since_earlier"] = moved_to_json(*calibration.moved_since);
+    }
+    if (!calibration.predicted.empty()) {
+        accuracy["predicted"] = predictions_to_json(calibration.predicted);
+        if (const auto& beyond = calibration.predicted_beyond) {
+            accuracy["predicted"]["extrapolated"] = {{"count", beyond->count},
+                                                     {"joints", beyond->joints}};
+        }
+    }
+    if (const auto& others = calibration.without_outliers) {
+        accuracy["without_outliers"] = without_outliers_to_json(
+            *others, detail::error_suffix(!calibration.campaign.sensor->has_lengths()));
+    }
+    return accuracy;
+}
+
+/// Base and targets that the validation was judged with.
+Json refitted_to_json(const Calibration& calibration) {
+    const Campaign& campaign = *calibration.refitted;
+    Json json = detail::parameters_to_json(campaign, campaign.nominal);
+    json.erase("robot");
+    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const std::vector<std::string> errors = campaign.robot.parameter_names();
+    std::size_t k = 0;
+    for (const std::string& name : parameter_names(campaign)) {
+        const std::string suffix = detail::si_suffix(is_angle[k++]);
+        const auto sigma = calibration.refitted_sigmas.find(name);
+        if (sigma == calibration.refitted_sigmas.end() || std::ranges::count(errors, name) > 0) {
+            continue;
+        }
+        json["sigma"][name + suffix] = sigma->second;
+    }
+    return json;
+}
+
+Json measured_to_json(const MeasuredCount& measured) {
+    return {{"configurations", measured.configurations},
+            {"samples", measured.samples},
+            {"readings", measured.readings},
+            {"readings_seen", measured.readings_seen}};
+}
+
+Json outliers_to_json(const Sensor& sensor, const Estimate& estimate) {
+    const std::vector<std::string> contacts = sensor.contact_names();
+    Json list = Json::array();
+    for (const Outlier& outlier : estimate.outliers) {
+        list.push_back(
+            {{"configuration", outlier.id},
+             {"target", contacts.empty() ? "target" + std::to_string(outlier.target + 1)
+                                         : contacts[static_cast<std::size_t>(outlier.target)]},
+             {"distance_mm", mm * outlier.distance},
+             {"standard_deviations", outlier.deviations},
+             {"weight", outlier.weight}});
+    }
+    return list;
+}
+
+Json trial_to_json(const ModelTrial& trial) {
+    Json json = {{"name", trial.set.name},
+                 {"parameters", trial.set.parameters},
+                 {"parameter_count", trial.parameter_count}};
+    if (!trial.failure.empty()) {
+        json["failure"] = trial.failure;
+        return json;
+    }
+    json["fit_rms_mm"] = mm * trial.fit_rms;
+    json["held_out_rms_mm"] = mm * trial.held_out_rms;
+    json["standard_error_mm"] = mm * trial.standard_error;
+    return json;
+}
+
+/// Of each class the size stated and the one learned.
+Json sizes_to_json(const Calibration& calibration) {
+    const Chain& robot = calibration.campaign.robot;
+    Json sizes = Json::object();
+    for (const SharedSize& stated : shared_sizes(*calibration.stated_spread, robot)) {
+        sizes[stated.key + detail::si_suffix(stated.is_angle)] = {{"stated", stated.size}};
+    }
+    for (const SharedSize& learned : shared_sizes(calibration.campaign.spread, robot)) {
+        sizes[learned.key + detail::si_suffix(learned.is_angle)]["learned"] = learned.size;
+    }
+    return sizes;
+}
+
+Json selection_to_json(const ModelSelection& selection) {
+    Json sets = Json::array();
+    for (const ModelTrial& trial : selection.trials) sets.push_back(trial_to_json(trial));
+    Json json = {{"folds", selection.folds},
+                 {"points_not_judged", selection.not_judged.size()},
+                 {"sets", std::move(sets)}};
+    if (selection.recommended < 0) return json;
+    const auto name = [&](Index k) {
+        return selection.trials[static_cast<std::size_t>(k)].set.name;
+    };
+    json["best"] = name(selection.best);
+    json["recommended"] = name(selection.recommended);
+    return json;
+}
+
+/// What is not known is left out.
+Json made_from_to_json(const Provenance& made_from) {
+    Json json = Json::object();
+    const auto add = [&](const char* key, const std::string& text) {
+        if (!text.empty()) json[key] = text;
+    };
+    add("campaign_file", made_from.campaign_file);
+    add("campaign_checksum", made_from.campaign_checksum);
+    add("measurements_checksum", made_from.measurements_checksum);
+    for (const auto& [name, values] : made_from.options) json["options"][name] = values;
+    return json;
+}
+
+Json variance_to_json(const ResidualVariance& variance) {
+    return {{"factor", variance.factor}, {"degrees_of_freedom", variance.degrees_of_freedom}};
+}
+
+Json estimate_to_json(const Calibration& calibration, const Provenance& made_from) {
+    const Campaign& campaign = calibration.campaign;
+    const Estimate& estimate = calibration.estimate;
+    const VectorXd sigmas = standard_deviations(estimate);
+    Json document = detail::make_document("estimate");
+    document["campaign"] = campaign.name;
+    document["warnings"] = made_from.warnings;
+    document["measurements"] = made_from.measurements;
+    document["made_from"] = made_from_to_json(made_from);
+    document["measured"] = measured_to_json(calibration.measured);
+    if (!calibration.excluded.empty()) document["excluded"] = calibration.excluded;
+    if (!calibration.held.empty()) document["held"] = calibration.held;
+    document["method"] = method_name(calibration.method);
+    if (calibration.method == CalibrationMethod::Global) {
+        document["starts"] = calibration.starts;
+        document["starts_at_best"] = calibration.starts_at_best;
+    }
+    document["ending"] = ending_name(estimate.ending);
+    if (!calibration.faults.empty()) document["faults"] = calibration.faults;
+    document["iterations"] = estimate.iterations;
+    document["degrees_of_freedom"] = estimate.degrees_of_freedom;
+    document["variance_factor"] = estimate.variance_factor;
+    if (!estimate.variance_by_kind.empty()) {
+        document["variance_by_kind"] = {{"lengths", variance_to_json(estimate.variance_of(false))},
+                                        {"angles", variance_to_json(estimate.variance_of(true))}};
+    }
+    document["model_error_m"] = estimate.model_error;
+    document["model_error_rad"] = estimate.model_error_orientation;
+    document["model_error_within"] = estimate.model_error_within;
+    document["readings"] = campaign.sensor->words().readings;
+    document["chain"] = detail::robot_statement(campaign.robot);
+    document.update(detail::parameters_to_json(campaign, estimate.parameters, &sigmas));
+    document["sigma"] = other_sigmas_to_json(campaign, estimate, sigmas);
+    document["covariance"] = covariance_to_json(estimate);
+    document["strongest_correlations"] = correlations_to_json(estimate);
+    document["accuracy"] = accuracy_to_json(calibration);
+    if (estimate.loss.kind != LossKind::Squares) {
+        document["loss"] = {{"kind", loss_name(estimate.loss.kind)},
+                            {"width_standard_deviations", estimate.loss.width}};
+        document["outliers"] = outliers_to_json(*campaign.sensor, estimate);
+    }
+    if (calibration.refitted) document["refitted"] = refitted_to_json(calibration);
+    if (calibration.selection)
+        document["model_selection"] = selection_to_json(*calibration.selection);
+    if (calibration.stated_spread) document["learned_sizes"] = sizes_to_json(calibration);
+    document["assumes"] = detail::numbers_to_json(assumptions_of(campaign));
+    document["doubts"] = detail::doubts_to_json(campaign, calibration.doubts);
+    document["cures"] = detail::cures_to_json(campaign, calibration.cures);
+    return document;
+}
+
+}  // namespace
+
+std::string checksum_of(const Measurements& measurements) {
+    detail::Checksum checksum;
+    for (const std::string& id : measurements.ids) checksum.add(id);
+    checksum.add(measurements.configurations);
+    checksum.add(measurements.observations);
+    checksum.add(RowMatrixXd(measurements.is_seen.cast<double>()));
+    return checksum.text();
+}
+
+std::string to_json(const Calibration& calibration, const Provenance& made_from) {
+    return detail::json_text(estimate_to_json(calibration, made_from));
+}
+
+void write_estimate(const std::string& path, const Calibration& calibration,
+                    const Provenance& made_from) {
+    detail::write_json(path, estimate_to_json(calibration, made_from));
+}
+
+void write_predictions_csv(const std::string& path, const std::vector<std::string>& ids,
+                           const std::vector<ErrorPrediction>& predictions) {
+    std::string text = "config";
+    for (const ErrorPrediction& prediction : predictions) {
+        for (const auto& [name, value] : list_numbers(prediction.overall)) {
+            text += ',' + name + detail::error_suffix(prediction.is_angle);
+        }
+    }
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        text += '\n' + detail::csv_field(ids[i]);
+        for (const ErrorPrediction& prediction : predictions) {
+            for (const auto& [name, value] : list_numbers(prediction.each[i])) {
+                text += fmt::format(",{:.6f}", 1e3 * value);
+            }
+        }
+    }
+    detail::write_file(path, text + '\n');
+}
+
+}  // namespace posewise::io

@@ -1,0 +1,318 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "io/format/atomic_file.hpp"
+#include "io/format/json.hpp"
+#include "page_template.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/documents.hpp"
+
+namespace posewise::io {
+namespace {
+
+using detail::Json;
+
+/// Numbers that are drawn need not be read back exactly, and less text loads faster.
+double rounded(double value, double per_unit) { return std::round(per_unit * value) / per_unit; }
+
+/// To um and urad; of mm to the nm.
+double to_micro(double value) { return rounded(value, 1e6); }
+
+Json drawn(const Eigen::Ref<const VectorXd>& values) {
+    Json list = Json::array();
+    for (const double value : values) list.push_back(to_micro(value));
+    return list;
+}
+
+Json pose_to_json(const Isometry3d& pose) {
+    Json list = Json::array();
+    for (Index row = 0; row < 4; ++row) {
+        for (Index column = 0; column < 4; ++column) list.push_back(pose.matrix()(row, column));
+    }
+    return list;
+}
+
+// ---- The scene ----
+
+Json chain_joint_to_json(const Joint& joint) {
+    return {{"name", joint.name},
+            {"kind", joint.motion == Motion::Rotation ? "revolute" : "prismatic"},
+            {"lower", joint.lower},
+            {"upper", joint.upper}};
+}
+
+Json chain_element_to_json(const Element& element) {
+    Json joints = Json::array();
+    for (const JointTerm& term : element.joints) {
+        joints.push_back({{"joint", term.joint}, {"coefficient", term.coefficient}});
+    }
+    return {{"motion", transform_name(element)},
+            {"amount", element.value},
+            {"joints", std::move(joints)}};
+}
+
+Json capsule_to_json(const SceneCapsule& capsule) {
+    return {{"name", capsule.name},
+            {"kind", capsule.is_obstacle ? "keep_out" : "link"},
+            {"after_element", capsule.after_element},
+            {"from", detail::vector_to_json(capsule.solid.from)},
+            {"to", detail::vector_to_json(capsule.solid.to)},
+            {"radius", capsule.solid.radius}};
+}
+
+Json box_to_json(const SceneBox& box) {
+    return {{"name", box.name},
+            {"kind", box.is_obstacle ? "keep_out" : "targets"},
+            {"world_from_box", pose_to_json(box.world_from_box)},
+            {"size", drawn(box.size)}};
+}
+
+Json targets_to_json(const std::vector<SceneTarget>& targets) {
+    Json names = Json::array();
+    Json positions = Json::array();
+    for (const SceneTarget& target : targets) {
+        names.push_back(target.name);
+        positions.push_back(detail::vector_to_json(target.position));
+    }
+    return {{"names", std::move(names)}, {"positions", std::move(positions)}};
+}
+
+/// Without the torques that were measured with them.
+Json joints_to_json(const PagePart& part, const VectorXd& configuration) {
+    return drawn(part.scene ? configuration.head(part.scene->robot.joint_count()).eval()
+                            : configuration);
+}
+
+Json scene_to_json(const PagePart& part) {
+    const Scene& scene = *part.scene;
+    Json json = {{"joints", Json::array()},
+                 {"elements", Json::array()},
+                 {"world_from_base", pose_to_json(scene.world_from_base)},
+                 {"targets", targets_to_json(scene.targets)},
+                 {"capsules", Json::array()},
+                 {"boxes", Json::array()},
+                 {"walls", Json::array()}};
+    for (const Joint& joint : scene.robot.joints()) {
+        json["joints"].push_back(chain_joint_to_json(joint));
+    }
+    for (const Element& element : scene.robot.elements()) {
+        json["elements"].push_back(chain_element_to_json(element));
+    }
+    for (const SceneCapsule& capsule : scene.capsules) {
+        json["capsules"].push_back(capsule_to_json(capsule));
+    }
+    for (const SceneBox& box : scene.boxes) json["boxes"].push_back(box_to_json(box));
+    for (const SceneWall& wall : scene.walls) {
+        json["walls"].push_back(
+            {{"name", wall.name}, {"point", drawn(wall.point)}, {"normal", drawn(wall.normal)}});
+    }
+    if (scene.floor_z) json["floor_z"] = *scene.floor_z;
+    if (scene.instrument) {
+        json["instrument"] = {{"kind", scene.instrument->kind},
+                              {"position", drawn(scene.instrument->position)}};
+    }
+    const RowMatrixXd& measured = part.configurations.joints;
+    if (part.first_pose || measured.rows() > 0) {
+        VectorXd first = part.first_pose ? *part.first_pose : measured.row(0).transpose();
+        if (!part.first_pose) first = first.unaryExpr(&to_micro);  // as the page has it
+        json["flange_of_first_pose"] = pose_to_json(world_from_flange(scene, first));
+    }
+    return json;
+}
+
+// ---- Configurations, residuals and errors ----
+
+Json configurations_to_json(const PagePart& part) {
+    const PageConfigurations& measured = part.configurations;
+    Json joints = Json::array();
+    for (Index i = 0; i < measured.joints.rows(); ++i) {
+        joints.push_back(joints_to_json(part, measured.joints.row(i).transpose()));
+    }
+    return {{"id", measured.ids}, {"joints", std::move(joints)}};
+}
+
+/// Something of each reading.
+Json column_of(const PageResiduals& residuals, auto value) {
+    Json column = Json::array();
+    for (const ReadingResidual& reading : residuals.readings) column.push_back(value(reading));
+    return column;
+}
+
+/// A column of each axis, null where `find` has no vector.
+Json columns_of(const PageResiduals& residuals, auto find, auto write) {
+    Json columns = Json::array();
+    for (Index axis = 0; axis < std::ssize(residuals.axes); ++axis) {
+        columns.push_back(column_of(residuals, [&](const ReadingResidual& reading) -> Json {
+            const VectorXd* const values = find(reading);
+            if (values == nullptr) return nullptr;
+            return write((*values)(axis));
+        }));
+    }
+    return columns;
+}
+
+/// Whole nm and nrad are shorter than numbers with a point.
+std::int64_t in_nm(double value) { return std::llround(1e9 * value); }
+double in_hundredths(double value) { return rounded(value, 1e2); }
+
+Json directions_to_json(const PageResiduals& residuals, double Direction::*part) {
+    return column_of(residuals, [&](const ReadingResidual& reading) -> Json {
+        if (!reading.direction) return nullptr;
+        return rounded((*reading.direction).*part, 1e5);
+    });
+}
+
+Json readings_to_json(const PageResiduals& residuals) {
+    using Reading = ReadingResidual;
+    const Measurements& measured = residuals.measurements;
+    Json json;
+    json["configuration"] =
+        column_of(residuals, [](const Reading& one) { return one.configuration; });
+    json["sample"] = column_of(residuals, [&](const Reading& one) {
+        const std::string& id = measured.ids[static_cast<std::size_t>(one.configuration)];
+        const std::string name = measured.sample_name(one.configuration, one.sample);
+        return name.substr(id.size() + 1);  // less "7:"
+    });
+    json["target"] = column_of(residuals, [](const Reading& one) { return one.target; });
+    json["residual"] = columns_of(
+        residuals, [](const Reading& one) { return &one.calibrated; }, in_nm);
+    json["nominal"] = columns_of(
+        residuals, [](const Reading& one) { return &one.nominal; }, in_nm);
+    const auto find_held_out = [](const Reading& one) {
+        return one.held_out ? &*one.held_out : nullptr;
+    };
+    const std::vector<Reading>& readings = residuals.readings;
+    if (std::any_of(readings.begin(), readings.end(), find_held_out)) {
+        json["held_out"] = columns_of(residuals, find_held_out, in_nm);
+    }
+    json["standardised"] = columns_of(
+        residuals, [](const Reading& one) { return &one.standardised; }, in_hundredths);
+    const auto has_direction = [](const Reading& one) { return one.direction.has_value(); };
+    if (std::any_of(readings.begin(), readings.end(), has_direction)) {
+        json["range"] = directions_to_json(residuals, &Direction::range);
+        json["azimuth"] = directions_to_json(residuals, &Direction::azimuth);
+        json["elevation"] = directions_to_json(residuals, &Direction::elevation);
+    }
+    return json;
+}
+
+Json residuals_to_json(const PageResiduals& residuals) {
+    Json json = {{"axes", residuals.axes}, {"unit", Json::array()}, {"targets", residuals.names}};
+    for (const bool is_angle : residuals.is_angle) {
+        json["unit"].push_back(units_of(is_angle).error);
+    }
+    json["readings"] = readings_to_json(residuals);
+    return json;
+}
+
+Json error_map_to_json(const ErrorMap& map) {
+    Json json = {{"position", Json::array()}, {"predicted_mm", Json::array()}};
+    for (const MappedError& error : map) {
+        json["position"].push_back(drawn(error.position));
+        json["predicted_mm"].push_back(to_micro(mm_per_m * error.predicted));
+        if (error.displacement) {
+            json["displacement_mm"].push_back(drawn(mm_per_m * *error.displacement));
+        }
+    }
+    return json;
+}
+
+// ---- The page ----
+
+/// Whatever a user typed, which need not be UTF-8.
+Json typed_text(const std::optional<std::string>& text) {
+    if (!text) return nullptr;
+    return Json::parse(Json(*text).dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+Json part_to_json(const PagePart& part) {
+    Json json = {{"title", part.title},
+                 {"command", typed_text(part.command)},
+                 {"made_at", part.made_at},
+                 {"printed", typed_text(part.printed)}};
+    try {
+        json["document"] = Json::parse(part.document);
+    } catch (const Json::exception&) {
+        throw input_error_at({part.title}, "is not JSON; must be a document of posewise");
+    }
+    if (part.scene) json["scene"] = scene_to_json(part);
+    if (!part.configurations.ids.empty()) json["configurations"] = configurations_to_json(part);
+    if (part.residuals) json["residuals"] = residuals_to_json(*part.residuals);
+    if (part.error_map) json["error_map"] = error_map_to_json(*part.error_map);
+    return json;
+}
+
+/// Nothing in it can end a script or begin another; these stand in texts only.
+std::string escape_for_script(const std::string& text) {
+    std::string escaped;
+    escaped.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const std::string_view rest = std::string_view(text).substr(i, 3);
+        if (text[i] == '<') {
+            escaped += "\\u003c";
+        } else if (text[i] == '>') {
+            escaped += "\\u003e";
+        } else if (text[i] == '&') {
+            escaped += "\\u0026";
+        } else if (rest == "\u2028" || rest == "\u2029") {
+            escaped += rest == "\u2028" ? "\\u2028" : "\\u2029";
+            i += 2;
+        } else {
+            escaped += text[i];
+        }
+    }
+    return escaped;
+}
+
+/// The template with this document where its own is.
+std::string fill_template(std::string_view page, const std::string& document) {
+    constexpr std::string_view begin = R"(<script type="application/json" id="posewise">)";
+    constexpr std::string_view end = "</script>";
+    const std::size_t first = page.find(begin) + begin.size();
+    const std::size_t last = page.find(end, first);
+    std::string filled(page.substr(0, first));
+    filled += document;
+    return filled += page.substr(last);
+}
+
+Json page_to_json(const std::vector<PagePart>& parts) {
+    Json document = detail::make_document("page");
+    Json& list = document["parts"] = Json::array();
+    for (const PagePart& part : parts) list.push_back(part_to_json(part));
+    return document;
+}
+
+std::string make_page(const std::vector<PagePart>& parts, const std::vector<std::string>& warnings,
+                      const std::string& place) {
+    Json document = page_to_json(parts);
+    document["warnings"] = warnings;
+    const std::string text = detail::json_line(document, place);
+    return fill_template(detail::page_template(), escape_for_script(text));
+}
+
+}  // namespace
+
+PageResiduals page_residuals(const Campaign& campaign, const Measurements& measurements,
+                             std::vector<ReadingResidual> readings) {
+    PageResiduals residuals{
+        residual_axes(campaign), {}, reading_names(campaign), measurements, std::move(readings)};
+    for (Index row = 0; row < campaign.sensor->rows_per_target(); ++row) {
+        residuals.is_angle.push_back(campaign.sensor->is_angle(row));
+    }
+    return residuals;
+}
+
+std::string to_json(const std::vector<PagePart>& parts) {
+    return detail::json_text(page_to_json(parts));
+}
+
+std::string to_page(const std::vector<PagePart>& parts) { return make_page(parts, {}, "the page"); }
+
+void write_page(const std::string& path, const std::vector<PagePart>& parts,
+                const std::vector<std::string>& warnings) {
+    detail::write_file(path, make_page(parts, warnings, path));
+}
+
+}  // namespace posewise::io

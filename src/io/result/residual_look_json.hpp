@@ -1,0 +1,11 @@
+#pragma once
+
+#include "io/format/json.hpp"
+#include "posewise/task/doubts.hpp"
+
+namespace posewise::detail {
+
+/// What the look at the residuals has found; an empty object: nothing.
+Json look_to_json(const ResidualLook& look, bool is_angle);
+
+}  // namespace posewise::detail

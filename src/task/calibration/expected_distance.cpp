@@ -1,0 +1,70 @@
+#include "expected_distance.hpp"
+
+#include <cmath>
+
+#include "calibrator/least_squares.hpp"
+#include "model/complete_model.hpp"
+#include "posewise/calibrator/estimate.hpp"
+#include "posewise/planner/prediction.hpp"
+
+namespace posewise::detail {
+namespace {
+
+/// Of a robot of which nothing is known but the sizes expected of its errors.
+Estimate uncalibrated(const Campaign& campaign, const Parameters& at) {
+    Estimate estimate;
+    estimate.parameters = at;
+    estimate.parameters.robot.setZero(campaign.robot.parameter_count());
+    estimate.variance_factor = 1;
+    estimate.model_error = campaign.model_error;
+    estimate.model_error_orientation = campaign.model_error_orientation;
+    VectorXd sizes = parameter_scale(campaign);
+    sizes.head(base_parameter_count(campaign)).setZero();
+    sizes.tail(at.sensor.size()).setZero();
+    estimate.covariance = sizes.cwiseAbs2().asDiagonal();
+    return estimate;
+}
+
+}  // namespace
+
+double expected_distance(const Campaign& campaign, const Measurements& measured) {
+    // At nominal targets: fitted to another robot's points they may be anywhere.
+    const Blocks blocks =
+        make_prediction_blocks(campaign, campaign.nominal, measured.configurations);
+    const auto points = static_cast<double>(blocks.matrix.rows()) / 3;
+    const double robot = std::sqrt(
+        blocks.matrix.middleCols(base_parameter_count(campaign), campaign.robot.parameter_count())
+            .squaredNorm() /
+        points);
+    const Estimate none = uncalibrated(campaign, campaign.nominal);
+    return robot +
+           std::hypot(campaign.model_error, expected_error(campaign, none, measured, false).noise);
+}
+
+double largest_left_over(const Campaign& campaign, const Parameters& at,
+                         const Measurements& measured, bool is_angle) {
+    Campaign complete = with_robot(campaign, complete_model(campaign.robot));
+    complete.prior.reset();
+    Estimate none = uncalibrated(complete, at);
+    const IdentificationProblem problem = make_problem(complete, measured);
+    const MatrixXd J = linearise(problem, none.parameters).J().topRows(problem.observation_count());
+    const Index of_base = base_parameter_count(complete);
+    const Index of_robot = complete.robot.parameter_count();
+    const Index of_sensor = J.cols() - of_base - of_robot;
+    MatrixXd fitted(J.rows(), of_base + of_sensor);
+    fitted << J.leftCols(of_base), J.rightCols(of_sensor);
+    // Coordinates of the robot are standard normal; base and targets follow them.
+    MatrixXd along = MatrixXd::Zero(J.cols(), of_robot);
+    along.middleRows(of_base, of_robot).setIdentity();
+    if (fitted.cols() > 0) {
+        const MatrixXd followed =
+            fitted.colPivHouseholderQr().solve(J.middleCols(of_base, of_robot));
+        along.topRows(of_base) = -followed.topRows(of_base);
+        along.bottomRows(of_sensor) = -followed.bottomRows(of_sensor);
+    }
+    none.covariance = along * along.transpose();
+    problem.units.unscale(none.covariance);
+    return expected_error(complete, none, measured, is_angle).total();
+}
+
+}  // namespace posewise::detail

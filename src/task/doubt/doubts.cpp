@@ -1,0 +1,246 @@
+#include "posewise/task/doubts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "absurd_values.hpp"
+#include "calibrator/missing_errors.hpp"
+#include "core/format.hpp"
+#include "core/statistics.hpp"
+#include "gross_errors.hpp"
+#include "model/joint_limits.hpp"
+#include "plane_doubts.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/model/error_terms.hpp"
+#include "posewise/planner/prediction.hpp"
+
+namespace posewise {
+namespace {
+
+/// Times the expected size: a joint with a wrong sign may converge as well, with an offset of half
+/// a turn.
+constexpr double doubtful_size = 20;
+/// A prior holds values back: beyond it, it is wrong or the model is.
+constexpr double doubtful_under_prior = 3;
+
+/// What no robot has, in expected sizes (real ones that were measured have ten at most), and no
+/// measurement, in standard deviations as stated.
+constexpr double incredible_size = 50;
+constexpr double incredible_deviation = 100;  // of a value, in its expected sizes
+constexpr double incredible_residuals = 300;
+/// A joint whose zero is off by more was meant otherwise.
+constexpr double incredible_offset = 10 * std::numbers::pi / 180;
+constexpr double incredible_offset_size = 5;
+
+std::optional<double> clear_ratio(const ResidualVariance& variance, LossKind loss) {
+    constexpr double tolerated = 1.2;  // intervals of 95 % would hold 90 %
+    constexpr double chance = 1e-3;    // of a doubt without a reason, on either side
+    // Degrees of freedom for which the median tells as much as the mean square [Rousseeuw & Croux
+    // 1993].
+    const double efficiency = loss == LossKind::Squares ? 1 : 0.37;
+    if (variance.degrees_of_freedom <= 0) return std::nullopt;
+    const double freedom = efficiency * variance.degrees_of_freedom;
+    const double squares = freedom * variance.factor;
+    const double ratio = std::sqrt(variance.factor);
+    const bool is_chance = squares >= detail::chi_squared_quantile(chance, freedom) &&
+                           squares <= detail::chi_squared_quantile(1 - chance, freedom);
+    if (is_chance || (ratio <= tolerated && ratio >= 1 / tolerated)) return std::nullopt;
+    return ratio;
+}
+
+/// The model error with which residuals of a kind would be as stated.
+double fitting_model_error(const Campaign& found, const Measurements& measured,
+                           const Estimate& estimate, bool is_angle) {
+    const double factor = estimate.variance_of(is_angle).factor;
+    if (!(factor > 0)) return 0;
+    const ExpectedError expected = expected_error(found, estimate, measured, is_angle);
+    // Without priors the expected errors are scaled by the factor already.
+    const double scaled = found.spread.is_prior ? 1 : factor;
+    const double noise = expected.noise * expected.noise / scaled;
+    const double model = expected.model * expected.model / scaled;
+    const Index lengths = found.sensor->lengths_per_target();
+    const Index count = is_angle ? found.sensor->rows_per_target() - lengths : lengths;
+    return std::sqrt(std::max(0.0, factor * (model + noise) - noise) / static_cast<double>(count));
+}
+
+std::vector<ResidualDoubt> find_residual_doubts(const Campaign& campaign,
+                                                const Measurements& measured,
+                                                const Estimate& estimate) {
+    const Campaign found = with_model_error(campaign, estimate);
+    std::vector<ResidualDoubt> doubts;
+    for (const bool is_angle : {false, true}) {
+        const Sensor& sensor = *campaign.sensor;
+        if (!(is_angle ? sensor.has_angles() : sensor.has_lengths())) continue;
+        if (const auto ratio = clear_ratio(estimate.variance_of(is_angle), estimate.loss.kind)) {
+            doubts.push_back(
+                {*ratio, is_angle, fitting_model_error(found, measured, estimate, is_angle)});
+        }
+    }
+    return doubts;
+}
+
+std::optional<double> find_small_residuals(const Campaign& campaign, const Estimate& estimate) {
+    constexpr double other_unit = 0.02;
+    constexpr double large_model_error = 5e-3;  // m
+    if (estimate.degrees_of_freedom <= 0) return std::nullopt;
+    const double found = campaign.model_error > large_model_error
+                             ? std::min(1.0, estimate.model_error / campaign.model_error)
+                             : 1;
+    const double ratio = found * std::sqrt(estimate.variance_factor);
+    if (ratio >= other_unit) return std::nullopt;
+    return ratio;
+}
+
+std::vector<SizeDoubt> find_size_doubts(const Campaign& campaign, const Estimate& estimate) {
+    const VectorXd& errors = estimate.parameters.robot;
+    const Index robot_begin = base_parameter_count(campaign);
+    const VectorXd times =
+        errors.cwiseQuotient(parameter_scale(campaign).segment(robot_begin, errors.size()))
+            .cwiseAbs();
+    std::vector<SizeDoubt> doubts;
+    for (Index k = 0; k < times.size(); ++k) {
+        if (times[k] <= (campaign.spread.is_prior ? doubtful_under_prior : doubtful_size)) continue;
+        doubts.push_back({estimate.names[static_cast<std::size_t>(robot_begin + k)], times[k],
+                          errors[k], campaign.robot.parameter_element(k).motion == Motion::Rotation,
+                          campaign.robot.parameter_term(k) != nullptr});
+    }
+    return doubts;
+}
+
+std::vector<ModelErrorDoubt> find_model_error_doubts(const Campaign& campaign,
+                                                     const Estimate& estimate) {
+    constexpr double doubtful = model_error_factor * model_error_factor;
+    std::vector<ModelErrorDoubt> doubts;
+    const auto add = [&](double found, double expected, bool is_angle) {
+        if (found > doubtful * expected) doubts.push_back({found / expected, found, is_angle});
+    };
+    add(estimate.model_error, campaign.model_error, false);
+    add(estimate.model_error_orientation, campaign.model_error_orientation, true);
+    return doubts;
+}
+
+std::optional<double> find_missing_errors(const Campaign& campaign, const Measurements& measured,
+                                          const Estimate& estimate) {
+    const Campaign found = with_model_error(campaign, estimate);
+    detail::IdentificationProblem problem = detail::make_problem(found, measured);
+    problem.loss = estimate.loss;
+    problem.deviation = std::sqrt(estimate.variance_factor);
+    constexpr double of_no_consequence = 0.05;
+    const double share = detail::missing_errors(problem, estimate.parameters);
+    if (share <= of_no_consequence) return std::nullopt;
+    return share;
+}
+
+std::vector<Index> find_negative_compliances(const Campaign& campaign, const Estimate& estimate) {
+    constexpr double significant = 3;  // standard deviations
+    const VectorXd sigmas = standard_deviations(estimate);
+    const Index robot_begin = base_parameter_count(campaign);
+    std::vector<Index> joints;
+    for (const Compliance& compliance : compliances(campaign.robot)) {
+        const Index k = compliance.parameter;
+        if (estimate.parameters.robot[k] > -significant * sigmas[robot_begin + k]) continue;
+        joints.push_back(compliance.joint);
+    }
+    return joints;
+}
+
+}  // namespace
+
+std::optional<BeyondLimits> find_beyond_limits(const Campaign& campaign,
+                                               const RowMatrixXd& configurations) {
+    BeyondLimits beyond;
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        std::string violation =
+            detail::describe_limit_violation(campaign.robot, configurations.row(i).transpose());
+        if (violation.empty()) continue;
+        if (++beyond.count > 1) continue;
+        beyond.first = i;
+        beyond.violation = std::move(violation);
+    }
+    if (beyond.count == 0) return std::nullopt;
+    return beyond;
+}
+
+std::vector<Index> find_still_joints(const Campaign& campaign, const RowMatrixXd& configurations) {
+    constexpr double still = 1e-6;  // rad or m
+    std::vector<Index> joints;
+    for (Index j = 0; j < campaign.robot.joint_count() && configurations.rows() > 1; ++j) {
+        const auto q = configurations.col(j);
+        if (q.maxCoeff() - q.minCoeff() <= still) joints.push_back(j);
+    }
+    return joints;
+}
+
+std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& estimate,
+                                     ValueCheck values) {
+    std::vector<std::string> faults;
+    if (estimate.ending != Ending::Converged && estimate.ending != Ending::RoundoffLimited) {
+        faults.push_back(fmt::format("it did not converge ({})", ending_name(estimate.ending)));
+    }
+    const double ratio = detail::times_stated(campaign, estimate);
+    if (!(ratio <= incredible_residuals)) {
+        faults.push_back(fmt::format("its residuals are {} times what sigma and model error say",
+                                     detail::format_short(ratio, 2)));
+    }
+    if (values == ValueCheck::None) return faults;
+    for (const auto& [plane, angle] :
+         detail::find_turned_planes(campaign, estimate.parameters.sensor)) {
+        faults.push_back(fmt::format("plane {} is turned by {} deg from the normal stated of it",
+                                     plane + 1, detail::format_short(to_degrees(angle), 2)));
+    }
+    const VectorXd scale = parameter_scale(campaign);
+    const VectorXd sigmas = standard_deviations(estimate);
+    const Index robot_begin = base_parameter_count(campaign);
+    const auto add = [&](Index k, double value, const char* what, double most, bool is_offset) {
+        const double times = std::abs(value) / scale[robot_begin + k];
+        const bool is_angle = campaign.robot.parameter_element(k).motion == Motion::Rotation;
+        const bool is_turned = is_offset && is_angle && times > incredible_offset_size &&
+                               std::abs(value) > incredible_offset;
+        if (times <= most && !is_turned) return;
+        faults.push_back(fmt::format("{}{} is {} {}, {} times the size expected of it", what,
+                                     estimate.names[static_cast<std::size_t>(robot_begin + k)],
+                                     detail::format_short(1e3 * value, 4), units_of(is_angle).error,
+                                     detail::format_short(times, 2)));
+    };
+    for (Index k = 0; k < estimate.parameters.robot.size(); ++k) {
+        const bool is_offset = !campaign.robot.parameter_element(k).joints.empty() &&
+                               campaign.robot.parameter_term(k) == nullptr;
+        add(k, estimate.parameters.robot[k], "", incredible_size, is_offset);
+        add(k, sigmas[robot_begin + k], "the standard deviation of ", incredible_deviation, false);
+    }
+    detail::add_absurd_values(campaign, estimate, faults);
+    return faults;
+}
+
+Doubts find_doubts(const Campaign& campaign, const Measurements& measured,
+                   const Parameters& registered, const Metrics& nominal) {
+    Doubts doubts;
+    doubts.misfit = find_misfit(campaign, measured, registered);
+    if (!doubts.misfit) {
+        doubts.planes = find_plane_doubts(campaign, measured);
+        doubts.places = find_place_doubts(campaign, registered);
+    }
+    if (nominal.distance_rms > detail::gross_distance) doubts.gross_error = nominal.distance_rms;
+    if (campaign.sensor->has_orientation() && nominal.orientation_rms > detail::gross_angle) {
+        doubts.orientations = nominal.orientation_rms;
+    }
+    return doubts;
+}
+
+void add_doubts(const Campaign& campaign, const Measurements& measured, const Estimate& estimate,
+                Doubts& doubts) {
+    doubts.sizes = find_size_doubts(campaign, estimate);
+    doubts.model_errors = find_model_error_doubts(campaign, estimate);
+    doubts.residuals = find_residual_doubts(campaign, measured, estimate);
+    doubts.small_residuals = find_small_residuals(campaign, estimate);
+    doubts.missing_errors = find_missing_errors(campaign, measured, estimate);
+    doubts.scatter = find_scatter_doubt(campaign, measured, estimate.parameters);
+    doubts.lacks_length = lacks_length(campaign, measured);
+    doubts.distance = find_distance_doubt(campaign, measured, estimate);
+    doubts.negative_compliances = find_negative_compliances(campaign, estimate);
+}
+
+}  // namespace posewise

@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/format.hpp"
+#include "core/statistics.hpp"
+#include "gross_errors.hpp"
+#include "plane_doubts.hpp"
+#include "posewise/calibrator/estimate.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/task/doubts.hpp"
+#include "task/calibration/expected_distance.hpp"
+
+namespace posewise {
+namespace {
+
+/// From here on other readings are tried: of a wrist reversed joints may do no more.
+constexpr double doubtful_errors = 1;
+
+/// Of residuals as mean_residuals() gives them, the median: some may be grossly wrong.
+double median_distance(const RowMatrixXd& residuals) {
+    const auto coordinates = residuals.leftCols(std::min<Index>(3, residuals.cols()));
+    return quantile(coordinates.rowwise().norm(), 0.5, detail::QuantileRule::Upper);
+}
+
+std::string describe(const Plane& plane) {
+    return fmt::format(
+        "normal [{}, {}, {}] and offset {} mm", detail::format_fixed(plane.normal.x(), 3),
+        detail::format_fixed(plane.normal.y(), 3), detail::format_fixed(plane.normal.z(), 3),
+        detail::format_mm(plane.offset, 1));
+}
+
+/// "reversed", but where the normal points neither there nor where it is stated.
+std::string describe_turn(const Vector3d& stated, const Vector3d& measured) {
+    if (!detail::is_turned(stated, measured)) return "reversed";
+    return fmt::format("turned by {} deg",
+                       detail::format_short(to_degrees(std::acos(stated.dot(measured))), 2));
+}
+
+/// Whether orientations are off by more than a robot's are.
+bool are_orientations_off(const Campaign& campaign, const RowMatrixXd& residuals) {
+    if (!campaign.sensor->has_orientation()) return false;
+    const Metrics metrics = make_metrics(residuals, campaign.sensor->lengths_per_target());
+    return metrics.orientation_rms > detail::gross_angle;
+}
+
+}  // namespace
+
+std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& measured,
+                                  const Parameters& registered) {
+    if (!campaign.sensor->has_lengths()) return std::nullopt;  // of angles it is not known
+    Misfit misfit;
+    const RowMatrixXd residuals = mean_residuals(campaign, registered, measured);
+    misfit.distance = median_distance(residuals);
+    misfit.expected = detail::expected_distance(campaign, measured);
+    if (misfit.distance <= doubtful_errors * misfit.expected &&
+        !are_orientations_off(campaign, residuals)) {
+        return std::nullopt;
+    }
+    misfit.reading = search_readings(campaign, measured).better;
+    const bool is_credible = misfit.distance <= detail::credible_errors * misfit.expected;
+    if (is_credible && !misfit.reading) return std::nullopt;
+    misfit.planes = find_plane_doubts(campaign, measured);
+    if (misfit.reading && !misfit.planes.empty()) {
+        // What takes fewer changes is more likely.
+        if (misfit.reading->change_count <= std::ssize(misfit.planes)) {
+            misfit.planes.clear();
+        } else {
+            misfit.reading.reset();
+        }
+    }
+    return misfit;
+}
+
+void check_is_of_robot(const Campaign& campaign, const Measurements& measured,
+                       const Registration& registration) {
+    if (!registration.is_determined()) return;
+    const auto misfit = find_misfit(campaign, measured, registration.parameters);
+    if (misfit) throw InputError(describe_misfit(campaign, *misfit));
+    std::vector<PlaceDoubt> places = find_place_doubts(campaign, registration.parameters);
+    std::erase_if(places, [](const auto& doubt) { return doubt.unit == PlaceDoubt::Unit::AsRead; });
+    if (!places.empty()) throw InputError(describe_places(places));
+}
+
+std::string describe_planes(const std::vector<PlaneDoubt>& planes) {
+    std::string text;
+    for (const PlaneDoubt& doubt : planes) {
+        text += fmt::format("{}plane {} looks {}: stated with {}, measured at about {}",
+                            text.empty() ? "" : "; ", doubt.plane + 1,
+                            describe_turn(doubt.stated.normal, doubt.measured.normal),
+                            describe(doubt.stated), describe(doubt.measured));
+    }
+    return text;
+}
+
+std::string describe_misfit(const Campaign& campaign, const Misfit& misfit) {
+    return fmt::format(
+        "are these of another robot? The nominal robot misses half of them by over {} mm; must be "
+        "about {} mm, as the spread of {} says{}{}{}",
+        detail::format_short(mm_per_m * misfit.distance, 3),
+        detail::format_short(mm_per_m * misfit.expected, 3), campaign.name,
+        misfit.planes.empty() ? "" : "; ", describe_planes(misfit.planes),
+        misfit.reading ? "; " + describe(*misfit.reading) : "");
+}
+
+}  // namespace posewise

@@ -1,0 +1,94 @@
+#include "calibrator/readings.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/format.hpp"
+#include "core/text.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/task/doubts.hpp"
+#include "task/calibration/expected_distance.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::FittedReading;
+
+ReadingMisfit misfit_of(const FittedReading& reading) {
+    return {reading.distance_rms, reading.orientation_rms};
+}
+
+/// Less those that change the same and more.
+std::vector<std::string> describe_as_well(const Campaign& campaign,
+                                          const std::vector<FittedReading>& readings,
+                                          const FittedReading& better,
+                                          OrientationNotation notation) {
+    std::vector<std::string> words;
+    for (const FittedReading& other : readings) {
+        if (!fit_alike(other, better) || has_all(other.changes, better.changes)) continue;
+        words.push_back(describe(other.changes, campaign, notation));
+    }
+    return words;
+}
+
+/// Half of the points may be off by so much.
+double credible_distance(const Campaign& campaign, const Measurements& measurements) {
+    return campaign.sensor->has_lengths()
+               ? detail::credible_errors * detail::expected_distance(campaign, measurements)
+               : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+ReadingSearch search_readings(const Campaign& campaign, const Measurements& measurements) {
+    ReadingSearch search;
+    detail::FittedReadings fitted = detail::fit_readings(campaign, measurements);
+    search.undetermined = std::move(fitted.undetermined);
+    if (!search.undetermined.empty()) return search;
+    const std::vector<FittedReading>& readings = fitted.readings;
+    for (const FittedReading& reading : readings) {
+        const auto reversed = reversed_joints(reading.changes, campaign);
+        search.tried.push_back({describe(reading.changes, campaign, measurements.notation),
+                                reversed, std::ssize(reversed) == std::ssize(reading.changes),
+                                misfit_of(reading), fit_alike(reading, readings.front())});
+    }
+    const FittedReading* const better =
+        find_clearly_better(readings, credible_distance(campaign, measurements));
+    if (better == nullptr) return search;
+    search.better = {describe(better->changes, campaign, measurements.notation),
+                     describe_cure(better->changes, campaign),
+                     reversed_joints(better->changes, campaign),
+                     count_changes(better->changes),
+                     describe_as_well(campaign, readings, *better, measurements.notation),
+                     misfit_of(*better),
+                     misfit_of(as_stated(readings))};
+    return search;
+}
+
+std::string describe(const BetterReading& reading) {
+    constexpr std::size_t shown = 3;
+    std::string others;
+    for (std::size_t k = 0; k < std::min(shown, reading.as_well.size()); ++k) {
+        others += ", or as well with " + reading.as_well[k];
+    }
+    if (reading.as_well.size() > shown) {
+        others += fmt::format(" and {} more", reading.as_well.size() - shown);
+    }
+    std::vector<std::string> figures;
+    const auto compare = [&](double found, double stated, const char* unit) {
+        if (stated == 0) return;  // not measured
+        figures.push_back(fmt::format("{} instead of {} {}", detail::format_short(found, 3),
+                                      detail::format_short(stated, 3), unit));
+    };
+    const ReadingMisfit& found = reading.misfit;
+    const ReadingMisfit& stated = reading.as_stated;
+    compare(mm_per_m * found.distance_rms, mm_per_m * stated.distance_rms, "mm");
+    compare(to_degrees(found.orientation_rms), to_degrees(stated.orientation_rms), "deg");
+    return fmt::format("they fit clearly better with {}{} ({} RMS): {}", reading.words, others,
+                       fmt::join(figures, " and "), reading.cure);
+}
+
+}  // namespace posewise

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "planner/design_space.hpp"
+#include "planning_problem.hpp"
+
+namespace posewise::detail {
+
+/// Fills in what follows from a planning's plan, information and tour: prediction, budget, missing
+/// poses, how long it takes.
+void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out_count);
+
+/// Plan::value_rms of that value.
+std::optional<double> value_rms_of(const PlanningProblem& problem, double value);
+
+/// Makes plans of any number of poses in one cell; pool, workspace and what they tell are made
+/// once.
+class PlanMaker {
+  public:
+    /// Draws pool and workspace. The options must outlive it. Throws InputError as make_plan().
+    PlanMaker(PlanningProblem problem, const PlanningOptions& options);
+
+    const PlanningProblem& problem() const { return problem_; }
+    const Pool& pool() const { return pool_; }
+
+    /// So many new poses, with a searched bound if `needs_bound` says so: it takes longer than the
+    /// rest.
+    Planning make(Index pose_count, const std::function<bool(const Planning&)>& needs_bound) const;
+    /// The same, but one start from a part of the pool, and no bounds: nearly as good in a tenth of
+    /// the time.
+    Planning make_quickly(Index pose_count) const;
+
+    /// Draws the poses to verify, see Plan::verification; the plan's others stay as they are.
+    void add_verification(Planning& planning) const;
+
+  private:
+    /// Candidates of a search.
+    struct Candidates {
+        DesignSpace space;
+        RowMatrixXd configurations;
+        Blocks blocks;
+    };
+    Candidates candidates(Index pool_part) const;
+    /// Without a bound.
+    PlanOptions search_for(Index pose_count) const;
+    Ending ending_of(const PlannedPoses& planned) const;
+    Planning finish(PlanOptions search, const PlannedPoses& planned) const;
+    /// Accuracy by poses of the pool, whose blocks these are.
+    PredictedAccuracy predict_choice(const std::vector<Index>& poses, const Blocks& blocks) const;
+
+    PlanningProblem problem_;
+    const PlanningOptions& options_;
+    Pool pool_;
+    bool is_pool_complete_ = true;
+};
+
+}  // namespace posewise::detail
