@@ -193,7 +193,8 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
         throw input_error_at({paths.measurements}, result.estimate.undetermined);
     }
     std::ranges::for_each(describe_doubts(result, paths.measurements), print_warning);
-    const Printed printed = describe_calibration(arguments, common, result, made_from);
+    made_from.answers = answer(result);
+    const Printed printed = describe_calibration(arguments, result, made_from);
     if (!result.faults.empty()) check_faults(arguments, common, result, printed);
     const Measurements used = options.used.empty() ? measured : take(measured, options.used);
     io::PagePart part;

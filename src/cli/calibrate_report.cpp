@@ -23,13 +23,11 @@ std::string describe_start(const CalibrateArguments& arguments) {
 
 }  // namespace
 
-Printed describe_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
-                             const Calibration& result, const io::Provenance& made_from) {
-    Printed printed{format(result, arguments.has_all_parameters) + describe_start(arguments), ""};
-    if (needs_document(common, arguments.page)) {
-        printed.document = io::to_json(result, made_from);
-    }
-    return printed;
+Printed describe_calibration(const CalibrateArguments& arguments, const Calibration& result,
+                             const io::Provenance& made_from) {
+    return {made_from.answers,
+            format(result, arguments.has_all_parameters) + describe_start(arguments),
+            [&] { return io::to_json(result, made_from); }};
 }
 
 io::PagePart show_estimate(const Campaign& campaign, const Estimate& estimate,

@@ -7,9 +7,9 @@
 /// What calibrate says of a calibration.
 namespace posewise::cli {
 
-/// `document` is left out where nobody asks for it.
-Printed describe_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
-                             const Calibration& result, const io::Provenance& made_from);
+/// Refers to the result and to what it was made from.
+Printed describe_calibration(const CalibrateArguments& arguments, const Calibration& result,
+                             const io::Provenance& made_from);
 
 /// What a page shows of an estimate beside its document: the robot calibrated, where it was
 /// measured, and its errors over the workspace.

@@ -10,6 +10,7 @@
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/io/documents.hpp"
+#include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -25,6 +26,8 @@ std::string quote_argument(const std::string& argument) {
     for (const char c : argument) quoted += c == '\'' ? "'\\''" : std::string(1, c);
     return quoted + "'";
 }
+
+std::string text_of(const Printed& printed) { return format(printed.answers) + printed.text; }
 
 }  // namespace
 
@@ -53,15 +56,11 @@ std::string format_time(std::filesystem::file_time_type time) {
                        utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
-bool needs_document(const CommonOptions& common, const std::string& page) {
-    return common.json || !page.empty();
-}
-
 void print(const Printed& printed, const CommonOptions& common) {
     if (common.json) {
-        print_document(printed.document);
+        print_document(io::with_answers(printed.document(), printed.answers));
     } else {
-        print(printed.text);
+        print(text_of(printed));
     }
     std::fflush(stdout);  // what comes behind may take its time, or fail
 }
@@ -71,8 +70,9 @@ void write_page(const std::string& path, io::PagePart part, const Printed& print
     if (path.empty()) return;
     part.command = common.command_line;
     part.made_at = format_time(std::filesystem::file_time_type::clock::now());
-    part.printed = printed.text;
-    part.document = io::with_warnings(printed.document, given_warnings());
+    part.printed = text_of(printed);
+    part.document =
+        io::with_warnings(io::with_answers(printed.document(), printed.answers), given_warnings());
     io::write_page(path, {part}, given_warnings());
 }
 

@@ -5,9 +5,11 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "posewise/io/documents.hpp"
+#include "posewise/task/answers.hpp"
 
 /// --report: what a command found as a page to look at.
 namespace posewise::cli {
@@ -20,13 +22,13 @@ std::string join_command_line(int argc, char** argv);
 /// "2026-11-23T13:14:29Z".
 std::string format_time(std::filesystem::file_time_type time);
 
-/// What a command prints, as text and as a document.
+/// What a command prints: the answers and the text after them, or a document, made where it is
+/// asked for.
 struct Printed {
+    std::vector<Answer> answers;
     std::string text;
-    std::string document;  ///< only where it is asked for, see needs_document()
+    std::function<std::string()> document;
 };
-/// Whether the document is to be printed or shown on a page.
-bool needs_document(const CommonOptions& common, const std::string& page);
 /// Prints one of them, at once.
 void print(const Printed& printed, const CommonOptions& common);
 

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-
+#include "common.hpp"
 #include "core/text.hpp"
 #include "estimates.hpp"
 #include "interrupt.hpp"
@@ -46,12 +45,13 @@ void report_plan(const MadePlan& plan, const std::string& page, const std::strin
         const InterruptFlag interrupted("interrupted twice; the plan is written");
         counts = predict_other_counts(planning, {interrupted.get(), plan.options.stop.deadline});
     }
-    if (is_stopped) std::fputs("posewise: stopped early; the plan is the best so far\n", stderr);
-    Printed printed{describe(plan, counts), ""};
-    if (needs_document(common, page)) {
-        printed.document = has_target ? io::to_json(plan.made, plan.out, plan.simulated)
-                                      : io::to_json(planning, counts, plan.out, plan.simulated);
-    }
+    if (is_stopped) print_warning("stopped early; the plan is the best so far");
+    const Printed printed{
+        has_target ? answer(plan.made, plan.simulated) : answer(planning, counts, plan.simulated),
+        describe(plan, counts), [&] {
+            return has_target ? io::to_json(plan.made, plan.out, plan.simulated)
+                              : io::to_json(planning, counts, plan.out, plan.simulated);
+        }};
     io::PagePart part;
     if (!page.empty()) part = show_plan(planning.plan, planning.campaign, plan.options);
     print(printed, common);

@@ -19,6 +19,7 @@
 #include "posewise/io/documents.hpp"
 #include "posewise/io/result_files.hpp"
 #include "posewise/measurement/measurements.hpp"
+#include "posewise/report/reports.hpp"
 #include "posewise/task/calibration.hpp"
 #include "study_runs.hpp"
 
@@ -77,7 +78,7 @@ void show_again(const Plan& plan, const std::string& path, io::PagePart& part) {
         const PlanningOptions options = read_planning_inputs(request, *campaign);
         const Planning judged = judge_again(plan, *campaign, options);
         check_prediction(plan, judged.plan, campaign->path);
-        std::string document = io::read_saved_plan(path, judged);
+        std::string document = io::read_saved_plan(path, judged, answer(judged));
         part = show_plan(plan, *campaign, options);
         part.document = std::move(document);
         return;
@@ -86,8 +87,8 @@ void show_again(const Plan& plan, const std::string& path, io::PagePart& part) {
         read_choice_inputs(request, plan.kind, plan.candidate_count, std::move(campaign));
     part = show_choice(plan, inputs);
     if (!inputs.campaign) return;
-    part.document = io::read_saved_plan(
-        path, judge_again(plan, *inputs.campaign, inputs.candidates, inputs.options));
+    const Plan judged = judge_again(plan, *inputs.campaign, inputs.candidates, inputs.options);
+    part.document = io::read_saved_plan(path, judged, answer(judged));
 }
 
 ShownFile show_plan_file(const std::string& path) {
@@ -180,7 +181,7 @@ ShownFile show_study_file(const std::string& path, io::SavedKind kind) {
     for (const std::vector<Study>& studies : read_store_groups(path)) {
         io::PagePart& part = shown.parts.emplace_back();
         part.title = studies.front().campaign;
-        part.document = io::to_json(studies);
+        part.document = io::with_answers(io::to_json(studies), answer(studies));
     }
     if (shown.parts.size() > 1) shown.summary = fmt::format("{} studies", shown.parts.size());
     return shown;

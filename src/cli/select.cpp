@@ -111,10 +111,11 @@ Candidates candidates_to_spend(ChoiceInputs& inputs, const SelectArguments& argu
 /// On the page, too, if there is a path for one.
 void print_plan(const Plan& plan, const SelectArguments& arguments, ChoiceInputs& inputs,
                 const std::string& out, const CommonOptions& common) {
-    Printed printed{format_choice(plan, arguments.digits) + describe_robot(inputs, plan.request) +
-                        "plan:       " + detail::escape_controls(out) + '\n',
-                    ""};
-    if (needs_document(common, arguments.page)) printed.document = io::to_json(plan, out);
+    const Printed printed{answer(plan),
+                          format_choice(plan, arguments.digits) +
+                              describe_robot(inputs, plan.request) +
+                              "plan:       " + detail::escape_controls(out) + '\n',
+                          [&] { return io::to_json(plan, out); }};
     io::PagePart part;
     if (!arguments.page.empty()) {
         static_cast<PlanRequest&>(inputs.options) = plan.request;

@@ -73,8 +73,8 @@ same for any threads, processes, shards and order, and however often it was kill
 
 void print_studies(const std::vector<Study>& studies, const StudyArguments& arguments,
                    const CommonOptions& common, StudyExtras extras) {
-    Printed printed{describe_studies(studies) + extras.notes, ""};
-    if (needs_document(common, arguments.page)) printed.document = io::to_json(studies);
+    const Printed printed{answer(studies), describe_studies(studies) + extras.notes,
+                          [&] { return io::to_json(studies); }};
     print(printed, common);
     if (!arguments.csv.empty()) {
         detail::write_files({{arguments.csv, "", {}, [&](const WriteText& write) {

@@ -120,6 +120,11 @@ double student_quantile(double p, double degrees_of_freedom) {
     return boost::math::quantile(boost::math::students_t(degrees_of_freedom), p);
 }
 
+double two_sided(double t, double degrees_of_freedom) {
+    const boost::math::students_t distribution(degrees_of_freedom);
+    return 2 * boost::math::cdf(boost::math::complement(distribution, std::abs(t)));
+}
+
 double chi_squared_quantile(double p, double degrees_of_freedom) {
     return boost::math::quantile(boost::math::chi_squared(degrees_of_freedom), p);
 }

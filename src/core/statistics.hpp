@@ -35,6 +35,9 @@ double normal_quantile(double p);
 /// The p-quantile (0 < p < 1) of Student's t of so many degrees of freedom (above 0).
 double student_quantile(double p, double degrees_of_freedom);
 
+/// Probability that chance alone makes |t| larger.
+double two_sided(double t, double degrees_of_freedom);
+
 /// That of chi squared.
 double chi_squared_quantile(double p, double degrees_of_freedom);
 

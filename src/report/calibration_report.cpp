@@ -54,21 +54,11 @@ std::string describe_measured(const Calibration& calibration) {
     return text;
 }
 
-/// That it was of use to look for it: there are errors of the robot to identify.
-bool is_model_error_found(const Calibration& calibration) {
-    const auto names = calibration.campaign.robot.parameter_names();
-    const bool has_any = std::ranges::any_of(names, [&](const std::string& name) {
-        return std::ranges::find(calibration.held, name) == calibration.held.end();
-    });
-    return has_any && calibration.campaign.spread.is_prior &&
-           calibration.method != CalibrationMethod::TwoStep;
-}
-
 std::string describe_model_error(const Calibration& calibration) {
     const char* what = calibration.estimate.degrees_of_freedom > 0
                            ? "model error found: "
                            : "model error assumed, nothing is left to find it from: ";
-    if (!is_model_error_found(calibration)) {
+    if (!detail::is_model_error_found(calibration)) {
         if (calibration.held.empty()) return "";
         what = "model error of the earlier estimate: ";
     }
@@ -92,48 +82,9 @@ std::string describe_ending(const Calibration& calibration) {
            fmt::format("variance factor {} with {} degrees of freedom{} ({})\n",
                        detail::format_short(estimate.variance_factor, 4),
                        estimate.degrees_of_freedom, describe_variance_by_kind(estimate),
-                       is_model_error_found(calibration)
+                       detail::is_model_error_found(calibration)
                            ? "the model error is found from these residuals: 1 says little"
                            : "1: noise and model error stated right");
-}
-
-/// "the residuals in mm are 3 times what sigma and model error say".
-std::string judge_residuals(const Calibration& calibration, const ResidualDoubt& doubt) {
-    const bool has_kinds = !calibration.estimate.variance_by_kind.empty();
-    const std::string text =
-        fmt::format("the residuals{} are {} times what sigma and model error say",
-                    !has_kinds       ? ""
-                    : doubt.is_angle ? " in mrad"
-                                     : " in mm",
-                    detail::format_short(doubt.ratio, 2));
-    const bool is_earlier = !calibration.held.empty();
-    if (is_earlier) {
-        return text + (doubt.ratio < 1 ? ", less than the earlier estimate left over\n"
-                                       : ": the robot may not be as the earlier estimate has it\n");
-    }
-    if (doubt.ratio > 1) return text + '\n';
-    if (is_model_error_found(calibration)) {
-        return text + ": what is expected is rather too large\n";
-    }
-    if (doubt.fitting == 0) return text + '\n';
-    return text + fmt::format(", as a model error of {} would leave\n",
-                              detail::format_error(doubt.fitting, doubt.is_angle));
-}
-
-std::string judge_residuals(const Calibration& calibration) {
-    std::string text;
-    for (const ResidualDoubt& doubt : calibration.doubts.residuals) {
-        text += judge_residuals(calibration, doubt);
-    }
-    return text;
-}
-
-std::string describe_missing_errors(const Calibration& calibration) {
-    if (!calibration.doubts.missing_errors) return "";
-    return fmt::format(
-        "about {:.0f} % of the squares left over follow the joints' positions: joints bend or have "
-        "periodic errors that this model leaves out\n",
-        100 * *calibration.doubts.missing_errors);
 }
 
 /// A line for each cure that was tried and helps, and one for the others.
@@ -275,17 +226,6 @@ std::string format_outliers(const Calibration& calibration) {
     return text;
 }
 
-std::string judge_compliances(const Calibration& calibration) {
-    std::string names;
-    for (const Index joint : calibration.doubts.negative_compliances) {
-        names += (names.empty() ? "" : ", ") + calibration.campaign.robot.joint(joint).name;
-    }
-    if (names.empty()) return "";
-    return '\n' + names +
-           ": negative, but a joint gives way with its load; is tau the torque of the load (a "
-           "motor's has the other sign), are weights, places and direction of gravity right?\n";
-}
-
 /// All parameters that were identified, or of many errors of the robot their classes beside base
 /// and sensor. The classes, too, where their sizes were learned.
 std::string format_values(const Calibration& calibration, bool has_all) {
@@ -327,7 +267,7 @@ std::string format_parameters(const Calibration& calibration, bool has_all) {
     }
     const detail::Table compliance = detail::compliance_table(campaign, calibration.estimate);
     if (!compliance.rows.empty()) {
-        text += format_section("Compliances", compliance) + judge_compliances(calibration);
+        text += format_section("Compliances", compliance);
     }
     return text +
            format_section("Strongest correlations",
@@ -340,8 +280,7 @@ std::string format(const Calibration& calibration, bool has_all_parameters) {
     const std::string models = calibration.selection ? format(*calibration.selection) : "";
     if (!calibration.is_identified()) return models + calibration.estimate.undetermined + '\n';
     return models + describe_starts(calibration) + describe_measured(calibration) +
-           describe_ending(calibration) + judge_residuals(calibration) +
-           describe_missing_errors(calibration) + describe_tried(calibration) +
+           describe_ending(calibration) + describe_tried(calibration) +
            format_accuracy(calibration) + format_outliers(calibration) +
            format_refitted(calibration) + format_parameters(calibration, has_all_parameters);
 }

@@ -88,6 +88,15 @@ std::string describe(const Cure& cure, const Campaign& campaign) {
                        units_of(is_angle).error);
 }
 
+bool is_model_error_found(const Calibration& calibration) {
+    const auto names = calibration.campaign.robot.parameter_names();
+    const bool has_any = std::ranges::any_of(names, [&](const std::string& name) {
+        return std::ranges::find(calibration.held, name) == calibration.held.end();
+    });
+    return has_any && calibration.campaign.spread.is_prior &&
+           calibration.method != CalibrationMethod::TwoStep;
+}
+
 std::string format_error(double value, bool is_angle) {
     if (std::isnan(value)) return "-";
     return format_short(mm_per_m * value, 4) + ' ' + std::string(units_of(is_angle).error);

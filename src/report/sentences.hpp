@@ -4,6 +4,7 @@
 
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/task/calibration.hpp"
 #include "posewise/task/judgement.hpp"
 
 /// Sentences about a campaign and about results, as reports and messages use them.
@@ -21,7 +22,8 @@ std::string describe_looseness(double efficiency, Index starts_at_best, Index st
 /// "with --exclude 5: 0.16 instead of 38 mm held out".
 std::string describe(const Cure& cure, const Campaign& campaign);
 
-/// Whether parameters are so little known that leaving a pose out makes a difference.
+/// Whether the model error was worth looking for: there are errors of the robot to identify.
+bool is_model_error_found(const Calibration& calibration);
 
 /// "1 mm", "-0.5 mrad": a small error with its unit.
 std::string format_error(double value, bool is_angle);

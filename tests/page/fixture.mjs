@@ -93,6 +93,7 @@ export function makePlan(count = 12, name = 'cell', places = 200) {
     search: { seed: 1, starts: 4, starts_at_best: 1, stop_reason: 'converged' },
     predicted: { position_error_rms_m: 0.00015382351, position_error_p95_m: 0.00026046, standard_deviation: { 'base.x_m': 0.0000774, dq2_rad: 0.0000531 } },
     visiting_time_s: 7.295, assumes: { range_sigma_m: 1e-5, angle_sigma_rad: 1.5e-5, model_error_m: 1e-4, expected_error: { 'base.x_m': 0.001, dq2_rad: 0.001 } },
+    answers: [{ key: 'accuracy', question: 'How accurate', text: '0.2317 mm RMS expected over the workspace' }, { key: 'influence', question: 'Which pose matters most', text: "'p3': without it 0.2091 mm" }],
     poses, accuracy: accuracy(1), new_pose_count: count, measured_count: 0, workspace_count: places,
     pool: { drawn: 2000, feasible: 246, rejections: [{ constraint: 'keep_out', in_all: 294, first: 70 }] },
     tour: { time_s: 7.295, as_planned_s: 11.2, to_the_nearest_s: 8.2, blocked_count: 0 }, duration_s: 7.295,
@@ -154,7 +155,11 @@ export function makeEstimate({ errors = 18, drift = 0, name = 'measured robot' }
       { name: 'base and targets', parameter_count: 12, fit_rms_mm: 2.4, held_out_rms_mm: 2.6, standard_error_mm: 0.15 },
       { name: '+ lengths', parameter_count: 24, fit_rms_mm: 0.17, held_out_rms_mm: 0.18, standard_error_mm: 0.006 }] },
     assumes: { sigma_m: 5e-5, model_error_m: 1e-4, expected_error: {} }, doubts: {},
+    answers: [{ key: 'accuracy', question: 'How accurate', text: 'before 2.385 mm RMS, calibrated 0.1987 mm (95 %: 0.18 to 0.22 mm) at poses held out in turn' },
+      { key: 'drift', question: 'Drift', text: 'none seen; 0.1 mm from first to last would have been' }],
   };
+  document.accuracy.order_trend = { strongest: 'z', is_beside_joints: false,
+    axes: ['x', 'y', 'z'].map((axis) => ({ axis, change_mm: axis === 'z' ? drift : 0, detectable_mm: 0.1, early_mm: 0, probability: 0.5 })) };
   const points = Array.from({ length: 120 }, () => {
     const joints = draw(scene);
     return { position: apply(flange(scene, joints), [0.25, 0, 0.12]), joints, predicted_mm: 0.03 + 0.02 * random(), displacement_mm: [normal(), normal(), normal()] };
@@ -172,6 +177,7 @@ export function makeStudy(name = 'study') {
   return {
     title: name, command: 'posewise study', made_at: '2026-11-23T12:00:00Z', printed: 'poses\n', scene: makeScene(),
     document: { kind: 'posewise study', posewise_version: '0.1.0', format: 1, campaign: name, ending: 'converged', simulated: false, splits: 10, judged_on: 18,
+      answers: [{ key: 'accuracy', question: 'How many poses', text: '12 poses chosen by v leave 0.21 mm RMS at poses held out' }],
       models: [{ name: '', rows: [row(6, 1.08), row(8, 0.33), row(10, 0.238), row(12, 0.21), row(14, 0.208)] }] },
   };
 }

@@ -92,8 +92,7 @@ for (const [name, words] of Object.entries(commands)) {
     }
     // What the sentence says, and that it is the document's.
     const sentence = await tab.locator('.verdict').textContent();
-    const numbers = sentence.match(/\d+\.\d{4}/g) ?? [];
-    for (const number of numbers.slice(0, 1)) assert.ok(printed.includes(number), `${number} is not printed`);
+    assert.ok(printed.replace(/\s+/g, ' ').includes(sentence.slice(1, -1)), `not printed: ${sentence}`);
     await tab.screenshot({ path: join(output, `program_${name}.png`), fullPage: true });
     await close();
   });
@@ -107,7 +106,7 @@ test('exported files', { skip: program ? false : 'POSEWISE_PROGRAM is not set' }
   run('report', saved, '--out', path);
   const { tab, complaints, close } = await open(browser, path);
   await drawn(tab);
-  assert.match(await tab.locator('.verdict').textContent(), /^1 file written and read back: the flange is where it shall be within \d/);
+  assert.match(await tab.locator('.verdict').textContent(), /^1 file written and read back: the flange is where it should be within \d/);
   assert.deepEqual(await tab.locator('#exported-files-read-back tbody tr:last-child td:first-child, #exported-files-read-back tbody tr:last-child th').first().textContent(), dh);
   assert.deepEqual(complaints, []);
   await close();

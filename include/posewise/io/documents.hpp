@@ -8,6 +8,7 @@
 #include "posewise/io/robot_files.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/model/dh.hpp"
+#include "posewise/task/answers.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/correction.hpp"
@@ -26,6 +27,9 @@ namespace posewise::io {
 /// The document with these sentences as its `warnings`, replacing any. Throws InputError if it is
 /// no JSON object.
 std::string with_warnings(const std::string& document, const std::vector<std::string>& warnings);
+
+/// Likewise with these `answers`.
+std::string with_answers(const std::string& document, const std::vector<Answer>& answers);
 
 std::string to_json(const Inspection& inspection);
 

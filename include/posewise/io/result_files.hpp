@@ -49,6 +49,7 @@ struct Provenance {
     /// Command-line options: name and values.
     std::vector<std::pair<std::string, std::vector<std::string>>> options{};
     std::vector<std::string> warnings{};  ///< those given meanwhile, a sentence each
+    std::vector<Answer> answers{};        ///< answer() of the calibration
 };
 
 /// Checksum of configurations, their ids and observations, to tell whether measurements are the
@@ -140,10 +141,13 @@ SavedKind kind_of_saved(const std::string& path);
 /// another kind or format.
 std::string read_saved_document(const std::string& path, SavedKind kind);
 
-/// The document of a plan with the results of judge_again(), unless it has them already.
-std::string read_saved_plan(const std::string& path, const Planning& judged);
+/// The document of a plan with the results of judge_again() and the answers to them, unless it has
+/// them already.
+std::string read_saved_plan(const std::string& path, const Planning& judged,
+                            const std::vector<Answer>& answers);
 /// As above for a choice.
-std::string read_saved_plan(const std::string& path, const Plan& judged);
+std::string read_saved_plan(const std::string& path, const Plan& judged,
+                            const std::vector<Answer>& answers);
 
 /// How an estimate was made, as its file states.
 struct EstimateRecord {

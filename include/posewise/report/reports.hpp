@@ -1,10 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "posewise/task/answers.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/correction.hpp"
@@ -14,6 +16,18 @@
 
 /// Results of tasks as text: everything that the program prints of them.
 namespace posewise {
+
+/// What people ask of a result first; the first answer sums it up. Empty for a result without
+/// figures.
+std::vector<Answer> answer(const Calibration& calibration);
+std::vector<Answer> answer(const Planning& planning, const std::vector<CountAccuracy>& counts = {},
+                           const std::optional<SimulatedPlan>& simulated = std::nullopt);
+std::vector<Answer> answer(const TargetPlanning& found,
+                           const std::optional<SimulatedPlan>& simulated = std::nullopt);
+std::vector<Answer> answer(const Plan& choice);
+std::vector<Answer> answer(const std::vector<Study>& studies);
+/// A paragraph for each, 100 columns wide, and an empty line.
+std::string format(const std::vector<Answer>& answers);
 
 /// Elements, joints and axes of a robot, as text.
 std::string format_robot(const Chain& robot);

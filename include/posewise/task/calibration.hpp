@@ -11,6 +11,7 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/progress.hpp"
+#include "posewise/task/answers.hpp"
 #include "posewise/task/doubts.hpp"
 #include "posewise/task/judgement.hpp"
 
@@ -149,6 +150,9 @@ struct Calibration {
     RowMatrixXd nominal_residuals;               ///< like residuals(), for the same fit
     std::optional<Repeatability> repeatability;  ///< nothing: no configuration was repeated
     std::optional<CrossValidation> held_out;
+    std::optional<RmsInterval> held_out_interval;  ///< of its samples' RMS, 95 %
+    std::optional<Influence> influence;            ///< of the configuration that matters most
+    std::optional<OrderTrend> order_trend;         ///< of the residuals
     /// For means at poses like the measured ones; for samples over the workspace that
     /// estimated_geometry() draws (nothing where it cannot, and for contacts).
     ExpectedError expected;

@@ -180,6 +180,14 @@ Json vector_to_json(const Eigen::Ref<const VectorXd>& vector) {
     return std::vector<double>(vector.begin(), vector.end());
 }
 
+Json answers_to_json(const std::vector<Answer>& answers) {
+    Json list = Json::array();
+    for (const Answer& one : answers) {
+        list.push_back({{"key", one.key}, {"question", one.question}, {"text", one.text}});
+    }
+    return list;
+}
+
 Json numbers_to_json(const std::vector<NamedNumber>& numbers) {
     Json flat = Json::object();
     for (const NamedNumber& one : numbers) flat['/' + one.name] = one.value;

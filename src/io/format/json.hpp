@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "posewise/task/answers.hpp"
 #include "posewise/task/plan.hpp"
 
 namespace posewise::detail {
@@ -44,6 +45,9 @@ const char* load_key(bool turns);
 Json millimetres(const std::optional<double>& metres);
 
 Json vector_to_json(const Eigen::Ref<const VectorXd>& vector);
+
+/// A list of `key`, `question` and `text`.
+Json answers_to_json(const std::vector<Answer>& answers);
 
 /// An object of them; "expected_error/dq2_rad" is dq2_rad of the object expected_error (a JSON
 /// pointer without the first slash).

@@ -62,6 +62,36 @@ Json held_out_to_json(const CrossValidation& held_out) {
             {"failures", held_out.failures}};
 }
 
+/// By the residuals: the interval of the held-out RMS, the pose that matters most, drift.
+void add_residual_answers(Json& accuracy, const Calibration& calibration) {
+    const std::string unit = detail::error_suffix(!calibration.campaign.sensor->has_lengths());
+    if (const auto& interval = calibration.held_out_interval) {
+        accuracy["held_out"]["interval"] = {{"lower" + unit, mm * interval->lower},
+                                            {"upper" + unit, mm * interval->upper},
+                                            {"degrees_of_freedom", interval->degrees_of_freedom}};
+    }
+    if (const auto& influence = calibration.influence) {
+        accuracy["influence"] = {{"configuration", influence->id},
+                                 {"fit_rms" + unit, mm * influence->fit},
+                                 {"held_out_rms" + unit, mm * influence->held_out},
+                                 {"is_alone", influence->is_alone}};
+    }
+    if (const auto& trend = calibration.order_trend) {
+        Json slopes = Json::array();
+        for (const OrderSlope& slope : trend->slopes) {
+            const std::string own = detail::error_suffix(slope.is_angle);
+            slopes.push_back({{"axis", slope.axis},
+                              {"change" + own, mm * slope.change},
+                              {"detectable" + own, mm * slope.detectable},
+                              {"early" + own, mm * slope.early},
+                              {"probability", slope.probability}});
+        }
+        accuracy["order_trend"] = {{"strongest", trend->worst().axis},
+                                   {"is_beside_joints", trend->is_beside_joints},
+                                   {"axes", std::move(slopes)}};
+    }
+}
+
 /// Numbers of an expected error, RMS and 95 %, by name without unit: for JSON and CSV.
 std::vector<std::pair<std::string, double>> list_numbers(const PredictedError& error) {
     return {{"parameters", error.parameters},
@@ -127,6 +157,7 @@ Json accuracy_to_json(const Calibration& calibration) {
         }
     }
     if (calibration.held_out) accuracy["held_out"] = held_out_to_json(*calibration.held_out);
+    add_residual_answers(accuracy, calibration);
     accuracy["expected"] = expected_to_json(calibration);
     if (const auto& lengths = calibration.doubts.look.lengths) {
         accuracy["length_factor"] = {{"excess", lengths->excess},
@@ -301,6 +332,7 @@ Json estimate_to_json(const Calibration& calibration, const Provenance& made_fro
     document["assumes"] = detail::numbers_to_json(assumptions_of(campaign));
     document["doubts"] = detail::doubts_to_json(campaign, calibration.doubts);
     document["cures"] = detail::cures_to_json(campaign, calibration.cures);
+    document["answers"] = detail::answers_to_json(made_from.answers);
     return document;
 }
 

@@ -204,19 +204,25 @@ std::string to_json(const TargetPlanning& found, const std::string& path,
     return detail::json_text(document);
 }
 
-std::string read_saved_plan(const std::string& path, const Planning& judged) {
+std::string read_saved_plan(const std::string& path, const Planning& judged,
+                            const std::vector<Answer>& answers) {
     Json document = detail::read_document(path, "plan");
     if (!document.contains("accuracy")) {
         add_accuracy(document, judged.plan, path);
         add_counts(document, judged);
         add_judgement(document, judged);
+        document["answers"] = detail::answers_to_json(answers);
     }
     return detail::json_text(document, path);
 }
 
-std::string read_saved_plan(const std::string& path, const Plan& judged) {
+std::string read_saved_plan(const std::string& path, const Plan& judged,
+                            const std::vector<Answer>& answers) {
     Json document = detail::read_document(path, "plan");
-    if (!document.contains("accuracy")) add_accuracy(document, judged, path);
+    if (!document.contains("accuracy")) {
+        add_accuracy(document, judged, path);
+        document["answers"] = detail::answers_to_json(answers);
+    }
     return detail::json_text(document, path);
 }
 

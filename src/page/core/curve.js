@@ -22,26 +22,3 @@ export function plannedCurve(document) {
     limit: target?.limit_mm ?? null, assurance: target?.assurance ?? null,
   };
 }
-
-/**
- * How many poses more leave `part` of what `count` poses leave, by points (count, value) that fall:
- * interpolated between them on logarithmic axes; null beyond the last.
- */
-export function moreFor(points, count, part = 0.8) {
-  const list = points.filter((one) => one.value > 0).sort((a, b) => a.count - b.count);
-  const value = (n) => {
-    const k = list.findIndex((one) => one.count >= n);
-    if (k < 0) return null;
-    if (list[k].count === n || k === 0) return list[k].value;
-    const [a, b] = [list[k - 1], list[k]];
-    const at = Math.log(n / a.count) / Math.log(b.count / a.count);
-    return a.value * (b.value / a.value) ** at;
-  };
-  const now = value(count);
-  const last = list.at(-1);
-  if (!now || !last) return null;
-  for (let n = count + 1; n <= last.count; ++n) {
-    if (value(n) <= part * now) return { more: n - count, ratio: value(n) / now };
-  }
-  return { more: null, upTo: last.count, ratio: value(last.count) / now };
-}

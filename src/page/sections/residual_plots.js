@@ -1,14 +1,12 @@
 import { el } from '../core/dom.js';
 import { behind, figure, lead } from '../core/figure.js';
 import { count, fixed, mm, short } from '../core/format.js';
-import { driftOf } from '../core/drift.js';
 import { cellOf, columnTitle } from '../core/poses.js';
 import { byConfiguration } from '../core/residuals.js';
-import { line, mean, normalQuantile } from '../core/statistics.js';
+import { mean, normalQuantile } from '../core/statistics.js';
 import { table } from '../core/table.js';
 import { chart } from '../draw/chart.js';
 import { scatter, scatterLegend } from '../draw/scatter.js';
-import { describeDrift } from './verdict_estimate.js';
 
 export const title = 'Residuals';
 
@@ -33,18 +31,26 @@ const kindsOf = ({ axes, unit }) => [...new Set(unit)].map((one) => ({ unit: one
 
 const dotSize = (count, size) => (count > 400 ? Math.ceil(size / 2) : size);
 
-function driftFigures(drift) {
-  if (!drift) return null;
-  const text = describeDrift(drift);
-  const rows = drift.slopes.map((one) => [one.axis, short(one.slope, 3), short(one.error, 3), mm(one.change), one.unit, short(one.p, 3), short(one.corrected, 3), mm(one.seen), mm(one.early)]);
-  const numbers = table(`Straight lines through the means of configurations${drift.besideJoints ? ', beside sine and cosine of the joints' : ''}`,
-    ['axis', 'slope a configuration', 'std. error', 'over all', '', 'p', `p for ${drift.slopes.length} axes`, 'would have been seen', 'first tenth off the rest'], rows);
-  const units = [...new Set(drift.slopes.map((one) => one.unit))];
-  return units.map((unit, k) => {
-    const slopes = drift.slopes.filter((one) => one.unit === unit);
+function driftFigures({ document, residuals }, groups) {
+  const trend = document.accuracy?.order_trend;
+  if (!trend) return null;
+  const text = document.answers?.find((one) => one.key === 'drift')?.text ?? '';
+  const xs = groups.map((unused, k) => k + 1);
+  const rows = trend.axes.map((one, k) => {
+    const unit = residuals.unit[k];
+    return [one.axis, mm(one[`change_${unit}`]), mm(one[`detectable_${unit}`]), mm(one[`early_${unit}`]), unit, short(one.probability, 3)];
+  });
+  const numbers = table(`Straight lines through the means of configurations${trend.is_beside_joints ? ', besides what follows the joints\u2019 positions' : ''}`,
+    ['axis', 'change from first to last', 'would be seen', 'first tenth off the rest', '', 'p'], rows);
+  return kindsOf(residuals).map(({ unit, columns }, k) => {
+    const means = columns.map((column) => groups.map((group) => group.means[column]));
+    const fits = columns.map((column, n) => {
+      const slope = (trend.axes.find((one) => one.axis === residuals.axes[column])?.[`change_${unit}`] ?? 0) / (xs.length - 1);
+      return { slope, offset: mean(means[n]) - slope * mean(xs) };
+    });
     return figure(k === 0 ? text : null, scatter({
       label: `Residuals/${unit} in the order measured. ${text}`, x: { label: 'configuration, in the order measured' }, y: { label: `mean residual/${unit}` },
-      xs: drift.xs, columns: slopes.map((one) => one.ys), names: slopes.map((one) => one.axis), fits: slopes.map((one) => ({ ...one, label: undefined })), size: dotSize(drift.xs.length, 6), height: 280,
+      xs, columns: means, names: columns.map((column) => residuals.axes[column]), fits, size: dotSize(xs.length, 6), height: 280,
     }), k === 0 ? [numbers] : []);
   });
 }
@@ -52,16 +58,11 @@ function driftFigures(drift) {
 /** Small pictures, one for each of what residuals are drawn against. */
 function against(residuals, groups, list) {
   const columns = residuals.axes.map((unused, k) => groups.map((group) => group.means[k]));
-  const rows = list.flatMap(({ name, xs }) => residuals.axes.map((axis, k) => {
-    const fit = line(xs, columns[k]);
-    return fit ? [name, axis, short(fit.slope, 3), short(fit.error, 3), short(fit.p, 3)] : null;
-  })).filter(Boolean);
-  const pictures = kindsOf(residuals).map((kind) => [scatterLegend(kind.columns.map((k) => residuals.axes[k])),
+  return el('div', {}, kindsOf(residuals).map((kind) => [scatterLegend(kind.columns.map((k) => residuals.axes[k])),
     el('div', { class: 'figures figures-small' }, list.map(({ name, xs }) => figure(null, scatter({
       label: `Mean residuals/${kind.unit} against ${name}`, x: { label: name }, y: { label: `residual/${kind.unit}` }, xs, columns: kind.columns.map((k) => columns[k]),
       names: kind.columns.map((k) => residuals.axes[k]), height: 190, size: dotSize(xs.length, 4), hasLegend: false,
-    }))))]);
-  return el('div', {}, pictures, behind([table('Straight lines through them', ['against', 'axis', 'slope', 'std. error', 'p'], rows)], 'Trends as numbers'));
+    }))))]));
 }
 
 function normalFigure(residuals) {
@@ -120,7 +121,7 @@ export function render(part) {
   const sight = [['range', 'range/m', 1], ['azimuth', 'azimuth/deg', 180 / Math.PI], ['elevation', 'elevation/deg', 180 / Math.PI]]
     .filter(([key]) => groups.every((group) => key in group)).map(([key, name, factor]) => ({ name, xs: groups.map((group) => factor * group[key]) }));
   return el('div', {}, lead(`What ${residuals.rows.length} readings miss the calibrated robot by. Dots are means of ${count(groups.length, 'configuration')}.`),
-    el('div', { class: 'figures' }, driftFigures(driftOf(residuals, part.scene?.joints)), normalFigure(residuals)),
+    el('div', { class: 'figures' }, driftFigures(part, groups), normalFigure(residuals)),
     el(sub, { class: 'sub' }, 'Against each joint'), against(residuals, groups, joints),
     sight.length > 0 ? [el(sub, { class: 'sub' }, 'Against range and angles of the instrument'), against(residuals, groups, sight)] : null,
     outliers(part), farthest(part), behind([meansTable(part, residuals, groups)], 'Mean residuals as a table'));

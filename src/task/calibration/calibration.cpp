@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "answers.hpp"
 #include "calibration_options.hpp"
 #include "calibrator/robust.hpp"
 #include "core/progress_counter.hpp"
@@ -189,6 +190,12 @@ void calibrate_with(Work& work, Calibration& result) {
     result.campaign = with_model_error(work.campaign, result.estimate);
     result.held_out = hold_out(work, result);
     result.without_outliers = judge_without_outliers(work, result);
+    const RowMatrixXd left = residuals(work.campaign, result.estimate.parameters, work.used);
+    result.order_trend = detail::find_order_trend(work.campaign, work.used, left);
+    if (const auto& held_out = result.held_out) {
+        result.influence = detail::find_influence(work.campaign, work.used, left, *held_out);
+        result.held_out_interval = detail::held_out_interval(work.campaign, work.used, *held_out);
+    }
     result.doubts = find_doubts(work.campaign, work.used, registered, result.nominal);
     if (work.options.earlier) result.doubts.places.clear();  // by moved_since, where it matters
     Campaign as_stated = work.campaign;

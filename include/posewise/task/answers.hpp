@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewise/core/types.hpp"
+
+/// Numbers that answer what people ask of a result first; posewise/report/reports.hpp has the
+/// sentences.
+namespace posewise {
+
+/// A question and its answer, the same in text, JSON and page.
+struct Answer {
+    std::string key;       ///< "accuracy"
+    std::string question;  ///< "How accurate"
+    std::string text;      ///< one or two sentences
+};
+
+/// How the residuals of one axis change in the order of the measurements.
+struct OrderSlope {
+    std::string axis;        ///< as in residual_axes()
+    bool is_angle = false;   ///< rad below, else m
+    double change = 0;       ///< from the first to the last configuration, by a straight line
+    double detectable = 0;   ///< a change that would be seen with 95 % confidence
+    double early = 0;        ///< mean of the first tenth less that of the others
+    double probability = 1;  ///< that chance alone makes one of the axes change as much
+};
+
+/// Whether residuals follow the order of the measurements, as those of a robot that warms up or of
+/// an instrument that drifts do.
+struct OrderTrend {
+    std::vector<OrderSlope> slopes;  ///< at least one
+    std::size_t strongest = 0;       ///< the one least likely by chance
+    /// What follows the joints' positions was taken out first, so that poses measured in an order
+    /// of their own do not look like drift. False: too few configurations for that.
+    bool is_beside_joints = false;
+
+    const OrderSlope& worst() const { return slopes[strongest]; }
+    bool is_plain() const { return worst().probability < 0.01; }
+    bool is_possible() const { return worst().probability < 0.05; }
+};
+
+/// The configuration that the others predict worst, compared with how it is fitted.
+struct Influence {
+    std::string id;
+    double fit = 0;       ///< RMS of its residuals with itself used, m (rad without lengths)
+    double held_out = 0;  ///< predicted without it and, if not `is_alone`, without its group
+    bool is_alone = false;
+};
+
+/// An error, m, at a number of poses.
+struct ErrorAtCount {
+    Index pose_count = 0;
+    double error = 0;
+};
+
+/// How many more poses leave 80 % of an error.
+struct MorePoses {
+    std::optional<Index> more;  ///< nothing: no count up to `most` does
+    Index most = 0;             ///< the largest count known
+    double ratio = 1;           ///< error there, or with so many more, divided by that now
+};
+/// Interpolated between the points on logarithmic axes. Nothing if `count` is not among their
+/// range.
+std::optional<MorePoses> more_poses(std::vector<ErrorAtCount> points, Index count);
+
+}  // namespace posewise

@@ -1,0 +1,261 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/format.hpp"
+#include "core/text.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/report/reports.hpp"
+#include "sentences.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::count_of;
+using detail::format_error;
+using detail::format_short;
+
+/// The error where it was judged most honestly.
+struct Judged {
+    const Metrics& found;
+    std::optional<RmsInterval> interval;
+    std::string where;
+    const JudgedGroup* group = nullptr;
+};
+
+/// Poses that were not calibrated with come first, those like the ones calibrated with before
+/// others.
+Judged judge(const Calibration& calibration) {
+    for (const PoseGroup kind : {PoseGroup::New, PoseGroup::Beyond}) {
+        for (const auto& [judgement, name] :
+             {std::pair{&calibration.validation, "of the validation"},
+              std::pair{&calibration.verification, "that the plan set aside to verify"},
+              std::pair{&calibration.left_out, "not in the plan"}}) {
+            if (!*judgement) continue;
+            for (const JudgedGroup& group : (*judgement)->groups) {
+                if (group.group != kind) continue;
+                return {
+                    group.found, group.interval,
+                    fmt::format(
+                        "at {} {}{}", count_of(std::ssize(group.configurations), "pose"), name,
+                        kind == PoseGroup::New ? "" : ", beyond the joint ranges calibrated with"),
+                    &group};
+            }
+        }
+    }
+    if (const auto& held_out = calibration.held_out) {
+        return {held_out->samples, calibration.held_out_interval, "at poses held out in turn"};
+    }
+    return {calibration.estimate.fit, std::nullopt,
+            "at the poses it was made with; nothing was held out"};
+}
+
+/// "0.1234 to 0.2 mm".
+std::string format_interval(const RmsInterval& interval, bool is_angle) {
+    return fmt::format("{} to {}", format_short(mm_per_m * interval.lower, 4),
+                       format_error(interval.upper, is_angle));
+}
+
+std::string sum_up(const Calibration& calibration, const Judged& judged, bool is_angle) {
+    const double nominal = calibration.nominal.rms();
+    const double found = judged.found.rms();
+    std::string text = fmt::format("before {} RMS, calibrated {}", format_error(nominal, is_angle),
+                                   format_error(found, is_angle));
+    if (judged.interval) {
+        text += fmt::format(" (95 %: {})", format_interval(*judged.interval, is_angle));
+    }
+    text += ' ' + judged.where;
+    if (!calibration.limit) return text;
+    text += fmt::format("; limit {}: ", format_error(*calibration.limit, false));
+    const auto verdict = judged.group ? judge_limit(*judged.group, *calibration.limit)
+                                      : std::optional<LimitVerdict>();
+    if (!verdict) return text + "not judged";
+    return text + (*verdict == LimitVerdict::Kept      ? "pass"
+                   : *verdict == LimitVerdict::NotKept ? "fail"
+                                                       : "undecided");
+}
+
+std::string describe_sureness(const Calibration& calibration, const Judged& judged) {
+    std::string text;
+    if (judged.interval) {
+        text = judged.group ? fmt::format("{} degrees of freedom of these poses",
+                                          format_short(judged.interval->degrees_of_freedom, 3))
+                            : "the interval follows from how much the poses differ";
+        text += "; ";
+    }
+    text += fmt::format("the fit has {} degrees of freedom, variance factor {}",
+                        calibration.estimate.degrees_of_freedom,
+                        format_short(calibration.estimate.variance_factor, 3));
+    return text;
+}
+
+/// What is expected beside what was found, of the same means at the same poses.
+std::string compare_expected(const Calibration& calibration, bool is_angle) {
+    if (!calibration.held_out || !calibration.held_out_interval) return "";
+    const double expected = calibration.expected.total();
+    const double found = calibration.held_out->means.rms();
+    const auto& [lower, upper, freedom] = *calibration.held_out_interval;
+    const double factor = std::sqrt(upper / lower);
+    std::string text = fmt::format("{} expected at poses like these, {} found at those held out: ",
+                                   format_error(expected, is_angle), format_error(found, is_angle));
+    if (expected > found * factor)
+        return text + "less, sizes or model error may be stated too large";
+    if (!(expected * factor < found)) return text + "within chance";
+    return text + (calibration.expected.is_by_few_poses()
+                       ? "more, as with few poses, each of which tells what the others do not"
+                       : "more: outliers, drift, or errors that the model leaves out");
+}
+
+/// The largest part of what is expected over the workspace, or else at the poses measured.
+std::string describe_limit(const Calibration& calibration, bool is_angle) {
+    const auto& workspace = calibration.expected_workspace;
+    const ExpectedError& error = workspace ? *workspace : calibration.expected;
+    const std::array<std::pair<double, const char*>, 3> parts{
+        {{error.model, "what the robot's model cannot express"},
+         {error.parameters, "parameters that the poses leave uncertain"},
+         {error.noise, "the instrument's noise and the joints' repeatability"}}};
+    const auto& [size, what] =
+        *std::ranges::max_element(parts, {}, [](const auto& part) { return part.first; });
+    const double total = error.total();
+    if (!(total > 0)) return "";
+    std::string text = fmt::format("{}: {}, {:.0f} % of the square expected {}", what,
+                                   format_error(size, is_angle), 100 * size * size / total / total,
+                                   workspace ? "over the workspace" : "at poses like these");
+    const std::size_t outliers = calibration.estimate.outliers.size();
+    const bool drifts = calibration.order_trend && calibration.order_trend->is_plain();
+    if (drifts || outliers > 0) {
+        text += fmt::format("; {}{}{} may be in it", drifts ? "the drift below" : "",
+                            drifts && outliers > 0 ? " and " : "",
+                            outliers > 0 ? count_of(static_cast<Index>(outliers), "outlier") : "");
+    }
+    return text;
+}
+
+std::string describe_influence(const Calibration& calibration, bool is_angle) {
+    if (!calibration.influence) return "not known: nothing was held out";
+    const auto& [id, fit, held_out, is_alone] = *calibration.influence;
+    return fmt::format("{}: predicted by the {} it is missed by {}, with it by {}",
+                       detail::quote(id), is_alone ? "others" : "other groups",
+                       format_error(held_out, is_angle), format_error(fit, is_angle));
+}
+
+std::string describe_order(const Calibration& calibration) {
+    if (!calibration.order_trend) return "not known: too few configurations";
+    const OrderTrend& trend = *calibration.order_trend;
+    const OrderSlope& worst = trend.worst();
+    const std::string size =
+        fmt::format("{} changes by {} from first to last, p = {}{}", worst.axis,
+                    format_error(worst.change, worst.is_angle), format_short(worst.probability, 2),
+                    trend.is_beside_joints ? "" : "; poses in an order of their own look alike");
+    if (trend.is_plain()) {
+        return fmt::format(
+            "yes, residuals follow the order of the measurements: {}; the first "
+            "tenth is off the rest by {}",
+            size, format_error(worst.early, worst.is_angle));
+    }
+    if (trend.is_possible()) return "perhaps: " + size;
+    double detectable = 0;
+    for (const OrderSlope& slope : trend.slopes) {
+        if (slope.is_angle == worst.is_angle) detectable = std::max(detectable, slope.detectable);
+    }
+    return fmt::format("none seen; {} from first to last would have been",
+                       format_error(detectable, worst.is_angle));
+}
+
+/// More configurations lower the parameters' variance alone, as 1 / n.
+std::string describe_more(const Calibration& calibration, bool is_angle) {
+    constexpr double wanted = 0.8;
+    const ExpectedError& error =
+        calibration.expected_workspace ? *calibration.expected_workspace : calibration.expected;
+    const double parameters = error.parameters * error.parameters;
+    const double rest = error.total() * error.total() - parameters;
+    const double open = wanted * wanted * (parameters + rest) - rest;
+    const auto now = static_cast<double>(calibration.measured.configurations);
+    const double more = std::ceil(now * parameters / open - now);
+    constexpr double most = 1e6;
+    if (!(open > 0) || more > most) {
+        return fmt::format(
+            "no number does: {} of the {} expected would be left if all parameters were known; a "
+            "better model or instrument helps",
+            format_error(std::sqrt(rest), is_angle), format_error(error.total(), is_angle));
+    }
+    return fmt::format("about {} more, if they tell as much as those measured",
+                       count_of(static_cast<Index>(more), "configuration"));
+}
+
+/// "the residuals in mm are 3 times what sigma and model error say".
+std::string judge_residuals(const Calibration& calibration, const ResidualDoubt& doubt) {
+    const bool has_kinds = !calibration.estimate.variance_by_kind.empty();
+    const std::string text =
+        fmt::format("the residuals{} are {} times what sigma and model error say",
+                    !has_kinds       ? ""
+                    : doubt.is_angle ? " in mrad"
+                                     : " in mm",
+                    format_short(doubt.ratio, 2));
+    const bool is_earlier = !calibration.held.empty();
+    if (is_earlier) {
+        return text + (doubt.ratio < 1 ? ", less than the earlier estimate left over"
+                                       : ": the robot may not be as the earlier estimate has it");
+    }
+    if (doubt.ratio > 1) return text;
+    if (detail::is_model_error_found(calibration)) {
+        return text + ": what is expected is rather too large";
+    }
+    if (doubt.fitting == 0) return text;
+    return text + fmt::format(", as a model error of {} would leave",
+                              format_error(doubt.fitting, doubt.is_angle));
+}
+
+std::string judge_residuals(const Calibration& calibration) {
+    std::string text;
+    for (const ResidualDoubt& doubt : calibration.doubts.residuals) {
+        text += (text.empty() ? "" : "; ") + judge_residuals(calibration, doubt);
+    }
+    return text;
+}
+
+std::string describe_missing_errors(const Calibration& calibration) {
+    if (!calibration.doubts.missing_errors) return "";
+    return fmt::format(
+        "about {:.0f} % of the squares left over follow the joints' positions: joints bend or have "
+        "periodic errors that this model leaves out",
+        100 * *calibration.doubts.missing_errors);
+}
+
+std::string judge_compliances(const Calibration& calibration) {
+    std::string names;
+    for (const Index joint : calibration.doubts.negative_compliances) {
+        names += (names.empty() ? "" : ", ") + calibration.campaign.robot.joint(joint).name;
+    }
+    if (names.empty()) return "";
+    return names +
+           ": negative, but a joint gives way with its load; is tau the torque of the load (a "
+           "motor's has the other sign), are weights, places and direction of gravity right?";
+}
+
+}  // namespace
+
+std::vector<Answer> answer(const Calibration& calibration) {
+    if (!calibration.is_identified()) return {};
+    const bool is_angle = !calibration.campaign.sensor->has_lengths();
+    const Judged judged = judge(calibration);
+    std::vector<Answer> answers{{"accuracy", "How accurate", sum_up(calibration, judged, is_angle)},
+                                {"sureness", "How sure", describe_sureness(calibration, judged)}};
+    const auto add = [&](const char* key, const char* question, const std::string& text) {
+        if (!text.empty()) answers.push_back({key, question, text});
+    };
+    add("expected", "As expected", compare_expected(calibration, is_angle));
+    add("limit", "What limits it", describe_limit(calibration, is_angle));
+    add("influence", "Which pose matters most", describe_influence(calibration, is_angle));
+    add("drift", "Drift", describe_order(calibration));
+    add("more", "More poses for 20 % less", describe_more(calibration, is_angle));
+    add("residuals", "Residuals", judge_residuals(calibration));
+    add("missing_errors", "Errors left out", describe_missing_errors(calibration));
+    add("negative_compliances", "Compliances", judge_compliances(calibration));
+    return answers;
+}
+
+}  // namespace posewise

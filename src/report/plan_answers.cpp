@@ -1,0 +1,178 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/format.hpp"
+#include "core/text.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/report/reports.hpp"
+#include "sentences.hpp"
+#include "target_report.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::count_of;
+using detail::format_error;
+using detail::format_short;
+
+/// "24 poses and 10 measured already".
+std::string describe_poses(const Planning& planning) {
+    Index count = 0;
+    for (const PlannedPose& pose : planning.plan.poses) count += pose.times;
+    std::string text = count_of(count, "pose");
+    if (planning.measured_count > 0) {
+        text += fmt::format(" and {} measured already", planning.measured_count);
+    }
+    return text;
+}
+
+std::string sum_up(const Planning& planning, const char* quantity, double expected, double lower,
+                   double upper) {
+    return fmt::format(
+        "{} {} expected over the workspace (90 %: {} to {}) once calibrated with {}, model error "
+        "included",
+        format_error(expected, false), quantity, format_short(mm_per_m * lower, 4),
+        format_error(upper, false), describe_poses(planning));
+}
+
+/// "Limit 0.2 mm with 95 %: kept", by the closed form or, if there are some, by simulated robots.
+std::string judge(const TargetPlanning& found, const std::optional<SimulatedPlan>& simulated) {
+    const TargetOptions& target = found.target;
+    if (!target.limit) return "";
+    const bool is_simulated = simulated && simulated->robot_count > 0;
+    LimitVerdict verdict =
+        found.error->assured <= *target.limit ? LimitVerdict::Kept : LimitVerdict::NotKept;
+    if (is_simulated) verdict = judge_limit(*simulated, *target.limit);
+    return fmt::format("; limit {} with {} %{}: {}", format_error(*target.limit, false),
+                       format_short(100 * target.assurance),
+                       is_simulated ? ", checked by simulation" : "",
+                       verdict == LimitVerdict::Kept      ? "kept"
+                       : verdict == LimitVerdict::NotKept ? "not kept"
+                                                          : "too close to say");
+}
+
+std::string describe_proof(const Plan& plan) {
+    return fmt::format("{} reaches at least {} % of the largest possible {}",
+                       plan.is_continuous() ? "the best choice from the pool" : "the choice",
+                       detail::format_fixed(100 * plan.efficiency, 1),
+                       criterion_name(plan.request.criterion));
+}
+
+std::string describe_sureness(const Planning& planning,
+                              const std::optional<SimulatedPlan>& simulated) {
+    std::string text = planning.plan.efficiency > 0 ? describe_proof(planning.plan) : "";
+    if (!simulated || simulated->robot_count == 0) return text;
+    return text + (text.empty() ? "" : "; ") +
+           fmt::format("the expected error was checked on {}",
+                       count_of(simulated->robot_count, "simulated robot"));
+}
+
+std::string describe_limit(const ErrorBudget& budget) {
+    const std::array<std::pair<double, const char*>, 5> parts{
+        {{budget.left_over, "what the robot's model cannot express"},
+         {budget.noise, "parameters that the noise of measuring leaves uncertain"},
+         {budget.model, "parameters that the model error at the poses leaves uncertain"},
+         {budget.prior, "parameters that the poses hardly tell, as uncertain as before"},
+         {budget.repeatability, "the joints' repeatability"}}};
+    const auto& [size, what] =
+        *std::ranges::max_element(parts, {}, [](const auto& part) { return part.first; });
+    if (!(budget.total > 0)) return "";
+    return fmt::format("{}: {}, {:.0f} % of the square", what, format_error(size, false),
+                       100 * size * size / (budget.total * budget.total));
+}
+
+std::string describe_influence(const Planning& planning) {
+    const std::vector<DropOut>& without = planning.without_each;
+    if (without.empty() || !planning.plan.predicted) return "";
+    const auto most = std::ranges::max_element(without, {}, &DropOut::rms);
+    const std::string id =
+        detail::quote(planning.plan.poses[static_cast<std::size_t>(most->pose)].id);
+    if (std::isinf(most->rms)) return id + ": without it not all parameters are identified";
+    return fmt::format("{}: without it the error by the parameters is {} instead of {}", id,
+                       format_error(most->rms, false),
+                       format_error(planning.plan.predicted->rms, false));
+}
+
+/// Chosen plans are compared with each other, where there are any: planned ones are better.
+std::string describe_more(const std::vector<ErrorAtCount>& chosen,
+                          const std::vector<ErrorAtCount>& planned, Index count,
+                          const ErrorBudget& budget) {
+    const auto found = more_poses(chosen.size() > 1 ? chosen : planned, count);
+    if (!found || found->most <= count) return "";
+    if (found->more) return fmt::format("about {} more", count_of(*found->more, "pose"));
+    return fmt::format(
+        "no number tried: {} leave {:.0f} % of what {} leave; {} would be left if all parameters "
+        "were known",
+        count_of(found->most, "pose"), 100 * found->ratio, count,
+        format_error(std::hypot(budget.left_over, budget.repeatability), false));
+}
+
+std::vector<Answer> complete(const Planning& planning, const std::string& accuracy,
+                             const std::optional<SimulatedPlan>& simulated,
+                             const std::string& more) {
+    std::vector<Answer> answers{{"accuracy", "How accurate", accuracy}};
+    const auto add = [&](const char* key, const char* question, const std::string& text) {
+        if (!text.empty()) answers.push_back({key, question, text});
+    };
+    add("sureness", "How sure", describe_sureness(planning, simulated));
+    add("limit", "What limits it", describe_limit(planning.budget));
+    add("influence", "Which pose matters most", describe_influence(planning));
+    add("more", "More poses for 20 % less", more);
+    return answers;
+}
+
+}  // namespace
+
+std::vector<Answer> answer(const Planning& planning, const std::vector<CountAccuracy>& counts,
+                           const std::optional<SimulatedPlan>& simulated) {
+    if (!planning.plan.predicted) return answer(planning.plan);
+    const double model_error = planning.campaign.model_error;
+    const PredictedTotal total = predict_total(*planning.plan.predicted, model_error);
+    std::vector<ErrorAtCount> chosen, planned;
+    for (const CountAccuracy& one : counts) {
+        if (!one.accuracy) continue;
+        (one.is_planned ? planned : chosen)
+            .push_back({one.pose_count, predict_total(*one.accuracy, model_error).rms});
+    }
+    return complete(planning, sum_up(planning, "RMS", total.rms, total.lower, total.upper),
+                    simulated,
+                    describe_more(chosen, planned, planning.search.pose_count, planning.budget));
+}
+
+std::vector<Answer> answer(const TargetPlanning& found,
+                           const std::optional<SimulatedPlan>& simulated) {
+    if (!found.planning || !found.error) return {};
+    const Planning& planning = *found.planning;
+    const ErrorRange& error = *found.error;
+    std::vector<ErrorAtCount> chosen, planned;
+    for (const CountPrediction& one : found.curve) {
+        if (!one.error) continue;
+        (one.is_planned ? planned : chosen).push_back({one.pose_count, one.error->expected});
+    }
+    return complete(planning,
+                    sum_up(planning, detail::name_of(found.target.quantity), error.expected,
+                           error.lower, error.upper) +
+                        judge(found, simulated),
+                    simulated,
+                    describe_more(chosen, planned, planning.search.pose_count, planning.budget));
+}
+
+std::vector<Answer> answer(const Plan& plan) {
+    Index count = 0;
+    for (const PlannedPose& pose : plan.poses) count += pose.times;
+    std::string text = fmt::format("{} chosen by {}", count_of(count, "pose"),
+                                   criterion_name(plan.request.criterion));
+    if (plan.predicted) {
+        text += fmt::format(": {} RMS expected by the parameters alone, 95 % of positions below {}",
+                            format_error(plan.predicted->rms, false),
+                            format_error(plan.predicted->percentile95, false));
+    }
+    std::vector<Answer> answers{{"accuracy", "How accurate", text}};
+    if (plan.efficiency > 0) answers.push_back({"sureness", "How sure", describe_proof(plan)});
+    return answers;
+}
+
+}  // namespace posewise

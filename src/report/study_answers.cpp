@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/format.hpp"
+#include "core/text.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/report/reports.hpp"
+#include "sentences.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::count_of;
+using detail::format_error;
+
+/// Medians of the poses that the first criterion chose, by count, with their rows.
+struct Curve {
+    std::vector<ErrorAtCount> points;
+    std::vector<const StudyRow*> rows;
+};
+
+Curve curve_of(const Study& study) {
+    Curve curve;
+    if (study.criteria.empty()) return curve;
+    for (const StudyRow& row : study.rows) {
+        const auto median = held_out_quantile(planned_cases(row, 0, study.criteria.size()), 0.5);
+        if (!median) continue;
+        curve.points.push_back({row.pose_count, *median});
+        curve.rows.push_back(&row);
+    }
+    return curve;
+}
+
+/// The least number of poses within 10 % of the smallest error.
+std::size_t enough(const std::vector<ErrorAtCount>& points) {
+    constexpr double alike = 1.1;
+    const double best = std::ranges::min(points, {}, &ErrorAtCount::error).error;
+    return static_cast<std::size_t>(
+        std::ranges::find_if(points, [&](const auto& one) { return one.error <= alike * best; }) -
+        points.begin());
+}
+
+std::string sum_up(const Study& study, const Curve& curve) {
+    const std::size_t k = enough(curve.points);
+    const auto random = held_out_quantile(curve.rows[k]->random, 0.5);
+    const auto expected = median_expected(planned_cases(*curve.rows[k], 0, study.criteria.size()));
+    std::string text = fmt::format(
+        "{} chosen by {} leave {} RMS {}", count_of(curve.points[k].pose_count, "pose"),
+        criterion_name(study.criteria.front()), format_error(curve.points[k].error, false),
+        study.is_simulated ? "over the workspace" : "at poses held out");
+    if (expected) text += fmt::format(", {} expected", format_error(*expected, false));
+    if (random) text += fmt::format(", random ones {}", format_error(*random, false));
+    return text +
+           (k + 1 == curve.points.size() ? "; more were not tried" : "; more gain less than 10 %");
+}
+
+std::string describe_sureness(const Study& study, const Curve& curve) {
+    const StudyRow& row = *curve.rows[enough(curve.points)];
+    if (study.splits == 0) return "every subset was judged on the poses it leaves";
+    const std::string splits =
+        count_of(split_count(row, study.criteria.size()), study.is_simulated ? "robot" : "split");
+    std::string text = "medians over " + splits;
+    if (const auto advantage = planned_advantage(study, row, 0)) {
+        text += fmt::format("; planned against random {:.2f}, with 95 % {:.2f} to {:.2f}",
+                            advantage->ratio, advantage->lower, advantage->upper);
+    }
+    return text;
+}
+
+std::string describe_limit(const Curve& curve) {
+    if (curve.points.size() == 1) return "";
+    const std::size_t k = enough(curve.points);
+    if (k + 1 == curve.points.size()) {
+        return "the number of poses: the error still falls at the largest number tried";
+    }
+    return fmt::format(
+        "noise and what the model cannot express; from {} on not the number of poses",
+        count_of(curve.points[k].pose_count, "pose"));
+}
+
+/// "from 8: 5 more, from 12: 9 more; from 20 none up to 50".
+std::string describe_more(const std::vector<ErrorAtCount>& points) {
+    std::vector<std::string> steps;
+    Index without = 0;  // the first number that none leaves 20 % less than, if not 0
+    for (const ErrorAtCount& one : points) {
+        const auto found = more_poses(points, one.pose_count);
+        if (!found || found->most == one.pose_count) continue;
+        if (found->more) {
+            steps.push_back(fmt::format("from {}: {}", one.pose_count, *found->more));
+            without = 0;
+        } else if (without == 0) {
+            without = one.pose_count;
+        }
+    }
+    const std::string rest = without > 0 ? fmt::format("from {} no number up to {} does", without,
+                                                       points.back().pose_count)
+                                         : "";
+    return fmt::format("{}{}{}", fmt::join(steps, ", "), steps.empty() || rest.empty() ? "" : "; ",
+                       rest);
+}
+
+}  // namespace
+
+std::vector<Answer> answer(const std::vector<Study>& studies) {
+    std::vector<Answer> answers;
+    for (const Study& study : studies) {
+        const Curve curve = curve_of(study);
+        if (curve.points.empty()) continue;
+        const std::string of = study.model.empty() ? "" : study.model + ": ";
+        const auto add = [&](const char* key, const char* question, const std::string& text) {
+            if (!text.empty()) answers.push_back({key, question, of + text});
+        };
+        add("accuracy", "How many poses", sum_up(study, curve));
+        add("sureness", "How sure", describe_sureness(study, curve));
+        add("limit", "What limits it", describe_limit(curve));
+        add("more", "More poses for 20 % less", describe_more(curve.points));
+    }
+    return answers;
+}
+
+}  // namespace posewise

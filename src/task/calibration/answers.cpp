@@ -1,0 +1,231 @@
+#include "answers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/statistics.hpp"
+#include "posewise/task/calibration.hpp"
+
+namespace posewise {
+namespace detail {
+namespace {
+
+/// First row and number of rows that each configuration has in residuals().
+std::vector<std::pair<Index, Index>> rows_of_configurations(const Measurements& measurements) {
+    std::vector<std::pair<Index, Index>> rows;
+    Index first = 0;
+    for (Index i = 0; i < measurements.configuration_count(); ++i) {
+        const Index sample = measurements.first_sample[static_cast<std::size_t>(i)];
+        const Index count =
+            measurements.is_seen.middleRows(sample, measurements.sample_count(i)).count();
+        rows.emplace_back(first, count);
+        first += count;
+    }
+    return rows;
+}
+
+/// Axes that have the unit of the first: they are the first ones.
+Index main_axis_count(const Sensor& sensor) {
+    Index count = 1;
+    while (count < sensor.rows_per_target() && sensor.is_angle(count) == sensor.is_angle(0)) {
+        ++count;
+    }
+    return count;
+}
+
+/// Mean square distance of each configuration; NaN where it has no reading or one is unknown.
+VectorXd mean_squares(const Campaign& campaign, const Measurements& measurements,
+                      const RowMatrixXd& residuals) {
+    const auto rows = rows_of_configurations(measurements);
+    VectorXd squares(std::ssize(rows));
+    for (Index i = 0; i < squares.size(); ++i) {
+        const auto [first, count] = rows[static_cast<std::size_t>(i)];
+        squares[i] = residuals.middleRows(first, count)
+                         .leftCols(main_axis_count(*campaign.sensor))
+                         .squaredNorm() /
+                     static_cast<double>(count);
+    }
+    return squares;
+}
+
+/// What errors of a model may follow: 1, sine and cosine of each joint, sliding joints themselves.
+MatrixXd position_columns(const Chain& robot, const RowMatrixXd& configurations) {
+    MatrixXd columns = VectorXd::Ones(configurations.rows());
+    const auto add = [&](const VectorXd& column) {
+        columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+        columns.rightCols(1) = column;
+    };
+    for (Index j = 0; j < robot.joint_count(); ++j) {
+        const VectorXd values = configurations.col(j);
+        if (robot.joint(j).motion == Motion::Rotation) {
+            add(values.array().sin());
+            add(values.array().cos());
+        } else {
+            add(values);
+        }
+    }
+    return columns;
+}
+
+/// Takes out what the columns express.
+class Remainder {
+  public:
+    explicit Remainder(const MatrixXd& columns) {
+        constexpr double dependent = 1e-6;
+        Eigen::ColPivHouseholderQR<MatrixXd> qr(columns.rows(), columns.cols());
+        qr.setThreshold(dependent);
+        qr.compute(columns * columns.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal());
+        basis_ = qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
+    }
+    VectorXd operator()(const VectorXd& values) const {
+        return values - basis_ * (basis_.transpose() * values);
+    }
+    Index rank() const { return basis_.cols(); }
+
+  private:
+    MatrixXd basis_;
+};
+
+/// Slope of y over x once the columns are taken out of both.
+struct Line {
+    double slope = 0;
+    double error = 0;    ///< its standard deviation
+    double freedom = 1;  ///< degrees of freedom of that
+};
+
+std::optional<Line> fit_line(const VectorXd& x, const VectorXd& y, const MatrixXd& columns) {
+    constexpr double explained = 1e-9;  // part of x's square below which nothing of it is left
+    constexpr double most_alike = 0.95;
+    const Remainder remainder(columns);
+    const VectorXd own_x = remainder(x), own_y = remainder(y);
+    const auto degrees = static_cast<double>(x.size() - remainder.rank() - 1);
+    const double square = own_x.squaredNorm();
+    if (degrees < 1 || !(square > explained * x.squaredNorm())) return std::nullopt;
+    const double slope = own_x.dot(own_y) / square;
+    const VectorXd rest = own_y - slope * own_x;
+    const double left = rest.squaredNorm();
+    const Index pairs = rest.size() - 1;
+    const double alike =
+        left > 0 ? std::clamp(rest.head(pairs).dot(rest.tail(pairs)) / left, 0.0, most_alike) : 0;
+    const double wider = (1 + alike) / (1 - alike);
+    return Line{slope, std::sqrt(left / degrees / square * wider), std::max(1.0, degrees / wider)};
+}
+
+}  // namespace
+
+std::optional<OrderTrend> find_order_trend(const Campaign& campaign,
+                                           const Measurements& measurements,
+                                           const RowMatrixXd& residuals) {
+    constexpr Index least = 4;
+    constexpr double level = 0.05;
+    std::vector<Index> shown;  // configurations with readings
+    const auto rows = rows_of_configurations(measurements);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (rows[i].second > 0) shown.push_back(static_cast<Index>(i));
+    }
+    const Index count = std::ssize(shown);
+    if (count < least) return std::nullopt;
+    RowMatrixXd means(count, residuals.cols());
+    for (Index k = 0; k < count; ++k) {
+        const auto [first, number] =
+            rows[static_cast<std::size_t>(shown[static_cast<std::size_t>(k)])];
+        means.row(k) = residuals.middleRows(first, number).colwise().mean();
+    }
+    const VectorXd order = VectorXd::LinSpaced(count, 1, static_cast<double>(count));
+    MatrixXd columns =
+        position_columns(campaign.robot, measurements.configurations(shown, Eigen::all));
+    OrderTrend trend;
+    trend.is_beside_joints = count >= 3 * (columns.cols() + 1);
+    if (!trend.is_beside_joints) columns = columns.leftCols(1).eval();
+    const std::vector<std::string> axes = residual_axes(campaign);
+    const auto axis_count = static_cast<double>(axes.size());
+    const Index first_tenth = (count + 9) / 10;
+    for (Index axis = 0; axis < means.cols(); ++axis) {
+        const VectorXd y = means.col(axis);
+        const auto line = fit_line(order, y, columns);
+        if (!line) continue;
+        const double by_chance = line->error > 0
+                                     ? two_sided(line->slope / line->error, line->freedom)
+                                 : line->slope == 0 ? 1
+                                                    : 0;
+        const auto length = static_cast<double>(count - 1);
+        trend.slopes.push_back(
+            {axes[static_cast<std::size_t>(axis)], campaign.sensor->is_angle(axis),
+             line->slope * length,
+             student_quantile(1 - level / axis_count / 2, line->freedom) * line->error * length,
+             y.head(first_tenth).mean() - y.tail(count - first_tenth).mean(),
+             std::min(1.0, axis_count * by_chance)});
+    }
+    if (trend.slopes.empty()) return std::nullopt;
+    const auto worst = std::ranges::min_element(trend.slopes, {}, &OrderSlope::probability);
+    trend.strongest = static_cast<std::size_t>(worst - trend.slopes.begin());
+    return trend;
+}
+
+std::optional<Influence> find_influence(const Campaign& campaign, const Measurements& measurements,
+                                        const RowMatrixXd& residuals,
+                                        const CrossValidation& held_out) {
+    const VectorXd fit = mean_squares(campaign, measurements, residuals).cwiseSqrt();
+    const VectorXd without = mean_squares(campaign, measurements, held_out.residuals).cwiseSqrt();
+    std::optional<Index> most;
+    for (Index i = 0; i < fit.size(); ++i) {
+        const double grown = without[i] - fit[i];
+        if (std::isnan(grown)) continue;
+        if (!most || grown > without[*most] - fit[*most]) most = i;
+    }
+    if (!most) return std::nullopt;
+    return Influence{measurements.ids[static_cast<std::size_t>(*most)], fit[*most], without[*most],
+                     held_out.folds == fit.size()};
+}
+
+std::optional<RmsInterval> held_out_interval(const Campaign& campaign,
+                                             const Measurements& measurements,
+                                             const CrossValidation& held_out) {
+    constexpr Index least = 3;
+    constexpr double level = 0.05;
+    std::vector<double> known;
+    for (const double square : mean_squares(campaign, measurements, held_out.residuals)) {
+        if (!std::isnan(square)) known.push_back(square);
+    }
+    const Index count = std::ssize(known);
+    if (count < least) return std::nullopt;
+    const Eigen::Map<const VectorXd> squares(known.data(), count);
+    const double mean = squares.mean();
+    if (!(mean > 0)) return std::nullopt;
+    const auto freedom = static_cast<double>(count - 1);
+    const double error =
+        std::sqrt((squares.array() - mean).square().sum() / freedom / static_cast<double>(count));
+    const double factor = std::exp(student_quantile(1 - level / 2, freedom) * error / (2 * mean));
+    const double rms = held_out.samples.rms();
+    return RmsInterval{rms / factor, rms * factor, freedom};
+}
+
+}  // namespace detail
+
+std::optional<MorePoses> more_poses(std::vector<ErrorAtCount> points, Index count) {
+    constexpr double wanted = 0.8;
+    std::erase_if(points, [](const ErrorAtCount& one) { return !(one.error > 0); });
+    std::ranges::sort(points, {}, &ErrorAtCount::pose_count);
+    if (points.empty() || count < points.front().pose_count || count > points.back().pose_count) {
+        return std::nullopt;
+    }
+    const auto error_at = [&](Index n) {
+        const auto next = std::ranges::lower_bound(points, n, {}, &ErrorAtCount::pose_count);
+        if (next->pose_count == n) return next->error;
+        const ErrorAtCount& last = *(next - 1);
+        const auto log_of = [&](Index k) {
+            return std::log(static_cast<double>(k) / static_cast<double>(last.pose_count));
+        };
+        return last.error *
+               std::pow(next->error / last.error, log_of(n) / log_of(next->pose_count));
+    };
+    const double now = error_at(count);
+    const Index most = points.back().pose_count;
+    for (Index n = count + 1; n <= most; ++n) {
+        if (error_at(n) <= wanted * now) return MorePoses{n - count, most, error_at(n) / now};
+    }
+    return MorePoses{std::nullopt, most, error_at(most) / now};
+}
+
+}  // namespace posewise

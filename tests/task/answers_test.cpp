@@ -1,0 +1,143 @@
+#include "../../src/task/calibration/answers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "posewise/task/calibration.hpp"
+#include "support/campaigns.hpp"
+
+namespace posewise {
+namespace {
+
+class ResidualAnswers : public ::testing::Test {
+  protected:
+    /// Residuals of so many configurations, one sample of three targets each: noise of 0.1 mm.
+    RowMatrixXd measure(Index configurations, std::uint64_t seed = 1) {
+        measurements_ =
+            simulate(campaign_, {.pose_count = configurations, .seed = seed}).measurements;
+        RandomStream stream(seed);
+        RowMatrixXd residuals(3 * configurations, 3);
+        for (double& value : residuals.reshaped()) value = 1e-4 * stream.normal();
+        return residuals;
+    }
+    OrderTrend trend_of(const RowMatrixXd& residuals) const {
+        return detail::find_order_trend(campaign_, measurements_, residuals).value();
+    }
+
+    Campaign campaign_ = testing::tracked_campaign(testing::planar_arm({1, 0.8}));
+    Measurements measurements_;
+};
+
+TEST_F(ResidualAnswers, FindDriftWhereThereIsSome) {
+    RowMatrixXd residuals = measure(30);
+    for (Index row = 0; row < residuals.rows(); ++row) {
+        residuals(row, 2) += 4e-4 * static_cast<double>(row / 3) / 29;
+    }
+    const OrderTrend trend = trend_of(residuals);
+    EXPECT_EQ(trend.worst().axis, "z");
+    EXPECT_TRUE(trend.is_plain());
+    EXPECT_TRUE(trend.is_beside_joints);
+    EXPECT_NEAR(trend.worst().change, 4e-4, 1e-4);
+    EXPECT_LT(trend.worst().early, -1e-4);
+    EXPECT_LT(trend.worst().detectable, 4e-4);
+}
+
+TEST_F(ResidualAnswers, HardlyEverFindDriftWhereThereIsNone) {
+    Index plain = 0, possible = 0;
+    constexpr Index campaigns = 400;
+    for (Index seed = 1; seed <= campaigns; ++seed) {
+        const OrderTrend trend = trend_of(measure(25, static_cast<std::uint64_t>(seed)));
+        plain += trend.is_plain() ? 1 : 0;
+        possible += trend.is_possible() ? 1 : 0;
+    }
+    EXPECT_LE(plain, 16);  // about 4 would be 1 %
+    EXPECT_LE(possible, 44);
+}
+
+TEST_F(ResidualAnswers, DoNotTakePosesInAnOrderOfTheirOwnForDrift) {
+    RowMatrixXd residuals = measure(40);
+    for (Index i = 0; i < 40; ++i) {
+        measurements_.configurations(i, 0) = 0.03 * static_cast<double>(i);
+        residuals.middleRows(3 * i, 3).col(0).array() +=
+            1e-3 * std::sin(measurements_.configurations(i, 0));
+    }
+    EXPECT_FALSE(trend_of(residuals).is_possible());
+    // Fewer configurations than tell joints from order.
+    measurements_ = take(measurements_, {0, 4, 8, 12, 16, 20, 24, 28});
+    RowMatrixXd few(24, 3);
+    for (Index i = 0; i < 8; ++i) few.middleRows(3 * i, 3) = residuals.middleRows(12 * i, 3);
+    EXPECT_FALSE(trend_of(few).is_beside_joints);
+    EXPECT_TRUE(trend_of(few).is_plain());
+    EXPECT_FALSE(
+        detail::find_order_trend(campaign_, take(measurements_, {0, 1, 2}), few.topRows(9)));
+}
+
+TEST_F(ResidualAnswers, NameTheConfigurationThatTheOthersMiss) {
+    const RowMatrixXd residuals = measure(12);
+    CrossValidation held_out;
+    held_out.folds = 12;
+    held_out.residuals = 1.2 * residuals;
+    held_out.residuals.middleRows(21, 3) = 9 * residuals.middleRows(21, 3);
+    held_out.residuals.middleRows(3, 3).setConstant(std::nan(""));  // could not be predicted
+    held_out.samples.distance_rms = 3e-4;
+    const Influence most =
+        detail::find_influence(campaign_, measurements_, residuals, held_out).value();
+    EXPECT_EQ(most.id, measurements_.ids[7]);
+    EXPECT_TRUE(most.is_alone);
+    EXPECT_NEAR(most.held_out, 9 * most.fit, 1e-15);
+    EXPECT_NEAR(most.fit, std::sqrt(residuals.middleRows(21, 3).squaredNorm() / 3), 1e-15);
+    const RmsInterval interval =
+        detail::held_out_interval(campaign_, measurements_, held_out).value();
+    EXPECT_NEAR(interval.lower * interval.upper, 9e-8, 1e-15);
+    EXPECT_EQ(interval.degrees_of_freedom, 10);
+}
+
+/// The factor is Student's quantile times the relative deviation of the mean square, halved.
+TEST_F(ResidualAnswers, IntervalHoldsTheTruthInNineteenOfTwentyCampaigns) {
+    Index inside = 0;
+    constexpr Index campaigns = 1000;
+    for (Index seed = 1; seed <= campaigns; ++seed) {
+        CrossValidation held_out;
+        held_out.folds = 20;
+        held_out.residuals = measure(20, static_cast<std::uint64_t>(seed));
+        held_out.samples.distance_rms =
+            std::sqrt(held_out.residuals.squaredNorm() / static_cast<double>(60));
+        const auto interval = detail::held_out_interval(campaign_, measurements_, held_out);
+        const double truth = 1e-4 * std::sqrt(3);
+        inside += interval->lower <= truth && truth <= interval->upper ? 1 : 0;
+    }
+    EXPECT_NEAR(static_cast<double>(inside), 950, 30);
+}
+
+TEST(MorePoses, AreReadOffTheCurve) {
+    std::vector<ErrorAtCount> points;
+    for (const Index count : {32, 8, 4, 16}) {
+        points.push_back({count, 1 / std::sqrt(static_cast<double>(count))});
+    }
+    // 1 / sqrt(n) falls to 0.8 of itself at 1.5625 n.
+    EXPECT_EQ(more_poses(points, 8)->more, 5);
+    EXPECT_EQ(more_poses(points, 10)->more, 6);
+    const MorePoses none = more_poses(points, 30).value();
+    EXPECT_FALSE(none.more);
+    EXPECT_EQ(none.most, 32);
+    EXPECT_NEAR(none.ratio, std::sqrt(30.0 / 32), 1e-12);
+    EXPECT_FALSE(more_poses(points, 3));
+    EXPECT_FALSE(more_poses(points, 33));
+    EXPECT_FALSE(more_poses({}, 5));
+}
+
+TEST(Calibrate, AnswersByItsResiduals) {
+    const Campaign campaign = testing::tracked_campaign(testing::fanuc());
+    const Measurements measurements = simulate(campaign, {.pose_count = 20}).measurements;
+    const Calibration found = calibrate(campaign, measurements);
+    ASSERT_TRUE(found.held_out_interval && found.influence && found.order_trend);
+    EXPECT_LT(found.held_out_interval->lower, found.held_out->samples.rms());
+    EXPECT_GT(found.held_out_interval->upper, found.held_out->samples.rms());
+    EXPECT_GT(found.influence->held_out, found.influence->fit);
+    EXPECT_EQ(found.order_trend->slopes.size(), 3U);
+    EXPECT_FALSE(calibrate(campaign, measurements, {.folds = 0}).influence);
+}
+
+}  // namespace
+}  // namespace posewise
