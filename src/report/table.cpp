@@ -37,16 +37,50 @@ std::vector<Column> measure(const Table& table) {
     return columns;
 }
 
+/// Makes the last column, if it is text, as narrow as a page asks for.
+void fit_to_page(std::vector<Column>& columns) {
+    constexpr std::size_t page = 100;
+    constexpr std::size_t least = 24;
+    std::size_t before = 0;
+    for (std::size_t i = 0; i + 1 < columns.size(); ++i) before += columns[i].width + 2;
+    const std::size_t room = std::max(least, page - std::min(page, before));
+    Column& last = columns.back();
+    if (!last.right_aligned) last.width = std::min(last.width, room);
+}
+
+/// The text in lines of at most `width`, as far as its words allow.
+std::vector<std::string> wrap(const std::string& text, std::size_t width) {
+    std::vector<std::string> lines{text};
+    while (lines.back().size() > width) {
+        std::string& line = lines.back();
+        std::size_t blank = line.rfind(' ', width);
+        if (blank == std::string::npos || blank == 0) blank = line.find(' ', width);
+        if (blank == std::string::npos) break;
+        std::string rest = line.substr(blank + 1);
+        line.resize(blank);
+        lines.push_back(std::move(rest));
+    }
+    return lines;
+}
+
 std::string format_row(const std::vector<std::string>& row, const std::vector<Column>& columns) {
     std::string line;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
+    for (std::size_t i = 0; i + 1 < columns.size(); ++i) {
         const std::string& cell = cell_at(row, i);
         const std::string padding(columns[i].width - cell.size(), ' ');
-        line += i == 0 ? "" : "  ";
-        line += columns[i].right_aligned ? padding + cell : cell + padding;
+        line += (columns[i].right_aligned ? padding + cell : cell + padding) + "  ";
     }
-    line.erase(line.find_last_not_of(' ') + 1);  // no trailing blanks
-    return line + '\n';
+    const std::size_t indent = line.size();
+    const std::size_t last = columns.size() - 1;
+    std::string text;
+    for (const std::string& part : wrap(cell_at(row, last), columns[last].width)) {
+        if (columns[last].right_aligned) line.append(columns[last].width - part.size(), ' ');
+        line += part;
+        line.erase(line.find_last_not_of(' ') + 1);  // no trailing blanks
+        text += line + '\n';
+        line.assign(indent, ' ');
+    }
+    return text;
 }
 
 }  // namespace
@@ -56,7 +90,8 @@ std::string format_table(const Table& stated) {
     for (auto& row : table.rows) {
         for (std::string& cell : row) cell = escape_controls(cell);
     }
-    const auto columns = measure(table);
+    auto columns = measure(table);
+    fit_to_page(columns);
     std::vector<std::string> rule;
     for (const Column& column : columns) rule.emplace_back(column.width, '-');
     std::string text = format_row(table.header, columns) + format_row(rule, columns);

@@ -13,6 +13,7 @@ struct Table {
 
 /// Aligned text: two spaces between columns, a rule below the header, a newline after every row.
 /// A column that holds only numbers, "-" and empty cells is right-aligned, any other left-aligned.
+/// Text in the last column goes on below where the row is longer than 100 characters.
 std::string format_table(const Table& table);
 
 /// The table under its title, after an empty line.

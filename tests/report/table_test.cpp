@@ -22,6 +22,18 @@ TEST(FormatTable, PadsShortRowsAndLeavesNoTrailingBlanks) {
     EXPECT_EQ(format_table(table), "a  note\n-  ----\n1\n2  b\n");
 }
 
+TEST(FormatTable, GoesOnBelowWhereTheLastTextIsLong) {
+    const std::string ten = "123456789 ";
+    std::string words;
+    for (int k = 0; k < 12; ++k) words += ten;
+    const std::string text =
+        format_table({{"parameter", "absorbed by"}, {{"Tx1", words + "end"}, {"Ty1", "a"}}});
+    // 11 characters of the first column leave 89: eight words of nine and their blanks.
+    const std::string eight = words.substr(0, 79);
+    EXPECT_EQ(text, "parameter  absorbed by\n---------  " + std::string(89, '-') + "\nTx1        " +
+                        eight + "\n           " + words.substr(0, 40) + "end\nTy1        a\n");
+}
+
 TEST(FormatTable, OfNothingIsItsHeader) { EXPECT_EQ(format_table({{"a"}, {}}), "a\n-\n"); }
 
 }  // namespace
