@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -83,7 +82,7 @@ std::string describe_robot(const ChoiceInputs& inputs, const PlanRequest& reques
 /// On standard error.
 void note_interrupt(Ending ending, const char* what) {
     if (ending != Ending::Interrupted) return;
-    std::fprintf(stderr, "posewise: interrupted; the %s the best so far\n", what);
+    print_warning(fmt::format("interrupted; the {} the best so far", what));
 }
 
 void warn_of_few(Index count, Index asked) {
@@ -94,12 +93,9 @@ void warn_of_few(Index count, Index asked) {
 
 void print_design(const ApproximateDesign& design, const SelectArguments& arguments,
                   const ChoiceInputs& inputs, const CommonOptions& common) {
-    if (common.json) {
-        print_document(io::to_json(design));
-    } else {
-        print(format(design, arguments.digits) + '\n' + describe_robot(inputs, design.request));
-    }
     note_interrupt(design.ending, "weights are");
+    if (common.json) return print_document(io::to_json(design));
+    print(format(design, arguments.digits) + '\n' + describe_robot(inputs, design.request));
 }
 
 /// A copy where a page needs them again; random ones, which may be many, it draws.
@@ -121,8 +117,8 @@ void print_plan(const Plan& plan, const SelectArguments& arguments, ChoiceInputs
         static_cast<PlanRequest&>(inputs.options) = plan.request;
         part = show_choice(plan, inputs);
     }
-    print(printed, common);
     note_interrupt(plan.ending, "plan is");
+    print(printed, common);
     write_page(arguments.page, std::move(part), printed, common);
 }
 

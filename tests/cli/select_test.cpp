@@ -222,7 +222,7 @@ TEST_F(Select, ReturnsTheBestSoFarWhenTimeIsUpOrCtrlCComes) {
     run_well("verify t.json");
     const Outcome outcome = run(much + "-o c.json", "timeout -s TERM 3");
     EXPECT_NE(outcome.out.find("interrupted"), std::string::npos) << outcome.out;
-    EXPECT_EQ(outcome.err, "posewise: interrupted; the plan is the best so far\n");
+    EXPECT_EQ(outcome.err, "posewise: warning: interrupted; the plan is the best so far\n");
     EXPECT_EQ(plan("c.json").at("search").at("stop_reason"), "interrupted");
     run_well("verify c.json");
 }

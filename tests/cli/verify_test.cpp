@@ -262,7 +262,8 @@ TEST_F(Verify, RefusesAnotherFormat) {
     EXPECT_EQ(plan["format"], 2);
     plan["format"] = 3;
     write_text("e.json", plan.dump());
-    expect_input_error("verify e.json", "e.json: format: is 3; this posewise reads 2: make the plan again with it");
+    expect_input_error("verify e.json",
+                       "e.json: format: is 3; this posewise reads 2: make the plan again with it");
 }
 
 /// What is read through a pipe cannot be read twice: the second time it is empty or waits.

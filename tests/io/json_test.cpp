@@ -17,9 +17,9 @@ TEST(ReadJson, RefusesANumberThatOverflows) {
 TEST(ReadJson, RefusesDeepNesting) {
     const testing::TemporaryFolder folder;
     const auto error_of = [&](std::size_t depth) {
-        const std::string path =
-            folder.write("p.json", R"({"kind": "posewise plan", "format": 2, "x": )" + std::string(depth, '[') +
-                                       '1' + std::string(depth, ']') + R"(, "a": 1})");
+        const std::string path = folder.write(
+            "p.json", R"({"kind": "posewise plan", "format": 2, "x": )" + std::string(depth, '[') +
+                          '1' + std::string(depth, ']') + R"(, "a": 1})");
         return testing::input_error_of([&] { read_plan(path); });
     };
     EXPECT_EQ(error_of(49), "p.json: poses: must be a list of at least one pose");

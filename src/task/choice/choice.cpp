@@ -103,7 +103,7 @@ double mean_repeats(const Measurements& measurements) {
 
 Candidates measured_candidates(Measurements measured) {
     Candidates candidates{CandidateKind::Measurements, measured.ids, measured.configurations,
-                          share_seen(measured), std::nullopt, std::nullopt};
+                          share_seen(measured),        std::nullopt, std::nullopt};
     candidates.measured = std::move(measured);
     return candidates;
 }

@@ -167,7 +167,8 @@ SimulationSetting make_setting(const SimulatedCampaign& given,
     SimulationSetting setting;
     setting.campaign = problem.campaign;
     setting.truth = true_campaign(given, problem.campaign);
-    setting.pool = make_pool(problem.constraints, options.pool_count, options.seed.value(), options.stop);
+    setting.pool =
+        make_pool(problem.constraints, options.pool_count, options.seed.value(), options.stop);
     draw_workspace(problem, planning);
     // Not those that V is taken over.
     setting.test = workspace_configurations(problem.campaign, std::nullopt, options.test_count,
