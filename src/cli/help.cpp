@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,7 +16,7 @@
 #include "common.hpp"
 #include "core/text.hpp"
 #include "manual.hpp"
-#include "posewise/core/version.hpp"
+#include "shell_help.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -126,6 +128,12 @@ Group group_of(const CLI::Option& option) {
     return Input;
 }
 
+/// In bold where people read it: on a terminal, unless they want none (https://no-color.org).
+std::string bold(const std::string& text) {
+    static const bool is_wanted = isatty(STDOUT_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr;
+    return is_wanted ? "\x1b[1m" + text + "\x1b[0m" : text;
+}
+
 /// Text that begins in a column, in lines that all begin there, to the page's width.
 std::string wrap(std::string_view text, std::size_t indent) {
     std::string wrapped;
@@ -215,7 +223,7 @@ std::string title_of(const CLI::App& command) {
 }
 
 std::string examples_of(const Footer& footer, std::size_t most) {
-    std::string text = "\nExample:\n";
+    std::string text = '\n' + bold("Example:") + '\n';
     for (std::size_t k = 0; k < std::min(most, footer.examples.size()); ++k) {
         text += footer.examples[k] + '\n';
     }
@@ -229,14 +237,16 @@ std::string list_group(const CLI::App& command, Group group, const Describe& des
     for (const CLI::Option* const option : command.get_options()) {
         if (group_of(*option) == group) text += describe(*option);
     }
-    return text.empty() ? "" : fmt::format("\n{}:\n{}", groups[group], text);
+    return text.empty() ? ""
+                        : fmt::format("\n{}\n{}", bold(std::string(groups[group]) + ':'), text);
 }
 
 std::string brief_line(const CLI::Option& option) {
-    const std::string name = "  " + spell(option);
-    const std::string words = shorten(option.get_description());
-    if (name.size() < name_width) return fmt::format("{:<{}}{}\n", name, name_width, words);
-    return fmt::format("{}\n{:<{}}{}\n", name, "", name_width, words);
+    const std::string name = spell(option);
+    const std::size_t end = name.size() + 2;
+    const std::string gap =
+        end < name_width ? std::string(name_width - end, ' ') : '\n' + std::string(name_width, ' ');
+    return fmt::format("  {}{}{}\n", bold(name), gap, shorten(option.get_description()));
 }
 
 std::string brief_help_of(const CLI::App& command) {
@@ -274,9 +284,11 @@ std::string rules_of(const CLI::Option& option) {
 
 std::string full_entry(const CLI::Option& option) {
     constexpr std::size_t indent = 6;
-    return fmt::format("  {}\n{:<{}}{}\n", spell(option), "", indent,
+    return fmt::format("  {}\n{:<{}}{}\n", bold(spell(option)), "", indent,
                        wrap(option.get_description() + rules_of(option), indent));
 }
+
+}  // namespace
 
 std::string full_help_of(const CLI::App& command) {
     const Footer footer = split_footer(command);
@@ -288,6 +300,12 @@ std::string full_help_of(const CLI::App& command) {
     return text;
 }
 
+std::vector<const CLI::App*> commands_of(const CLI::App& program) {
+    return program.get_subcommands([](const CLI::App*) { return true; });
+}
+
+namespace {
+
 class BriefHelp : public CLI::Formatter {
   public:
     std::string make_help(const CLI::App* app, std::string name,
@@ -296,10 +314,6 @@ class BriefHelp : public CLI::Formatter {
                                             : brief_help_of(*app);
     }
 };
-
-std::vector<const CLI::App*> commands_of(const CLI::App& program) {
-    return program.get_subcommands([](const CLI::App*) { return true; });
-}
 
 std::string topics(const CLI::App& program) {
     std::string text = "posewise help TOPIC prints one of these.\n\nCommands:\n";
@@ -328,67 +342,6 @@ void print_help(const CLI::App& program, const std::string& topic) {
         "TOPIC", detail::quote(topic) + " is no topic; " + detail::suggest(topic, names));
 }
 
-/// `a) words="--x --y";;` for each command.
-std::string bash_completion(const CLI::App& program) {
-    std::string commands;
-    std::string cases;
-    for (const CLI::App* const command : commands_of(program)) {
-        commands += ' ' + command->get_name();
-        std::string options;
-        for (const CLI::Option* const option : command->get_options()) {
-            for (const std::string& name : option->get_lnames()) options += " --" + name;
-        }
-        cases += fmt::format("    {}) words=\"{}\" ;;\n", command->get_name(), options.substr(1));
-    }
-    return fmt::format(
-        R"(# Completion of posewise {}: source it, or keep it in the folder of completions.
-_posewise() {{
-  local word=${{COMP_WORDS[COMP_CWORD]}} words=""
-  if ((COMP_CWORD == 1)); then
-    COMPREPLY=($(compgen -W "{} --help --version" -- "$word"))
-    return
-  fi
-  case ${{COMP_WORDS[1]}} in
-{}  esac
-  if [[ $word == -* ]]; then
-    COMPREPLY=($(compgen -W "$words" -- "$word"))
-  else
-    COMPREPLY=($(compgen -f -- "$word"))
-  fi
-}}
-complete -o filenames -F _posewise posewise
-)",
-        version, commands.substr(1), cases);
-}
-
-/// Text of roff: a backslash and a point at a line's beginning mean something else there.
-std::string roff(std::string_view text) {
-    std::string escaped;
-    for (const char letter : text) {
-        const bool begins = escaped.empty() || escaped.back() == '\n';
-        if (begins && (letter == '.' || letter == '\'')) escaped += "\\&";
-        escaped += letter == '\\' ? "\\e" : letter == '-' ? "\\-" : std::string(1, letter);
-    }
-    return escaped;
-}
-
-std::string man_page(const CLI::App& program) {
-    std::string page = fmt::format(
-        ".TH POSEWISE 1 \"\" \"posewise {}\"\n.SH NAME\nposewise \\- {}\n.SH COMMANDS\n", version,
-        roff(program.get_description()));
-    for (const CLI::App* const command : commands_of(program)) {
-        page +=
-            fmt::format(".SS {}\n.nf\n{}.fi\n", command->get_name(), roff(full_help_of(*command)));
-    }
-    return page + fmt::format(".SH MORE\n.nf\n{}.fi\n", roff(program.get_footer() + '\n'));
-}
-
-void print_completion(const CLI::App& program, const std::string& shell) {
-    const bool is_zsh = shell == "zsh";
-    print((is_zsh ? "autoload -U +X bashcompinit && bashcompinit\n" : "") +
-          bash_completion(program));
-}
-
 }  // namespace
 
 std::shared_ptr<CLI::FormatterBase> make_brief_help() { return std::make_shared<BriefHelp>(); }
@@ -415,7 +368,7 @@ void add_help_commands(CLI::App& program) {
     completion->footer(
         "\nExample:\n  posewise completion bash > "
         "~/.local/share/bash-completion/completions/posewise\n");
-    completion->callback([&program, shell] { print_completion(program, *shell); });
+    completion->callback([&program, shell] { print(completion_of(program, *shell)); });
 }
 
 }  // namespace posewise::cli
