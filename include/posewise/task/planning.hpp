@@ -129,10 +129,10 @@ struct TargetPlanning {
 /// Finds the least number of poses whose plan keeps the limit, and that plan: first by choices from
 /// a part of the pool, then by quick plans, finally by plans like those of make_plan(). Without a
 /// limit: as many poses as fit in the duration. Ignores options.pose_count. A stop ends the search
-/// with the last plan that keeps the target, marked as stopped early. Throws InputError for options
-/// that no number can meet (a limit, assurance or duration out of range, none of them, a plan to
-/// repair, a duration too short for the least number of poses), if it is stopped before there is a
-/// plan, and as make_plan().
+/// with the last plan that keeps the target, marked as stopped early. Throws InputError if
+/// neither a limit nor a duration is stated, if one of them or the assurance is out of range, if
+/// the duration is too short for the least number of poses, for a plan to repair, if it is stopped
+/// before there is a plan, and as make_plan().
 TargetPlanning plan_for_target(const Campaign& campaign, const PlanningOptions& options,
                                const TargetOptions& target);
 

@@ -27,8 +27,8 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 void check_sensor(const Campaign& campaign) {
     if (!campaign.sensor->has_contacts()) return;
     throw InputError(campaign.name +
-                     ": robots that touch sockets cannot be simulated at poses that were planned "
-                     "for another one, so this plan cannot be verified on robots that are drawn");
+                     ": robots that touch sockets cannot be simulated: each touches them at joint "
+                     "values of its own, not at those planned");
 }
 
 void check_repeats(double repeats) {
