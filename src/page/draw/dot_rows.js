@@ -1,6 +1,6 @@
 import { short } from '../core/format.js';
 import { colour } from '../core/theme.js';
-import { drawing, span, ticks } from './canvas.js';
+import { apart, drawing, span, ticks } from './canvas.js';
 
 const rowHeight = 18;
 const [top, bottom] = [8, 40];
@@ -8,7 +8,7 @@ const [top, bottom] = [8, 40];
 function frame(context, { label, low, high, left, right, height, x, lines }) {
   context.lineWidth = 1;
   context.textAlign = 'center';
-  for (const value of ticks(low, high, Math.max(3, (right - left) / 90))) {
+  for (const value of apart(ticks(low, high, Math.max(3, (right - left) / 90)), x, (one) => context.measureText(short(one, 4)).width)) {
     context.strokeStyle = colour('rule');
     context.beginPath();
     context.moveTo(x(value), top);
@@ -25,7 +25,7 @@ function frame(context, { label, low, high, left, right, height, x, lines }) {
     context.stroke();
   }
   context.fillStyle = colour('ink-soft');
-  context.fillText(label, (left + right) / 2, height - 6);
+  context.fillText(label, (left + right) / 2, height - 6, right - left);
 }
 
 /**
