@@ -138,8 +138,9 @@ export function makeEstimate({ errors = 18, drift = 0, name = 'measured robot' }
   });
   const names = ['base.x', 'base.y', 'base.z', 'base.rx', 'base.ry', 'base.rz', ...Array.from({ length: errors }, (unused, k) => `e${k + 1}`)];
   const sigma = names.map((unused, k) => 1e-5 * (1 + (k % 5)));
+  const chain = { elements: names.slice(6).map((error, k) => ({ motion: 'Rz', error, ...(k % 13 === 0 ? { joints: { [`q${1 + k / 13}`]: 1 } } : {}) })), terms: [] };
   const document = {
-    kind: 'posewise estimate', posewise_version: '0.1.0', format: 1, campaign: name, measurements: 'measured.csv',
+    chain, kind: 'posewise estimate', posewise_version: '0.1.0', format: 1, campaign: name, measurements: 'measured.csv',
     made_from: { campaign_file: 'campaign.yaml', campaign_checksum: 'fnv1a64:1', measurements_checksum: 'fnv1a64:2', options: { '--measurements': ['measured.csv'] } },
     measured: { configurations: 30, samples: 30, readings: 60, readings_seen: 60 }, method: 'lm', ending: 'converged', iterations: 4, model_error_m: 1e-4, model_error_rad: 1e-4,
     readings: 'points', degrees_of_freedom: 150, variance_factor: 0.9668,

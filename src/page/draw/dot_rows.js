@@ -2,7 +2,6 @@ import { short } from '../core/format.js';
 import { colour } from '../core/theme.js';
 import { apart, drawing, span, ticks } from './canvas.js';
 
-const rowHeight = 18;
 const [top, bottom] = [8, 40];
 
 function frame(context, { label, low, high, left, right, height, x, lines }) {
@@ -35,10 +34,14 @@ function frame(context, { label, low, high, left, right, height, x, lines }) {
 export function dotRows(description, label, rows, lines = []) {
   const [low, high] = span([...lines, ...rows.flatMap((row) => [row.at, row.low, row.high, row.other])]) ?? [0, 1];
   const nameWidth = Math.min(190, 12 + 7 * Math.max(...rows.map((row) => row.name.length)));
+  // All on one page of paper.
+  const rowHeight = Math.max(8, Math.min(18, 860 / rows.length));
   return drawing(description, top + bottom + rowHeight * rows.length, (context, width, height) => {
     const [left, right] = [nameWidth, width - 16];
     const x = (value) => left + ((value - low) / (high - low)) * (right - left);
+    const dot = Math.min(4, rowHeight / 4);
     frame(context, { label, low, high, left, right, height, x, lines });
+    context.font = context.font.replace('12px', `${Math.min(12, rowHeight)}px`);
     rows.forEach((row, k) => {
       const y = top + rowHeight * (k + 0.5);
       context.fillStyle = colour('ink');
@@ -55,13 +58,13 @@ export function dotRows(description, label, rows, lines = []) {
       if (Number.isFinite(row.at)) {
         context.fillStyle = colour('accent');
         context.beginPath();
-        context.arc(x(row.at), y, 4, 0, 2 * Math.PI);
+        context.arc(x(row.at), y, dot, 0, 2 * Math.PI);
         context.fill();
       }
       if (Number.isFinite(row.other)) {
         context.strokeStyle = colour('second');
         context.beginPath();
-        context.arc(x(row.other), y, 5, 0, 2 * Math.PI);
+        context.arc(x(row.other), y, dot + 1, 0, 2 * Math.PI);
         context.stroke();
       }
     });
