@@ -36,7 +36,8 @@ function packed(part) {
     residual: whole('residual', 1e6), nominal: whole('nominal', 1e6), held_out: whole('held_out', 1e6),
     standardised: axes.map((unused, axis) => rows.map((row) => row.standardised[axis])), ...Object.fromEntries(['range', 'azimuth', 'elevation'].map((key) => [key, rows.map((row) => row[key])])),
   };
-  return { ...part, residuals: { axes, unit, targets, readings } };
+  const { validation } = part.residuals;
+  return { ...part, residuals: { axes, unit, targets, readings, ...(validation ? { validation } : {}) } };
 }
 
 export const page = (...parts) => ({ kind: 'posewise page', posewise_version: '0.1.0', format: 1, parts: parts.map(packed) });
@@ -167,7 +168,7 @@ export function makeEstimate({ errors = 18, drift = 0, name = 'measured robot' }
 export function makeStudy(name = 'study') {
   const row = (count, found) => ({
     pose_count: count,
-    planned: [{ criterion: 'v', held_out_rms_mm: found, expected_rms_mm: 0.95 * found, against_random: { ratio: 0.6, lower: 0.46, upper: 0.77, verdict: 'better' } }],
+    planned: [{ criterion: 'v', held_out_rms_mm: found, held_out_rms_p05_mm: 0.8 * found, held_out_rms_p95_mm: 1.3 * found, expected_rms_mm: 0.95 * found, against_random: { ratio: 0.6, lower: 0.46, upper: 0.77, verdict: 'better' } }],
     random: { subsets: 100, unidentified: 0, held_out_rms_p10_mm: found, held_out_rms_p50_mm: 1.6 * found, held_out_rms_p90_mm: 3 * found },
   });
   return {

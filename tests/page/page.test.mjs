@@ -61,6 +61,28 @@ test('tables are the numbers of the document inside', async () => {
   await close();
 });
 
+test('figures name what they draw', async () => {
+  const estimate = makeEstimate();
+  const { accuracy } = estimate.document;
+  accuracy.validation = accuracy.verification = { ...accuracy.fit, distance_p95_mm: 0.4, distance_max_mm: 0.6 };
+  estimate.residuals.validation = { axes: ['x', 'y', 'z'], unit: ['mm', 'mm', 'mm'], targets: ['other'],
+    readings: { configuration: [0, 1], sample: ['1', '1'], target: [0, 0], residual: [[300000, 0], [400000, 0], [0, 100000]] } };
+  const judged = (poses, group) => ({ poses, group, configuration_count: 2, joints: [], rms_mm: 0.3, lower_mm: 0.25, upper_mm: 0.5, expected_mm: 0.2, verdict: null });
+  accuracy.judged = [judged('validation', 'new'), judged('verification', 'repeated')];
+  const { tab, complaints, close } = await open(browser, write('named', page(estimate, makeStudy())));
+  await drawn(tab);
+  const legend = (section, k) => tab.locator(`#${section} .legend`).nth(k).locator('li').allTextContents();
+  assert.deepEqual(await legend('before-and-after', 0), ['nominal', 'held out', 'calibrated', 'validation']);
+  assert.deepEqual(await legend('before-and-after', 1), ['nominal', 'held out', 'calibrated', 'validation', 'verification, 95 % and largest', '50 %', '95 %']);
+  assert.ok((await legend('accuracy-against-number-of-poses', 0)).includes('planned by v, 5 to 95 %'));
+  const row = (name) => tab.locator('tr', { has: tab.locator('th', { hasText: new RegExp(`^${name}$`) }) }).first().locator('td').allTextContents();
+  assert.deepEqual(await row('validation'), ['2', '0.3606', '0.1000', '0.5000', '0.5000']);
+  // Means with means, and poses calibrated with are no test.
+  assert.deepEqual(await tab.locator('#coverage-predicted-against-found table').first().locator('tbody th').allTextContents(), ['held out, means', 'validation, new']);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 test('a plan of 1000 poses is drawn at once', async (t) => {
   const { tab, complaints, close } = await open(browser, write('thousand', page(makePlan(1000))));
   const { load, script } = await tab.evaluate(() => {
