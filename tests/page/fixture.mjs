@@ -81,6 +81,7 @@ export function makePlan(count = 12, name = 'cell', places = 200) {
     return {
       id: `p${k + 1}`, times: 1, joints: Object.fromEntries(joints.map((value, j) => [`q${j + 1}_rad`, value])), visible_targets: k % 3 === 0 ? [1] : [1, 2],
       via: k === 1 ? Object.fromEntries(draw(scene).map((value, j) => [`q${j + 1}_rad`, value])) : null, way_is_blocked: false, kept: false,
+      clearance_m: k === 4 ? null : 0.05 + 0.01 * ((k * 5) % 7), nearest: k === 4 ? [] : ['forearm', 'table'],
     };
   });
   scene.flange_of_first_pose = flange(scene, Object.values(poses[0].joints));

@@ -55,9 +55,19 @@ test('tables are the numbers of the document inside', async () => {
   assert.deepEqual((await cells('Error held out by number of poses')).map((row) => row.slice(0, 3)),
     study.models[0].rows.map((row) => [String(row.pose_count), four(row.planned[0].held_out_rms_mm), four(row.planned[0].expected_rms_mm)]));
   const poses = await cells('Poses, in the order to visit them');
+  assert.deepEqual(poses.slice(3, 5).map((row) => row.at(-1)), ['60.00 forearm to table', '']);
+  assert.match(await tab.locator('#poses .lead').first().textContent(), /nothing comes nearer than 50\.00 mm, forearm to table, at p1\.$/);
   assert.deepEqual(poses.map((row) => row[1]), plan.poses.map((pose) => ((pose.joints.q1_rad * 180) / Math.PI).toFixed(2)));
   const [save] = await Promise.all([tab.waitForEvent('download'), tab.getByRole('button', { name: 'Save all numbers as JSON' }).click()]);
   assert.deepEqual(JSON.parse(readFileSync(await save.path(), 'utf8')), documentOf(readFileSync(path, 'utf8')));
+  await close();
+});
+
+test('the head says who measured, where the document does', async () => {
+  const part = makeEstimate();
+  part.document.record = { operator: '<b>A. Smith', instrument: 'AT960', serial: '4711', date: '2026-11-20', temperature_C: '20.5' };
+  const { tab, close } = await open(browser, write('record', page(part, makePlan())));
+  assert.deepEqual(await tab.locator('header .record').allTextContents(), ['Operator: <b>A. Smith \u00b7 Instrument: AT960 \u00b7 Serial number: 4711 \u00b7 Date: 2026-11-20 \u00b7 Temperature/\u00b0C: 20.5']);
   await close();
 });
 
@@ -118,9 +128,9 @@ test('stepping through the poses moves the robot, the table and what is read out
   const views = [await pixels(tab)];
   const texts = [await joints()];
   assert.ok(views[0].colours > 100, `${views[0].colours} colours`);
-  assert.match(await status(), /^Pose p1, 1 of 12 · value [0-9.]+ mm · targets seen: 1$/);
+  assert.match(await status(), /^Pose p1, 1 of 12 · value [0-9.]+ mm · targets seen: 1 · nearest: 50\.00 mm forearm to table$/);
   await tab.getByRole('button', { name: 'Next pose' }).click();
-  assert.match(await status(), /^Pose p2, 2 of 12 .*targets seen: 1 2 · reached over a via point$/);
+  assert.match(await status(), /^Pose p2, 2 of 12 .*targets seen: 1 2 · nearest: 100\.00 mm forearm to table · reached over a via point$/);
   views.push(await pixels(tab));
   texts.push(await joints());
   await tab.locator('.stage canvas').focus();
@@ -137,6 +147,25 @@ test('stepping through the poses moves the robot, the table and what is read out
   await tab.getByRole('button', { name: 'Play' }).click();
   await tab.waitForFunction(() => document.querySelector('.status').textContent.startsWith('Pose p12'));
   await tab.getByRole('button', { name: 'Play' }).waitFor();
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('seen from above and from the side the instrument is in the picture, and a scale', async () => {
+  const { tab, complaints, close } = await open(browser, write('views', page(makePlan())));
+  await drawn(tab);
+  const seen = () => tab.locator('.stage .label:not([hidden])').allTextContents();
+  const scale = tab.locator('.scale-bar');
+  assert.equal(await scale.isVisible(), false);
+  for (const view of ['Top', 'Side']) {
+    await tab.getByRole('button', { name: view, exact: true }).click();
+    await scale.waitFor();
+    assert.ok((await seen()).includes('tracker'), view);
+    assert.match(await scale.textContent(), /^[125]00 mm$|^[125] m$/);
+    assert.ok((await scale.boundingBox()).width > 60);
+  }
+  await tab.getByRole('button', { name: 'Robot', exact: true }).click();
+  await scale.waitFor({ state: 'hidden' });
   assert.deepEqual(complaints, []);
   await close();
 });
