@@ -1,7 +1,7 @@
 import uPlot from 'uplot';
 import { el } from '../core/dom.js';
 import { short } from '../core/format.js';
-import { colour, onTheme } from '../core/theme.js';
+import { colour, isOnPaper, onTheme } from '../core/theme.js';
 import { apart, span, ticks } from './canvas.js';
 
 const font = '12px system-ui, sans-serif';
@@ -89,8 +89,9 @@ export function chart({ label, x, y, xs, series, bands = [], height = 300, hasLe
   const draw = () => {
     const width = holder.clientWidth;
     if (width === 0) return;
-    if (!plot) plot = new uPlot({ ...options, width }, [xs, ...all.map((one) => one.values)], picture);
-    else if (plot.width !== width) plot.setSize({ width, height });
+    const tall = isOnPaper() ? Math.min(height, 210) : height;
+    if (!plot) plot = new uPlot({ ...options, width, height: tall }, [xs, ...all.map((one) => one.values)], picture);
+    else if (plot.width !== width || plot.height !== tall) plot.setSize({ width, height: tall });
     else plot.redraw(false, true);
   };
   new ResizeObserver(() => {

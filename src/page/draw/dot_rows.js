@@ -1,5 +1,5 @@
 import { short } from '../core/format.js';
-import { colour } from '../core/theme.js';
+import { colour, isOnPaper } from '../core/theme.js';
 import { apart, drawing, span, ticks } from './canvas.js';
 
 const [top, bottom] = [8, 40];
@@ -34,16 +34,17 @@ function frame(context, { label, low, high, left, right, height, x, lines }) {
 export function dotRows(description, label, rows, lines = []) {
   const [low, high] = span([...lines, ...rows.flatMap((row) => [row.at, row.low, row.high, row.other])]) ?? [0, 1];
   const nameWidth = Math.min(190, 12 + 7 * Math.max(...rows.map((row) => row.name.length)));
-  // All on one page of paper.
-  const rowHeight = Math.max(8, Math.min(18, 860 / rows.length));
-  return drawing(description, top + bottom + rowHeight * rows.length, (context, width, height) => {
+  // Paper has all on half a page.
+  const rowHeight = () => Math.max(7, Math.min(18, (isOnPaper() ? 520 : 1100) / rows.length));
+  return drawing(description, () => top + bottom + rowHeight() * rows.length, (context, width, height) => {
+    const tall = rowHeight();
     const [left, right] = [nameWidth, width - 16];
     const x = (value) => left + ((value - low) / (high - low)) * (right - left);
-    const dot = Math.min(4, rowHeight / 4);
+    const dot = Math.min(4, tall / 4);
     frame(context, { label, low, high, left, right, height, x, lines });
-    context.font = context.font.replace('12px', `${Math.min(12, rowHeight)}px`);
+    context.font = context.font.replace('12px', `${Math.min(12, tall)}px`);
     rows.forEach((row, k) => {
-      const y = top + rowHeight * (k + 0.5);
+      const y = top + tall * (k + 0.5);
       context.fillStyle = colour('ink');
       context.textAlign = 'right';
       context.fillText(row.name, left - 8, y + 4, nameWidth - 10);

@@ -1,5 +1,5 @@
 import { columnTitle, cellOf } from '../core/poses.js';
-import { colour } from '../core/theme.js';
+import { colour, isOnPaper } from '../core/theme.js';
 import { drawing } from './canvas.js';
 
 /** Joints side by side, each over its range, limits marked; a line for each pose. */
@@ -11,7 +11,7 @@ export function parallelCoordinates(joints, poses, colours, label) {
     const limits = [joint.lower, joint.upper].filter(Number.isFinite);
     return [Math.min(...used, ...limits), Math.max(...used, ...limits)];
   });
-  const { element, redraw } = drawing(label, 250, (context, width, height) => {
+  const { element, redraw } = drawing(label, () => (isOnPaper() ? 170 : 250), (context, width, height) => {
     const [left, right, top, bottom] = [36, width - 36, 36, height - 22];
     const x = (j) => (joints.length > 1 ? left + (j / (joints.length - 1)) * (right - left) : (left + right) / 2);
     const y = (j, value) => {

@@ -89,7 +89,7 @@ export function drawSlices(description, slices, paint) {
   const ys = span(all.map(({ at }) => at[1]));
   const reach = 0.11 * Math.max(xs[1] - xs[0], ys[1] - ys[0]);
   const layout = (width) => {
-    const most = Math.max(1, Math.min(slices.length, Math.floor(width / 230)));
+    const most = Math.max(1, Math.min(slices.length, Math.floor(width / 170)));
     const rows = Math.ceil(slices.length / most);
     const columns = Math.ceil(slices.length / rows);
     const size = Math.floor(Math.min(width / columns - gap - 6, 400));

@@ -6,7 +6,7 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { el } from '../core/dom.js';
 import { short } from '../core/format.js';
 import { apply, flange, frames, origin, way } from '../core/kinematics.js';
-import { colour, onTheme } from '../core/theme.js';
+import { colour, isOnPaper, onTheme } from '../core/theme.js';
 import { ticks } from './canvas.js';
 import { drawCell } from './cell.js';
 import { Robot } from './robot.js';
@@ -40,6 +40,9 @@ export class Viewer {
     this.up = new Vector3(...(typeof scene.floor_z === 'number' ? [0, 0, 1] : [2, 6, 10].map((k) => scene.world_from_base[k])));
     for (const camera of Object.values(this.cameras)) camera.up.copy(this.up);
     this.size = this.measure();
+    // Browsers do not print a 3D canvas as it is after beforeprint: this one they do.
+    this.copy = el('canvas', { class: 'stage-copy', 'aria-hidden': 'true' });
+    holder.append(this.copy);
     this.robot = new Robot(scene, this.materials, this.size);
     const cell = drawCell(scene, this.materials, this.size);
     this.scene.add(this.robot.group, cell.group);
@@ -53,7 +56,7 @@ export class Viewer {
     holder.append(this.scale);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.request());
-    [this.aspect, this.tall] = [1, this.size];
+    [this.aspect, this.fitted, this.tall] = [1, 1, this.size];
     this.resize();
     this.look('all');
     onTheme(() => this.recolour());
@@ -106,11 +109,15 @@ export class Viewer {
   }
 
   recolour() {
+    this.resize();
     for (const [name, variable] of Object.entries(palette)) this.materials[name].color.set(colour(variable));
     this.colourDots();
     this.renderer.setClearColor(colour('stage'));
     // At once: paper does not wait.
     this.render();
+    if (!isOnPaper()) return;
+    [this.copy.width, this.copy.height] = [this.canvas.width, this.canvas.height];
+    this.copy.getContext('2d').drawImage(this.canvas, 0, 0);
   }
 
   /** From the side where robot and instrument stand apart `all`, or the `robot` alone; `front`, `side` and `top` as drawings: parallel, of all, with a scale. */
@@ -148,6 +155,7 @@ export class Viewer {
       this.tall = Math.max((extent.x / 2 + room) / this.aspect, extent.y / 2 + room);
       away = this.tall / half + 0.3 * extent.z;
     }
+    this.fitted = this.aspect;
     this.controls.target.copy(centre);
     camera.position.copy(centre).addScaledVector(direction, away);
     // A parallel view cuts nothing off before or behind.
@@ -190,11 +198,14 @@ export class Viewer {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.holder;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setPixelRatio(isOnPaper() ? 2 : Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.aspect = width / height;
-    this.cameras.perspective.aspect = this.aspect;
-    Object.assign(this.cameras.parallel, { top: this.tall, bottom: -this.tall, left: -this.tall * this.aspect, right: this.tall * this.aspect });
+    // As wide a view as it was fitted to.
+    const wider = Math.max(1, this.fitted / this.aspect);
+    Object.assign(this.cameras.perspective, { aspect: this.aspect, zoom: 1 / wider });
+    const top = this.tall * wider;
+    Object.assign(this.cameras.parallel, { top, bottom: -top, left: -top * this.aspect, right: top * this.aspect });
     this.camera.updateProjectionMatrix();
     this.request();
   }
@@ -221,7 +232,7 @@ export class Viewer {
   showScale(height) {
     const { parallel } = this.cameras;
     this.scale.hidden = this.camera !== parallel;
-    const pixels = (height * parallel.zoom) / (2 * this.tall);
+    const pixels = (height * parallel.zoom) / (2 * parallel.top);
     const length = ticks(0, height / pixels, 4)[1];
     this.scale.style.width = `${length * pixels}px`;
     this.scale.textContent = length < 1 ? `${short(1e3 * length, 3)} mm` : `${short(length, 3)} m`;
