@@ -33,16 +33,17 @@ function frame(context, { label, low, high, left, right, height, x, lines }) {
  */
 export function dotRows(description, label, rows, lines = []) {
   const [low, high] = span([...lines, ...rows.flatMap((row) => [row.at, row.low, row.high, row.other])]) ?? [0, 1];
-  const nameWidth = Math.min(190, 12 + 7 * Math.max(...rows.map((row) => row.name.length)));
-  // Paper has all on half a page.
+  // Paper has all on part of a page.
   const rowHeight = () => Math.max(7, Math.min(18, (isOnPaper() ? 520 : 1100) / rows.length));
   return drawing(description, () => top + bottom + rowHeight() * rows.length, (context, width, height) => {
     const tall = rowHeight();
+    const font = Math.min(12, tall);
+    const nameWidth = Math.min(190, 12 + 0.6 * font * Math.max(...rows.map((row) => row.name.length)));
     const [left, right] = [nameWidth, width - 16];
     const x = (value) => left + ((value - low) / (high - low)) * (right - left);
     const dot = Math.min(4, tall / 4);
     frame(context, { label, low, high, left, right, height, x, lines });
-    context.font = context.font.replace('12px', `${Math.min(12, tall)}px`);
+    context.font = context.font.replace('12px', `${font}px`);
     rows.forEach((row, k) => {
       const y = top + tall * (k + 0.5);
       context.fillStyle = colour('ink');
