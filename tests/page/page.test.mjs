@@ -268,23 +268,36 @@ test('nothing is cut on narrow and wide screens', async () => {
   await close();
 });
 
-test('paper has every section and all tables', async () => {
-  const { tab, complaints, close } = await open(browser, write('paper', page(makeEstimate(), makePlan())), { scheme: 'dark' });
+test('paper has every section on a few pages, and says what is closed', async () => {
+  const { tab, complaints, close } = await open(browser, write('paper', page(makeEstimate({ errors: 74 }))), { scheme: 'dark' });
   await drawn(tab);
-  const headings = await tab.locator('h2').allTextContents();
   await tab.evaluate(() => {
     addEventListener('beforeprint', () => {
       window.printed = {
-        closed: document.querySelectorAll('details:not([open])').length,
         paper: getComputedStyle(document.body).backgroundColor,
+        wide: [...document.querySelectorAll('.uplot, .drawing canvas')].filter((one) => one.getBoundingClientRect().right > document.body.getBoundingClientRect().right + 1).length,
+        note: document.querySelector('#before-and-after summary').innerText,
       };
     });
   });
-  const pdf = (await tab.pdf({ path: join(output, 'paper.pdf'), format: 'A4', printBackground: true, outline: true, tagged: true })).toString('latin1');
-  assert.deepEqual(await tab.evaluate(() => window.printed), { closed: 0, paper: 'rgb(255, 255, 255)' });
-  assert.ok(await tab.evaluate(() => document.querySelectorAll('details:not([open])').length > 0));
+  const headings = await tab.locator('h2').allTextContents();
+  const print = async (name) => (await tab.pdf({ path: join(output, `${name}.pdf`), format: 'A4', printBackground: true, outline: true, tagged: true })).toString('latin1');
+  const pdf = await print('paper');
+  assert.deepEqual(await tab.evaluate(() => window.printed), { paper: 'rgb(255, 255, 255)', wide: 0, note: 'Numbers of this figure: 6 rows in the document' });
   for (const heading of headings) assert.ok(pdf.includes(`(${heading})`), `${heading} is not in the outline of the PDF`);
-  assert.ok(pdf.split(/\/Type \/Page\b/).length > 5);
+  const count = pdf.split(/\/Type \/Page\b/).length - 1;
+  assert.ok(count >= 5 && count <= 8, `${count} pages`);
+  // What is open is printed, 24 rows of a table at most.
+  await tab.getByText('All parameters with their standard deviations').click();
+  await tab.evaluate(() => {
+    addEventListener('beforeprint', () => {
+      const table = [...document.querySelectorAll('table')].find((one) => one.caption.textContent.startsWith('Parameters'));
+      window.table = { rows: [...table.tBodies[0].rows].filter((row) => row.checkVisibility()).length, caption: table.caption.innerText };
+    });
+  });
+  await print('paper_open');
+  assert.deepEqual(await tab.evaluate(() => window.table), { rows: 24, caption: 'Parameters (errors of the robot, base, targets): 24 of 80 rows, all are in the document' });
+  assert.equal(await tab.evaluate(() => document.documentElement.className), '');
   assert.deepEqual(complaints, []);
   await close();
 });

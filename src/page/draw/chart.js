@@ -89,7 +89,7 @@ export function chart({ label, x, y, xs, series, bands = [], height = 300, hasLe
   const draw = () => {
     const width = holder.clientWidth;
     if (width === 0) return;
-    const tall = isOnPaper() ? Math.min(height, 210) : height;
+    const tall = isOnPaper() ? Math.round(0.75 * height) : height;
     if (!plot) plot = new uPlot({ ...options, width, height: tall }, [xs, ...all.map((one) => one.values)], picture);
     else if (plot.width !== width || plot.height !== tall) plot.setSize({ width, height: tall });
     else plot.redraw(false, true);

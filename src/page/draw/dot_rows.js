@@ -7,7 +7,7 @@ const [top, bottom] = [8, 40];
 function frame(context, { label, low, high, left, right, height, x, lines }) {
   context.lineWidth = 1;
   context.textAlign = 'center';
-  for (const value of apart(ticks(low, high, Math.max(3, (right - left) / 90)), x, (one) => context.measureText(short(one, 4)).width)) {
+  for (const value of apart(ticks(low, high, Math.max(4, (right - left) / 70)), x, (one) => context.measureText(short(one, 4)).width)) {
     context.strokeStyle = colour('rule');
     context.beginPath();
     context.moveTo(x(value), top);

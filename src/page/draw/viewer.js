@@ -40,9 +40,6 @@ export class Viewer {
     this.up = new Vector3(...(typeof scene.floor_z === 'number' ? [0, 0, 1] : [2, 6, 10].map((k) => scene.world_from_base[k])));
     for (const camera of Object.values(this.cameras)) camera.up.copy(this.up);
     this.size = this.measure();
-    // Browsers do not print a 3D canvas as it is after beforeprint: this one they do.
-    this.copy = el('canvas', { class: 'stage-copy', 'aria-hidden': 'true' });
-    holder.append(this.copy);
     this.robot = new Robot(scene, this.materials, this.size);
     const cell = drawCell(scene, this.materials, this.size);
     this.scene.add(this.robot.group, cell.group);
@@ -115,9 +112,13 @@ export class Viewer {
     this.renderer.setClearColor(colour('stage'));
     // At once: paper does not wait.
     this.render();
+    this.copy?.remove();
     if (!isOnPaper()) return;
-    [this.copy.width, this.copy.height] = [this.canvas.width, this.canvas.height];
+    // Browsers do not print a 3D canvas as it is drawn for paper, but a copy.
+    const { width, height } = this.canvas;
+    this.copy = el('canvas', { class: 'stage-copy', width, height, 'aria-hidden': 'true' });
     this.copy.getContext('2d').drawImage(this.canvas, 0, 0);
+    this.canvas.after(this.copy);
   }
 
   /** From the side where robot and instrument stand apart `all`, or the `robot` alone; `front`, `side` and `top` as drawings: parallel, of all, with a scale. */
