@@ -65,7 +65,9 @@ export class Viewer {
     const places = this.poses.flatMap((pose) => frames(this.data, pose.joints).map(origin));
     this.near = places.map((place) => new Vector3(...place));
     const others = [this.data.instrument?.position, ...(this.data.boxes ?? []).filter((one) => one.kind === 'keep_out').map((one) => origin(one.world_from_box))];
-    this.whole = [...this.near, ...others.filter(Boolean).map((place) => new Vector3(...place))];
+    const solids = (this.data.capsules ?? []).filter((one) => one.kind === 'keep_out').flatMap(({ from, to, radius }) => [from, to].flatMap((end) =>
+      [-radius, radius].map((off) => apply(this.data.world_from_base, end).map((value) => value + off))));
+    this.whole = [...this.near, ...[...others, ...solids].filter(Boolean).map((place) => new Vector3(...place))];
     return Math.max(new Box3().setFromPoints(this.near).getSize(new Vector3()).length() / 2, 0.05);
   }
 
