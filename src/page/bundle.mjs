@@ -17,7 +17,7 @@ async function bundle(entry, options = {}) {
 }
 
 const script = await bundle('main.js');
-const style = await bundle('style.css', { format: undefined });
+const style = await bundle('style.css', { format: undefined, target: 'chrome110' });
 if (/<\/(script|style)/i.test(script + style)) throw new Error('ends its own element');
 
 const policy = ["default-src 'none'", `script-src ${hash(script)}`, `style-src ${hash(style)}`,

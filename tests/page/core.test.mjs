@@ -63,3 +63,14 @@ test('parameters of an estimate have their values and correlations', () => {
   near(at(4, 1), 0.6 * Math.sin(29), 1e-12);
   assert.equal(at(1, 4), at(4, 1));
 });
+
+test('correlations stand in blocks: base, joints along the chain, targets', () => {
+  const parameters = ['target1.x', 'base.x', 'Tz2', 'q1.cos', 'dq2', 'dq1'];
+  const chain = { elements: [{ joints: { q1: 1 }, error: 'dq1' }, { joints: { q2: 1 }, error: 'dq2' }, { error: 'Tz2' }], terms: [{ name: 'q1.cos', sine_of: { q1: 1 } }] };
+  const rows = parameters.map((unused, i) => parameters.slice(0, i + 1).map((none, j) => (i === j ? 1 : (10 * i + j) / 100)));
+  const { names, blocks, at } = correlationsOf({ covariance: { parameters, rows_si: rows }, chain, robot: { Tz2: {}, 'q1.cos': {}, dq1: {}, dq2: {} } });
+  assert.deepEqual(names, ['base.x', 'q1.cos', 'dq1', 'Tz2', 'dq2', 'target1.x']);
+  assert.deepEqual(blocks, ['base', 'q1', 'q1', 'q2', 'q2', 'target1']);
+  assert.equal(at(0, 5), 0.1);
+  assert.equal(at(3, 4), 0.42);
+});

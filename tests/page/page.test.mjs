@@ -55,9 +55,41 @@ test('tables are the numbers of the document inside', async () => {
   assert.deepEqual((await cells('Error held out by number of poses')).map((row) => row.slice(0, 3)),
     study.models[0].rows.map((row) => [String(row.pose_count), four(row.planned[0].held_out_rms_mm), four(row.planned[0].expected_rms_mm)]));
   const poses = await cells('Poses, in the order to visit them');
+  assert.deepEqual(poses.slice(3, 5).map((row) => row.at(-1)), ['60.00 forearm to table', '']);
+  assert.match(await tab.locator('#poses .lead').first().textContent(), /nothing comes nearer than 50\.00 mm, forearm to table, at p1\.$/);
   assert.deepEqual(poses.map((row) => row[1]), plan.poses.map((pose) => ((pose.joints.q1_rad * 180) / Math.PI).toFixed(2)));
   const [save] = await Promise.all([tab.waitForEvent('download'), tab.getByRole('button', { name: 'Save all numbers as JSON' }).click()]);
   assert.deepEqual(JSON.parse(readFileSync(await save.path(), 'utf8')), documentOf(readFileSync(path, 'utf8')));
+  await close();
+});
+
+test('the head says who measured, where the document does', async () => {
+  const part = makeEstimate();
+  part.document.record = { operator: '<b>A. Smith', instrument: 'AT960', serial: '4711', date: '2026-11-20', temperature_C: '20.5' };
+  const { tab, close } = await open(browser, write('record', page(part, makePlan())));
+  assert.deepEqual(await tab.locator('header .record').allTextContents(), ['Operator: <b>A. Smith \u00b7 Instrument: AT960 \u00b7 Serial number: 4711 \u00b7 Date: 2026-11-20 \u00b7 Temperature/\u00b0C: 20.5']);
+  await close();
+});
+
+test('figures name what they draw', async () => {
+  const estimate = makeEstimate();
+  const { accuracy } = estimate.document;
+  accuracy.validation = accuracy.verification = { ...accuracy.fit, distance_p95_mm: 0.4, distance_max_mm: 0.6 };
+  estimate.residuals.validation = { axes: ['x', 'y', 'z'], unit: ['mm', 'mm', 'mm'], targets: ['other'],
+    readings: { configuration: [0, 1], sample: ['1', '1'], target: [0, 0], residual: [[300000, 0], [400000, 0], [0, 100000]] } };
+  const judged = (poses, group) => ({ poses, group, configuration_count: 2, joints: [], rms_mm: 0.3, lower_mm: 0.25, upper_mm: 0.5, expected_mm: 0.2, verdict: null });
+  accuracy.judged = [judged('validation', 'new'), judged('verification', 'repeated')];
+  const { tab, complaints, close } = await open(browser, write('named', page(estimate, makeStudy())));
+  await drawn(tab);
+  const legend = (section, k) => tab.locator(`#${section} .legend`).nth(k).locator('li').allTextContents();
+  assert.deepEqual(await legend('before-and-after', 0), ['nominal', 'held out', 'calibrated', 'validation']);
+  assert.deepEqual(await legend('before-and-after', 1), ['nominal', 'held out', 'calibrated', 'validation', 'verification, 95 % and largest', '50 %', '95 %']);
+  assert.ok((await legend('accuracy-against-number-of-poses', 0)).includes('planned by v, 5 to 95 %'));
+  const row = (name) => tab.locator('tr', { has: tab.locator('th', { hasText: new RegExp(`^${name}$`) }) }).first().locator('td').allTextContents();
+  assert.deepEqual(await row('validation'), ['2', '0.3606', '0.1000', '0.5000', '0.5000']);
+  // Means with means, and poses calibrated with are no test.
+  assert.deepEqual(await tab.locator('#coverage-predicted-against-found table').first().locator('tbody th').allTextContents(), ['held out, means', 'validation, new']);
+  assert.deepEqual(complaints, []);
   await close();
 });
 
@@ -96,9 +128,9 @@ test('stepping through the poses moves the robot, the table and what is read out
   const views = [await pixels(tab)];
   const texts = [await joints()];
   assert.ok(views[0].colours > 100, `${views[0].colours} colours`);
-  assert.match(await status(), /^Pose p1, 1 of 12 · value [0-9.]+ mm · targets seen: 1$/);
+  assert.match(await status(), /^Pose p1, 1 of 12 · value [0-9.]+ mm · targets seen: 1 · nearest: 50\.00 mm forearm to table$/);
   await tab.getByRole('button', { name: 'Next pose' }).click();
-  assert.match(await status(), /^Pose p2, 2 of 12 .*targets seen: 1 2 · reached over a via point$/);
+  assert.match(await status(), /^Pose p2, 2 of 12 .*targets seen: 1 2 · nearest: 100\.00 mm forearm to table · reached over a via point$/);
   views.push(await pixels(tab));
   texts.push(await joints());
   await tab.locator('.stage canvas').focus();
@@ -115,6 +147,25 @@ test('stepping through the poses moves the robot, the table and what is read out
   await tab.getByRole('button', { name: 'Play' }).click();
   await tab.waitForFunction(() => document.querySelector('.status').textContent.startsWith('Pose p12'));
   await tab.getByRole('button', { name: 'Play' }).waitFor();
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('seen from above and from the side the instrument is in the picture, and a scale', async () => {
+  const { tab, complaints, close } = await open(browser, write('views', page(makePlan())));
+  await drawn(tab);
+  const seen = () => tab.locator('.stage .label:not([hidden])').allTextContents();
+  const scale = tab.locator('.scale-bar');
+  assert.equal(await scale.isVisible(), false);
+  for (const view of ['Top', 'Side']) {
+    await tab.getByRole('button', { name: view, exact: true }).click();
+    await scale.waitFor();
+    assert.ok((await seen()).includes('tracker'), view);
+    assert.match(await scale.textContent(), /^[125]00 mm$|^[125] m$/);
+    assert.ok((await scale.boundingBox()).width > 60);
+  }
+  await tab.getByRole('button', { name: 'Robot', exact: true }).click();
+  await scale.waitFor({ state: 'hidden' });
   assert.deepEqual(complaints, []);
   await close();
 });
@@ -217,23 +268,36 @@ test('nothing is cut on narrow and wide screens', async () => {
   await close();
 });
 
-test('paper has every section and all tables', async () => {
-  const { tab, complaints, close } = await open(browser, write('paper', page(makeEstimate(), makePlan())), { scheme: 'dark' });
+test('paper has every section on a few pages, and says what is closed', async () => {
+  const { tab, complaints, close } = await open(browser, write('paper', page(makeEstimate({ errors: 74 }))), { scheme: 'dark' });
   await drawn(tab);
-  const headings = await tab.locator('h2').allTextContents();
   await tab.evaluate(() => {
     addEventListener('beforeprint', () => {
       window.printed = {
-        closed: document.querySelectorAll('details:not([open])').length,
         paper: getComputedStyle(document.body).backgroundColor,
+        wide: [...document.querySelectorAll('.uplot, .drawing canvas')].filter((one) => one.getBoundingClientRect().right > document.body.getBoundingClientRect().right + 1).length,
+        note: document.querySelector('#before-and-after summary').innerText,
       };
     });
   });
-  const pdf = (await tab.pdf({ path: join(output, 'paper.pdf'), format: 'A4', printBackground: true, outline: true, tagged: true })).toString('latin1');
-  assert.deepEqual(await tab.evaluate(() => window.printed), { closed: 0, paper: 'rgb(255, 255, 255)' });
-  assert.ok(await tab.evaluate(() => document.querySelectorAll('details:not([open])').length > 0));
+  const headings = await tab.locator('h2').allTextContents();
+  const print = async (name) => (await tab.pdf({ path: join(output, `${name}.pdf`), format: 'A4', printBackground: true, outline: true, tagged: true })).toString('latin1');
+  const pdf = await print('paper');
+  assert.deepEqual(await tab.evaluate(() => window.printed), { paper: 'rgb(255, 255, 255)', wide: 0, note: 'Numbers of this figure: 6 rows in the document' });
   for (const heading of headings) assert.ok(pdf.includes(`(${heading})`), `${heading} is not in the outline of the PDF`);
-  assert.ok(pdf.split(/\/Type \/Page\b/).length > 5);
+  const count = pdf.split(/\/Type \/Page\b/).length - 1;
+  assert.ok(count >= 5 && count <= 8, `${count} pages`);
+  // What is open is printed, 24 rows of a table at most.
+  await tab.getByText('All parameters with their standard deviations').click();
+  await tab.evaluate(() => {
+    addEventListener('beforeprint', () => {
+      const table = [...document.querySelectorAll('table')].find((one) => one.caption.textContent.startsWith('Parameters'));
+      window.table = { rows: [...table.tBodies[0].rows].filter((row) => row.checkVisibility()).length, caption: table.caption.innerText };
+    });
+  });
+  await print('paper_open');
+  assert.deepEqual(await tab.evaluate(() => window.table), { rows: 24, caption: 'Parameters (errors of the robot, base, targets): 24 of 80 rows, all are in the document' });
+  assert.equal(await tab.evaluate(() => document.documentElement.className), '');
   assert.deepEqual(complaints, []);
   await close();
 });

@@ -9,9 +9,10 @@ const pointOf = (one, error) => ({
 /** Of a plan: points, that of the plan itself, floor and limit, mm; null where it states none. */
 export function plannedCurve(document) {
   const { target, budget } = document;
-  const list = target ? target.curve : document.other_counts;
-  if (!list) return null;
-  const points = list.filter((one) => one.error ?? one.accuracy).map((one) => pointOf(one, one.error ?? one.accuracy));
+  const own = { new_pose_count: document.new_pose_count, is_planned: true, error: target?.error, accuracy: document.accuracy };
+  const list = [...(target ? target.curve : document.other_counts ?? [])];
+  if (!list.some((one) => one.is_planned && one.new_pose_count === own.new_pose_count)) list.push(own);
+  const points = list.filter((one) => one.error ?? one.accuracy).map((one) => pointOf(one, one.error ?? one.accuracy)).sort((a, b) => a.count - b.count);
   const counts = new Set(points.map((one) => one.count));
   if (counts.size < 2) return null;
   const wanted = document.new_pose_count;

@@ -48,15 +48,37 @@ export function parametersOf(document) {
   });
 }
 
-/** Correlation coefficients of the covariance's parameters, row by row; null where there is none. */
-export function correlationsOf({ covariance }) {
+/** The joint that each error of the robot belongs to: the one that it follows in the chain, or that its name begins with. */
+function jointsOf({ elements = [], terms = [] }) {
+  const joints = elements.flatMap((element) => Object.keys(element.joints ?? {}));
+  const list = new Map();
+  let [last] = joints;
+  for (const element of elements) {
+    last = Object.keys(element.joints ?? {})[0] ?? last;
+    if (element.error) list.set(element.error, last);
+  }
+  for (const { name, of, sine_of: sineOf } of terms) {
+    list.set(name, joints.find((joint) => name.startsWith(joint) && !/\w/.test(name[joint.length] ?? '')) ?? Object.keys(of ?? sineOf ?? {})[0]);
+  }
+  return { joints: [...new Set(joints)], list };
+}
+
+/** Correlation coefficients of the covariance's parameters and the block of each: the base, a joint's errors, a target; null where there is none. */
+export function correlationsOf({ covariance, chain, robot }) {
   if (!covariance?.rows_si?.length) return null;
   const rows = covariance.rows_si;
+  const { joints, list } = jointsOf(chain ?? {});
+  const named = covariance.parameters.map((name, k) => {
+    const block = list.get(name) ?? (robot && name in robot ? 'robot' : name.replace(/\.[^.]*$/, ''));
+    return { name, k, block, rank: block === 'base' ? -1 : joints.includes(block) ? joints.indexOf(block) : joints.length };
+  }).sort((a, b) => a.rank - b.rank || a.k - b.k);
+  const order = named.map((one) => one.k);
   const sigma = rows.map((row, k) => Math.sqrt(row[k]));
-  const at = (i, j) => {
+  const at = (first, second) => {
+    const [i, j] = [order[first], order[second]];
     if (i === j) return 1;
     const value = (i > j ? rows[i][j] : rows[j][i]) / (sigma[i] * sigma[j]);
     return Number.isFinite(value) ? value : 0;
   };
-  return { names: covariance.parameters, at };
+  return { names: named.map((one) => one.name), blocks: named.map((one) => one.block), at };
 }

@@ -16,7 +16,7 @@ function planned(document, poses) {
       id: pose.id, times: pose.times, keys, all: keys.map((key) => pose.joints[key]),
       joints: drawn.map((key) => pose.joints[key]),
       via: pose.via ? drawn.map((key) => pose.via[key]) : null,
-      nearest: typeof pose.clearance_m === 'number' ? `${fixed(1e3 * pose.clearance_m, 2)} ${pose.nearest.join(' to ')}` : null,
+      clearance: pose.clearance_m, nearest: typeof pose.clearance_m === 'number' ? `${fixed(1e3 * pose.clearance_m, 2)} ${pose.nearest.join(' to ')}` : null,
       blocked: pose.way_is_blocked, kept: pose.kept, hasWay: 'via' in pose,
       value: values.get(pose.id), targets: sockets.length > 0 ? null : pose.visible_targets ?? null,
       touched: sockets.length > 0 ? (pose.visible_targets ?? []).map((number) => sockets[number - 1] ?? number) : null,
@@ -26,7 +26,7 @@ function planned(document, poses) {
 
 /**
  * `id`, `joints` (m, rad), `keys` of them, and of plans `value` (mm; null: needed), `targets` it shows or
- * `touched` sockets, `via`, `nearest`: how near (mm) which two bodies come.
+ * `touched` sockets, `via`, `clearance` (m), `nearest`: how near (mm) which two bodies come.
  */
 export function posesOf(part) {
   const { document, scene } = part;

@@ -1,8 +1,13 @@
 // What residuals of a calibration come to.
 
+/** Number k of each axis' column. */
+const axesOf = (columns, k, factor) => columns.map((column) => (column[k] === null ? null : column[k] * factor));
+
+/** Of other poses: target and values of each reading, mm and mrad. */
+export const readingsOf = ({ targets, readings }, key) => readings.target.map((target, k) => ({ target: targets[target], values: axesOf(readings[key], k, 1e-6) }));
+
 /** Readings as rows, residuals in mm and mrad; `joints` are those of the configuration. */
-export function rowsOf({ residuals: { axes, targets, readings }, configurations }) {
-  const axesOf = (columns, k, factor) => axes.map((unused, axis) => (columns[axis][k] === null ? null : columns[axis][k] * factor));
+export function rowsOf({ residuals: { targets, readings }, configurations }) {
   return readings.configuration.map((c, k) => {
     const [id, joints] = [configurations.id[c], configurations.joints[c]];
     const row = { configuration: id, joints, sample: readings.sample[k], target: targets[readings.target[k]], standardised: axesOf(readings.standardised, k, 1) };

@@ -2,6 +2,9 @@ import { el } from './dom.js';
 
 const isNumeric = (cell) => /^(-|[-+]?[\d.]+(e[-+]?\d+)?( %)?|[-+.\d]+\.\.[-+.\d]+)$/.test(cell);
 
+/** Rows that paper has of a table. */
+const most = 24;
+
 /**
  * A table of text; columns that hold only numbers are set to the right. The first column names
  * its row.
@@ -13,14 +16,14 @@ export function table(caption, header, rows) {
     el(tag, { class: numeric[k] ? 'number' : null, scope }, text ?? '');
   return el('div', { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': caption },
     el('table', {},
-      el('caption', {}, caption),
+      el('caption', {}, caption, rows.length > most ? el('span', { class: 'on-paper-only' }, `: ${most} of ${rows.length} rows, all are in the document`) : null),
       el('thead', {}, el('tr', {}, header.map((text, k) =>
         (text === '' ? cell('td', k, '') : cell('th', k, text, 'col'))))),
-      el('tbody', {}, rows.map((row) => el('tr', {}, header.map((unused, k) =>
+      el('tbody', {}, rows.map((row, i) => el('tr', { class: i < most ? null : 'not-on-paper' }, header.map((unused, k) =>
         (k === 0 ? cell('th', k, row[k], 'row') : cell('td', k, row[k]))))))));
 }
 
-/** The same, but for paper: too long or wide for it. */
+/** The same, but not for paper: too wide for it. */
 export function screenTable(...arguments_) {
   const element = table(...arguments_);
   element.classList.add('not-on-paper');

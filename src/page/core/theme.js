@@ -20,21 +20,17 @@ function redraw() {
   for (const draw of listeners) draw();
 }
 
-/** Opens everything for paper, and closes it again. */
+export const isOnPaper = () => document.documentElement.classList.contains('on-paper');
+
+/** Draws all again as wide as paper is while the page is printed. */
 export function watchTheme() {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
-  let opened = [];
-  addEventListener('beforeprint', () => {
-    document.documentElement.classList.add('on-paper');
-    opened = [...document.querySelectorAll('details:not([open])')];
-    for (const one of opened) one.open = true;
-    redraw();
-  });
-  addEventListener('afterprint', () => {
-    document.documentElement.classList.remove('on-paper');
-    for (const one of opened) one.open = false;
-    redraw();
-  });
+  for (const [event, isPrinting] of [['beforeprint', true], ['afterprint', false]]) {
+    addEventListener(event, () => {
+      document.documentElement.classList.toggle('on-paper', isPrinting);
+      redraw();
+    });
+  }
 }
 
 const scale = ['#440154', '#472d7b', '#3b528b', '#2c728e', '#21918c', '#28ae80', '#5ec962', '#addc30', '#fde725']

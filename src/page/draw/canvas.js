@@ -48,3 +48,14 @@ export function ticks(low, high, about = 5) {
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) list.push(Number((k * step).toPrecision(12)));
   return list;
 }
+
+/** Those of `values`, which rise, whose texts do not touch: `place` and `size` of each in pixels. */
+export function apart(values, place, size) {
+  let end = -Infinity;
+  return values.filter((value) => {
+    const [low, high] = [place(value) - size(value) / 2, place(value) + size(value) / 2];
+    if (low < end + 8) return false;
+    end = high;
+    return true;
+  });
+}

@@ -1,8 +1,8 @@
 import uPlot from 'uplot';
 import { el } from '../core/dom.js';
 import { short } from '../core/format.js';
-import { colour, onTheme } from '../core/theme.js';
-import { span, ticks } from './canvas.js';
+import { colour, isOnPaper, onTheme } from '../core/theme.js';
+import { apart, span, ticks } from './canvas.js';
 
 const font = '12px system-ui, sans-serif';
 
@@ -70,13 +70,14 @@ export function chart({ label, x, y, xs, series, bands = [], height = 300, hasLe
   const values = all.flatMap((one) => one.values).filter((value) => Number.isFinite(value) && (!y.log || value > 0));
   const yRange = y.range ?? (y.log ? [Math.min(...values) / 1.15, Math.max(...values) * 1.15]
     : [y.zero ? 0 : span(values)[0], span(values)[1]]);
+  const part = (value) => (x.log ? Math.log(value / xRange[0]) / Math.log(xRange[1] / xRange[0]) : (value - xRange[0]) / (xRange[1] - xRange[0]));
+  const xTicks = (u) => apart(x.ticks ?? ticks(...xRange, Math.max(4, u.width / 90)), (value) => part(value) * (u.width - 100), (value) => 7 * short(value, 4).length);
   const options = {
     width: 600, height, legend: { show: false }, cursor: { show: false }, select: { show: false },
     padding: [10, 14, 0, 4],
     scales: { x: { time: false, range: () => xRange, distr: x.log ? 3 : 1 }, y: { range: () => yRange, distr: y.log ? 3 : 1 } },
     axes: [
-      axis(x.label, { size: 26, ...(x.ticks ? { splits: () => x.ticks } : { splits: (u) => ticks(...xRange, Math.max(3, u.width / 110)) }),
-        ...(x.log ? { filter: (u, splits) => splits } : {}), values: (u, splits) => splits.map((value) => (value === null ? '' : short(value, 4))) }),
+      axis(x.label, { size: 26, splits: xTicks, ...(x.log ? { filter: (u, splits) => splits } : {}), values: (u, splits) => splits.map((value) => (value === null ? '' : short(value, 4))) }),
       axis(y.label, { size: 62, splits: () => (y.log ? logTicks(...yRange) : ticks(...yRange, 6)),
         ...(y.log ? { filter: (u, splits) => splits } : {}),
         values: (u, splits) => splits.map((value) => (value === null ? '' : short(value, 4))) }),
@@ -88,8 +89,9 @@ export function chart({ label, x, y, xs, series, bands = [], height = 300, hasLe
   const draw = () => {
     const width = holder.clientWidth;
     if (width === 0) return;
-    if (!plot) plot = new uPlot({ ...options, width }, [xs, ...all.map((one) => one.values)], picture);
-    else if (plot.width !== width) plot.setSize({ width, height });
+    const tall = isOnPaper() ? Math.round(0.75 * height) : height;
+    if (!plot) plot = new uPlot({ ...options, width, height: tall }, [xs, ...all.map((one) => one.values)], picture);
+    else if (plot.width !== width || plot.height !== tall) plot.setSize({ width, height: tall });
     else plot.redraw(false, true);
   };
   new ResizeObserver(() => {

@@ -1,5 +1,5 @@
 import { columnTitle, cellOf } from '../core/poses.js';
-import { colour } from '../core/theme.js';
+import { colour, isOnPaper } from '../core/theme.js';
 import { drawing } from './canvas.js';
 
 /** Joints side by side, each over its range, limits marked; a line for each pose. */
@@ -11,7 +11,7 @@ export function parallelCoordinates(joints, poses, colours, label) {
     const limits = [joint.lower, joint.upper].filter(Number.isFinite);
     return [Math.min(...used, ...limits), Math.max(...used, ...limits)];
   });
-  const { element, redraw } = drawing(label, 250, (context, width, height) => {
+  const { element, redraw } = drawing(label, () => (isOnPaper() ? 170 : 250), (context, width, height) => {
     const [left, right, top, bottom] = [36, width - 36, 36, height - 22];
     const x = (j) => (joints.length > 1 ? left + (j / (joints.length - 1)) * (right - left) : (left + right) / 2);
     const y = (j, value) => {
@@ -31,16 +31,17 @@ export function parallelCoordinates(joints, poses, colours, label) {
     context.globalAlpha = 1;
     line(poses[current], colour('paper'), 6);
     line(poses[current], colour('ink'), 2.6);
+    const room = (right - left) / Math.max(1, joints.length - 1) - 6;
     joints.forEach((joint, j) => {
       context.strokeStyle = colour('muted');
       context.lineWidth = 1;
       context.strokeRect(x(j), top, 0.01, bottom - top);
       for (const limit of [joint.lower, joint.upper].filter(Number.isFinite)) context.strokeRect(x(j) - 5, y(j, limit), 10, 0.01);
       context.fillStyle = colour('ink');
-      context.fillText(columnTitle(keys[j]), x(j), 14);
+      context.fillText(columnTitle(keys[j]), x(j), 14, room);
       context.fillStyle = colour('ink-soft');
-      context.fillText(cellOf(keys[j], ranges[j][1]).replace(/\.00$/, ''), x(j), 29);
-      context.fillText(cellOf(keys[j], ranges[j][0]).replace(/\.00$/, ''), x(j), height - 6);
+      context.fillText(cellOf(keys[j], ranges[j][1]).replace(/\.00$/, ''), x(j), 29, room);
+      context.fillText(cellOf(keys[j], ranges[j][0]).replace(/\.00$/, ''), x(j), height - 6, room);
     });
   });
   return {

@@ -1,6 +1,6 @@
-import { fixed } from '../core/format.js';
+import { fixed, short } from '../core/format.js';
 import { colour } from '../core/theme.js';
-import { drawing, span, ticks } from './canvas.js';
+import { apart, drawing, span, ticks } from './canvas.js';
 
 const gap = 46;
 
@@ -67,9 +67,10 @@ function frame(context, { left, top, size, height, xs, ys, px, py }) {
   context.strokeRect(left, top, size, height);
   context.fillStyle = colour('ink-soft');
   context.textAlign = 'center';
-  for (const x of ticks(...xs, 4)) context.fillText(fixed(x, 1), px(x), top + height + 15);
+  const room = (x) => context.measureText(short(x, 3)).width;
+  for (const x of apart(ticks(...xs, 4), px, room)) context.fillText(short(x, 3), px(x), top + height + 15);
   context.textAlign = 'right';
-  for (const y of ticks(...ys, 4)) context.fillText(fixed(y, 1), left - 5, py(y) + 4);
+  for (const y of ticks(...ys, 4)) context.fillText(short(y, 3), left - 5, py(y) + 4);
   if (px(0) > left && px(0) < left + size && py(0) > top && py(0) < top + height) {
     context.beginPath();
     context.moveTo(px(0) - 6, py(0));
@@ -88,7 +89,7 @@ export function drawSlices(description, slices, paint) {
   const ys = span(all.map(({ at }) => at[1]));
   const reach = 0.11 * Math.max(xs[1] - xs[0], ys[1] - ys[0]);
   const layout = (width) => {
-    const most = Math.max(1, Math.min(slices.length, Math.floor(width / 230)));
+    const most = Math.max(1, Math.min(slices.length, Math.floor(width / 170)));
     const rows = Math.ceil(slices.length / most);
     const columns = Math.ceil(slices.length / rows);
     const size = Math.floor(Math.min(width / columns - gap - 6, 400));
@@ -110,6 +111,6 @@ export function drawSlices(description, slices, paint) {
     });
     context.fillStyle = colour('ink-soft');
     context.textAlign = 'center';
-    context.fillText('x/m across, y/m up; the cross is the robot\u2019s base', width / 2, height - 3);
+    context.fillText('x/m across, y/m up; the cross is the robot\u2019s base', width / 2, height - 3, width);
   }).element;
 }

@@ -1,11 +1,13 @@
 import {
-  Box3, Color, DirectionalLight, HemisphereLight, InstancedMesh, Line, Matrix4, MeshBasicMaterial, PerspectiveCamera,
+  Box3, Color, DirectionalLight, HemisphereLight, InstancedMesh, Line, Matrix4, MeshBasicMaterial, OrthographicCamera, PerspectiveCamera,
   Scene, SphereGeometry, Vector3, WebGLRenderer, BufferGeometry,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { el } from '../core/dom.js';
+import { short } from '../core/format.js';
 import { apply, flange, frames, origin, way } from '../core/kinematics.js';
-import { colour, onTheme } from '../core/theme.js';
+import { colour, isOnPaper, onTheme } from '../core/theme.js';
+import { ticks } from './canvas.js';
 import { drawCell } from './cell.js';
 import { Robot } from './robot.js';
 import { lines, makeMaterials } from './solids.js';
@@ -33,9 +35,10 @@ export class Viewer {
     this.renderer = new WebGLRenderer({ canvas, context, antialias: true });
     this.renderer.debug.checkShaderErrors = false;
     this.scene = new Scene();
-    this.camera = new PerspectiveCamera(32, 1, 0.01, 500);
-    const up = [2, 6, 10].map((k) => scene.world_from_base[k]);
-    this.camera.up.set(...(typeof scene.floor_z === 'number' ? [0, 0, 1] : up));
+    this.cameras = { perspective: new PerspectiveCamera(32, 1, 0.01, 500), parallel: new OrthographicCamera() };
+    this.camera = this.cameras.perspective;
+    this.up = new Vector3(...(typeof scene.floor_z === 'number' ? [0, 0, 1] : [2, 6, 10].map((k) => scene.world_from_base[k])));
+    for (const camera of Object.values(this.cameras)) camera.up.copy(this.up);
     this.size = this.measure();
     this.robot = new Robot(scene, this.materials, this.size);
     const cell = drawCell(scene, this.materials, this.size);
@@ -46,8 +49,11 @@ export class Viewer {
     this.current = this.addLabel('', [0, 0, 0]);
     this.current.label.classList.add('label-pose');
     this.labels.push(this.current);
+    this.scale = el('span', { class: 'scale-bar' });
+    holder.append(this.scale);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.request());
+    [this.aspect, this.fitted, this.tall] = [1, 1, this.size];
     this.resize();
     this.look('all');
     onTheme(() => this.recolour());
@@ -59,7 +65,9 @@ export class Viewer {
     const places = this.poses.flatMap((pose) => frames(this.data, pose.joints).map(origin));
     this.near = places.map((place) => new Vector3(...place));
     const others = [this.data.instrument?.position, ...(this.data.boxes ?? []).filter((one) => one.kind === 'keep_out').map((one) => origin(one.world_from_box))];
-    this.whole = [...this.near, ...others.filter(Boolean).map((place) => new Vector3(...place))];
+    const solids = (this.data.capsules ?? []).filter((one) => one.kind === 'keep_out').flatMap(({ from, to, radius }) => [from, to].flatMap((end) =>
+      [-radius, radius].map((off) => apply(this.data.world_from_base, end).map((value) => value + off))));
+    this.whole = [...this.near, ...[...others, ...solids].filter(Boolean).map((place) => new Vector3(...place))];
     return Math.max(new Box3().setFromPoints(this.near).getSize(new Vector3()).length() / 2, 0.05);
   }
 
@@ -70,7 +78,7 @@ export class Viewer {
   }
 
   addLights() {
-    const { up } = this.camera;
+    const { up } = this;
     const sky = new HemisphereLight(0xffffff, 0x99a0a8, 1.9);
     sky.position.copy(up);
     const sun = new DirectionalLight(0xffffff, 1.6);
@@ -100,51 +108,66 @@ export class Viewer {
   }
 
   recolour() {
+    this.resize();
     for (const [name, variable] of Object.entries(palette)) this.materials[name].color.set(colour(variable));
     this.colourDots();
     this.renderer.setClearColor(colour('stage'));
     // At once: paper does not wait.
     this.render();
+    this.copy?.remove();
+    if (!isOnPaper()) return;
+    // Browsers do not print a 3D canvas as it is drawn for paper, but a copy.
+    const { width, height } = this.canvas;
+    this.copy = el('canvas', { class: 'stage-copy', width, height, 'aria-hidden': 'true' });
+    this.copy.getContext('2d').drawImage(this.canvas, 0, 0);
+    this.canvas.after(this.copy);
   }
 
-  /** `all` with the instrument, `robot` from the same side; `front`, `side` or `top`. */
+  /** From the side where robot and instrument stand apart `all`, or the `robot` alone; `front`, `side` and `top` as drawings: parallel, of all, with a scale. */
   look(from) {
-    const { up } = this.camera;
+    const { up } = this;
     const front = new Vector3(...[0, 4, 8].map((k) => this.data.world_from_base[k]));
     const side = new Vector3().crossVectors(up, front).normalize();
     const oblique = this.beside(front).addScaledVector(up, 0.42);
     const direction = { all: oblique, robot: oblique, front, side: side.negate(), top: up.clone().addScaledVector(front, -0.002) }[from].normalize();
-    this.fit(from === 'all' ? this.whole : this.near, direction);
+    this.camera = this.cameras[from === 'all' || from === 'robot' ? 'perspective' : 'parallel'];
+    this.controls.object = this.camera;
+    this.fit(from === 'robot' ? this.near : this.whole, direction);
+    this.resize();
     this.controls.update();
     this.request();
   }
 
   /** Stands where all points are in view, in the middle of it. */
   fit(points, direction) {
+    const { camera, cameras } = this;
     const centre = new Box3().setFromPoints(points).getCenter(new Vector3());
-    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    const half = Math.tan((cameras.perspective.fov * Math.PI) / 360);
     const room = 0.24 * this.size;
     let away = 4 * this.size;
     for (let k = 0; k < 6; ++k) {
-      this.camera.position.copy(centre).addScaledVector(direction, away);
-      this.camera.lookAt(centre);
-      this.camera.updateMatrixWorld();
-      const eye = this.camera.matrixWorld.clone().invert();
+      camera.position.copy(centre).addScaledVector(direction, away);
+      camera.lookAt(centre);
+      camera.updateMatrixWorld();
+      const eye = camera.matrixWorld.clone().invert();
       const seen = new Box3().setFromPoints(points.map((point) => point.clone().applyMatrix4(eye)));
-      const middle = seen.getCenter(new Vector3()).setZ(0).applyQuaternion(this.camera.quaternion);
+      const middle = seen.getCenter(new Vector3()).setZ(0).applyQuaternion(camera.quaternion);
       centre.add(middle);
       // What is near the eye takes the most room; the middle depth does for a first guess, the front is safe.
       const extent = seen.getSize(new Vector3());
-      const need = Math.max((extent.x / 2 + room) / this.camera.aspect, extent.y / 2 + room) / half;
-      away = need + 0.3 * extent.z;
+      this.tall = Math.max((extent.x / 2 + room) / this.aspect, extent.y / 2 + room);
+      away = this.tall / half + 0.3 * extent.z;
     }
+    this.fitted = this.aspect;
     this.controls.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(direction, away);
+    camera.position.copy(centre).addScaledVector(direction, away);
+    // A parallel view cuts nothing off before or behind.
+    Object.assign(cameras.parallel, { zoom: 1, near: -100 * this.size, far: 100 * this.size });
   }
 
   /** A level direction from which robot and instrument stand side by side. */
   beside(front) {
-    const { up } = this.camera;
+    const { up } = this;
     const at = this.data.instrument?.position;
     if (!at) return front.clone().addScaledVector(new Vector3().crossVectors(up, front), -1.1).normalize();
     const between = new Vector3(...at).sub(new Vector3(...origin(this.data.world_from_base)));
@@ -178,9 +201,14 @@ export class Viewer {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.holder;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setPixelRatio(isOnPaper() ? 2 : Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
-    this.camera.aspect = width / height;
+    this.aspect = width / height;
+    // As wide a view as it was fitted to.
+    const wider = Math.max(1, this.fitted / this.aspect);
+    Object.assign(this.cameras.perspective, { aspect: this.aspect, zoom: 1 / wider });
+    const top = this.tall * wider;
+    Object.assign(this.cameras.parallel, { top, bottom: -top, left: -top * this.aspect, right: top * this.aspect });
     this.camera.updateProjectionMatrix();
     this.request();
   }
@@ -195,10 +223,21 @@ export class Viewer {
   render() {
     this.renderer.render(this.scene, this.camera);
     const { clientWidth: width, clientHeight: height } = this.holder;
+    this.showScale(height);
     for (const { label, world } of this.labels ?? []) {
       const at = world.clone().project(this.camera);
       label.hidden = Math.abs(at.x) > 0.98 || Math.abs(at.y) > 0.98 || at.z > 1;
       label.style.transform = `translate(-50%, -50%) translate(${((at.x + 1) / 2) * width}px, ${((1 - at.y) / 2) * height}px)`;
     }
+  }
+
+  /** A bar of a round length, about a quarter of the height; in perspective there is none. */
+  showScale(height) {
+    const { parallel } = this.cameras;
+    this.scale.hidden = this.camera !== parallel;
+    const pixels = (height * parallel.zoom) / (2 * parallel.top);
+    const length = ticks(0, height / pixels, 4)[1];
+    this.scale.style.width = `${length * pixels}px`;
+    this.scale.textContent = length < 1 ? `${short(1e3 * length, 3)} mm` : `${short(length, 3)} m`;
   }
 }

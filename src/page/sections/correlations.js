@@ -5,7 +5,7 @@ import { correlationsOf } from '../core/parameters.js';
 import { screenTable, table } from '../core/table.js';
 import { colour, diverging } from '../core/theme.js';
 import { colourBar } from '../draw/colour_bar.js';
-import { drawing } from '../draw/canvas.js';
+import { apart, drawing } from '../draw/canvas.js';
 
 const shown = 20;
 
@@ -18,33 +18,49 @@ function strongest({ names, at }) {
   return pairs.sort((a, b) => Math.abs(b.value) - Math.abs(a.value)).slice(0, shown);
 }
 
-function matrix({ names, at }, text) {
+/** Blocks of parameters that belong together: `name`, the first and the one after the last. */
+const blocksOf = (blocks) => blocks.flatMap((name, k) => (name === blocks[k - 1] ? [] : [{ name, first: k, end: blocks.findIndex((other, i) => i > k && other !== name) }]))
+  .map((one) => (one.end < 0 ? { ...one, end: blocks.length } : one));
+
+function matrix({ names, blocks, at }, text) {
   const n = names.length;
-  const room = 10 + 6.2 * Math.max(...names.map((name) => name.length));
-  const picture = drawing(text, (width) => Math.max(11, Math.min(22, (width - room) / n)) * n + room, (context, width) => {
-    const cell = Math.max(11, Math.min(22, (width - room) / n));
-    context.font = `${Math.min(12, cell)}px system-ui, sans-serif`;
+  const list = blocksOf(blocks);
+  const room = 12 + 7 * Math.max(...list.map(({ name }) => name.length));
+  const cellOf = (width) => Math.max(3, Math.min(16, (width - room - 2) / n));
+  const { element } = drawing(text, (width) => cellOf(width) * n + room + 2, (context, width) => {
+    const cell = cellOf(width);
     for (let i = 0; i < n; ++i) {
       for (let j = 0; j < n; ++j) {
         context.fillStyle = diverging(at(i, j));
-        context.fillRect(room + j * cell, room + i * cell, cell - 0.5, cell - 0.5);
+        context.fillRect(room + j * cell, room + i * cell, cell, cell);
       }
     }
+    context.strokeStyle = colour('ink-soft');
+    context.lineWidth = 1;
+    for (const edge of [0, ...list.map(({ end }) => end)]) {
+      context.strokeRect(room + edge * cell, room, 0.01, n * cell);
+      context.strokeRect(room, room + edge * cell, n * cell, 0.01);
+    }
     context.fillStyle = colour('ink');
-    names.forEach((name, k) => {
+    const middle = ({ first, end }) => room + ((first + end) / 2) * cell + 4;
+    for (const block of apart(list, middle, () => 5)) {
       context.textAlign = 'right';
-      context.fillText(name, room - 5, room + (k + 0.5) * cell + 0.35 * cell, room - 5);
+      context.fillText(block.name, room - 6, middle(block));
       context.save();
-      context.translate(room + (k + 0.5) * cell + 0.35 * cell, room - 5);
+      context.translate(middle(block), room - 6);
       context.rotate(-Math.PI / 2);
       context.textAlign = 'left';
-      context.fillText(name, 0, 0, room - 5);
+      context.fillText(block.name, 0, 0);
       context.restore();
-    });
+    }
   });
-  // Never so narrow that names could not be read.
-  picture.element.style.minWidth = `${Math.ceil(11 * n + room)}px`;
-  return el('div', { class: 'scroll scroll-all', tabindex: 0, role: 'group', 'aria-label': 'Correlation matrix' }, picture.element);
+  const canvas = element.querySelector('canvas');
+  canvas.addEventListener('pointermove', (event) => {
+    const [i, j] = [event.offsetY, event.offsetX].map((offset) => Math.floor((offset - room) / cellOf(canvas.clientWidth)));
+    canvas.title = names[i] && names[j] ? `${names[i]} with ${names[j]}: ${fixed(at(i, j), 2)}` : '';
+  });
+  element.style.minWidth = `${Math.ceil(3 * n + room + 2)}px`;
+  return el('div', { class: 'scroll scroll-all', tabindex: 0, role: 'group', 'aria-label': 'Correlation matrix' }, element);
 }
 
 function matrixTable({ names, at }) {
@@ -56,7 +72,7 @@ export function correlationFigure(document) {
   if (!correlations || correlations.names.length < 2) return null;
   const pairs = strongest(correlations);
   const text = `Correlation matrix of ${correlations.names.length} parameters; strongest: ${pairs.slice(0, 5).map((one) => `${one.first} with ${one.second} ${fixed(one.value, 3)}`).join(', ')}`;
-  return figure('Correlations of the parameters: strong ones are what these poses can hardly tell apart.',
+  return figure('Correlations of the parameters, in blocks: the base, the errors of each joint, targets. Strong ones are what these poses can hardly tell apart.',
     el('div', {}, colourBar('correlation', '-1', '1', true), matrix(correlations, text)),
     [table('Strongest correlations', ['parameter', 'parameter', 'correlation'], pairs.map((one) => [one.first, one.second, fixed(one.value, 3)])),
       correlations.names.length <= 80 ? matrixTable(correlations) : null]);

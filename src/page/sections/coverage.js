@@ -9,17 +9,23 @@ export const title = 'Coverage: predicted against found';
 
 const isNumber = (value) => typeof value === 'number';
 
-/** Of an estimate: pairs of what it expects and what was found there, mm. */
+const sets = { validation: 'validation', verification: 'verification', left_out: 'not in plan' };
+
+/**
+ * Of an estimate: pairs of what it expects and what was found, of the same thing: means of repeats held out with the means expected there,
+ * readings of poses that it was not made with. Where parameters are little known they are known worse at a pose held out: no pair.
+ */
 function pairsOf({ accuracy }) {
-  const expected = accuracy?.expected ?? {};
-  const of = (metrics) => metrics?.distance_rms_mm;
-  return [
-    ['calibrated, at the poses measured', expected.at_measured?.total_mm, of(accuracy?.fit_means ?? accuracy?.fit)],
-    ['held out', expected.at_measured?.total_mm, of(accuracy?.held_out?.means ?? accuracy?.held_out?.samples)],
-    ['verification', expected.at_verification?.total_mm, of(accuracy?.verification)],
-    ['not in plan', expected.at_left_out?.total_mm, of(accuracy?.left_out)],
-    ['validation', expected.at_validation?.total_mm, of(accuracy?.validation)],
-  ].filter(([, predicted, found]) => isNumber(predicted) && isNumber(found)).map(([name, predicted, found]) => ({ name, predicted, found }));
+  const { at_measured: expected } = accuracy?.expected ?? {};
+  const unit = expected && 'total_mrad' in expected ? 'mrad' : 'mm';
+  const [parameters, leftOver, noise] = ['parameters', 'left_over', 'noise'].map((part) => expected?.[`${part}_${unit}`] ** 2);
+  const isByFewPoses = 2 * parameters > leftOver + noise;
+  const heldOut = { name: 'held out, means', predicted: isByFewPoses ? null : expected?.[`total_${unit}`],
+    found: accuracy?.held_out?.means[unit === 'mm' ? 'distance_rms_mm' : 'orientation_rms_mrad'] };
+  const judged = (accuracy?.judged ?? []).filter((one) => one.group !== 'repeated').map((one) => ({
+    name: `${sets[one.poses]}, ${one.group}`, predicted: one[`expected_${unit}`], found: one[`rms_${unit}`], low: one[`lower_${unit}`], high: one[`upper_${unit}`],
+  }));
+  return [heldOut, ...judged].filter(({ predicted, found }) => isNumber(predicted) && isNumber(found)).map((one) => ({ ...one, unit }));
 }
 
 const studyRows = ({ models }) => (models ?? []).flatMap((model) => model.rows.flatMap((row) => row.planned
@@ -54,10 +60,12 @@ function ofPlan({ document }) {
 
 function ofEstimate(part) {
   const pairs = pairsOf(part.document);
-  const rows = pairs.map((one) => [one.name, mm(one.predicted), mm(one.found), fixed(one.found / one.predicted, 2)]);
-  return el('div', {}, lead('What the calibration expects of itself, and what was found: at the poses measured of the means of repeats, elsewhere of each reading.'),
-    figure('Open circles: predicted; dots: found.', dotRows(`Predicted and found: ${rows.map((row) => row.slice(0, 3).join(' ')).join(', ')}`, 'distance RMS/mm', pairs.map((one) => ({ name: one.name, at: one.found, other: one.predicted }))),
-      [table('Distance RMS, predicted and found', ['where', 'predicted/mm', 'found/mm', 'found/predicted'], rows)]));
+  const [{ unit }] = pairs;
+  const rows = pairs.map((one) => [one.name, mm(one.predicted), mm(one.found), isNumber(one.low) ? `${mm(one.low)}..${mm(one.high)}` : '-', fixed(one.found / one.predicted, 2)]);
+  return el('div', {}, lead('What the calibration expects, and what was found: held out of the means of repeats, elsewhere of each reading. The fit itself is no test.'),
+    figure('Open circles: predicted; dots: found, with 95 % confidence where it is known.', dotRows(`Predicted and found: ${rows.map((row) => row.slice(0, 3).join(' ')).join(', ')}`, `RMS/${unit}`,
+      pairs.map((one) => ({ name: one.name, at: one.found, low: one.low, high: one.high, other: one.predicted }))),
+      [table('RMS, predicted and found', ['where', `predicted/${unit}`, `found/${unit}`, '95 %', 'found/predicted'], rows)]));
 }
 
 function ofStudy({ document }) {

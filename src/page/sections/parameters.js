@@ -50,6 +50,6 @@ export function render(part) {
   return el('div', {},
     lead(`${count(list.length, 'parameter')}, of which ${robot.length} are errors of the robot${held.length > 0 ? `; ${held.length} are held as an earlier estimate has them` : ''}.`),
     large.length > 0 ? note(`More than three times their expected size: ${large.map((one) => `${one.name} (${short(Math.abs(one.value) / one.expected, 3)} times)`).join(', ')}.`) : null,
-    el('div', { class: list.length > 40 ? null : 'figures' }, valueFigure(list), correlationFigure(document)),
+    el('div', { class: 'figures' }, valueFigure(list), correlationFigure(document)),
     behind([parameterTable(list), sizesTable(document)], 'All parameters with their standard deviations'));
 }

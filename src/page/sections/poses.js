@@ -167,5 +167,7 @@ function introduction(part, poses) {
   const text = [`${count(poses.length, 'pose')}${poses[0].hasWay ? ', in the order to visit them' : ''}`];
   if (document.tour) text.push(`all moves take ${fixed(document.tour.time_s, 1)} s at the joints' speeds`);
   if (document.tour?.blocked_count > 0) text.push(`${count(document.tour.blocked_count, 'move')} blocked: find a way by hand`);
+  const near = poses.filter((pose) => typeof pose.clearance === 'number').sort((a, b) => a.clearance - b.clearance);
+  if (near.length > 0) text.push(`nothing comes nearer than ${near[0].nearest.replace(' ', ' mm, ')}, at ${near[0].id}`);
   return lead(`${text.join('; ')}.`);
 }

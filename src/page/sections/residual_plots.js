@@ -91,7 +91,7 @@ function farthest({ residuals, sub }) {
   const beyond = all.filter((row) => size(row) > limit).length;
   const header = ['configuration', 'sample', 'target', ...residuals.axes.map((axis, k) => `${axis}/${residuals.unit[k]}`), 'std. devs.', 'by chance'];
   return [el(sub, { class: 'sub' }, 'Farthest readings'),
-    el('p', {}, `${beyond === 0 ? 'None is' : `${beyond} ${beyond === 1 ? 'is' : 'are'}`} farther off than chance would have it (${fixed(limit, 2)} standard deviations, 1 campaign in 20).`),
+    lead(`${beyond === 0 ? 'None is' : `${beyond} ${beyond === 1 ? 'is' : 'are'}`} farther off than chance would have it (${fixed(limit, 2)} standard deviations, 1 campaign in 20).`),
     table('Farthest readings', header, list.map((row) => [row.configuration, row.sample, row.target, ...row.residual.map(mm), fixed(size(row), 2), size(row) > limit ? 'no' : 'yes'])
       .map((row) => row.map((cell) => String(cell ?? ''))))];
 }
@@ -99,7 +99,7 @@ function farthest({ residuals, sub }) {
 function outliers({ document: { outliers: list, loss }, sub }) {
   if (!loss) return null;
   const sorted = [...(list ?? [])].sort((a, b) => b.standard_deviations - a.standard_deviations);
-  return [el(sub, { class: 'sub' }, 'Outliers'), el('p', {}, `Loss ${loss.kind} with width ${short(loss.width_standard_deviations, 4)} standard deviations: ${count(sorted.length, 'outlier')}.`),
+  return [el(sub, { class: 'sub' }, 'Outliers'), lead(`Loss ${loss.kind} with width ${short(loss.width_standard_deviations, 4)} standard deviations: ${count(sorted.length, 'outlier')}.`),
     sorted.length === 0 ? null : table('Outliers, farthest first', ['configuration', 'target', 'error/mm', 'std. devs.', 'weight'], sorted.map((one) =>
       [one.configuration, String(one.target), mm(one.distance_mm), fixed(one.standard_deviations, 1), fixed(one.weight, 3)]))];
 }
