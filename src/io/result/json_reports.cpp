@@ -152,6 +152,8 @@ Json planned_to_json(const Study& study, const StudyRow& row, const StudyRow& fi
         Json& json = list.emplace_back();
         json["criterion"] = criterion_name(study.criteria[c]);
         json["held_out_rms_mm"] = detail::millimetres(held_out_quantile(cases, 0.5));
+        json["held_out_rms_p10_mm"] = detail::millimetres(held_out_quantile(cases, 0.1));
+        json["held_out_rms_p90_mm"] = detail::millimetres(held_out_quantile(cases, 0.9));
         json["expected_rms_mm"] = detail::millimetres(median_expected(cases));
         if (const auto advantage = planned_advantage(study, row, c)) {
             json["against_random"] = advantage_to_json(*advantage);

@@ -1,5 +1,5 @@
 import { el, saveFile } from '../core/dom.js';
-import { warningsOf } from './warnings.js';
+import { warningsOf } from './verdict.js';
 
 const kinds = { plan: 'Plan', estimate: 'Calibration', study: 'Study', export: 'Export' };
 
