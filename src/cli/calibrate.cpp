@@ -196,16 +196,18 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     made_from.answers = answer(result);
     const Printed printed = describe_calibration(arguments, result, made_from);
     if (!result.faults.empty()) check_faults(arguments, common, result, printed);
-    const Measurements used = options.used.empty() ? measured : take(measured, options.used);
     io::PagePart part;
-    if (!arguments.page.empty()) part = show_estimate(result.campaign, result.estimate, &used);
+    if (!arguments.page.empty()) {
+        const Measurements used = options.used.empty() ? measured : take(measured, options.used);
+        part = show_estimate(result.campaign, result.estimate, &used);
+    }
     made_from.warnings = given_warnings();
     if (!arguments.out.empty()) io::write_estimate(arguments.out, result, made_from);
     if (!arguments.predict_out.empty()) {
         io::write_predictions_csv(arguments.predict_out, predicted.ids, result.predicted);
     }
     print(printed, common);
-    show_calibration(arguments, common, result, used, std::move(part), printed);
+    show_calibration(arguments, common, result, measured, options, std::move(part), printed);
 }
 
 }  // namespace

@@ -21,6 +21,34 @@ std::string describe_start(const CalibrateArguments& arguments) {
     return fmt::format("\nfrom:       {}: where it began\n", detail::escape_controls(earlier.from));
 }
 
+/// At the poses that it was judged at.
+std::vector<std::pair<std::string, io::PageResiduals>> judged_residuals(
+    const Calibration& result, const Measurements& measured, const CalibrationOptions& options) {
+    std::vector<std::pair<std::string, io::PageResiduals>> judged;
+    const auto add = [&](const char* poses, const Measurements& others, const Campaign& campaign,
+                         const Parameters& parameters) {
+        judged.emplace_back(
+            poses,
+            io::page_residuals(campaign, others, list_residuals(campaign, parameters, others)));
+    };
+    const Parameters& found = result.estimate.parameters;
+    if (result.validation && result.refitted) {
+        add("validation", *options.validation, *result.refitted, result.refitted->nominal);
+    } else if (result.validation) {
+        add("validation", *options.validation, result.campaign, found);
+    }
+    if (result.verification) {
+        add("verification", take(measured, options.verification), result.campaign, found);
+    }
+    if (result.left_out) {
+        std::vector<Index> known = options.used;
+        known.insert(known.end(), options.verification.begin(), options.verification.end());
+        add("left_out", take(measured, all_but(measured.configuration_count(), known)),
+            result.campaign, found);
+    }
+    return judged;
+}
+
 }  // namespace
 
 Printed describe_calibration(const CalibrateArguments& arguments, const Calibration& result,
@@ -43,12 +71,15 @@ io::PagePart show_estimate(const Campaign& campaign, const Estimate& estimate,
 }
 
 void show_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
-                      const Calibration& result, const Measurements& used, io::PagePart part,
+                      const Calibration& result, const Measurements& measured,
+                      const CalibrationOptions& options, io::PagePart part,
                       const Printed& printed) {
     if ((arguments.page + arguments.plot).empty()) return;
+    const Measurements used = options.used.empty() ? measured : take(measured, options.used);
     const std::vector<ReadingResidual> readings = list_residuals(result, used);
     if (!arguments.page.empty()) {
         part.residuals = io::page_residuals(result.campaign, used, readings);
+        part.residuals->judged = judged_residuals(result, measured, options);
         write_page(arguments.page, std::move(part), printed, common);
     }
     if (arguments.plot.empty()) return;

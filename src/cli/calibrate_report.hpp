@@ -16,10 +16,10 @@ Printed describe_calibration(const CalibrateArguments& arguments, const Calibrat
 io::PagePart show_estimate(const Campaign& campaign, const Estimate& estimate,
                            const Measurements* measurements);
 
-/// The page, with this part, and the plot of one that was made with these measurements, if there
-/// are paths for them.
+/// The page, with this part, and the plot of one that was made with some of these measurements, as
+/// the options say, if there are paths for them.
 void show_calibration(const CalibrateArguments& arguments, const CommonOptions& common,
-                      const Calibration& result, const Measurements& used, io::PagePart part,
-                      const Printed& printed);
+                      const Calibration& result, const Measurements& measured,
+                      const CalibrationOptions& options, io::PagePart part, const Printed& printed);
 
 }  // namespace posewise::cli

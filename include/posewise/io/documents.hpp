@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "posewise/io/result_files.hpp"
@@ -104,6 +105,8 @@ struct PageResiduals {
     std::vector<std::string> names;  ///< reading_names()
     Measurements measurements;
     std::vector<ReadingResidual> readings;
+    /// Of poses that it was judged at, by "validation", "verification" or "left_out".
+    std::vector<std::pair<std::string, PageResiduals>> judged{};
 };
 /// Adds the words of the campaign's sensor.
 PageResiduals page_residuals(const Campaign& campaign, const Measurements& measurements,

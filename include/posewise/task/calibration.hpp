@@ -244,6 +244,11 @@ std::vector<ReadingResidual> list_residuals(const Campaign& campaign, const Esti
                                             const Measurements& measurements,
                                             const ResidualOptions& options = {});
 
+/// Those of measurements that it was not made with: nothing but configuration, sample, target and
+/// `calibrated`.
+std::vector<ReadingResidual> list_residuals(const Campaign& campaign, const Parameters& parameters,
+                                            const Measurements& measurements);
+
 /// Names of a residual's numbers: "x", "y", "z", "rx", ...; "distance" for readings that are one
 /// length.
 std::vector<std::string> residual_axes(const Campaign& campaign);

@@ -198,12 +198,25 @@ Json readings_to_json(const PageResiduals& residuals) {
     return json;
 }
 
-Json residuals_to_json(const PageResiduals& residuals) {
+Json axes_to_json(const PageResiduals& residuals) {
     Json json = {{"axes", residuals.axes}, {"unit", Json::array()}, {"targets", residuals.names}};
     for (const bool is_angle : residuals.is_angle) {
         json["unit"].push_back(units_of(is_angle).error);
     }
+    return json;
+}
+
+Json residuals_to_json(const PageResiduals& residuals) {
+    Json json = axes_to_json(residuals);
     json["readings"] = readings_to_json(residuals);
+    for (const auto& [poses, others] : residuals.judged) {
+        json[poses] = axes_to_json(others);
+        Json& readings = json[poses]["readings"];
+        readings["target"] =
+            column_of(others, [](const ReadingResidual& one) { return one.target; });
+        readings["residual"] = columns_of(
+            others, [](const ReadingResidual& one) { return &one.calibrated; }, in_nm);
+    }
     return json;
 }
 
@@ -296,8 +309,8 @@ std::string make_page(const std::vector<PagePart>& parts, const std::vector<std:
 
 PageResiduals page_residuals(const Campaign& campaign, const Measurements& measurements,
                              std::vector<ReadingResidual> readings) {
-    PageResiduals residuals{
-        residual_axes(campaign), {}, reading_names(campaign), measurements, std::move(readings)};
+    PageResiduals residuals{residual_axes(campaign), {}, reading_names(campaign), measurements,
+                            std::move(readings),     {}};
     for (Index row = 0; row < campaign.sensor->rows_per_target(); ++row) {
         residuals.is_angle.push_back(campaign.sensor->is_angle(row));
     }

@@ -45,43 +45,58 @@ std::vector<ReadingResidual> list(const Campaign& campaign, const Estimate& esti
                                   const Measurements& measurements, const Rows& rows) {
     const Sensor& sensor = *campaign.sensor;
     const Index width = sensor.rows_per_target();
-    const RowMatrixXd calibrated = residuals(campaign, estimate.parameters, measurements);
     const std::optional<Vector3d> instrument = instrument_position(campaign);
+    std::vector<ReadingResidual> listed =
+        list_residuals(campaign, estimate.parameters, measurements);
     FlangeMotion motion;
-    std::vector<ReadingResidual> listed;
+    VectorXd deviations;
+    Index configuration = -1;
     Index row = 0;
-    for (Index i = 0; i < measurements.configuration_count(); ++i) {
-        const VectorXd q = measurements.configurations.row(i).transpose();
-        const VectorXd deviations = residual_variances(campaign, estimate, q, motion).cwiseSqrt();
-        const Isometry3d flange = world_from_flange(campaign, estimate.parameters, q);
-        const Index first = measurements.first_sample[static_cast<std::size_t>(i)];
-        for (Index sample = first; sample < first + measurements.sample_count(i); ++sample) {
-            for (Index target = 0; target < measurements.is_seen.cols(); ++target) {
-                if (!measurements.is_seen(sample, target)) continue;
-                ReadingResidual& one = listed.emplace_back();
-                one.configuration = i;
-                one.sample = sample;
-                one.target = target;
-                one.calibrated = calibrated.row(row).transpose();
-                one.nominal = rows.nominal.row(row).transpose();
-                if (rows.held_out.rows() > 0 && rows.held_out.row(row).allFinite()) {
-                    one.held_out = rows.held_out.row(row).transpose();
-                }
-                one.standardised =
-                    one.calibrated.cwiseQuotient(deviations.segment(width * target, width));
-                if (instrument) {
-                    one.direction = direction_of(
-                        flange * sensor.target_position(target, estimate.parameters.sensor) -
-                        *instrument);
-                }
-                ++row;
-            }
+    for (ReadingResidual& one : listed) {
+        if (one.configuration != configuration) {
+            configuration = one.configuration;
+            const VectorXd q = measurements.configurations.row(configuration).transpose();
+            deviations = residual_variances(campaign, estimate, q, motion).cwiseSqrt();
         }
+        one.nominal = rows.nominal.row(row).transpose();
+        if (rows.held_out.rows() > 0 && rows.held_out.row(row).allFinite()) {
+            one.held_out = rows.held_out.row(row).transpose();
+        }
+        one.standardised =
+            one.calibrated.cwiseQuotient(deviations.segment(width * one.target, width));
+        if (instrument) {
+            one.direction =
+                direction_of(motion.world_from_flange *
+                                 sensor.target_position(one.target, estimate.parameters.sensor) -
+                             *instrument);
+        }
+        ++row;
     }
     return listed;
 }
 
 }  // namespace
+
+std::vector<ReadingResidual> list_residuals(const Campaign& campaign, const Parameters& parameters,
+                                            const Measurements& measurements) {
+    const RowMatrixXd all = residuals(campaign, parameters, measurements);
+    std::vector<ReadingResidual> listed;
+    for (Index i = 0; i < measurements.configuration_count(); ++i) {
+        const Index first = measurements.first_sample[static_cast<std::size_t>(i)];
+        for (Index sample = first; sample < first + measurements.sample_count(i); ++sample) {
+            for (Index target = 0; target < measurements.is_seen.cols(); ++target) {
+                if (!measurements.is_seen(sample, target)) continue;
+                const Index row = std::ssize(listed);
+                ReadingResidual& one = listed.emplace_back();
+                one.configuration = i;
+                one.sample = sample;
+                one.target = target;
+                one.calibrated = all.row(row).transpose();
+            }
+        }
+    }
+    return listed;
+}
 
 std::vector<ReadingResidual> list_residuals(const Calibration& calibration,
                                             const Measurements& measurements) {
