@@ -142,6 +142,18 @@ TEST(ToPage, HasTheSceneAndWhatIsLeftOfReadings) {
     for (ReadingResidual& reading : part.residuals->readings) reading.held_out.reset();
     const json without = json::parse(to_json(std::vector<PagePart>{part}))["parts"][0];
     EXPECT_FALSE(without["residuals"]["readings"].contains("held_out"));
+
+    // Poses that it was judged at: the same residuals here, since they are the same poses.
+    part.residuals->judged.emplace_back(
+        "validation",
+        page_residuals(found.campaign, measured,
+                       list_residuals(found.campaign, found.estimate.parameters, measured)));
+    const json judged = json::parse(to_json(std::vector<PagePart>{part}))["parts"][0];
+    const json& others = judged["residuals"]["validation"];
+    EXPECT_EQ(others["axes"], shown["residuals"]["axes"]);
+    EXPECT_EQ(others["readings"]["residual"], readings["residual"]);
+    EXPECT_EQ(others["readings"]["target"], readings["target"]);
+    EXPECT_EQ(others["readings"].size(), 2U);
 }
 
 TEST(WritePage, WritesAllOrNothing) {
