@@ -80,7 +80,7 @@ std::string describe_limit(const Curve& curve) {
         count_of(curve.points[k].pose_count, "pose"));
 }
 
-/// "from 8: 5 more, from 12: 9 more; from 20 none up to 50".
+/// "from 8: 5 more, from 12: 9 more; from 20 no number up to 50 does".
 std::string describe_more(const std::vector<ErrorAtCount>& points) {
     std::vector<std::string> steps;
     Index without = 0;  // the first number that none leaves 20 % less than, if not 0
@@ -88,7 +88,7 @@ std::string describe_more(const std::vector<ErrorAtCount>& points) {
         const auto found = more_poses(points, one.pose_count);
         if (!found || found->most == one.pose_count) continue;
         if (found->more) {
-            steps.push_back(fmt::format("from {}: {}", one.pose_count, *found->more));
+            steps.push_back(fmt::format("from {}: {} more", one.pose_count, *found->more));
             without = 0;
         } else if (without == 0) {
             without = one.pose_count;
