@@ -28,10 +28,10 @@ TEST(FormatTable, GoesOnBelowWhereTheLastTextIsLong) {
     for (int k = 0; k < 12; ++k) words += ten;
     const std::string text =
         format_table({{"parameter", "absorbed by"}, {{"Tx1", words + "end"}, {"Ty1", "a"}}});
-    // 11 characters of the first column leave 89: eight words of nine and their blanks.
-    const std::string eight = words.substr(0, 79);
+    // 11 characters of the first column leave 89: nine words of nine and the blanks between.
+    const std::string nine = words.substr(0, 89);
     EXPECT_EQ(text, "parameter  absorbed by\n---------  " + std::string(89, '-') + "\nTx1        " +
-                        eight + "\n           " + words.substr(0, 40) + "end\nTy1        a\n");
+                        nine + "\n           " + words.substr(0, 30) + "end\nTy1        a\n");
 }
 
 TEST(FormatTable, OfNothingIsItsHeader) { EXPECT_EQ(format_table({{"a"}, {}}), "a\n-\n"); }
