@@ -6,7 +6,6 @@
 
 #include "core/text.hpp"
 #include "io/format/json_reader.hpp"
-#include "plan_format.hpp"
 #include "posewise/io/result_files.hpp"
 
 namespace posewise::io {
