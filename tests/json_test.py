@@ -348,7 +348,7 @@ def check_writers():
     """Each word that those who write documents know is in the manual, and each key of the manual theirs:
     those of cases that are not met here, too."""
     sources = "".join(path.read_text() for path in sorted((ROOT / "src/io").rglob("*.cpp")) if path.stem in (
-        "json", "json_reports", "plan_file", "plan_document", "estimate_file", "parameters_json", "doubts_json", "residual_look_json", "judgement_json",
+        "json", "json_reports", "plan_json", "plan_document", "estimate_file", "estimate_fields", "parameters_json", "doubts_json", "residual_look_json", "judgement_json",
         "robot_statement", "weights_file", "page_file"))
     sources = re.sub(r"#include.*", "", sources)
     manual = (ROOT / "designs/json.md").read_text() + PAGE_MANUAL

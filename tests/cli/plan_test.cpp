@@ -109,7 +109,7 @@ TEST_F(PlanCommand, ChecksThePlanItRepairs) {
     expect_refused(plan, "e.json: poses[3].visible_targets: is empty");
     pose.at("visible_targets") = {1};
     pose.at("id") = "p5";
-    expect_refused(plan, "'p5' occurs before in poses[");
+    expect_refused(plan, "is 'p5'; must be another than that of poses[");
     plan = sound;
     plan.at("campaign") = "another cell";
     expect_refused(plan, "campaign: is 'another cell'; must be a plan of 'FANUC");

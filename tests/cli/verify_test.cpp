@@ -113,7 +113,7 @@ TEST_F(Verify, NoticesEditedPoses) {
     expect_input_error("verify e.json", "e.json: poses[2].id: 'ghost' is not among the candidates");
     plan["poses"][2] = plan["poses"][1];
     write_text("e.json", plan.dump());
-    expect_input_error("verify e.json", "occurs before in poses[1]");
+    expect_input_error("verify e.json", "must be another than that of poses[1]");
 }
 
 TEST_F(Verify, NoticesEditedAssumptions) {
@@ -131,7 +131,7 @@ TEST_F(Verify, RefusesWhatIsMissingOrOutOfRange) {
     Json plan = Json::parse(text_of("p.json"));
     plan["problem"]["least_distance_rad"] = -1;
     write_text("e.json", plan.dump());
-    expect_input_error("verify e.json", "problem.least_distance_rad: must not be negative");
+    expect_input_error("verify e.json", "problem.least_distance_rad: is -1; must be at least 0");
     plan = Json::parse(text_of("p.json"));
     plan["poses"][3].erase("times");
     write_text("e.json", plan.dump());
@@ -165,10 +165,10 @@ TEST_F(Verify, ChecksPosePlans) {
         },
         "is beyond the joint limits");
     expect_wrong([](Json& plan) { plan["poses"][1]["readable"]["q2_deg"] = 12.5; },
-                 "e.json: poses[1].readable.q2_deg: is 12.5, but joints.q2_rad says ");
+                 "e.json: poses[1].readable.q2_deg: is 12.5; must be ");
     expect_wrong([](Json& plan) { plan["poses"][1]["readable"].erase("q2_deg"); }, "readable");
     expect_wrong([](Json& plan) { plan["poses"][1]["id"] = plan["poses"][0]["id"]; },
-                 "occurs before in poses[0]");
+                 "must be another than that of poses[0]");
     expect_wrong([](Json& plan) { plan["bounds"]["pool"]["efficiency"] = 0.999; },
                  "pool bound efficiency: stated");
     expect_wrong([](Json& plan) { plan["bounds"]["continuous"]["efficiency"] = 1; },

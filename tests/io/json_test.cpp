@@ -22,7 +22,7 @@ TEST(ReadJson, RefusesDeepNesting) {
                           '1' + std::string(depth, ']') + R"(, "a": 1})");
         return testing::input_error_of([&] { read_plan(path); });
     };
-    EXPECT_EQ(error_of(49), "p.json: poses: must be a list of at least one pose");
+    EXPECT_EQ(error_of(49), "p.json: poses: is missing; must be there as posewise writes it");
     EXPECT_EQ(error_of(50), "p.json: is nested more than 50 deep; must be less");
     EXPECT_EQ(error_of(100000), error_of(50));
 }

@@ -75,8 +75,14 @@ class PlanFileTest : public ::testing::Test {
         return input_error_of([&] { read_plan(folder_.write("p.json", text)); });
     }
 
-    std::string error_with_poses(const std::string& poses) const {
-        return error_of(R"({"kind": "posewise plan", "format": 2, "poses": )" + poses + "}");
+    /// Of plain blocks, in place of the two.
+    std::string error_with_poses(const std::string& poses) {
+        plan_.kind = CandidateKind::Blocks;
+        plan_.request.sources.rows_per_block = 1;
+        const std::string text = written();
+        const std::size_t begin = text.find("\"poses\": ") + 9;
+        const std::size_t end = text.find(",\n  \"certificate\"");
+        return error_of(text.substr(0, begin) + poses + text.substr(end));
     }
 
     TemporaryFolder folder_;
@@ -145,7 +151,8 @@ TEST_F(PlanFileTest, KeepsPosesToVerifyApart) {
     EXPECT_EQ(read.verification[1].configuration, plan_.verification[1].configuration);
     EXPECT_EQ(read.verification[1].targets, plan_.verification[1].targets);
     const std::string error = error_with("\"id\": \"v2\"", "\"id\": \"dritte Stück\"");
-    EXPECT_NE(error.find("verification[1].id: 'dritte Stück' occurs before in poses[1]; keep one"),
+    EXPECT_NE(error.find("verification[1].id: is 'dritte Stück'; must be another than that of "
+                         "poses[1]"),
               std::string::npos)
         << error;
     const CampaignFile campaign = read_campaign(folder_.path("c.yaml"));
@@ -203,16 +210,17 @@ TEST_F(PlanFileTest, SaysWhereAnEditedFileIsWrong) {
     EXPECT_EQ(error_with("[-0.1,7.0]", "[7.0]"),
               "p.json: certificate.M_lower[1]: has 1 numbers; must have 2, the lower triangle");
     EXPECT_EQ(error_with("\"time limit\"", "\"tired\""),
-              "p.json: search.stop_reason: is 'tired', which is none of posewise");
+              "p.json: search.stop_reason: is 'tired'; must be converged, optimal, time limit, "
+              "interrupted or not run");
     EXPECT_EQ(error_with("\"starts\"", "\"begins\""),
               "p.json: search.starts: is missing; must be there as posewise writes it");
     EXPECT_EQ(error_with("\"measurements\"", "\"hearsay\""),
-              "p.json: candidates.kind: is 'hearsay'; must be measurements, configurations, random "
-              "or blocks");
+              "p.json: candidates.kind: is 'hearsay'; must be measurements, configurations, "
+              "random, blocks or pool");
     EXPECT_EQ(error_with("\"repeats\": 2.5", "\"repeats\": 0.5"),
-              "p.json: candidates.repeats: must be at least 1");
+              "p.json: candidates.repeats: is 0.5; must be at least 1");
     EXPECT_EQ(error_with("\"id\": \"" + plan_.poses[1].id + "\"", "\"id\": \"\""),
-              "p.json: poses[1].id: is empty; must be a name");
+              "p.json: poses[1].id: is ''; must be a name");
     std::string text = written();
     for (std::size_t at; (at = text.find("\"joints\"")) != text.npos;) {
         text.replace(at, 8, "\"angles\"");
@@ -241,7 +249,7 @@ TEST_F(PlanFileTest, RefusesNumbersNoPlanHas) {
     EXPECT_EQ(error_with("\"visible_targets\": [1,2]", "\"visible_targets\": [1,1]"),
               "p.json: poses[0].visible_targets[1]: occurs before; keep one");
     EXPECT_EQ(error_with("\"repeats\": 2.5", "\"repeats\": 2e9"),
-              "p.json: candidates.repeats: must be at most 1e9");
+              "p.json: candidates.repeats: is 2000000000.0; must be at most 1e+09");
 }
 
 TEST_F(PlanFileTest, RefusesAContinuousPlanThatContradictsItself) {
@@ -256,16 +264,16 @@ TEST_F(PlanFileTest, RefusesAContinuousPlanThatContradictsItself) {
     EXPECT_EQ(error_with("\"workspace_poses\": 500", "\"workspace_poses\": 10000000"),
               "p.json: problem.workspace_poses: is 10000000; must be at most 20000");
     EXPECT_EQ(error_with("\"time_limit_s\": 0.0", "\"time_limit_s\": -1"),
-              "p.json: problem.time_limit_s: must not be negative");
+              "p.json: problem.time_limit_s: is -1; must be at least 0");
     EXPECT_EQ(error_with("\"visiting_time_s\": 17.5", "\"visiting_time_s\": -1"),
-              "p.json: visiting_time_s: must not be negative");
+              "p.json: visiting_time_s: is -1; must be at least 0");
     EXPECT_EQ(error_with("\"efficiency\": 0.0", "\"efficiency\": -7"),
-              "p.json: bounds.pool.efficiency: must be from 0 to 1");
+              "p.json: bounds.pool.efficiency: is -7; must be at least 0");
     EXPECT_EQ(error_with("\"is_proven\": false", "\"is_proven\": true"),
               "p.json: bounds.continuous.is_proven: is true; a bound that a search found is never "
               "proven");
     EXPECT_EQ(error_with("\"stop_reason\": \"time limit\"", "\"stop_reason\": \"optimal\""),
-              "p.json: search.stop_reason: is 'optimal', which of continuous poses nothing proves");
+              "p.json: search.stop_reason: is 'optimal'; nothing proves that of continuous poses");
     EXPECT_EQ(error_with("\"via\": null", "\"via\": {}"),
               "p.json: poses[0].via: has other joints than poses[0].joints; must have the same");
 }
@@ -348,14 +356,14 @@ TEST_F(PlanFileTest, IsRefusedIfItIsAnotherDocument) {
 }
 
 TEST_F(PlanFileTest, IsRefusedWithoutPoses) {
-    const std::string message = "p.json: poses: must be a list of at least one pose";
-    EXPECT_EQ(error_of(R"({"kind": "posewise plan", "format": 2})"), message);
-    EXPECT_EQ(error_with_poses("{}"), message);
-    EXPECT_EQ(error_with_poses("[]"), message);
+    EXPECT_EQ(error_of(R"({"kind": "posewise plan", "format": 2})"),
+              "p.json: poses: is missing; must be there as posewise writes it");
+    EXPECT_EQ(error_with_poses("{}"), "p.json: poses: is of type object; must be a list");
+    EXPECT_EQ(error_with_poses("[]"), "p.json: poses: must be a list of at least one pose");
 }
 
 TEST_F(PlanFileTest, IsRefusedIfAPoseHasNoProperId) {
-    EXPECT_EQ(error_with_poses(R"([{"id": "a"}, 3])"),
+    EXPECT_EQ(error_with_poses(R"([{"id": "a", "times": 1}, 3])"),
               "p.json: poses[1]: is of type number; must be an object");
     EXPECT_EQ(error_with_poses("[{}]"),
               "p.json: poses[0].id: is missing; must be there as posewise writes it");
@@ -364,8 +372,9 @@ TEST_F(PlanFileTest, IsRefusedIfAPoseHasNoProperId) {
 }
 
 TEST_F(PlanFileTest, IsRefusedIfAPoseOccursTwice) {
-    EXPECT_EQ(error_with_poses(R"([{"id": "a"}, {"id": "b"}, {"id": "a"}])"),
-              "p.json: poses[2].id: 'a' occurs before in poses[0]; keep one");
+    EXPECT_EQ(error_with_poses(R"([{"id": "a", "times": 1}, {"id": "b", "times": 1},
+                                   {"id": "a", "times": 1}])"),
+              "p.json: poses[2].id: is 'a'; must be another than that of poses[0]");
 }
 
 TEST_F(PlanFileTest, SurvivesHostileNesting) {

@@ -1,5 +1,7 @@
 #include "json_reader.hpp"
 
+#include "core/text.hpp"
+
 namespace posewise::detail {
 
 JsonValue::JsonValue(const Json& value, std::string path, std::string place)
@@ -7,6 +9,12 @@ JsonValue::JsonValue(const Json& value, std::string path, std::string place)
 
 InputError JsonValue::error(const std::string& problem) const {
     return input_error_at({path_}, place_ + ": " + problem);
+}
+
+InputError JsonValue::breaks(const std::string& rule) const {
+    if (value_->is_structured()) return error(rule);
+    const std::string value = value_->is_string() ? quote(text()) : value_->dump();
+    return error("is " + value + "; " + rule);
 }
 
 InputError JsonValue::wrong_type(const std::string& wanted) const {
@@ -42,6 +50,13 @@ std::vector<std::string> JsonValue::texts() const {
     return texts;
 }
 
+std::vector<std::string> JsonValue::keys() const {
+    if (!value_->is_object()) throw wrong_type("an object");
+    std::vector<std::string> keys;
+    for (const auto& [key, unused] : value_->items()) keys.push_back(key);
+    return keys;
+}
+
 std::vector<JsonValue> JsonValue::values() const {
     if (!value_->is_object()) throw wrong_type("an object");
     std::vector<JsonValue> items;
@@ -73,12 +88,8 @@ Index JsonValue::count(Index least, Index most) const {
     const auto value = value_->get<std::int64_t>();
     const bool is_huge = value_->is_number_unsigned() &&
                          value_->get<std::uint64_t>() > static_cast<std::uint64_t>(most);
-    if (is_huge || value > most) {
-        throw error("is " + value_->dump() + "; must be at most " + std::to_string(most));
-    }
-    if (value < least) {
-        throw error("is " + value_->dump() + "; must be at least " + std::to_string(least));
-    }
+    if (is_huge || value > most) throw breaks("must be at most " + std::to_string(most));
+    if (value < least) throw breaks("must be at least " + std::to_string(least));
     return value;
 }
 

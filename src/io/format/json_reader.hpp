@@ -19,14 +19,18 @@ class JsonValue {
 
     /// `path: place: problem`.
     InputError error(const std::string& problem) const;
+    /// `path: place: is <value>; rule`, of lists and objects the rule alone.
+    InputError breaks(const std::string& rule) const;
 
+    const std::string& place() const { return place_; }
     bool has(const std::string& key) const;
     /// The value of a key, which must be there.
     JsonValue operator[](const std::string& key) const;
     std::vector<JsonValue> list() const;
     /// Items of a list of texts.
     std::vector<std::string> texts() const;
-    /// Values of an object in the order of the file.
+    /// Keys and values of an object in the order of the file.
+    std::vector<std::string> keys() const;
     std::vector<JsonValue> values() const;
 
     const Json& json() const { return *value_; }

@@ -4,10 +4,10 @@
 
 #include "core/checksum.hpp"
 #include "doubts_json.hpp"
+#include "estimate_fields.hpp"
 #include "io/campaign/robot_statement.hpp"
 #include "io/format/atomic_file.hpp"
 #include "io/format/csv_reader.hpp"
-#include "io/format/json.hpp"
 #include "judgement_json.hpp"
 #include "parameters_json.hpp"
 #include "posewise/io/documents.hpp"
@@ -267,32 +267,16 @@ Json selection_to_json(const ModelSelection& selection) {
     return json;
 }
 
-/// What is not known is left out.
-Json made_from_to_json(const Provenance& made_from) {
-    Json json = Json::object();
-    const auto add = [&](const char* key, const std::string& text) {
-        if (!text.empty()) json[key] = text;
-    };
-    add("campaign_file", made_from.campaign_file);
-    add("campaign_checksum", made_from.campaign_checksum);
-    add("measurements_checksum", made_from.measurements_checksum);
-    for (const auto& [name, values] : made_from.options) json["options"][name] = values;
-    return json;
-}
-
-Json variance_to_json(const ResidualVariance& variance) {
-    return {{"factor", variance.factor}, {"degrees_of_freedom", variance.degrees_of_freedom}};
-}
-
-Json estimate_to_json(const Calibration& calibration, const Provenance& made_from) {
+Json estimate_to_json(const Calibration& calibration, Provenance made_from) {
     const Campaign& campaign = calibration.campaign;
-    const Estimate& estimate = calibration.estimate;
+    Estimate estimate = calibration.estimate;
+    std::vector<std::string> faults = calibration.faults;
     const VectorXd sigmas = standard_deviations(estimate);
     Json document = detail::make_document("estimate");
+    const detail::Fields fields(document);
     document["campaign"] = campaign.name;
     document["warnings"] = made_from.warnings;
-    document["measurements"] = made_from.measurements;
-    document["made_from"] = made_from_to_json(made_from);
+    detail::provenance_fields(fields, made_from);
     document["measured"] = measured_to_json(calibration.measured);
     if (!calibration.excluded.empty()) document["excluded"] = calibration.excluded;
     if (!calibration.held.empty()) document["held"] = calibration.held;
@@ -301,18 +285,7 @@ Json estimate_to_json(const Calibration& calibration, const Provenance& made_fro
         document["starts"] = calibration.starts;
         document["starts_at_best"] = calibration.starts_at_best;
     }
-    document["ending"] = ending_name(estimate.ending);
-    if (!calibration.faults.empty()) document["faults"] = calibration.faults;
-    document["iterations"] = estimate.iterations;
-    document["degrees_of_freedom"] = estimate.degrees_of_freedom;
-    document["variance_factor"] = estimate.variance_factor;
-    if (!estimate.variance_by_kind.empty()) {
-        document["variance_by_kind"] = {{"lengths", variance_to_json(estimate.variance_of(false))},
-                                        {"angles", variance_to_json(estimate.variance_of(true))}};
-    }
-    document["model_error_m"] = estimate.model_error;
-    document["model_error_rad"] = estimate.model_error_orientation;
-    document["model_error_within"] = estimate.model_error_within;
+    detail::fit_fields(fields, estimate, faults);
     document["readings"] = campaign.sensor->words().readings;
     document["chain"] = detail::robot_statement(campaign.robot);
     document.update(detail::parameters_to_json(campaign, estimate.parameters, &sigmas));

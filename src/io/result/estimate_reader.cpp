@@ -5,11 +5,9 @@
 
 #include "core/text.hpp"
 #include "estimate_covariance.hpp"
+#include "estimate_fields.hpp"
 #include "io/campaign/campaign_sections.hpp"
 #include "io/campaign/robot_statement.hpp"
-#include "io/format/json.hpp"
-#include "io/format/json_reader.hpp"
-#include "io/format/units.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/io/result_files.hpp"
 #include "posewise/measurement/measurements.hpp"
@@ -23,20 +21,13 @@ using detail::Json;
 using detail::JsonValue;
 using detail::Quantity;
 using detail::read_numbers;
-
-/// m or rad, of a size that occurs.
-double check_size(double si, Quantity quantity, const JsonValue& value) {
-    if (is_plausible(si, quantity)) return si;
-    const detail::Unit* const unit = detail::find_unit(quantity == Quantity::Length ? "m" : "rad");
-    throw value.error(fmt::format("is {:g}; must be {}", si, plausible(*unit)));
-}
+using detail::Size;
 
 Vector3d read_position(const JsonValue& value) {
+    read_numbers(value, 3);  // as many
     Vector3d position;
-    const std::vector<double> xyz = read_numbers(value, 3);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        position[static_cast<Index>(axis)] = check_size(xyz[axis], Quantity::Length, value);
-    }
+    Index axis = 0;
+    for (const JsonValue& item : value.list()) Size{}.read(item, position[axis++]);
     return position;
 }
 
@@ -71,8 +62,7 @@ VectorXd read_robot(const JsonValue& robot, const Campaign& campaign) {
             throw robot.error("has no parameter " + detail::quote(name) +
                               "; must be an estimate of this campaign");
         }
-        const JsonValue value = robot[name]["value" + detail::si_suffix(turns)];
-        values[k] = check_size(value.number(), turns ? Quantity::Angle : Quantity::Length, value);
+        Size{turns}.read(robot[name]["value" + detail::si_suffix(turns)], values[k]);
     }
     // What gives way is in proportion to the load, which limits or payload may have changed.
     for (const Compliance& compliance : compliances(campaign.robot)) {
@@ -111,9 +101,7 @@ VectorXd read_unknowns(const JsonValue& values, const Sensor& sensor) {
     for (std::size_t k = 0; k < names.size(); ++k) {
         const std::string key = names[k] + detail::si_suffix(is_angle[k]);
         if (!values.has(key)) throw values.error("has no " + key + detail::as_then);
-        const JsonValue value = values[key];
-        unknowns[static_cast<Index>(k)] =
-            check_size(value.number(), is_angle[k] ? Quantity::Angle : Quantity::Length, value);
+        Size{is_angle[k]}.read(values[key], unknowns[static_cast<Index>(k)]);
     }
     return unknowns;
 }
@@ -133,23 +121,6 @@ Parameters read_parameters(const JsonValue& root, const Campaign& campaign, cons
     return parameters;
 }
 
-Ending read_ending(const JsonValue& value) {
-    for (int k = 0; k <= static_cast<int>(Ending::Failed); ++k) {
-        if (value.text() == ending_name(static_cast<Ending>(k))) return static_cast<Ending>(k);
-    }
-    throw value.error("is " + detail::quote(value.text()) + "; must be as posewise writes it");
-}
-
-double read_size(const JsonValue& value) {
-    const double number = value.number();
-    if (!(number >= 0)) throw value.error(fmt::format("is {:g}; must be at least 0", number));
-    return number;
-}
-
-double read_model_error(const JsonValue& value, Quantity quantity) {
-    return check_size(read_size(value), quantity, value);
-}
-
 void check_readings(const JsonValue& value, const Sensor& sensor) {
     const std::string readings = value.text();
     if (readings == sensor.words().readings) return;
@@ -157,43 +128,16 @@ void check_readings(const JsonValue& value, const Sensor& sensor) {
                       sensor.words().readings + "; must be an estimate of this campaign");
 }
 
-/// Files written before have none.
-double read_model_error_within(const JsonValue& root) {
-    if (!root.has("model_error_within")) return model_error_factor;
-    const JsonValue within = root["model_error_within"];
-    const double factor = within.number();
-    if (factor >= 1 && factor <= model_error_factor) return factor;
-    throw within.error(fmt::format("is {:g}; must be from 1 to {:g}", factor, model_error_factor));
-}
-
-/// Only where lengths and angles are measured; files written before have none.
-std::vector<ResidualVariance> read_variance_by_kind(const JsonValue& root) {
-    std::vector<ResidualVariance> variances;
-    if (!root.has("variance_by_kind")) return variances;
-    for (const char* kind : {"lengths", "angles"}) {
-        const JsonValue variance = root["variance_by_kind"][kind];
-        variances.push_back(
-            {read_size(variance["factor"]), read_size(variance["degrees_of_freedom"])});
-    }
-    return variances;
-}
-
-Estimate read_estimate_of(const JsonValue& root, const Campaign& campaign, const EarlierUse& use) {
+EarlierFile read_root(const JsonValue& root, const Campaign& campaign, const EarlierUse& use) {
     if (!use.has_new_targets) check_readings(root["readings"], *campaign.sensor);
     detail::check_is_of_robot(root["chain"], campaign.robot);
-    Estimate estimate;
+    EarlierFile earlier;
+    Estimate& estimate = earlier.estimate;
     estimate.parameters = read_parameters(root, campaign, use);
     estimate.names = parameter_names(campaign);
     estimate.covariance = detail::read_covariance(root, campaign, use);
-    estimate.ending = read_ending(root["ending"]);
-    estimate.iterations = root["iterations"].count(0);
-    estimate.degrees_of_freedom = root["degrees_of_freedom"].count(0);
-    estimate.variance_factor = read_size(root["variance_factor"]);
-    estimate.variance_by_kind = read_variance_by_kind(root);
-    estimate.model_error = read_model_error(root["model_error_m"], Quantity::Length);
-    estimate.model_error_orientation = read_model_error(root["model_error_rad"], Quantity::Angle);
-    estimate.model_error_within = read_model_error_within(root);
-    return estimate;
+    detail::fit_fields(detail::Fields(root), estimate, earlier.faults);
+    return earlier;
 }
 
 /// The campaign's, with those that the estimate learned.
@@ -238,18 +182,16 @@ std::vector<std::string> find_changes(const JsonValue& assumes, const Campaign& 
 
 Estimate read_estimate(const std::string& path, const Campaign& campaign) {
     const detail::Json document = detail::read_document(path, "estimate");
-    return read_estimate_of(JsonValue(document, path), campaign, {});
+    return read_root(JsonValue(document, path), campaign, {}).estimate;
 }
 
 EarlierFile read_earlier(const std::string& path, const Campaign& campaign, const EarlierUse& use) {
     const detail::Json document = detail::read_document(path, "estimate");
     const JsonValue root(document, path);
-    EarlierFile earlier;
-    earlier.estimate = read_estimate_of(root, campaign, use);
+    EarlierFile earlier = read_root(root, campaign, use);
     if (use.is_prior) detail::check_definite(root, earlier.estimate.covariance);
     earlier.use = use;
     if (root.has("warnings")) earlier.warnings = root["warnings"].texts();
-    if (root.has("faults")) earlier.faults = root["faults"].texts();
     const bool has_learned = root.has("learned_sizes");
     if (has_learned) earlier.spread = read_learned_sizes(root["learned_sizes"], campaign);
     if (root.has("assumes")) earlier.changes = find_changes(root["assumes"], campaign, has_learned);

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "plan_format.hpp"
+#include "plan_json.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/io/documents.hpp"
 #include "posewise/io/result_files.hpp"

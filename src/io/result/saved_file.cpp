@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "core/text.hpp"
-#include "io/format/json_reader.hpp"
-#include "plan_format.hpp"
+#include "estimate_fields.hpp"
 #include "posewise/io/result_files.hpp"
 
 namespace posewise::io {
@@ -16,27 +15,6 @@ using detail::Json;
 using detail::JsonValue;
 
 constexpr const char* saved_kinds = "plan, estimate, study or export";
-
-std::string text_or_none(const JsonValue& object, const char* key) {
-    return object.has(key) ? object[key].text() : "";
-}
-
-Provenance read_provenance(const JsonValue& root) {
-    Provenance made_from;
-    made_from.measurements = text_or_none(root, "measurements");
-    if (!root.has("made_from")) return made_from;
-    const JsonValue stated = root["made_from"];
-    made_from.measurements_checksum = text_or_none(stated, "measurements_checksum");
-    made_from.campaign_file = text_or_none(stated, "campaign_file");
-    made_from.campaign_checksum = text_or_none(stated, "campaign_checksum");
-    if (!stated.has("options")) return made_from;
-    const JsonValue options = stated["options"];
-    options.values();  // an object
-    for (const auto& [name, values] : options.json().items()) {
-        made_from.options.emplace_back(name, options[name].texts());
-    }
-    return made_from;
-}
 
 Loss read_loss(const JsonValue& root) {
     Loss loss;
@@ -159,7 +137,7 @@ EstimateRecord read_estimate_record(const std::string& path) {
     const JsonValue root(document, path);
     EstimateRecord record;
     record.campaign = root["campaign"].text();
-    record.made_from = read_provenance(root);
+    detail::provenance_fields(detail::Fields(root), record.made_from);
     if (root.has("excluded")) record.excluded = root["excluded"].texts();
     const JsonValue accuracy = root["accuracy"];
     if (accuracy.has("held_out")) record.folds = accuracy["held_out"]["folds"].count(2);
