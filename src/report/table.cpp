@@ -37,15 +37,15 @@ std::vector<Column> measure(const Table& table) {
     return columns;
 }
 
-/// Makes the last column, if it is text, as narrow as a page asks for.
+/// Makes the last column, if it is text, as narrow as a page asks for, where that leaves it room.
 void fit_to_page(std::vector<Column>& columns) {
     constexpr std::size_t page = 100;
     constexpr std::size_t least = 24;
     std::size_t before = 0;
     for (std::size_t i = 0; i + 1 < columns.size(); ++i) before += columns[i].width + 2;
-    const std::size_t room = std::max(least, page - std::min(page, before));
     Column& last = columns.back();
-    if (!last.right_aligned) last.width = std::min(last.width, room);
+    if (last.right_aligned || before + least > page) return;
+    last.width = std::min(last.width, page - before);
 }
 
 /// The text in lines of at most `width`, as far as its words allow.
