@@ -46,11 +46,15 @@ Judged judge(const Calibration& calibration) {
             }
         }
     }
-    if (const auto& held_out = calibration.held_out) {
-        return {held_out->samples, calibration.held_out_interval, "at poses held out in turn"};
+    const Metrics& fit = calibration.estimate.fit;
+    if (!calibration.held_out) {
+        return {fit, std::nullopt, "at the poses it was made with; nothing was held out"};
     }
-    return {calibration.estimate.fit, std::nullopt,
-            "at the poses it was made with; nothing was held out"};
+    if (calibration.held_out->samples.point_count == 0) {
+        return {fit, std::nullopt, "at the poses it was made with, none of which can be left out"};
+    }
+    return {calibration.held_out->samples, calibration.held_out_interval,
+            "at poses held out in turn"};
 }
 
 /// "0.1234 to 0.2 mm".
@@ -62,12 +66,16 @@ std::string format_interval(const RmsInterval& interval, bool is_angle) {
 std::string sum_up(const Calibration& calibration, const Judged& judged, bool is_angle) {
     const double nominal = calibration.nominal.rms();
     const double found = judged.found.rms();
-    std::string text = fmt::format("before {} RMS, calibrated {}", format_error(nominal, is_angle),
-                                   format_error(found, is_angle));
+    std::string text;
+    if (!calibration.faults.empty()) text = "no calibration, " + calibration.faults.front() + "; ";
+    text += fmt::format("calibrated {} RMS", format_error(found, is_angle));
+    if (calibration.campaign.sensor->lengths_per_target() == 1) text += " of one length";
     if (judged.interval) {
         text += fmt::format(" (95 %: {})", format_interval(*judged.interval, is_angle));
     }
-    text += ' ' + judged.where;
+    text += fmt::format(" {}; before {}{}", judged.where, format_error(nominal, is_angle),
+                        judged.group ? " at the poses calibrated with" : "");
+    if (!judged.group && found >= nominal) text += ", which is no worse";
     if (!calibration.limit) return text;
     text += fmt::format("; limit {}: ", format_error(*calibration.limit, false));
     const auto verdict = judged.group ? judge_limit(*judged.group, *calibration.limit)
@@ -79,34 +87,42 @@ std::string sum_up(const Calibration& calibration, const Judged& judged, bool is
 }
 
 std::string describe_sureness(const Calibration& calibration, const Judged& judged) {
-    std::string text;
-    if (judged.interval) {
-        text = judged.group ? fmt::format("{} degrees of freedom of these poses",
-                                          format_short(judged.interval->degrees_of_freedom, 3))
-                            : "the interval follows from how much the poses differ";
-        text += "; ";
-    }
-    text += fmt::format("the fit has {} degrees of freedom, variance factor {}",
-                        calibration.estimate.degrees_of_freedom,
-                        format_short(calibration.estimate.variance_factor, 3));
-    return text;
+    if (!judged.interval) return "not known: no poses were judged that it was not made with";
+    const Index count = judged.group ? std::ssize(judged.group->configurations)
+                                     : calibration.measured.configurations;
+    return fmt::format("the interval follows from how much {} differ",
+                       detail::these(count, "pose"));
 }
 
-/// What is expected beside what was found, of the same means at the same poses.
-std::string compare_expected(const Calibration& calibration, bool is_angle) {
-    if (!calibration.held_out || !calibration.held_out_interval) return "";
+/// The error expected beside the one found: at the poses judged, or, where parameters take up
+/// little of what is measured, at those held out (else a pose held out is known worse than one that
+/// was used).
+std::string compare_expected(const Calibration& calibration, const Judged& judged, bool is_angle) {
+    const auto sentence = [&](double expected, double found, const char* verdict) {
+        return fmt::format("{} expected {}, {} found: {}", format_error(expected, is_angle),
+                           judged.where, format_error(found, is_angle), verdict);
+    };
+    if (judged.group) {
+        const JudgedGroup& group = *judged.group;
+        if (!group.expected || group.verdict == ChanceVerdict::NotJudged) return "";
+        return sentence(group.expected->total(), group.found.rms(),
+                        group.verdict == ChanceVerdict::Within  ? "within chance"
+                        : group.verdict == ChanceVerdict::Below ? "less than chance would have it"
+                                                                : "beyond chance");
+    }
+    constexpr double most_taken_up = 0.1;
+    const auto numbers = static_cast<double>(calibration.measured.configurations *
+                                             calibration.campaign.sensor->row_count());
+    const auto left = static_cast<double>(calibration.estimate.degrees_of_freedom);
+    if (!calibration.held_out_interval || left < (1 - most_taken_up) * numbers) return "";
     const double expected = calibration.expected.total();
     const double found = calibration.held_out->means.rms();
     const auto& [lower, upper, freedom] = *calibration.held_out_interval;
     const double factor = std::sqrt(upper / lower);
-    std::string text = fmt::format("{} expected at poses like these, {} found at those held out: ",
-                                   format_error(expected, is_angle), format_error(found, is_angle));
-    if (expected > found * factor)
-        return text + "less, sizes or model error may be stated too large";
-    if (!(expected * factor < found)) return text + "within chance";
-    return text + (calibration.expected.is_by_few_poses()
-                       ? "more, as with few poses, each of which tells what the others do not"
-                       : "more: outliers, drift, or errors that the model leaves out");
+    return sentence(expected, found,
+                    expected > found * factor   ? "less, sizes or model error are stated too large"
+                    : expected * factor < found ? "more: outliers, or errors the model leaves out"
+                                                : "within chance");
 }
 
 /// The largest part of what is expected over the workspace, or else at the poses measured.
@@ -124,6 +140,10 @@ std::string describe_limit(const Calibration& calibration, bool is_angle) {
     std::string text = fmt::format("{}: {}, {:.0f} % of the square expected {}", what,
                                    format_error(size, is_angle), 100 * size * size / total / total,
                                    workspace ? "over the workspace" : "at poses like these");
+    if (!calibration.cures.found.empty()) {
+        const Cure& best = *std::ranges::min_element(calibration.cures.found, {}, &Cure::after);
+        text += "; " + detail::describe(best, calibration.campaign);
+    }
     const std::size_t outliers = calibration.estimate.outliers.size();
     const bool drifts = calibration.order_trend && calibration.order_trend->is_plain();
     if (drifts || outliers > 0) {
@@ -137,7 +157,9 @@ std::string describe_limit(const Calibration& calibration, bool is_angle) {
 std::string describe_influence(const Calibration& calibration, bool is_angle) {
     if (!calibration.influence) return "not known: nothing was held out";
     const auto& [id, fit, held_out, is_alone] = *calibration.influence;
-    return fmt::format("{}: predicted by the {} it is missed by {}, with it by {}",
+    constexpr double little = 1.3;
+    return fmt::format("{}{}: predicted by the {} it is missed by {}, with it by {}",
+                       held_out < little * fit ? "none stands out; most does " : "",
                        detail::quote(id), is_alone ? "others" : "other groups",
                        format_error(held_out, is_angle), format_error(fit, is_angle));
 }
@@ -146,10 +168,11 @@ std::string describe_order(const Calibration& calibration) {
     if (!calibration.order_trend) return "not known: too few configurations";
     const OrderTrend& trend = *calibration.order_trend;
     const OrderSlope& worst = trend.worst();
-    const std::string size =
-        fmt::format("{} changes by {} from first to last, p = {}{}", worst.axis,
-                    format_error(worst.change, worst.is_angle), format_short(worst.probability, 2),
-                    trend.is_beside_joints ? "" : "; poses in an order of their own look alike");
+    const std::string size = fmt::format(
+        "{} changes by {} from first to last, p = {}{}", worst.axis,
+        format_error(worst.change, worst.is_angle), format_short(worst.probability, 2),
+        trend.is_beside_joints ? ""
+                               : "; the order of the poses themselves could look like this, too");
     if (trend.is_plain()) {
         return fmt::format(
             "yes, residuals follow the order of the measurements: {}; the first "
@@ -161,7 +184,12 @@ std::string describe_order(const Calibration& calibration) {
     for (const OrderSlope& slope : trend.slopes) {
         if (slope.is_angle == worst.is_angle) detectable = std::max(detectable, slope.detectable);
     }
-    return fmt::format("none seen; {} from first to last would have been",
+    if (!calibration.doubts.look.changes.empty())
+        return "not judged: something moved, see warnings";
+    const Metrics& fit = calibration.estimate.fit;
+    const double left = worst.is_angle ? fit.orientation_rms : fit.rms();
+    return fmt::format("{}; a drift of {} from first to last would have been seen",
+                       detectable > left ? "none so large that it could be seen" : "none seen",
                        format_error(detectable, worst.is_angle));
 }
 
@@ -247,7 +275,7 @@ std::vector<Answer> answer(const Calibration& calibration) {
     const auto add = [&](const char* key, const char* question, const std::string& text) {
         if (!text.empty()) answers.push_back({key, question, text});
     };
-    add("expected", "As expected", compare_expected(calibration, is_angle));
+    add("expected", "As expected", compare_expected(calibration, judged, is_angle));
     add("limit", "What limits it", describe_limit(calibration, is_angle));
     add("influence", "Which pose matters most", describe_influence(calibration, is_angle));
     add("drift", "Drift", describe_order(calibration));

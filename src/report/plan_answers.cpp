@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 
 #include "core/format.hpp"
@@ -55,19 +56,28 @@ std::string judge(const TargetPlanning& found, const std::optional<SimulatedPlan
 }
 
 std::string describe_proof(const Plan& plan) {
-    return fmt::format("{} reaches at least {} % of the largest possible {}",
-                       plan.is_continuous() ? "the best choice from the pool" : "the choice",
-                       detail::format_fixed(100 * plan.efficiency, 1),
-                       criterion_name(plan.request.criterion));
+    std::string criterion(criterion_name(plan.request.criterion));
+    for (char& letter : criterion) {
+        letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+    }
+    return fmt::format("{} reaches {} % of the largest possible {}, or more",
+                       plan.is_continuous() ? "the best choice from the pool, which the plan beats,"
+                                            : "this choice",
+                       detail::format_fixed(100 * plan.efficiency, 1), criterion);
 }
 
 std::string describe_sureness(const Planning& planning,
                               const std::optional<SimulatedPlan>& simulated) {
-    std::string text = planning.plan.efficiency > 0 ? describe_proof(planning.plan) : "";
+    std::string text =
+        planning.campaign.known_within.model_error < model_error_factor
+            ? "the interval is as wide as the earlier estimate leaves it"
+            : "the interval is how much robots differ; plan --from a first calibration narrows it";
     if (!simulated || simulated->robot_count == 0) return text;
-    return text + (text.empty() ? "" : "; ") +
-           fmt::format("the expected error was checked on {}",
-                       count_of(simulated->robot_count, "simulated robot"));
+    const SimulatedNumber& number = simulated->expected;
+    return text + fmt::format("; {} give {} where {} is predicted",
+                              count_of(simulated->robot_count, "simulated robot"),
+                              format_error(number.found, false),
+                              format_error(number.predicted, false));
 }
 
 std::string describe_limit(const ErrorBudget& budget) {
@@ -102,11 +112,11 @@ std::string describe_more(const std::vector<ErrorAtCount>& chosen,
                           const ErrorBudget& budget) {
     const auto found = more_poses(chosen.size() > 1 ? chosen : planned, count);
     if (!found || found->most <= count) return "";
-    if (found->more) return fmt::format("about {} more", count_of(*found->more, "pose"));
+    if (found->more) return fmt::format("about {} more", count_of(*found->more, "new pose"));
     return fmt::format(
         "no number tried: {} leave {:.0f} % of what {} leave; {} would be left if all parameters "
         "were known",
-        count_of(found->most, "pose"), 100 * found->ratio, count,
+        count_of(found->most, "new pose"), 100 * found->ratio, count,
         format_error(std::hypot(budget.left_over, budget.repeatability), false));
 }
 
@@ -118,6 +128,7 @@ std::vector<Answer> complete(const Planning& planning, const std::string& accura
         if (!text.empty()) answers.push_back({key, question, text});
     };
     add("sureness", "How sure", describe_sureness(planning, simulated));
+    if (planning.plan.efficiency > 0) add("proof", "How good", describe_proof(planning.plan));
     add("limit", "What limits it", describe_limit(planning.budget));
     add("influence", "Which pose matters most", describe_influence(planning));
     add("more", "More poses for 20 % less", more);
@@ -165,13 +176,15 @@ std::vector<Answer> answer(const Plan& plan) {
     for (const PlannedPose& pose : plan.poses) count += pose.times;
     std::string text = fmt::format("{} chosen by {}", count_of(count, "pose"),
                                    criterion_name(plan.request.criterion));
-    if (plan.predicted) {
-        text += fmt::format(": {} RMS expected by the parameters alone, 95 % of positions below {}",
-                            format_error(plan.predicted->rms, false),
-                            format_error(plan.predicted->percentile95, false));
+    const std::optional<double> model_error = assumed_model_error(plan);
+    if (plan.predicted && model_error) {
+        text += fmt::format(
+            ": {} RMS expected over the candidates once calibrated, model error "
+            "included",
+            format_error(predict_total(*plan.predicted, *model_error).rms, false));
     }
     std::vector<Answer> answers{{"accuracy", "How accurate", text}};
-    if (plan.efficiency > 0) answers.push_back({"sureness", "How sure", describe_proof(plan)});
+    if (plan.efficiency > 0) answers.push_back({"proof", "How good", describe_proof(plan)});
     return answers;
 }
 

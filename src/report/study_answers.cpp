@@ -72,12 +72,16 @@ std::string describe_sureness(const Study& study, const Curve& curve) {
 std::string describe_limit(const Curve& curve) {
     if (curve.points.size() == 1) return "";
     const std::size_t k = enough(curve.points);
-    if (k + 1 == curve.points.size()) {
-        return "the number of poses: the error still falls at the largest number tried";
+    const ErrorAtCount& at = curve.points[k];
+    if (k + 1 < curve.points.size()) {
+        return fmt::format(
+            "noise and what the model cannot express; from {} on not the number of poses",
+            count_of(at.pose_count, "pose"));
     }
-    return fmt::format(
-        "noise and what the model cannot express; from {} on not the number of poses",
-        count_of(curve.points[k].pose_count, "pose"));
+    const ErrorAtCount& before = curve.points[k - 1];
+    return fmt::format("the error still falls, by {:.0f} % from {} to {}, the most tried",
+                       100 * (1 - at.error / before.error), before.pose_count,
+                       count_of(at.pose_count, "pose"));
 }
 
 /// "from 8: 5 more, from 12: 9 more; from 20 no number up to 50 does".

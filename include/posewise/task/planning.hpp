@@ -120,7 +120,7 @@ struct TargetPlanning {
     std::optional<CountRange> counts;       ///< for a limit; nothing: stopped early
     std::vector<CountPrediction> curve;     ///< by count, as far as looked at
     ErrorRange floor;                       ///< error left if the parameters are known exactly
-    double floor_of_known_model_error = 0;  ///< m; likewise if the model error is as expected
+    double floor_of_known_model_error = 0;  ///< m; likewise once an estimate tells it
     double left_over = 0;                   ///< m; share of the model error in the expected floor
     double repeatability = 0;               ///< m; that of the joints
     bool has_error_terms = false;  ///< the model has errors that depend on the configuration

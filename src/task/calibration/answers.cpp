@@ -141,6 +141,7 @@ std::optional<OrderTrend> find_order_trend(const Campaign& campaign,
     const std::vector<std::string> axes = residual_axes(campaign);
     const auto axis_count = static_cast<double>(axes.size());
     const Index first_tenth = (count + 9) / 10;
+    double rarest = 2;  // least probability by chance
     for (Index axis = 0; axis < means.cols(); ++axis) {
         const VectorXd y = means.col(axis);
         const auto line = fit_line(order, y, columns);
@@ -149,6 +150,10 @@ std::optional<OrderTrend> find_order_trend(const Campaign& campaign,
                                      ? two_sided(line->slope / line->error, line->freedom)
                                  : line->slope == 0 ? 1
                                                     : 0;
+        if (by_chance < rarest) {
+            rarest = by_chance;
+            trend.strongest = trend.slopes.size();
+        }
         const auto length = static_cast<double>(count - 1);
         trend.slopes.push_back(
             {axes[static_cast<std::size_t>(axis)], campaign.sensor->is_angle(axis),
@@ -158,8 +163,6 @@ std::optional<OrderTrend> find_order_trend(const Campaign& campaign,
              std::min(1.0, axis_count * by_chance)});
     }
     if (trend.slopes.empty()) return std::nullopt;
-    const auto worst = std::ranges::min_element(trend.slopes, {}, &OrderSlope::probability);
-    trend.strongest = static_cast<std::size_t>(worst - trend.slopes.begin());
     return trend;
 }
 
