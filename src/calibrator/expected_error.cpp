@@ -25,16 +25,15 @@ struct PointError {
 std::vector<PointError> point_errors(const Campaign& campaign, const Estimate& estimate,
                                      const RowMatrixXd& configurations, const RowMatrixXd& repeats,
                                      bool is_angle) {
+    const Campaign found = with_model_error(campaign, estimate);
     Campaign without = campaign;
     without.model_error = without.model_error_orientation = 0;
     const Sensor& sensor = *campaign.sensor;
     const Index width = sensor.rows_per_target();
     const Index begin = is_angle ? sensor.lengths_per_target() : 0;  // lengths come first
     const Index count = is_angle ? width - begin : sensor.lengths_per_target();
-    const double model = is_angle ? estimate.model_error_orientation : estimate.model_error;
     // Without priors the noise is that stated times the variance factor, as in the covariance.
     const double factor = campaign.spread.is_prior ? 1 : estimate.variance_of(is_angle).factor;
-    const MatrixXd left_over = factor * model * model * MatrixXd::Identity(count, count);
     FlangeMotion motion;
     RowMatrixXd J(sensor.row_count(), parameter_count(campaign));
     std::vector<PointError> points;
@@ -42,14 +41,16 @@ std::vector<PointError> point_errors(const Campaign& campaign, const Estimate& e
         const VectorXd q = configurations.row(i).transpose();
         const VectorXd times = repeats.row(i).transpose();
         differentiate_pose(campaign, estimate.parameters, q, motion, J);
-        const MatrixXd noise =
-            factor * detail::mean_covariance(without, motion, estimate.parameters.sensor, times);
+        const VectorXd& unknowns = estimate.parameters.sensor;
+        const MatrixXd noise = factor * detail::mean_covariance(without, motion, unknowns, times);
+        const MatrixXd all = factor * detail::mean_covariance(found, motion, unknowns, times);
         const RowMatrixXd seen = J(seen_rows(times.array() > 0, width), Eigen::all);
         const RowMatrixXd spread = seen * estimate.covariance;
         for (Index row = begin; row < seen.rows(); row += width) {
             const MatrixXd parameters =
                 spread.middleRows(row, count) * seen.middleRows(row, count).transpose();
             const MatrixXd of_noise = noise.block(row, row, count, count);
+            const MatrixXd left_over = all.block(row, row, count, count) - of_noise;
             PointError point{parameters.trace(), left_over.trace(), of_noise.trace(), 1};
             const double squares = (parameters + left_over + of_noise).squaredNorm();
             if (squares > 0) point.degrees_of_freedom = point.total() * point.total() / squares;

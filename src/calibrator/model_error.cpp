@@ -26,7 +26,7 @@ constexpr double undetermined = 1e-10;
 
 const double log_factor = std::log(model_error_factor);
 
-/// log of the model errors of lengths and angles.
+/// log of the model error's translation and rotation.
 using LogErrors = std::array<double, 2>;
 
 class PredictiveScore {
@@ -34,6 +34,7 @@ class PredictiveScore {
     PredictiveScore(const IdentificationProblem& problem, const Parameters& parameters,
                     const Campaign& expected)
         : expected_{std::log(expected.model_error), std::log(expected.model_error_orientation)},
+          common_(expected.model_error_common),
           size_(problem.units.size()),
           prior_begin_(problem.prior_begin()),
           prior_errors_(problem.prior_count() > 0
@@ -67,11 +68,14 @@ class PredictiveScore {
         const Index most_rows = std::ssize(configurations) * sensor.row_count();
         stated_.resize(most_rows, size_ + 1);
         covariances_.resize(most_rows, sensor.row_count());
+        effects_.resize(most_rows, 6);
         RowMatrixXd all(sensor.row_count(), size_ + 1);
+        RowMatrixXd effect(sensor.row_count(), 6);
         PoseNoise noise(without);
         FlangeMotion motion;
         VectorXd q, repeats, predicted(sensor.row_count()), deviation(sensor.row_count());
         Index row = 0;
+        bool has_levers = false;
         for (const Index i : configurations) {
             q = problem.means.configurations.row(i).transpose();
             repeats = times.row(i).transpose();
@@ -80,17 +84,24 @@ class PredictiveScore {
             sensor.deviation(problem.means.observations.row(i).transpose(), predicted, deviation);
             all.col(size_) = deviation;
             if ((repeats.array() == 0).all()) continue;
+            sensor.differentiate(motion.world_from_flange,
+                                 model_error_twists(motion.world_from_flange), parameters.sensor,
+                                 effect);
+            has_levers = has_levers || (repeats.array() > 0).count() > 1;
             const MatrixXd& covariance = noise.covariance(motion, parameters.sensor, repeats);
             const Index count = covariance.rows();
             covariances_.block(row, 0, count, count) = covariance;
             for (const Index of_all : noise.rows()) {
+                effects_.row(row) = effect.row(of_all);
                 stated_.row(row++) = all.row(of_all);
                 is_angle_.push_back(sensor.is_angle(of_all));
-                const std::size_t kind = sensor.is_angle(of_all) ? 1 : 0;
-                has_[kind] = std::isfinite(expected_[kind]);
             }
             first_row_.push_back(row);
         }
+        // One point alone does not tell how far the flange has turned.
+        has_ = {
+            sensor.has_lengths() && std::isfinite(expected_[0]),
+            (sensor.has_angles() || (has_levers && common_ > 0)) && std::isfinite(expected_[1])};
         stated_.conservativeResize(row, Eigen::NoChange);
         problem.units.scale_columns(stated_.leftCols(size_));
         whitened_.resize(row, size_ + 1);
@@ -112,9 +123,16 @@ class PredictiveScore {
         log_deviations_ = 0;
         for_each_configuration([&](Index first, Index count) {
             covariance_ = covariances_.block(first, 0, count, count);
+            if (common_ > 0) {
+                const auto moved = effects_.middleRows(first, count);
+                const auto shift = moved.leftCols<3>();
+                const auto turn = moved.rightCols<3>();
+                covariance_.noalias() += common_ * squares[0] * shift * shift.transpose();
+                covariance_.noalias() += common_ * squares[1] * turn * turn.transpose();
+            }
             for (Index k = 0; k < count; ++k) {
                 covariance_(k, k) +=
-                    squares[is_angle_[static_cast<std::size_t>(first + k)] ? 1 : 0];
+                    (1 - common_) * squares[is_angle_[static_cast<std::size_t>(first + k)] ? 1 : 0];
             }
             detail::whiten(covariance_, whitened_.middleRows(first, count), factor_,
                            &log_deviations_);
@@ -146,7 +164,8 @@ class PredictiveScore {
             ++counts[kind];
         }
         for (std::size_t kind = 0; kind < 2; ++kind) {
-            if (has_[kind]) freedom_[kind] = std::max(left[kind] / counts[kind], 0.0);
+            const std::size_t rows = counts[kind] > 0 ? kind : 1 - kind;
+            if (has_[kind]) freedom_[kind] = std::max(left[rows] / counts[rows], 0.0);
         }
     }
 
@@ -181,6 +200,7 @@ class PredictiveScore {
     }
 
     LogErrors expected_;
+    double common_;  ///< Campaign::model_error_common
     Index size_;
     Index prior_begin_;
     VectorXd prior_errors_;
@@ -192,6 +212,7 @@ class PredictiveScore {
     std::vector<bool> is_angle_;
     RowMatrixXd stated_;       ///< Jacobian by scaled parameters and residual, not whitened
     RowMatrixXd covariances_;  ///< but for the model error, of each as many columns as it has rows
+    RowMatrixXd effects_;      ///< of the model error's motions, 6 columns
 
     // The same under one pair of model errors.
     RowMatrixXd whitened_;

@@ -25,7 +25,7 @@ std::string describe(const MadePlan& plan, const std::vector<CountAccuracy>& cou
     text += has_target ? format_curve(plan.made)
             : planning.plan.is_stopped_early()
                 ? "\nPredicted position error by number of poses: left out, planning was stopped\n"
-                : format_other_counts(counts, planning.campaign);
+                : format_other_counts(counts);
     text += (plan.simulated ? format(*plan.simulated) : "") + format_deviations(planning.plan);
     return text + fmt::format("\n{}{}plan:        {}\n",
                               describe_planned(plan.campaign, planning.plan.request.repeats),

@@ -11,14 +11,6 @@
 namespace posewise::detail {
 namespace {
 
-/// J_q diag(s): how far one standard deviation of each joint moves the observation.
-void fill_joint_effect(const Campaign& campaign, const FlangeMotion& motion,
-                       const VectorXd& sensor_unknowns, Eigen::Ref<RowMatrixXd> effect) {
-    campaign.sensor->differentiate(motion.world_from_flange, motion.joint_twists, sensor_unknowns,
-                                   effect);
-    effect *= campaign.joint_repeatability.asDiagonal();
-}
-
 InputError not_positive_definite(const MatrixXd& covariance) {
     const std::string rule = ", must be positive definite";
     if (!covariance.allFinite()) {
@@ -53,6 +45,11 @@ void check_noise(const Campaign& campaign) {
     };
     check_model_error(campaign.model_error, "m");
     check_model_error(campaign.model_error_orientation, "rad");
+    if (!(campaign.model_error_common >= 0 && campaign.model_error_common <= 1)) {
+        throw InputError(
+            fmt::format("the common part of the model error is {:g}, must be from 0 to 1",
+                        campaign.model_error_common));
+    }
     const VectorXd& s = campaign.joint_repeatability;
     if (s.size() != 0 && s.size() != campaign.robot.joint_count()) {
         throw InputError("joint repeatability has " + std::to_string(s.size()) +
@@ -67,13 +64,44 @@ void check_noise(const Campaign& campaign) {
     }
 }
 
-VectorXd model_error_of_rows(const Campaign& campaign) {
+TwistMatrix model_error_twists(const Isometry3d& world_from_flange) {
+    const Vector3d p = world_from_flange.translation();
+    TwistMatrix twists = TwistMatrix::Zero(6, 6);
+    twists.block<3, 3>(3, 0).setIdentity();
+    twists.block<3, 3>(0, 3).setIdentity();
+    for (Index k = 0; k < 3; ++k) twists.block<3, 1>(3, 3 + k) = p.cross(Vector3d::Unit(k));
+    return twists;
+}
+
+VectorXd model_error_motions(const Campaign& campaign) {
+    const double part = std::sqrt(campaign.model_error_common);
+    VectorXd sizes(6);
+    sizes.head<3>().setConstant(part * campaign.model_error);
+    sizes.tail<3>().setConstant(part * campaign.model_error_orientation);
+    return sizes;
+}
+
+VectorXd own_model_errors(const Campaign& campaign) {
+    const double part = std::sqrt(1 - campaign.model_error_common);
     VectorXd errors(campaign.sensor->row_count());
     for (Index row = 0; row < errors.size(); ++row) {
-        errors[row] = campaign.sensor->is_angle(row) ? campaign.model_error_orientation
-                                                     : campaign.model_error;
+        errors[row] = part * (campaign.sensor->is_angle(row) ? campaign.model_error_orientation
+                                                             : campaign.model_error);
     }
     return errors;
+}
+
+double left_over_rms(const Campaign& campaign, const VectorXd& sensor_unknowns) {
+    const Sensor& sensor = *campaign.sensor;
+    double levers =
+        0;  // a turn by an angle about each axis moves the end of a lever by two of them
+    for (Index j = 0; j < sensor.target_count(); ++j) {
+        levers += sensor.target_position(j, sensor_unknowns).squaredNorm();
+    }
+    const double turned = 2 * levers / static_cast<double>(sensor.target_count());
+    const double angle = campaign.model_error_orientation;
+    return std::sqrt(3 * campaign.model_error * campaign.model_error +
+                     campaign.model_error_common * turned * angle * angle);
 }
 
 MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
@@ -88,7 +116,13 @@ MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
 }
 
 bool has_constant_noise(const Campaign& campaign) {
-    return campaign.joint_repeatability.size() == 0 && campaign.sensor->has_constant_covariance();
+    const Sensor& sensor = *campaign.sensor;
+    const bool has_constant_model_error =
+        model_error_motions(campaign).isZero(0) ||
+        (campaign.model_error_orientation == 0 && sensor.lengths_per_target() == 3 &&
+         !sensor.has_angles());
+    return campaign.joint_repeatability.size() == 0 && has_constant_model_error &&
+           sensor.has_constant_covariance();
 }
 
 MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& motion, Index joint,
@@ -98,16 +132,28 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
     MatrixXd covariance_rate =
         campaign.sensor->covariance_rate(motion.world_from_flange, direction, sensor_unknowns) /
         repeats;
-    if (campaign.joint_repeatability.size() > 0) {
-        RowMatrixXd effect(campaign.sensor->row_count(), motion.joint_twists.cols());
-        fill_joint_effect(campaign, motion, sensor_unknowns, effect);
+    const auto add = [&](const TwistMatrix& twists, const TwistMatrix& rates,
+                         const VectorXd& sizes) {
+        RowMatrixXd effect(campaign.sensor->row_count(), twists.cols());
+        campaign.sensor->differentiate(motion.world_from_flange, twists, sensor_unknowns, effect);
         RowMatrixXd effect_rate(effect.rows(), effect.cols());
-        campaign.sensor->differentiate_along(motion.world_from_flange, motion.joint_twists,
-                                             direction, rate.joint_twists, sensor_unknowns,
-                                             effect_rate);
-        const MatrixXd half =
-            effect_rate * campaign.joint_repeatability.asDiagonal() * effect.transpose();
+        campaign.sensor->differentiate_along(motion.world_from_flange, twists, direction, rates,
+                                             sensor_unknowns, effect_rate);
+        const MatrixXd half = effect_rate * sizes.cwiseAbs2().asDiagonal() * effect.transpose();
         covariance_rate += half + half.transpose();
+    };
+    if (campaign.joint_repeatability.size() > 0) {
+        add(motion.joint_twists, rate.joint_twists, campaign.joint_repeatability);
+    }
+    const VectorXd motions = model_error_motions(campaign);
+    if (!motions.isZero(0)) {
+        const Vector3d p = motion.world_from_flange.translation();
+        const Vector3d p_rate = direction.tail<3>() + direction.head<3>().cross(p);
+        TwistMatrix rates = TwistMatrix::Zero(6, 6);
+        for (Index k = 0; k < 3; ++k) {
+            rates.block<3, 1>(3, 3 + k) = p_rate.cross(Vector3d::Unit(k));
+        }
+        add(model_error_twists(motion.world_from_flange), rates, motions);
     }
     return covariance_rate;
 }
@@ -134,9 +180,12 @@ void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows, MatrixXd& 
 PoseNoise::PoseNoise(const Campaign& campaign)
     : campaign_(campaign),
       is_constant_(has_constant_noise(campaign)),
-      model_variances_(model_error_of_rows(campaign).cwiseAbs2()),
+      motions_(model_error_motions(campaign).isZero(0) ? VectorXd()
+                                                       : model_error_motions(campaign)),
+      own_variances_(own_model_errors(campaign).cwiseAbs2()),
       of_sensor_(campaign.sensor->row_count(), campaign.sensor->row_count()),
-      joint_effect_(campaign.sensor->row_count(), campaign.joint_repeatability.size()) {}
+      effect_(campaign.sensor->row_count(), campaign.joint_repeatability.size() + motions_.size()) {
+}
 
 const MatrixXd& PoseNoise::covariance(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
                                       const VectorXd& repeats) {
@@ -157,19 +206,30 @@ const MatrixXd& PoseNoise::covariance(const FlangeMotion& motion, const VectorXd
             const double of_one = of_sensor_(row, rows_[static_cast<std::size_t>(i)]);
             covariance_(k, i) = of_one / repeats[row / width];
         }
-        covariance_(k, k) += model_variances_[row];
+        covariance_(k, k) += own_variances_[row];
     }
-    if (joint_effect_.cols() > 0) add_joint_noise(motion, sensor_unknowns);
+    if (effect_.cols() > 0) add_effects(motion, sensor_unknowns);
     return covariance_;
 }
 
-void PoseNoise::add_joint_noise(const FlangeMotion& motion, const VectorXd& sensor_unknowns) {
-    fill_joint_effect(campaign_, motion, sensor_unknowns, joint_effect_);
-    seen_joint_effect_.resize(covariance_.rows(), joint_effect_.cols());
-    for (Index k = 0; k < covariance_.rows(); ++k) {
-        seen_joint_effect_.row(k) = joint_effect_.row(rows_[static_cast<std::size_t>(k)]);
+void PoseNoise::add_effects(const FlangeMotion& motion, const VectorXd& sensor_unknowns) {
+    const Index joints = campaign_.joint_repeatability.size();
+    const auto fill = [&](const TwistMatrix& twists, const VectorXd& sizes, auto columns) {
+        campaign_.sensor->differentiate(motion.world_from_flange, twists, sensor_unknowns, columns);
+        columns *= sizes.asDiagonal();
+    };
+    if (joints > 0) {
+        fill(motion.joint_twists, campaign_.joint_repeatability, effect_.leftCols(joints));
     }
-    covariance_.noalias() += seen_joint_effect_ * seen_joint_effect_.transpose();
+    if (motions_.size() > 0) {
+        fill(model_error_twists(motion.world_from_flange), motions_,
+             effect_.rightCols(motions_.size()));
+    }
+    seen_effect_.resize(covariance_.rows(), effect_.cols());
+    for (Index k = 0; k < covariance_.rows(); ++k) {
+        seen_effect_.row(k) = effect_.row(rows_[static_cast<std::size_t>(k)]);
+    }
+    covariance_.noalias() += seen_effect_ * seen_effect_.transpose();
 }
 
 Index PoseNoise::whiten_seen(const FlangeMotion& motion, const VectorXd& sensor_unknowns,

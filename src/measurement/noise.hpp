@@ -11,14 +11,23 @@ namespace posewise::detail {
 /// a value that is negative or not finite, or if a model error is.
 void check_noise(const Campaign& campaign);
 
-/// What repeats do not reduce: the model error of each of the sensor's rows (m or rad).
-VectorXd model_error_of_rows(const Campaign& campaign);
+/// The motion of the flange that the common part of the model error is: three translations (m),
+/// then three rotations about the flange's origin (rad), along the world's axes.
+TwistMatrix model_error_twists(const Isometry3d& world_from_flange);
+/// Standard deviations of these.
+VectorXd model_error_motions(const Campaign& campaign);
+/// Standard deviations of the model error that each of the sensor's rows has by itself, m or rad.
+VectorXd own_model_errors(const Campaign& campaign);
+
+/// RMS, over its targets, of what the model error moves a target by, m.
+double left_over_rms(const Campaign& campaign, const VectorXd& sensor_unknowns);
 
 /// Covariance of the mean observation of the targets seen at a pose, target j over repeats[j]
-/// observations (0: not seen): the sensor's divided by repeats, plus what repeats do not reduce:
-/// model_error^2 on the diagonal, and J_q diag(s^2) J_q^T of the joints' repeatability s (the
-/// robot stands still while it is observed again), which correlates the targets. Square, its rows
-/// those of seen_rows(), m^2.
+/// observations (0: not seen): the sensor's divided by repeats, plus what repeats do not reduce.
+/// That is the model error, own_model_errors() and L diag(s^2) L^T of model_error_motions() s (L:
+/// the observation's derivative by model_error_twists()), and J_q diag(r^2) J_q^T of the joints'
+/// repeatability r (the robot stands still while it is observed again). Both motions correlate the
+/// targets. Square, its rows those of seen_rows(), m^2.
 MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
                          const VectorXd& sensor_unknowns, const VectorXd& repeats);
 
@@ -61,17 +70,18 @@ class PoseNoise {
                       const VectorXd& repeats, Eigen::Ref<RowMatrixXd> rows);
 
   private:
-    void add_joint_noise(const FlangeMotion& motion, const VectorXd& sensor_unknowns);
+    void add_effects(const FlangeMotion& motion, const VectorXd& sensor_unknowns);
 
     const Campaign& campaign_;
     bool is_constant_;
-    VectorXd model_variances_;  ///< of all rows, as what follows
+    VectorXd motions_;        ///< model_error_motions(); empty: none
+    VectorXd own_variances_;  ///< of all rows, as what follows
     MatrixXd of_sensor_;
-    RowMatrixXd joint_effect_;
+    RowMatrixXd effect_;  ///< of one standard deviation of each joint, then of the model error
     std::vector<Index> rows_;
     VectorXd repeats_;     ///< that covariance_ is of
     MatrixXd covariance_;  ///< of rows_, as what follows
-    RowMatrixXd seen_joint_effect_;
+    RowMatrixXd seen_effect_;
     MatrixXd factor_;
 };
 

@@ -139,7 +139,10 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
     check_contacts(campaign, is_seen, repeats);
     const Sensor& sensor = *campaign.sensor;
     const Index rows = sensor.row_count();
-    const VectorXd model_error = detail::model_error_of_rows(campaign);
+    const VectorXd motions = detail::model_error_motions(campaign);
+    const bool moves_flange = !motions.isZero(0);
+    const VectorXd own_errors = detail::own_model_errors(campaign);
+    RowMatrixXd effect(rows, motions.size());
     const bool has_contacts = sensor.has_contacts();
     Measurements measurements;
     measurements.configurations = configurations;
@@ -165,7 +168,11 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
         const Isometry3d flange = world_from_flange(campaign, truth, q);
         sensor.predict(flange, truth.sensor, predicted);
         detail::fill_normals(stream, drawn);
-        drawn.array() *= model_error.array();
+        drawn.array() *= own_errors.array();
+        if (moves_flange) {
+            sensor.differentiate(flange, detail::model_error_twists(flange), truth.sensor, effect);
+            drawn += effect * motions.cwiseProduct(stream.normals(motions.size()));
+        }
         sensor.deviate(predicted, drawn, expected);
         if (i == 0 || !sensor.has_constant_covariance()) {
             sensor.covariance(flange, truth.sensor, covariance);

@@ -5,6 +5,7 @@
 
 #include "core/parallel.hpp"
 #include "core/statistics.hpp"
+#include "measurement/noise.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/jacobian/identification.hpp"
@@ -29,11 +30,19 @@ double repeatability_square(const PositionErrors& errors) {
     return mean_square(errors.by_joints.matrix, position_count(errors));
 }
 
+/// RMS that the model error adds.
+double left_over_of(const PositionErrors& errors) {
+    return std::sqrt(mean_square(errors.by_model.matrix, position_count(errors)) +
+                     coordinates * errors.own_error * errors.own_error);
+}
+
+/// M may be empty: parameters are known exactly.
 PredictedAccuracy accuracy_of(const PositionErrors& errors, const Campaign& campaign,
                               const MatrixXd& M, const InformationByNoise& by_noise) {
-    if (M.size() > 0) return predict_accuracy(errors.by_parameters, M, campaign, by_noise);
+    if (M.size() > 0) return predict_accuracy(errors, M, campaign, by_noise);
     PredictedAccuracy exact;
     exact.known_within = campaign.known_within;
+    exact.left_over = left_over_of(errors);
     return exact;
 }
 
@@ -42,10 +51,7 @@ class RobotDraws {
   public:
     RobotDraws(const PositionErrors& errors, const Campaign& campaign, const MatrixXd& M,
                const InformationByNoise& by_noise, std::uint64_t seed)
-        : errors_(errors),
-          accuracy_(accuracy_of(errors, campaign, M, by_noise)),
-          model_error_(campaign.model_error),
-          seed_(seed) {
+        : errors_(errors), accuracy_(accuracy_of(errors, campaign, M, by_noise)), seed_(seed) {
         if (M.size() == 0) return;
         // Error of a position = J0 dx with dx = L^-T z, M = L L^T.
         const Eigen::LLT<MatrixXd> cholesky(M);
@@ -81,27 +87,28 @@ class RobotDraws {
             off = spread_.transpose() * z;
         }
         for (Index k = 0; k < robots_a_block; ++k) {
-            const auto drawn = detail::draw_unknowns(
-                b * robots_a_block + k, block_count * robots_a_block, accuracy_, model_error_);
+            const auto drawn = detail::draw_unknowns(b * robots_a_block + k,
+                                                     block_count * robots_a_block, accuracy_);
             off.col(k) *= std::sqrt(drawn.growth);
-            off.col(k) += model_error_ * drawn.model * stream.normals(off.rows());
-            add_visits(off.col(k), stream);
+            off.col(k) += errors_.own_error * drawn.model * stream.normals(off.rows());
+            add_draws(errors_.by_model, drawn.model, off.col(k), stream);
+            add_draws(errors_.by_joints, 1, off.col(k), stream);
         }
         return off;
     }
 
-    void add_visits(Eigen::Ref<VectorXd> off, RandomStream& stream) const {
-        const Blocks& joints = errors_.by_joints;
-        for (Index i = 0; i < joints.count(); ++i) {
-            const auto first = joints.first_row[static_cast<std::size_t>(i)];
-            off.segment(first, joints[i].rows()) +=
-                joints[i] * stream.normals(joints.parameter_count());
+    /// What each configuration has of its own draw.
+    static void add_draws(const Blocks& effects, double times, Eigen::Ref<VectorXd> off,
+                          RandomStream& stream) {
+        for (Index i = 0; i < effects.count(); ++i) {
+            const auto first = effects.first_row[static_cast<std::size_t>(i)];
+            off.segment(first, effects[i].rows()) +=
+                times * (effects[i] * stream.normals(effects.parameter_count()));
         }
     }
 
     const PositionErrors& errors_;
     PredictedAccuracy accuracy_;
-    double model_error_;
     std::uint64_t seed_;
     MatrixXd spread_;
 };
@@ -149,24 +156,46 @@ PositionErrors make_position_errors(const Campaign& campaign, const RowMatrixXd&
                                     Index target) {
     PositionErrors errors;
     errors.by_parameters = make_prediction_blocks(campaign, campaign.nominal, workspace, target);
-    const VectorXd& repeatability = campaign.joint_repeatability;
-    if (repeatability.size() == 0 || repeatability.isZero(0)) return errors;
     const Index all = 3 * campaign.sensor->target_count();
     const Index rows = target < 0 ? all : 3;
     const Index first = target < 0 ? 0 : 3 * target;
-    Blocks& joints = errors.by_joints;
-    joints.matrix.resize(rows * workspace.rows(), repeatability.size());
-    FlangeMotion motion;
-    RowMatrixXd J(all, repeatability.size());
-    for (Index i = 0; i < workspace.rows(); ++i) {
-        differentiate_flange(campaign, campaign.nominal, workspace.row(i).transpose(), motion);
-        campaign.sensor->differentiate_positions(motion.world_from_flange, motion.joint_twists,
-                                                 campaign.nominal.sensor, J);
-        joints.matrix.middleRows(rows * i, rows) =
-            J.middleRows(first, rows) * repeatability.asDiagonal();
-        joints.first_row.push_back(rows * (i + 1));
-    }
+    const auto add = [&](Blocks& effects, const VectorXd& sizes, auto twists_of) {
+        if (sizes.isZero(0)) return;
+        effects.matrix.resize(rows * workspace.rows(), sizes.size());
+        FlangeMotion motion;
+        RowMatrixXd J(all, sizes.size());
+        for (Index i = 0; i < workspace.rows(); ++i) {
+            differentiate_flange(campaign, campaign.nominal, workspace.row(i).transpose(), motion);
+            campaign.sensor->differentiate_positions(motion.world_from_flange, twists_of(motion),
+                                                     campaign.nominal.sensor, J);
+            effects.matrix.middleRows(rows * i, rows) =
+                J.middleRows(first, rows) * sizes.asDiagonal();
+            effects.first_row.push_back(rows * (i + 1));
+        }
+    };
+    add(errors.by_joints, campaign.joint_repeatability,
+        [](const FlangeMotion& motion) { return motion.joint_twists; });
+    add(errors.by_model, detail::model_error_motions(campaign), [](const FlangeMotion& motion) {
+        return detail::model_error_twists(motion.world_from_flange);
+    });
+    errors.own_error = std::sqrt(1 - campaign.model_error_common) * campaign.model_error;
     return errors;
+}
+
+PredictedAccuracy predict_accuracy(const PositionErrors& errors, const MatrixXd& M,
+                                   const Campaign& campaign, const InformationByNoise& by_noise) {
+    PredictedAccuracy accuracy =
+        predict_accuracy(errors.by_parameters, M, prior_information(campaign));
+    accuracy.left_over = left_over_of(errors);
+    accuracy.known_within = campaign.known_within;
+    const MatrixXd by_parameter = M.llt().solve(errors.by_parameters.matrix.transpose());
+    const auto square_by = [&](const MatrixXd& information) {
+        return by_parameter.cwiseProduct(information * by_parameter).sum();
+    };
+    const double model = square_by(by_noise.model);
+    const double noise = square_by(by_noise.noise);
+    accuracy.model_share = model + noise > 0 ? model / (model + noise) : 0;
+    return accuracy;
 }
 
 ErrorRange predict_range(const PositionErrors& errors, const Campaign& campaign, const MatrixXd& M,
@@ -187,10 +216,8 @@ ErrorRange predict_range(const PositionErrors& errors, const Campaign& campaign,
     }
     const PredictedAccuracy accuracy = accuracy_of(errors, campaign, M, by_noise);
     const double repeatability = repeatability_square(errors);
-    const double model = campaign.model_error;
-    ErrorRange range = range_of(total_cases(accuracy, model, std::sqrt(repeatability)));
-    range.expected =
-        std::sqrt(accuracy.rms * accuracy.rms + coordinates * model * model + repeatability);
+    ErrorRange range = range_of(total_cases(accuracy, std::sqrt(repeatability)));
+    range.expected = std::hypot(accuracy.rms, accuracy.left_over, std::sqrt(repeatability));
     return range;
 }
 
@@ -205,7 +232,7 @@ ErrorBudget make_budget(const PositionErrors& errors, const Campaign& campaign, 
     budget.prior = std::sqrt(prior);
     budget.model = std::sqrt(accuracy.model_share * by_poses);
     budget.noise = std::sqrt((1 - accuracy.model_share) * by_poses);
-    budget.left_over = std::sqrt(coordinates) * campaign.model_error;
+    budget.left_over = left_over_of(errors);
     budget.repeatability = std::sqrt(repeatability_square(errors));
     budget.total = std::hypot(budget.parameters, budget.left_over, budget.repeatability);
     return budget;

@@ -44,8 +44,7 @@ double PredictedAccuracy::growth(double model_square, double size_square) const 
 
 namespace detail {
 
-Unknowns draw_unknowns(Index k, Index count, const PredictedAccuracy& accuracy,
-                       double model_error) {
+Unknowns draw_unknowns(Index k, Index count, const PredictedAccuracy& accuracy) {
     constexpr double root = 1.3247179572447460;
     const auto part = [&](double x) { return std::clamp(x - std::floor(x), 1e-12, 1 - 1e-12); };
     const double number = static_cast<double>(k) + 0.5;
@@ -54,32 +53,31 @@ Unknowns draw_unknowns(Index k, Index count, const PredictedAccuracy& accuracy,
     drawn.uniform = part(number / root);
     drawn.model = power(known.model_error, normal_quantile(number / static_cast<double>(count)));
     const double sizes = power(known.error_size, normal_quantile(part(number / (root * root))));
-    const double model = model_error > 0 ? drawn.model : 1;
+    const double model = accuracy.left_over > 0 ? drawn.model : 1;
     drawn.growth = accuracy.growth(model * model, sizes * sizes);
     return drawn;
 }
 
 }  // namespace detail
 
-VectorXd total_cases(const PredictedAccuracy& accuracy, double model_error, double repeatability) {
+VectorXd total_cases(const PredictedAccuracy& accuracy, double repeatability) {
     constexpr Index cases = 4096;
-    constexpr double coordinates = 3;
     VectorXd totals(cases);
     for (Index k = 0; k < cases; ++k) {
-        const detail::Unknowns drawn = detail::draw_unknowns(k, cases, accuracy, model_error);
+        const detail::Unknowns drawn = detail::draw_unknowns(k, cases, accuracy);
         const double freedom = accuracy.degrees_of_freedom;
         const double chi_squared = detail::chi_squared_quantile(drawn.uniform, freedom) / freedom;
         const double parameters = drawn.growth * accuracy.rms * accuracy.rms;
-        const double model = drawn.model * model_error;
-        totals[k] = std::sqrt(chi_squared * parameters + coordinates * model * model +
-                              repeatability * repeatability);
+        const double model = drawn.model * accuracy.left_over;
+        totals[k] =
+            std::sqrt(chi_squared * parameters + model * model + repeatability * repeatability);
     }
     return totals;
 }
 
-PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_error) {
-    const VectorXd totals = total_cases(accuracy, model_error);
-    return {std::sqrt(accuracy.rms * accuracy.rms + 3 * model_error * model_error),
+PredictedTotal predict_total(const PredictedAccuracy& accuracy) {
+    const VectorXd totals = total_cases(accuracy);
+    return {std::hypot(accuracy.rms, accuracy.left_over),
             quantile(totals, 0.05, detail::QuantileRule::Linear),
             quantile(totals, 0.95, detail::QuantileRule::Linear)};
 }
@@ -143,20 +141,6 @@ InformationByNoise information_by_noise(const Campaign& campaign, const Paramete
     };
     return {(with(1 - step, 1) - with(1 + step, 1)) / (2 * step),
             (with(1, 1 - step) - with(1, 1 + step)) / (2 * step)};
-}
-
-PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
-                                   const Campaign& campaign, const InformationByNoise& by_noise) {
-    PredictedAccuracy accuracy = predict_accuracy(prediction, M, prior_information(campaign));
-    accuracy.known_within = campaign.known_within;
-    const MatrixXd by_parameter = M.llt().solve(prediction.matrix.transpose());
-    const auto square_by = [&](const MatrixXd& information) {
-        return by_parameter.cwiseProduct(information * by_parameter).sum();
-    };
-    const double model = square_by(by_noise.model);
-    const double noise = square_by(by_noise.noise);
-    accuracy.model_share = model + noise > 0 ? model / (model + noise) : 0;
-    return accuracy;
 }
 
 }  // namespace posewise

@@ -14,6 +14,6 @@ struct Unknowns {
 /// Case k of `count` that fill the space of all cases evenly, so that few make a sure quantile: the
 /// model error in steps of equal probability, the others by an additive recurrence with the powers
 /// of the root of x^3 = x + 1.
-Unknowns draw_unknowns(Index k, Index count, const PredictedAccuracy& accuracy, double model_error);
+Unknowns draw_unknowns(Index k, Index count, const PredictedAccuracy& accuracy);
 
 }  // namespace posewise::detail

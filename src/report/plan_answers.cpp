@@ -140,13 +140,12 @@ std::vector<Answer> complete(const Planning& planning, const std::string& accura
 std::vector<Answer> answer(const Planning& planning, const std::vector<CountAccuracy>& counts,
                            const std::optional<SimulatedPlan>& simulated) {
     if (!planning.plan.predicted) return answer(planning.plan);
-    const double model_error = planning.campaign.model_error;
-    const PredictedTotal total = predict_total(*planning.plan.predicted, model_error);
+    const PredictedTotal total = predict_total(*planning.plan.predicted);
     std::vector<ErrorAtCount> chosen, planned;
     for (const CountAccuracy& one : counts) {
         if (!one.accuracy) continue;
         (one.is_planned ? planned : chosen)
-            .push_back({one.pose_count, predict_total(*one.accuracy, model_error).rms});
+            .push_back({one.pose_count, predict_total(*one.accuracy).rms});
     }
     return complete(planning, sum_up(planning, "RMS", total.rms, total.lower, total.upper),
                     simulated,
@@ -176,12 +175,11 @@ std::vector<Answer> answer(const Plan& plan) {
     for (const PlannedPose& pose : plan.poses) count += pose.times;
     std::string text = fmt::format("{} chosen by {}", count_of(count, "pose"),
                                    criterion_name(plan.request.criterion));
-    const std::optional<double> model_error = assumed_model_error(plan);
-    if (plan.predicted && model_error) {
+    if (plan.predicted) {
         text += fmt::format(
             ": {} RMS expected over the candidates once calibrated, model error "
             "included",
-            format_error(predict_total(*plan.predicted, *model_error).rms, false));
+            format_error(predict_total(*plan.predicted).rms, false));
     }
     std::vector<Answer> answers{{"accuracy", "How accurate", text}};
     if (plan.efficiency > 0) answers.push_back({"proof", "How good", describe_proof(plan)});

@@ -129,8 +129,7 @@ bool is_told(const PredictedAccuracy& accuracy) {
 
 /// What robots are found to be off by after calibration: not by their parameters alone.
 std::string describe_total(const Planning& planning) {
-    const PredictedTotal total =
-        predict_total(*planning.plan.predicted, planning.campaign.model_error);
+    const PredictedTotal total = predict_total(*planning.plan.predicted);
     return fmt::format(
         "             {} mm with a model error of {} mm a coordinate; {} to {} mm (90 %), as "
         "{}\n",
@@ -264,7 +263,7 @@ std::string describe(const Finding& finding) {
 std::string describe_prediction(const Plan& plan) {
     const std::optional<double> model_error = assumed_model_error(plan);
     if (!plan.predicted || !model_error) return "";
-    const PredictedTotal total = predict_total(*plan.predicted, *model_error);
+    const PredictedTotal total = predict_total(*plan.predicted);
     return fmt::format(
         "predicted:  {} mm RMS over the candidates by the parameters, {} with a model error of {} "
         "mm;\n            {} to {} (90 %), as {}\n",
@@ -351,8 +350,7 @@ std::string format_planning(const Planning& planning) {
                                  pose_table(planning, plan.verification));
 }
 
-std::string format_other_counts(const std::vector<CountAccuracy>& counts,
-                                const Campaign& campaign) {
+std::string format_other_counts(const std::vector<CountAccuracy>& counts) {
     Table table{{"new poses", "how", "RMS/mm", "95 %/mm", "with model error/mm", "90 % interval"},
                 {}};
     for (const CountAccuracy& count : counts) {
@@ -361,9 +359,8 @@ std::string format_other_counts(const std::vector<CountAccuracy>& counts,
              count.is_planned ? "planned" : "chosen from the pool",
              count.accuracy ? detail::format_mm(count.accuracy->rms) : "-",
              count.accuracy ? detail::format_mm(count.accuracy->percentile95) : "-"});
-        const auto total = count.accuracy
-                               ? std::optional(predict_total(*count.accuracy, campaign.model_error))
-                               : std::nullopt;
+        const auto total =
+            count.accuracy ? std::optional(predict_total(*count.accuracy)) : std::nullopt;
         table.rows.back().push_back(total ? detail::format_mm(total->rms) : "-");
         table.rows.back().push_back(
             total ? detail::format_mm(total->lower) + ".." + detail::format_mm(total->upper) : "-");

@@ -34,8 +34,7 @@ io::CampaignFile design(const std::string& name) {
 /// and model error log-normal.
 VectorXd draw_rms(const PositionErrors& errors, const Campaign& campaign, const MatrixXd& M,
                   const InformationByNoise& by_noise) {
-    const PredictedAccuracy accuracy =
-        predict_accuracy(errors.by_parameters, M, campaign, by_noise);
+    const PredictedAccuracy accuracy = predict_accuracy(errors, M, campaign, by_noise);
     const MatrixXd spread = M.llt().matrixL().solve(errors.by_parameters.matrix.transpose());
     const MatrixXd square =
         3 * spread * spread.transpose() / static_cast<double>(errors.by_parameters.matrix.rows());
@@ -50,8 +49,8 @@ VectorXd draw_rms(const PositionErrors& errors, const Campaign& campaign, const 
         }
         const double model = std::pow(campaign.known_within.model_error, random.normal());
         const double size = std::pow(campaign.known_within.error_size, random.normal());
-        const double left = model * campaign.model_error;
-        rms = std::sqrt(accuracy.growth(model * model, size * size) * sum + 3 * left * left);
+        const double left = model * accuracy.left_over;
+        rms = std::sqrt(accuracy.growth(model * model, size * size) * sum + left * left);
     }
     return drawn;
 }

@@ -41,6 +41,20 @@ TEST(ModelError, IsFoundWhateverIsStated) {
     EXPECT_EQ(identify(stating(truth, 1e-4), measured, start, as_stated).model_error, 1e-4);
 }
 
+TEST(ModelError, IsFoundAsAMotionOfTheFlange) {
+    Campaign truth = full_campaign(2e-4);
+    truth.model_error_orientation = 8e-4;
+    truth.model_error_common = 0.9;
+    const Measurements measured = simulate(truth, {120, 1, 3, 4}).measurements;
+    Campaign stated = stating(truth, 1e-4);
+    stated.model_error_orientation = 1e-4;
+    const Parameters start = register_base_and_targets(stated, measured).parameters;
+    const Estimate estimate = identify(stated, measured, start);
+    EXPECT_NEAR(estimate.model_error, 2e-4, 0.15 * 2e-4);
+    EXPECT_NEAR(estimate.model_error_orientation, 8e-4, 0.15 * 8e-4);
+    EXPECT_NEAR(estimate.variance_factor, 1, 0.15);
+}
+
 TEST(ModelError, TellsWhatToExpectAtPosesNotMeasured) {
     const Campaign truth = full_campaign(2e-4);
     const Simulation simulated = simulate(truth, {300, 1, 5, 6});

@@ -118,6 +118,8 @@ TEST(BadCampaign, Numbers) {
         {"sigma_mm: 0.05", "sigma_mm: -0.05",
          "16:13: sensor.sigma_mm is '-0.05'; must be positive"},
         {"sigma_mm: 0.05", "sigma_mm: 0", "16:13: sensor.sigma_mm is '0'; must be positive"},
+        {"model_error_mm: 0.2", "model_error_common: 1.1",
+         "18:21: model_error_common is '1.1'; must be from 0 to 1"},
         {"model_error_mm: 0.2", "model_error_mm: -1",
          "18:17: model_error_mm is '-1'; must be zero or positive"},
         {"length_mm: 2", "length_mm: 0", "20:21: spread.length_mm is '0'; must be positive"},

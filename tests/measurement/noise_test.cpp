@@ -69,6 +69,34 @@ TEST(MeanCovariance, JointErrorsCorrelateTheTargetsAndRepeatsDoNotReduceThem) {
     EXPECT_TRUE((with - without).isApprox(effect * effect.transpose(), 1e-8));
 }
 
+TEST(MeanCovariance, HasTheMotionOfTheFlangeThatTheModelErrorIs) {
+    Campaign campaign = noisy_campaign();
+    campaign.model_error = 3e-4;
+    campaign.model_error_orientation = 7e-4;
+    campaign.model_error_common = 0.9;
+    const VectorXd q = VectorXd::LinSpaced(6, -0.5, 0.7);
+    std::vector<FlangeMotionRate> rates;
+    const FlangeMotion motion = motion_at(campaign, q, rates);
+    const VectorXd& targets = campaign.nominal.sensor;
+    // By a translation of the flange and a rotation about its origin, along the world's axes.
+    const auto predict = [&](const VectorXd& moved) {
+        Isometry3d flange = motion.world_from_flange;
+        flange.linear() = rotation_from_vector(moved.tail<3>()) * flange.linear();
+        flange.translation() += moved.head<3>();
+        return campaign.sensor->predict(flange, targets);
+    };
+    const MatrixXd effect = testing::numerical_jacobian(predict, VectorXd::Zero(6));
+    VectorXd variances(6);
+    variances << 0.9 * 9e-8 * VectorXd::Ones(3), 0.9 * 49e-8 * VectorXd::Ones(3);
+    const MatrixXd moved = effect * variances.asDiagonal() * effect.transpose() +
+                           0.1 * 9e-8 * MatrixXd::Identity(9, 9);
+    const MatrixXd with = mean_covariance(campaign, motion, targets, 5);
+    EXPECT_NEAR(left_over_rms(campaign, targets), std::sqrt(moved.trace() / 3), 1e-9);
+    campaign.model_error = campaign.model_error_orientation = 0;
+    const MatrixXd without = mean_covariance(campaign, motion, targets, 5);
+    EXPECT_TRUE((with - without).isApprox(moved, 1e-7));
+}
+
 TEST(MeanCovariance, DividesEachTargetByItsOwnRepeatsAndLeavesOutThoseNotSeen) {
     const Campaign campaign = noisy_campaign();
     std::vector<FlangeMotionRate> rates;
@@ -89,7 +117,8 @@ TEST(MeanCovariance, DividesEachTargetByItsOwnRepeatsAndLeavesOutThoseNotSeen) {
 }
 
 TEST(MeanCovarianceRate, AgreesWithDifferences) {
-    const Campaign campaign = noisy_campaign();
+    Campaign campaign = noisy_campaign();
+    campaign.model_error_common = 0.9;
     const VectorXd& targets = campaign.nominal.sensor;
     std::vector<FlangeMotionRate> rates;
     std::vector<FlangeMotionRate> ignored;

@@ -63,12 +63,13 @@ TEST(PredictTotal, AddsTheModelErrorAndItsSpreadAmongRobots) {
     PredictedAccuracy accuracy;
     accuracy.rms = 3e-4;
     accuracy.degrees_of_freedom = 8;
-    const PredictedTotal alone = predict_total(accuracy, 0);
+    const PredictedTotal alone = predict_total(accuracy);
     EXPECT_NEAR(alone.rms, 3e-4, 1e-15);
     EXPECT_NEAR(alone.lower, 3e-4 * std::sqrt(2.733 / 8), 1e-5);   // chi squared of 8, 5 %
     EXPECT_NEAR(alone.upper, 3e-4 * std::sqrt(15.507 / 8), 1e-5);  // 95 %
     accuracy.rms = 0;
-    const PredictedTotal model = predict_total(accuracy, 1e-4);
+    accuracy.left_over = std::sqrt(3.0) * 1e-4;
+    const PredictedTotal model = predict_total(accuracy);
     EXPECT_NEAR(model.rms, std::sqrt(3.0) * 1e-4, 1e-15);
     EXPECT_NEAR(model.upper / model.rms, std::pow(2.5, 1.645), 0.35);
     EXPECT_NEAR(model.rms / model.lower, std::pow(2.5, 1.645), 0.35);
@@ -79,11 +80,12 @@ TEST(PredictTotal, OfAPriorKnowsTheSizesOfErrorsWithinAFactorOfTwo) {
     accuracy.rms = 3e-4;
     accuracy.degrees_of_freedom = 1e6;
     accuracy.by_direction = accuracy.prior_part = VectorXd::Ones(1);
-    const PredictedTotal few = predict_total(accuracy, 0);
+    const PredictedTotal few = predict_total(accuracy);
     EXPECT_NEAR(few.upper / few.rms, std::pow(2, 1.645), 0.2);
     EXPECT_NEAR(few.rms / few.lower, std::pow(2, 1.645), 0.2);
     accuracy.prior_part[0] = 0;  // all by the noise, which the model error is most of
-    const PredictedTotal many = predict_total(accuracy, 1e-4);
+    accuracy.left_over = std::sqrt(3.0) * 1e-4;
+    const PredictedTotal many = predict_total(accuracy);
     EXPECT_NEAR(many.upper / many.rms, std::pow(2.5, 1.645), 0.35);
 }
 

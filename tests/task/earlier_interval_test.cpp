@@ -20,8 +20,7 @@ PredictedAccuracy predict(const Campaign& campaign, const RowMatrixXd& poses,
     const MatrixXd M = information(make_blocks(campaign, campaign.nominal, poses, 1.0)) +
                        prior_information(campaign);
     const RowMatrixXd once = RowMatrixXd::Ones(poses.rows(), campaign.sensor->target_count());
-    return predict_accuracy(make_prediction_blocks(campaign, campaign.nominal, workspace), M,
-                            campaign,
+    return predict_accuracy(make_position_errors(campaign, workspace), M, campaign,
                             information_by_noise(campaign, campaign.nominal, poses, once));
 }
 
@@ -53,9 +52,9 @@ TEST(EarlierEstimate, NarrowsTheIntervalToWhatItTells) {
         const RowMatrixXd workspace = detail::random_configurations(stated.robot, 60, 3000 + seed);
         const Measurements next = measure_at_random(campaign, truth, 12, 500 + seed);
         PredictedAccuracy accuracy = predict(known, next.configurations, workspace);
-        const PredictedTotal total = predict_total(accuracy, known.model_error);
+        const PredictedTotal total = predict_total(accuracy);
         accuracy.known_within = {};
-        const PredictedTotal of_any = predict_total(accuracy, known.model_error);
+        const PredictedTotal of_any = predict_total(accuracy);
         EXPECT_LT(width_of(total), 0.75 * width_of(of_any));
         EXPECT_DOUBLE_EQ(total.rms, of_any.rms);
         const double found = total_error(

@@ -23,6 +23,7 @@ struct PredictedAccuracy {
     VectorXd prior_part{};
     /// The model error's share of the noise variance; the rest is the sensor's and joints'.
     double model_share = 1;
+    double left_over = 0;  ///< RMS that the model error adds, which no number of poses reduces
     KnownWithin known_within{};
 
     /// Logarithmic derivative of the mean square by the square of the expected sizes; that by the
@@ -47,11 +48,10 @@ struct PredictedTotal {
 /// Uses 4096 cases that evenly fill what is unknown. Model error and sizes are drawn as
 /// PredictedAccuracy::known_within states; the parameters' errors follow by its growth(). The
 /// instrument's noise is as stated.
-PredictedTotal predict_total(const PredictedAccuracy& accuracy, double model_error);
+PredictedTotal predict_total(const PredictedAccuracy& accuracy);
 
 /// The RMS of each case of predict_total(), with `repeatability` (m, RMS of a position) added.
-VectorXd total_cases(const PredictedAccuracy& accuracy, double model_error,
-                     double repeatability = 0);
+VectorXd total_cases(const PredictedAccuracy& accuracy, double repeatability = 0);
 
 /// Derivative of target positions at workspace configurations by the scaled parameters, in m:
 /// blocks with 3 rows per target. As test poses they make V the inverse of the predicted mean
@@ -79,11 +79,6 @@ InformationByNoise information_by_noise(const Campaign& campaign, const Paramete
 PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
                                    const MatrixXd& prior = {}, std::uint64_t seed = 1);
 
-/// As above with the campaign's prior and known_within. `by_noise` of the poses determines
-/// PredictedAccuracy::model_share, also for other poses that are held.
-PredictedAccuracy predict_accuracy(const Blocks& prediction, const MatrixXd& M,
-                                   const Campaign& campaign, const InformationByNoise& by_noise);
-
 /// Which figure of the position errors over the workspace's configurations and targets shall be
 /// small.
 enum class ErrorQuantity {
@@ -98,11 +93,19 @@ struct PositionErrors {
     Blocks by_parameters;  ///< make_prediction_blocks()
     /// By the joints, times their repeatability: varies from visit to visit. Empty: none is stated.
     Blocks by_joints;
+    Blocks by_model;       ///< by the model error's motions of the flange, times their sizes
+    double own_error = 0;  ///< model error that each coordinate of a target has by itself
 };
 
 /// Throws InputError as make_prediction_blocks().
 PositionErrors make_position_errors(const Campaign& campaign, const RowMatrixXd& workspace,
                                     Index target = -1);
+
+/// predict_accuracy() with the campaign's prior and known_within, and what the model error adds.
+/// `by_noise` of the poses determines PredictedAccuracy::model_share, also for other poses that are
+/// held.
+PredictedAccuracy predict_accuracy(const PositionErrors& errors, const MatrixXd& M,
+                                   const Campaign& campaign, const InformationByNoise& by_noise);
 
 /// A position error whose size is not known yet, m.
 struct ErrorRange {

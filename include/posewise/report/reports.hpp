@@ -98,7 +98,7 @@ std::string describe_verified(const TargetOptions& target,
                               const std::optional<SimulatedPlan>& simulated);
 
 /// Predicted accuracy for other numbers of poses.
-std::string format_other_counts(const std::vector<CountAccuracy>& counts, const Campaign& campaign);
+std::string format_other_counts(const std::vector<CountAccuracy>& counts);
 
 /// Expected standard deviation of each parameter.
 std::string format_deviations(const Plan& plan);

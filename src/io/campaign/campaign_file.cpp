@@ -194,10 +194,10 @@ ErrorModel read_planned_model(const YamlValue& value, ErrorModel fitted) {
 /// With that error model, if one is asked for, else with the one that the file says.
 CampaignFile parse(const std::string& content, const std::string& path,
                    std::optional<ErrorModel> errors, const StopSignal& stop) {
-    const YamlMap map(
-        detail::parse_yaml(content, path),
-        {"name", "robot", "sensor", "model_error_<length>", "model_error_orientation_<angle>",
-         "base", "spread", "prior", "planning", "criterion", "seed", "measurements", "cell"});
+    const YamlMap map(detail::parse_yaml(content, path),
+                      {"name", "robot", "sensor", "model_error_<length>",
+                       "model_error_orientation_<angle>", "model_error_common", "base", "spread",
+                       "prior", "planning", "criterion", "seed", "measurements", "cell"});
     CampaignFile file;
     file.path = path;
     file.checksum = detail::checksum_of(content);
@@ -231,6 +231,12 @@ CampaignFile parse(const std::string& content, const std::string& path,
     }
     read_model_error(map, "model_error", campaign.model_error);
     read_model_error(map, "model_error_orientation", campaign.model_error_orientation);
+    if (const auto common = map.find("model_error_common")) {
+        campaign.model_error_common = common->number();
+        if (!(campaign.model_error_common >= 0 && campaign.model_error_common <= 1)) {
+            throw common->error("is " + detail::quote(common->text()) + "; must be from 0 to 1");
+        }
+    }
     if (const auto spread = map.find("spread")) {
         campaign.spread = read_spread(*spread, campaign, !errors);
     }

@@ -13,8 +13,8 @@ namespace {
 using detail::Json;
 
 /// Of the positions of targets, by the parameters alone, and with the model error.
-Json accuracy_to_json(const PredictedAccuracy& accuracy, double model_error) {
-    const PredictedTotal total = predict_total(accuracy, model_error);
+Json accuracy_to_json(const PredictedAccuracy& accuracy) {
+    const PredictedTotal total = predict_total(accuracy);
     return {{"rms_mm", mm_per_m * accuracy.rms},
             {"p95_mm", mm_per_m * accuracy.percentile95},
             {"total_rms_mm", mm_per_m * total.rms},
@@ -22,11 +22,10 @@ Json accuracy_to_json(const PredictedAccuracy& accuracy, double model_error) {
             {"total_upper_mm", mm_per_m * total.upper}};
 }
 
-Json count_to_json(const CountAccuracy& count, double model_error) {
+Json count_to_json(const CountAccuracy& count) {
     return {{"new_pose_count", count.pose_count},
             {"is_planned", count.is_planned},
-            {"accuracy",
-             count.accuracy ? accuracy_to_json(*count.accuracy, model_error) : Json(nullptr)}};
+            {"accuracy", count.accuracy ? accuracy_to_json(*count.accuracy) : Json(nullptr)}};
 }
 
 Json pool_to_json(const Pool& pool) {
@@ -137,10 +136,7 @@ Json target_to_json(const TargetPlanning& found) {
 void add_accuracy(Json& document, const Plan& plan, const std::string& path) {
     document["plan_file"] = path;
     document["value_rms_mm"] = detail::millimetres(plan.value_rms);
-    const std::optional<double> model_error = assumed_model_error(plan);
-    if (plan.predicted && model_error) {
-        document["accuracy"] = accuracy_to_json(*plan.predicted, *model_error);
-    }
+    if (plan.predicted) document["accuracy"] = accuracy_to_json(*plan.predicted);
 }
 
 Json report_to_json(const Plan& plan, const std::string& path) {
@@ -190,7 +186,7 @@ std::string to_json(const Planning& planning, const std::vector<CountAccuracy>& 
     Json document = planning_to_json(planning, path);
     Json& others = document["other_counts"] = Json::array();
     for (const CountAccuracy& count : counts) {
-        others.push_back(count_to_json(count, planning.campaign.model_error));
+        others.push_back(count_to_json(count));
     }
     if (simulated) document["monte_carlo"] = simulated_to_json(*simulated, std::nullopt);
     return detail::json_text(document);

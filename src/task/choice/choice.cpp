@@ -68,8 +68,10 @@ std::optional<PredictedAccuracy> predict(const Campaign& campaign, const ChoiceP
     const std::vector<Index> chosen = candidates_of(problem, poses);
     const RowMatrixXd repeats =
         problem.request.repeats * RowMatrixXd(problem.share(chosen, Eigen::all));
+    Campaign registered = campaign;
+    registered.nominal = problem.parameters;
     return predict_accuracy(
-        make_prediction_blocks(campaign, problem.parameters, workspace_of(problem)), M, campaign,
+        make_position_errors(registered, workspace_of(problem)), M, campaign,
         information_by_noise(campaign, problem.parameters,
                              RowMatrixXd(problem.configurations(chosen, Eigen::all)), repeats));
 }
@@ -79,6 +81,14 @@ std::optional<PredictedAccuracy> predict(const Campaign& campaign, const ChoiceP
 std::optional<double> value_rms(const Campaign& campaign, const ChoiceProblem& problem,
                                 const RowMatrixXd& test_poses, double value) {
     constexpr double rounding = 1e-9;
+    if (problem.reading_deviation) {
+        const Sensor& sensor = *campaign.sensor;
+        const bool are_positions = !sensor.has_angles() && sensor.lengths_per_target() == 3 &&
+                                   (problem.share.array() == 1).all();
+        if (!are_positions || !needs_test_poses(problem.request.criterion)) return std::nullopt;
+        return *problem.reading_deviation /
+               std::sqrt(value * static_cast<double>(sensor.target_count()));
+    }
     const bool are_candidates = problem.test_poses == nullptr;
     if (!needs_test_poses(problem.request.criterion) || !detail::has_constant_noise(campaign) ||
         (are_candidates && (problem.share.array() != 1).any())) {

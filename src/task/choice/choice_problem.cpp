@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
 #include <unordered_set>
 #include <utility>
 
@@ -10,6 +12,7 @@
 #include "core/decompositions.hpp"
 #include "core/format.hpp"
 #include "core/text.hpp"
+#include "measurement/noise.hpp"
 #include "measurement/prior_rows.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
@@ -72,6 +75,66 @@ void make_random_blocks(ChoiceProblem& problem, const Campaign& campaign,
     problem.configurations.conservativeResize(made, Eigen::NoChange);
     problem.share.conservativeResize(made, Eigen::NoChange);
     problem.ids.resize(static_cast<std::size_t>(made));
+}
+
+/// RMS of the standard deviations of a reading's lengths (m) and angles (rad).
+std::array<double, 2> reading_deviations(const Campaign& campaign, const Parameters& parameters,
+                                         const RowMatrixXd& configurations,
+                                         const RowMatrixXd& repeats) {
+    std::array<double, 2> squares{}, counts{};
+    PoseNoise noise(campaign);
+    FlangeMotion motion;
+    for (const Index i : evenly_spaced(configurations.rows(), at_once)) {
+        const VectorXd times = repeats.row(i).transpose();
+        if ((times.array() == 0).all()) continue;
+        differentiate_flange(campaign, parameters, configurations.row(i).transpose(), motion);
+        const MatrixXd& covariance = noise.covariance(motion, parameters.sensor, times);
+        for (Index k = 0; k < covariance.rows(); ++k) {
+            const std::size_t kind =
+                campaign.sensor->is_angle(noise.rows()[static_cast<std::size_t>(k)]) ? 1 : 0;
+            squares[kind] += covariance(k, k);
+            ++counts[kind];
+        }
+    }
+    const auto rms = [&](std::size_t kind) { return std::sqrt(squares[kind] / counts[kind]); };
+    return {rms(0), rms(1)};
+}
+
+/// G and V predict the readings at test poses, each divided by what one deviates on average. (The
+/// noise of one pose correlates its readings, which matters for what they tell, not for what is
+/// predicted.)
+void state_test_poses(ChoiceProblem& problem, const Campaign& campaign,
+                      const RowMatrixXd& configurations, const RowMatrixXd& repeats) {
+    const Sensor& sensor = *campaign.sensor;
+    const VectorXd scale = parameter_scale(campaign);
+    const auto deviations =
+        reading_deviations(campaign, problem.parameters, configurations, repeats);
+    problem.reading_deviation = deviations[0];
+    const bool is_mean = problem.request.criterion == Criterion::V;
+    auto& made = problem.test_poses = std::make_unique<Blocks>();
+    for (Index first = 0; first < configurations.rows(); first += at_once) {
+        const Index size = std::min(configurations.rows() - first, at_once);
+        Blocks part = make_plain_blocks(campaign, problem.parameters,
+                                        RowMatrixXd(configurations.middleRows(first, size)),
+                                        RowMatrixXd(repeats.middleRows(first, size)));
+        part.matrix *= scale.asDiagonal();
+        const Index width = sensor.rows_per_target();
+        for (Index row = 0; row < part.matrix.rows(); ++row) {
+            part.matrix.row(row) /= deviations[sensor.is_angle(row % width) ? 1 : 0];
+        }
+        if (is_mean) {
+            made->matrix = lower_root_of_gram(stack(made->matrix, part.matrix)).transpose();
+            continue;
+        }
+        const Index begin = made->first_row.back();
+        made->matrix = stack(made->matrix, part.matrix);
+        for (Index i = 1; i <= size; ++i) {
+            made->first_row.push_back(begin + part.first_row[static_cast<std::size_t>(i)]);
+        }
+    }
+    if (!is_mean) return;
+    made->matrix /= std::sqrt(static_cast<double>(configurations.rows()));
+    made->first_row = {0, made->matrix.rows()};
 }
 
 /// Of all that candidates are: ids, joints, what was measured, what is seen.
@@ -305,7 +368,12 @@ ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
     if (request.least_distance > 0) {
         problem.options.positions = turning_joints(campaign.robot, problem.configurations);
     }
-    if (options.test_poses.rows() > 0) {
+    const bool has_tests = options.test_poses.rows() > 0;
+    if (campaign.model_error_common > 0 && needs_test_poses(request.criterion)) {
+        const RowMatrixXd once = RowMatrixXd::Ones(options.test_poses.rows(), problem.share.cols());
+        state_test_poses(problem, campaign, has_tests ? options.test_poses : problem.configurations,
+                         request.repeats * (has_tests ? once : problem.share));
+    } else if (has_tests) {
         problem.test_poses = std::make_unique<Blocks>(
             make_blocks(campaign, parameters, options.test_poses, request.repeats));
     }

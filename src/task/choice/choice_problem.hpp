@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -20,9 +21,12 @@ struct ChoiceProblem {
     std::string checksum;        ///< of all of the candidates' numbers
     Parameters parameters;       ///< that blocks are linearised at; nothing for plain blocks
     Blocks blocks;
-    std::unique_ptr<Blocks> test_poses;    ///< null: the candidates
-    SelectOptions options;                 ///< the problem's part; refers to test_poses
-    std::vector<std::string> cell_doubts;  ///< as Plan::cell_doubts
+    /// What G and V predict; null: the candidates. With a common model error of V only what its
+    /// mean square needs, one block.
+    std::unique_ptr<Blocks> test_poses;
+    std::optional<double> reading_deviation;  ///< with it: length that these are divided by, m
+    SelectOptions options;                    ///< the problem's part; refers to test_poses
+    std::vector<std::string> cell_doubts;     ///< as Plan::cell_doubts
 };
 
 /// The file that candidates are of, for messages.

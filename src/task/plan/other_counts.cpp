@@ -26,8 +26,8 @@ std::vector<CountAccuracy> predict_other_counts(const Planning& planning, const 
             rows.push_back({k, false, std::nullopt});
             if (chosen) {
                 rows.back().accuracy =
-                    predict_accuracy(prediction, choices.information(*chosen), planning.campaign,
-                                     choices.by_noise(*chosen));
+                    predict_accuracy(planning.errors, choices.information(*chosen),
+                                     planning.campaign, choices.by_noise(*chosen));
             }
         }
         if (k == count) rows.push_back({k, true, planning.plan.predicted});

@@ -84,7 +84,7 @@ void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out
         campaign, campaign.nominal, configurations_of(poses, campaign.robot.joint_count()),
         times_seen(seen_at(poses, campaign.sensor->target_count()), repeats));
     planning.plan.predicted =
-        predict_accuracy(prediction, planning.information, campaign, planning.by_noise);
+        predict_accuracy(problem.errors, planning.information, campaign, planning.by_noise);
     planning.budget =
         make_budget(problem.errors, campaign, planning.information, planning.by_noise);
     planning.without_each = drop_each(prediction, blocks, planning.information);
@@ -153,7 +153,7 @@ PredictedAccuracy PlanMaker::predict_choice(const std::vector<Index>& poses,
     const RowMatrixXd repeats =
         times_seen(Seen(pool_.is_seen(poses, Eigen::all)), problem_.request.repeats);
     return predict_accuracy(
-        problem_.errors.by_parameters,
+        problem_.errors,
         information_of(problem_.search.held.rows, blocks.parameter_count()) +
             information(blocks, poses),
         problem_.campaign,

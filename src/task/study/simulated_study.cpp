@@ -6,6 +6,8 @@
 
 #include "core/statistics.hpp"
 #include "core/text.hpp"
+#include "measurement/noise.hpp"
+#include "posewise/calibrator/estimate.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/measurement/measurements.hpp"
@@ -28,9 +30,9 @@ using detail::TrialRobot;
 double expected_there(const SimulationSetting& setting, const Estimate& estimate) {
     const double parameters = setting.H.cwiseProduct(estimate.covariance).sum();
     const double factor = setting.campaign.spread.is_prior ? 1 : estimate.variance_factor;
-    constexpr double coordinates = 3;
-    return std::sqrt(parameters +
-                     coordinates * factor * estimate.model_error * estimate.model_error);
+    const double left_over = detail::left_over_rms(with_model_error(setting.campaign, estimate),
+                                                   estimate.parameters.sensor);
+    return std::sqrt(parameters + factor * left_over * left_over);
 }
 
 StudyCase run_case(const SimulationSetting& setting, const SimulatedStudyOptions& options,

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/statistics.hpp"
+#include "measurement/noise.hpp"
 #include "task/calibration/identify_anew.hpp"
 
 namespace posewise::detail {
@@ -19,7 +20,20 @@ RowMatrixXd visited_positions(const Campaign& truth, const DrawnRobot& robot,
             truth.joint_repeatability.cwiseProduct(random.normals(joints)).transpose();
     }
     RowMatrixXd positions = target_positions(truth, robot.truth, visited);
-    positions.reshaped() += robot.model_error * random.normals(positions.size());
+    Campaign own = truth;
+    own.model_error = robot.model_error;
+    own.model_error_orientation = robot.model_error_orientation;
+    const double own_error = std::sqrt(1 - own.model_error_common) * own.model_error;
+    positions.reshaped() += own_error * random.normals(positions.size());
+    const VectorXd sizes = model_error_motions(own);
+    if (sizes.isZero(0)) return positions;
+    RowMatrixXd effect(positions.cols(), sizes.size());
+    for (Index i = 0; i < visited.rows(); ++i) {
+        const Isometry3d flange = world_from_flange(truth, robot.truth, visited.row(i).transpose());
+        truth.sensor->differentiate_positions(flange, model_error_twists(flange),
+                                              robot.truth.sensor, effect);
+        positions.row(i) += (effect * sizes.cwiseProduct(random.normals(sizes.size()))).transpose();
+    }
     return positions;
 }
 
