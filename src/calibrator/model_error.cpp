@@ -70,7 +70,7 @@ class PredictiveScore {
         covariances_.resize(most_rows, sensor.row_count());
         effects_.resize(most_rows, 6);
         RowMatrixXd all(sensor.row_count(), size_ + 1);
-        RowMatrixXd effect(sensor.row_count(), 6);
+        RowMatrixXd effect = RowMatrixXd::Zero(sensor.row_count(), 6);
         PoseNoise noise(without);
         FlangeMotion motion;
         VectorXd q, repeats, predicted(sensor.row_count()), deviation(sensor.row_count());
@@ -84,10 +84,12 @@ class PredictiveScore {
             sensor.deviation(problem.means.observations.row(i).transpose(), predicted, deviation);
             all.col(size_) = deviation;
             if ((repeats.array() == 0).all()) continue;
-            sensor.differentiate(motion.world_from_flange,
-                                 model_error_twists(motion.world_from_flange), parameters.sensor,
-                                 effect);
-            has_levers = has_levers || (repeats.array() > 0).count() > 1;
+            if (common_ > 0) {
+                sensor.differentiate(motion.world_from_flange,
+                                     model_error_twists(motion.world_from_flange),
+                                     parameters.sensor, effect);
+                has_levers = has_levers || (repeats.array() > 0).count() > 1;
+            }
             const MatrixXd& covariance = noise.covariance(motion, parameters.sensor, repeats);
             const Index count = covariance.rows();
             covariances_.block(row, 0, count, count) = covariance;
@@ -99,9 +101,8 @@ class PredictiveScore {
             first_row_.push_back(row);
         }
         // One point alone does not tell how far the flange has turned.
-        has_ = {
-            sensor.has_lengths() && std::isfinite(expected_[0]),
-            (sensor.has_angles() || (has_levers && common_ > 0)) && std::isfinite(expected_[1])};
+        has_ = {sensor.has_lengths() && std::isfinite(expected_[0]),
+                (sensor.has_angles() || has_levers) && std::isfinite(expected_[1])};
         stated_.conservativeResize(row, Eigen::NoChange);
         problem.units.scale_columns(stated_.leftCols(size_));
         whitened_.resize(row, size_ + 1);
