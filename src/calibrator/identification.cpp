@@ -180,7 +180,8 @@ enum class FirstError { Stated, Found };
 Estimate identify_from(const Campaign& campaign, const Measurements& measurements,
                        const Parameters& start, const LevenbergMarquardtOptions& options,
                        FirstError& first) {
-    Campaign found = campaign;
+    const Campaign stated = detail::weighed_campaign(campaign, options.loss);
+    Campaign found = stated;
     detail::IdentificationProblem problem = detail::make_problem(found, measurements);
     Estimate estimate = begin_estimate(problem, start);
     problem.loss = detail::complete_loss(options.loss, campaign);
@@ -194,7 +195,7 @@ Estimate identify_from(const Campaign& campaign, const Measurements& measurement
                             leaves_far_more(problem, estimate.parameters))) {
             first = FirstError::Stated;
         } else if (is_open) {
-            const Campaign better = find_model_error(problem, estimate.parameters, campaign);
+            const Campaign better = find_model_error(problem, estimate.parameters, stated);
             stays = round > 1 && is_alike(found, better);
             found = better;  // problem refers to it
         }

@@ -84,6 +84,12 @@ MatrixXd robust_covariance(const IdentificationProblem& problem, const Parameter
     return spread * inverse + (1 - spread) * inverse * P * inverse;
 }
 
+Campaign weighed_campaign(const Campaign& campaign, const Loss& loss) {
+    Campaign weighed = campaign;
+    if (loss.kind != LossKind::Squares) weighed.model_error_common = 0;
+    return weighed;
+}
+
 std::vector<Outlier> find_outliers(const IdentificationProblem& problem,
                                    const Parameters& parameters) {
     const Measurements& means = problem.means;

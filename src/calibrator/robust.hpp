@@ -23,6 +23,10 @@ double robust_deviation(const IdentificationProblem& problem, const Parameters& 
 MatrixXd robust_covariance(const IdentificationProblem& problem, const Parameters& parameters,
                            const MatrixXd& R);
 
+/// The campaign with a noise that the loss can weigh: robust losses weigh targets one by one, so
+/// that each has all of the model error by itself.
+Campaign weighed_campaign(const Campaign& campaign, const Loss& loss);
+
 std::vector<Outlier> find_outliers(const IdentificationProblem& problem,
                                    const Parameters& parameters);
 

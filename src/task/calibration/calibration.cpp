@@ -333,8 +333,9 @@ void forget_held_out(Calibration& result) {
 
 }  // namespace
 
-Calibration calibrate(const Campaign& campaign, const Measurements& measurements,
+Calibration calibrate(const Campaign& stated, const Measurements& measurements,
                       const CalibrationOptions& options) {
+    const Campaign campaign = detail::weighed_campaign(stated, options.joint.loss);
     const Measurements part =
         options.used.empty() ? Measurements{} : take(measurements, options.used);
     const Measurements& used = options.used.empty() ? measurements : part;
