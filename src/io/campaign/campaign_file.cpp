@@ -113,9 +113,6 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
     return spread;
 }
 
-/// Of the model error's variance, as found on five campaigns with several targets (0.84 to 0.93).
-constexpr double usual_common_part = 0.9;
-
 /// "auto" is the default: beside priors it is found from what is measured.
 void read_model_error(const YamlMap& map, std::string_view key, double& error) {
     const auto measure = map.find_measure(key);
@@ -234,15 +231,8 @@ CampaignFile parse(const std::string& content, const std::string& path,
     }
     read_model_error(map, "model_error", campaign.model_error);
     read_model_error(map, "model_error_orientation", campaign.model_error_orientation);
-    const Sensor& seen = *campaign.sensor;
-    const bool sees_several =
-        seen.target_count() > 1 && seen.lengths_per_target() == 3 && !seen.has_contacts();
-    if (file.error_model == ErrorModel::Full && sees_several) {
-        campaign.model_error_common = usual_common_part;
-    }
-    const auto common = map.find("model_error_common");
-    if (common && !common->is_text("auto")) {
-        campaign.model_error_common = common->number(", or auto");
+    if (const auto common = map.find("model_error_common")) {
+        campaign.model_error_common = common->number();
         if (!(campaign.model_error_common >= 0 && campaign.model_error_common <= 1)) {
             throw common->error("is " + detail::quote(common->text()) + "; must be from 0 to 1");
         }

@@ -37,8 +37,11 @@ RowMatrixXd turning_joints(const Chain& robot, const RowMatrixXd& configurations
 bool can_assume_places(const Campaign& campaign) {
     // What is to be touched has to be where it is said to be.
     if (campaign.sensor->has_contacts()) return false;
+    // A model error that moves the flange is alike in all directions.
+    Campaign without = campaign;
+    without.model_error_common = 0;
     return campaign.has_nominal_base ||
-           (campaign.sensor->lengths_per_target() == 3 && has_constant_noise(campaign));
+           (campaign.sensor->lengths_per_target() == 3 && has_constant_noise(without));
 }
 
 InputError unstated_contacts(const Campaign& campaign) {
