@@ -86,8 +86,9 @@ std::string describe_remedy(const TargetPlanning& found) {
     }
     if (found.floor_of_known_model_error < found.floor.assured) {
         text += fmt::format(
-            "; were it known, as a first calibration with priors (calibrate --prior) tells plan "
-            "--from, the floor would be {} mm",
+            "; once that is known the floor is {} mm: plan --poses 12, measure them, calibrate "
+            "--out "
+            "estimate.json, and ask again with --from estimate.json",
             format_mm(found.floor_of_known_model_error));
     }
     return text;

@@ -22,8 +22,13 @@ TEST(FileKind, OfWhatIsNoCampaignIsNamed) {
     EXPECT_EQ(error_of("<?xml version=\"1.0\"?>\n<robot name=\"a\"/>"),
               "f: is a URDF; must be a campaign file (YAML); `posewise inspect FILE "
               "--write-campaign campaign.yaml` makes a campaign of it");
-    EXPECT_NE(error_of("<robot xmlns:xacro=\"http://ros.org/wiki/xacro\"/>").find("a xacro file"),
+    EXPECT_NE(error_of("<robot xmlns:xacro=\"http://ros.org/wiki/xacro\"><xacro:arm/></robot>")
+                  .find("a xacro file"),
               std::string::npos);
+    // What xacro has made is a URDF.
+    EXPECT_NE(
+        error_of("<!-- made by xacro from arm.xacro -->\n<robot name=\"arm\"/>").find("a URDF"),
+        std::string::npos);
     EXPECT_EQ(error_of("{\"kind\": \"posewise estimate\", \"format\": 1}"),
               "f: is an estimate that posewise wrote; must be a campaign file (YAML)");
     EXPECT_EQ(error_of("# by hand\nconfig,q1_deg\n1,2\n"),

@@ -18,8 +18,9 @@ struct Recognised {
     std::string remedy;
 };
 
-Recognised recognise_xml(std::string_view head) {
-    if (head.find("xacro") != std::string_view::npos) {
+/// What xacro has made a URDF of names it in a comment.
+Recognised recognise_xml(std::string_view content, std::string_view head) {
+    if (content.find("<xacro:") != std::string_view::npos) {
         return {std::nullopt, "a xacro file",
                 "; `xacro FILE > robot.urdf` makes a URDF of it, and `posewise inspect robot.urdf "
                 "--write-campaign campaign.yaml` a campaign of that"};
@@ -32,7 +33,7 @@ Recognised recognise_xml(std::string_view head) {
 }
 
 Recognised recognise_json(const std::string& head) {
-    static const std::regex kind(R"re("kind": *"posewise (?:pose )?(\w+)")re");
+    static const std::regex kind(R"re("kind": *"posewise (\w+)")re");
     std::smatch found;
     if (!std::regex_search(head, found, kind)) return {};  // YAML in braces, perhaps
     return {FileKind::Document, with_article(found[1].str()) + " that posewise wrote", ""};
@@ -43,7 +44,7 @@ Recognised recognise(std::string_view content) {
     constexpr std::size_t enough = 4096;
     if (content.starts_with("\xEF\xBB\xBF")) content.remove_prefix(3);
     const std::string head(trim(content.substr(0, enough)));
-    if (head.starts_with('<')) return recognise_xml(head);
+    if (head.starts_with('<')) return recognise_xml(content, head);
     if (head.starts_with('{')) return recognise_json(head);
     static const std::regex campaign(R"((^|\n)(robot|sensor) *:)");
     if (std::regex_search(head, campaign)) return {FileKind::Campaign, "a campaign file", ""};
