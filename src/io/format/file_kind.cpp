@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
-#include <regex>
 #include <string_view>
 
 #include "posewise/core/errors.hpp"
@@ -32,11 +32,30 @@ Recognised recognise_xml(std::string_view content, std::string_view head) {
     return {std::nullopt, "XML", ""};
 }
 
-Recognised recognise_json(const std::string& head) {
-    static const std::regex kind(R"re("kind": *"posewise (\w+)")re");
-    std::smatch found;
-    if (!std::regex_search(head, found, kind)) return {};  // YAML in braces, perhaps
-    return {FileKind::Document, with_article(found[1].str()) + " that posewise wrote", ""};
+Recognised recognise_json(std::string_view head) {
+    constexpr std::string_view key = "\"kind\":";
+    constexpr std::string_view ours = "\"posewise ";
+    const std::size_t at = head.find(key);
+    if (at == std::string_view::npos) return {};  // YAML in braces, perhaps
+    head.remove_prefix(at + key.size());
+    head.remove_prefix(std::min(head.find_first_not_of(' '), head.size()));
+    if (!head.starts_with(ours)) return {};
+    head.remove_prefix(ours.size());
+    const std::string word(head.substr(0, head.find('"')));
+    return {FileKind::Document, with_article(word) + " that posewise wrote", ""};
+}
+
+/// Whether a line begins with the word, and one of these characters after `between`.
+bool has_line(std::string_view text, std::string_view word, char between, std::string_view after) {
+    for (std::size_t at = text.find(word); at != std::string_view::npos;
+         at = text.find(word, at + 1)) {
+        if (at > 0 && text[at - 1] != '\n') continue;
+        const std::size_t next = text.find_first_not_of(between, at + word.size());
+        if (next != std::string_view::npos && after.find(text[next]) != std::string_view::npos) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /// The kind by the beginning of the file; no words where it is not plain.
@@ -46,10 +65,12 @@ Recognised recognise(std::string_view content) {
     const std::string head(trim(content.substr(0, enough)));
     if (head.starts_with('<')) return recognise_xml(content, head);
     if (head.starts_with('{')) return recognise_json(head);
-    static const std::regex campaign(R"((^|\n)(robot|sensor) *:)");
-    if (std::regex_search(head, campaign)) return {FileKind::Campaign, "a campaign file", ""};
-    static const std::regex table(R"re((^|\n)"?config"?[,;\t])re");
-    if (std::regex_search(head, table)) return {FileKind::Table, "a table of configurations", ""};
+    if (has_line(head, "robot", ' ', ":") || has_line(head, "sensor", ' ', ":")) {
+        return {FileKind::Campaign, "a campaign file", ""};
+    }
+    if (has_line(head, "config", '"', ",;\t") || has_line(head, "\"config", '"', ",;\t")) {
+        return {FileKind::Table, "a table of configurations", ""};
+    }
     return {};
 }
 
