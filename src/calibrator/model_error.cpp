@@ -213,7 +213,7 @@ class PredictiveScore {
     std::vector<bool> is_angle_;
     RowMatrixXd stated_;       ///< Jacobian by scaled parameters and residual, not whitened
     RowMatrixXd covariances_;  ///< but for the model error, of each as many columns as it has rows
-    RowMatrixXd effects_;      ///< of the model error's motions, 6 columns
+    RowMatrixXd effects_;      ///< derivative by model_error_twists(), 6 columns
 
     // The same under one pair of model errors.
     RowMatrixXd whitened_;

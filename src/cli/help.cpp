@@ -135,21 +135,9 @@ std::string bold(const std::string& text) {
 }
 
 /// Text that begins in a column, in lines that all begin there, to the page's width.
-std::string wrap(std::string_view text, std::size_t indent) {
-    std::string wrapped;
-    std::size_t column = indent;
-    while (!text.empty()) {
-        const std::string_view word = text.substr(0, text.find(' '));
-        text.remove_prefix(std::min(word.size() + 1, text.size()));
-        if (column > indent) {
-            const bool fits = column + 1 + word.size() <= page_width;
-            wrapped += fits ? " " : '\n' + std::string(indent, ' ');
-            column = fits ? column + 1 : indent;
-        }
-        wrapped += word;
-        column += word.size();
-    }
-    return wrapped;
+std::string wrap(const std::string& text, std::size_t indent) {
+    return fmt::format(
+        "{}", fmt::join(detail::wrap(text, page_width - indent), '\n' + std::string(indent, ' ')));
 }
 
 /// "N" of a whole number, "X" of any, the words where some are allowed.

@@ -101,6 +101,20 @@ std::string these(Index count, const std::string& noun) {
     return count == 1 ? "this " + noun : "these " + count_of(count, noun);
 }
 
+std::vector<std::string> wrap(const std::string& text, std::size_t width) {
+    std::vector<std::string> lines{text};
+    while (lines.back().size() > width) {
+        std::string& line = lines.back();
+        std::size_t blank = line.rfind(' ', width);
+        if (blank == std::string::npos || blank == 0) blank = line.find(' ', width);
+        if (blank == std::string::npos) break;
+        std::string rest = line.substr(blank + 1);
+        line.resize(blank);
+        lines.push_back(std::move(rest));
+    }
+    return lines;
+}
+
 std::string list_words(const std::vector<std::string>& words) {
     constexpr std::size_t most = 30;
     const std::size_t shown = std::min(words.size(), most);

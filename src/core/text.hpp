@@ -34,6 +34,9 @@ std::string list_words(const std::vector<std::string>& words);
 std::string describe_combination(const VectorXd& coefficients,
                                  const std::vector<std::string>& names);
 
+/// The text in lines of at most `width` characters, as far as its words allow.
+std::vector<std::string> wrap(const std::string& text, std::size_t width);
+
 /// The advice after an unknown name: "did you mean 'x'?" if one of the known is near, else
 /// "must be a, b or c".
 std::string suggest(std::string_view unknown, const std::vector<std::string>& known);

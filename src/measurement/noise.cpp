@@ -93,8 +93,8 @@ VectorXd own_model_errors(const Campaign& campaign) {
 
 double left_over_rms(const Campaign& campaign, const VectorXd& sensor_unknowns) {
     const Sensor& sensor = *campaign.sensor;
-    double levers =
-        0;  // a turn by an angle about each axis moves the end of a lever by two of them
+    // Of three turns about the axes, two move the end of a lever.
+    double levers = 0;
     for (Index j = 0; j < sensor.target_count(); ++j) {
         levers += sensor.target_position(j, sensor_unknowns).squaredNorm();
     }

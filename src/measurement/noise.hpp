@@ -75,9 +75,9 @@ class PoseNoise {
     const Campaign& campaign_;
     bool is_constant_;
     VectorXd motions_;        ///< model_error_motions(); empty: none
-    VectorXd own_variances_;  ///< of all rows, as what follows
+    VectorXd own_variances_;  ///< one a row of the sensor; so are the rows of what follows
     MatrixXd of_sensor_;
-    RowMatrixXd effect_;  ///< of one standard deviation of each joint, then of the model error
+    RowMatrixXd effect_;  ///< by one standard deviation of each joint, then of each motion
     std::vector<Index> rows_;
     VectorXd repeats_;     ///< that covariance_ is of
     MatrixXd covariance_;  ///< of rows_, as what follows

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 
+#include "core/text.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise {
@@ -13,18 +13,11 @@ std::string format(const std::vector<Answer>& answers) {
     for (const Answer& one : answers) width = std::max(width, one.question.size() + 2);
     std::string text;
     for (const Answer& one : answers) {
-        std::string line = fmt::format("{:{}}", one.question, width);
-        std::istringstream words(one.text);
-        std::size_t begin = line.size();
-        for (std::string word; words >> word;) {
-            if (line.size() > begin && line.size() + 1 + word.size() > columns) {
-                text += line + '\n';
-                line = std::string(width, ' ');
-                begin = width;
-            }
-            line += (line.size() > begin ? " " : "") + word;
+        std::string head = fmt::format("{:{}}", one.question, width);
+        for (const std::string& line : detail::wrap(one.text, columns - width)) {
+            text += head + line + '\n';
+            head.assign(width, ' ');
         }
-        text += line + '\n';
     }
     return answers.empty() ? text : text + '\n';
 }

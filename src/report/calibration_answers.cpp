@@ -2,14 +2,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/format.hpp"
+#include "core/names.hpp"
 #include "core/text.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/report/reports.hpp"
 #include "sentences.hpp"
+#include "task/calibration/judgement.hpp"
 
 namespace posewise {
 namespace {
@@ -81,9 +82,7 @@ std::string sum_up(const Calibration& calibration, const Judged& judged, bool is
     const auto verdict = judged.group ? judge_limit(*judged.group, *calibration.limit)
                                       : std::optional<LimitVerdict>();
     if (!verdict) return text + "not judged";
-    return text + (*verdict == LimitVerdict::Kept      ? "pass"
-                   : *verdict == LimitVerdict::NotKept ? "fail"
-                                                       : "undecided");
+    return text + std::string(detail::name_of(detail::limit_verdicts, *verdict));
 }
 
 std::string describe_sureness(const Calibration& calibration, const Judged& judged) {
@@ -129,17 +128,13 @@ std::string compare_expected(const Calibration& calibration, const Judged& judge
 std::string describe_limit(const Calibration& calibration, bool is_angle) {
     const auto& workspace = calibration.expected_workspace;
     const ExpectedError& error = workspace ? *workspace : calibration.expected;
-    const std::array<std::pair<double, const char*>, 3> parts{
+    std::string text = detail::describe_largest(
         {{error.model, "what the robot's model cannot express"},
          {error.parameters, "parameters that the poses leave uncertain"},
-         {error.noise, "the instrument's noise and the joints' repeatability"}}};
-    const auto& [size, what] =
-        *std::ranges::max_element(parts, {}, [](const auto& part) { return part.first; });
-    const double total = error.total();
-    if (!(total > 0)) return "";
-    std::string text = fmt::format("{}: {}, {:.0f} % of the square expected {}", what,
-                                   format_error(size, is_angle), 100 * size * size / total / total,
-                                   workspace ? "over the workspace" : "at poses like these");
+         {error.noise, "the instrument's noise and the joints' repeatability"}},
+        error.total(), is_angle);
+    if (text.empty()) return text;
+    text += workspace ? " expected over the workspace" : " expected at poses like these";
     if (!calibration.cures.found.empty()) {
         const Cure& best = *std::ranges::min_element(calibration.cures.found, {}, &Cure::after);
         text += "; " + detail::describe(best, calibration.campaign);
@@ -184,8 +179,9 @@ std::string describe_order(const Calibration& calibration) {
     for (const OrderSlope& slope : trend.slopes) {
         if (slope.is_angle == worst.is_angle) detectable = std::max(detectable, slope.detectable);
     }
-    if (!calibration.doubts.look.changes.empty())
+    if (!calibration.doubts.look.changes.empty()) {
         return "not judged: something moved, see warnings";
+    }
     const Metrics& fit = calibration.estimate.fit;
     const double left = worst.is_angle ? fit.orientation_rms : fit.rms();
     return fmt::format("{}; a drift of {} from first to last would have been seen",

@@ -7,6 +7,7 @@
 #include "core/text.hpp"
 #include "posewise/core/types.hpp"
 #include "sentences.hpp"
+#include "task/calibration/judgement.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -39,11 +40,10 @@ std::string describe_limit(const JudgedGroup& group, const std::optional<double>
     const std::string text = fmt::format(", limit {}: ", format_error(*limit, false));
     const std::optional<LimitVerdict> verdict = judge_limit(group, *limit);
     if (!verdict) return text + "not judged";
-    if (*verdict == LimitVerdict::Kept) return text + "pass";
-    if (*verdict == LimitVerdict::NotKept) return text + "fail";
+    const std::string word(name_of(limit_verdicts, *verdict));
+    if (*verdict != LimitVerdict::Open) return text + word;
     const std::optional<Index> count = poses_to_decide(group, *limit);
-    return text + (count ? fmt::format("undecided (if the RMS stays, {} poses decide)", *count)
-                         : "undecided");
+    return text + word + (count ? fmt::format(" (if the RMS stays, {} poses decide)", *count) : "");
 }
 
 std::string describe_verdict(const Calibration& calibration, const Kind& kind, bool has_moved,

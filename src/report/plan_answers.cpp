@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 
@@ -81,17 +80,13 @@ std::string describe_sureness(const Planning& planning,
 }
 
 std::string describe_limit(const ErrorBudget& budget) {
-    const std::array<std::pair<double, const char*>, 5> parts{
+    return detail::describe_largest(
         {{budget.left_over, "what the robot's model cannot express"},
          {budget.noise, "parameters that the noise of measuring leaves uncertain"},
          {budget.model, "parameters that the model error at the poses leaves uncertain"},
          {budget.prior, "parameters that the poses hardly tell, as uncertain as before"},
-         {budget.repeatability, "the joints' repeatability"}}};
-    const auto& [size, what] =
-        *std::ranges::max_element(parts, {}, [](const auto& part) { return part.first; });
-    if (!(budget.total > 0)) return "";
-    return fmt::format("{}: {}, {:.0f} % of the square", what, format_error(size, false),
-                       100 * size * size / (budget.total * budget.total));
+         {budget.repeatability, "the joints' repeatability"}},
+        budget.total, false);
 }
 
 std::string describe_influence(const Planning& planning) {

@@ -97,6 +97,13 @@ bool is_model_error_found(const Calibration& calibration) {
            calibration.method != CalibrationMethod::TwoStep;
 }
 
+std::string describe_largest(const std::vector<ErrorPart>& parts, double total, bool is_angle) {
+    if (!(total > 0)) return "";
+    const auto& [size, what] = *std::ranges::max_element(parts, {}, &ErrorPart::size);
+    return fmt::format("{}: {}, {:.0f} % of the square", what, format_error(size, is_angle),
+                       100 * size * size / (total * total));
+}
+
 std::string format_error(double value, bool is_angle) {
     if (std::isnan(value)) return "-";
     return format_short(mm_per_m * value, 4) + ' ' + std::string(units_of(is_angle).error);

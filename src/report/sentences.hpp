@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/measurement/campaign.hpp"
@@ -24,6 +25,14 @@ std::string describe(const Cure& cure, const Campaign& campaign);
 
 /// Whether the model error was worth looking for: there are errors of the robot to identify.
 bool is_model_error_found(const Calibration& calibration);
+
+/// "the joints' repeatability: 0.1 mm, 60 % of the square": the largest of the parts whose squares
+/// add up to that of the total; empty for a total of 0.
+struct ErrorPart {
+    double size = 0;
+    const char* what = nullptr;
+};
+std::string describe_largest(const std::vector<ErrorPart>& parts, double total, bool is_angle);
 
 /// "1 mm", "-0.5 mrad": a small error with its unit.
 std::string format_error(double value, bool is_angle);

@@ -48,21 +48,6 @@ void fit_to_page(std::vector<Column>& columns) {
     last.width = std::min(last.width, page - before);
 }
 
-/// The text in lines of at most `width`, as far as its words allow.
-std::vector<std::string> wrap(const std::string& text, std::size_t width) {
-    std::vector<std::string> lines{text};
-    while (lines.back().size() > width) {
-        std::string& line = lines.back();
-        std::size_t blank = line.rfind(' ', width);
-        if (blank == std::string::npos || blank == 0) blank = line.find(' ', width);
-        if (blank == std::string::npos) break;
-        std::string rest = line.substr(blank + 1);
-        line.resize(blank);
-        lines.push_back(std::move(rest));
-    }
-    return lines;
-}
-
 std::string format_row(const std::vector<std::string>& row, const std::vector<Column>& columns) {
     std::string line;
     for (std::size_t i = 0; i + 1 < columns.size(); ++i) {

@@ -105,7 +105,7 @@ struct PageResiduals {
     std::vector<std::string> names;  ///< reading_names()
     Measurements measurements;
     std::vector<ReadingResidual> readings;
-    /// Of poses that it was judged at, by "validation", "verification" or "left_out".
+    /// "validation", "verification", "left_out": residuals of poses it was judged at.
     std::vector<std::pair<std::string, PageResiduals>> judged{};
 };
 /// Adds the words of the campaign's sensor.

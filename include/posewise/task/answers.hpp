@@ -33,8 +33,8 @@ struct OrderSlope {
 struct OrderTrend {
     std::vector<OrderSlope> slopes;  ///< at least one
     std::size_t strongest = 0;       ///< the one least likely by chance
-    /// What follows the joints' positions was taken out first, so that poses measured in an order
-    /// of their own do not look like drift. False: too few configurations for that.
+    /// Effects of the joints' positions were removed first, so that an order of the poses
+    /// themselves does not look like drift. False: too few configurations to do so.
     bool is_beside_joints = false;
 
     const OrderSlope& worst() const { return slopes[strongest]; }
@@ -60,7 +60,7 @@ struct ErrorAtCount {
 struct MorePoses {
     std::optional<Index> more;  ///< nothing: no count up to `most` does
     Index most = 0;             ///< the largest count known
-    double ratio = 1;           ///< error there, or with so many more, divided by that now
+    double ratio = 1;           ///< error with `more` poses, or at `most`, divided by that now
 };
 /// Interpolated between the points on logarithmic axes. Nothing if `count` is not among their
 /// range.

@@ -150,9 +150,9 @@ struct Calibration {
     RowMatrixXd nominal_residuals;               ///< like residuals(), for the same fit
     std::optional<Repeatability> repeatability;  ///< nothing: no configuration was repeated
     std::optional<CrossValidation> held_out;
-    std::optional<RmsInterval> held_out_interval;  ///< of its samples' RMS, 95 %
-    std::optional<Influence> influence;            ///< of the configuration that matters most
-    std::optional<OrderTrend> order_trend;         ///< of the residuals
+    std::optional<RmsInterval> held_out_interval;  ///< 95 %, of the samples' RMS
+    std::optional<Influence> influence;            ///< the pose that matters most
+    std::optional<OrderTrend> order_trend;         ///< whether residuals drift
     /// For means at poses like the measured ones; for samples over the workspace that
     /// estimated_geometry() draws (nothing where it cannot, and for contacts).
     ExpectedError expected;
@@ -244,8 +244,8 @@ std::vector<ReadingResidual> list_residuals(const Campaign& campaign, const Esti
                                             const Measurements& measurements,
                                             const ResidualOptions& options = {});
 
-/// Those of measurements that it was not made with: nothing but configuration, sample, target and
-/// `calibrated`.
+/// Residuals of measurements that the calibration was not made with: only configuration, sample,
+/// target and `calibrated` are filled in.
 std::vector<ReadingResidual> list_residuals(const Campaign& campaign, const Parameters& parameters,
                                             const Measurements& measurements);
 

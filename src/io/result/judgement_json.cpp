@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "task/calibration/judgement.hpp"
+
 namespace posewise::detail {
 namespace {
 
@@ -12,9 +14,6 @@ const std::map<PoseGroup, const char*> groups{
 const std::map<ChanceVerdict, const char*> chances{{ChanceVerdict::Within, "within chance"},
                                                    {ChanceVerdict::Below, "below chance"},
                                                    {ChanceVerdict::Beyond, "beyond chance"}};
-const std::map<LimitVerdict, const char*> limits{{LimitVerdict::Kept, "pass"},
-                                                 {LimitVerdict::NotKept, "fail"},
-                                                 {LimitVerdict::Open, "undecided"}};
 
 Json group_to_json(const Calibration& calibration, const char* poses, const JudgedGroup& group) {
     const std::string unit = error_suffix(!calibration.campaign.sensor->has_lengths());
@@ -40,7 +39,7 @@ Json group_to_json(const Calibration& calibration, const char* poses, const Judg
     }
     if (!calibration.limit) return json;
     const auto verdict = judge_limit(group, *calibration.limit);
-    json["limit"] = verdict ? Json(limits.at(*verdict)) : Json(nullptr);
+    json["limit"] = verdict ? Json(name_of(limit_verdicts, *verdict)) : Json(nullptr);
     if (verdict == LimitVerdict::Open) {
         const auto count = poses_to_decide(group, *calibration.limit);
         json["poses_to_decide"] = count ? Json(*count) : Json(nullptr);

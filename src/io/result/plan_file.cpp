@@ -14,7 +14,7 @@
 namespace posewise::io {
 namespace {
 
-/// The cells of a row beside its configuration: what is seen, what for, how it is reached.
+/// A row: id, configuration, then `rest`: what is seen, what for, how it is reached.
 std::string configuration_row(const Campaign& campaign, const std::string& id, const VectorXd& q,
                               const std::string& rest) {
     return fmt::format("{}{},{}\n", detail::csv_field(id), detail::joint_cells(campaign, q), rest);

@@ -342,9 +342,9 @@ void pose_fields(const Fields& file, PlannedPose& pose, const Plan& plan) {
     file.optional("kept", is_continuous, pose.is_kept);
 }
 
-/// Of a plan that is read `columns` must be known before.
+/// Reading needs Plan::columns first.
 void plan_fields(const Fields& file, Plan& plan, const FilePath& path) {
-    std::map<std::string, std::string> places;  // of ids
+    std::map<std::string, std::string> places;  // id to its place
     const auto state = [&](const Fields& item, PlannedPose& pose) {
         pose_fields(item, pose, plan);
         const auto [first, is_new] = places.emplace(pose.id, item.place());

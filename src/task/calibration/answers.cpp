@@ -38,12 +38,11 @@ Index main_axis_count(const Sensor& sensor) {
 VectorXd mean_squares(const Campaign& campaign, const Measurements& measurements,
                       const RowMatrixXd& residuals) {
     const auto rows = rows_of_configurations(measurements);
+    const Index axes = main_axis_count(*campaign.sensor);
     VectorXd squares(std::ssize(rows));
     for (Index i = 0; i < squares.size(); ++i) {
         const auto [first, count] = rows[static_cast<std::size_t>(i)];
-        squares[i] = residuals.middleRows(first, count)
-                         .leftCols(main_axis_count(*campaign.sensor))
-                         .squaredNorm() /
+        squares[i] = residuals.middleRows(first, count).leftCols(axes).squaredNorm() /
                      static_cast<double>(count);
     }
     return squares;
@@ -87,17 +86,16 @@ class Remainder {
     MatrixXd basis_;
 };
 
-/// Slope of y over x once the columns are taken out of both.
+/// Slope of y over x once what the remainder takes out is out of both.
 struct Line {
     double slope = 0;
     double error = 0;    ///< its standard deviation
     double freedom = 1;  ///< degrees of freedom of that
 };
 
-std::optional<Line> fit_line(const VectorXd& x, const VectorXd& y, const MatrixXd& columns) {
+std::optional<Line> fit_line(const VectorXd& x, const VectorXd& y, const Remainder& remainder) {
     constexpr double explained = 1e-9;  // part of x's square below which nothing of it is left
     constexpr double most_alike = 0.95;
-    const Remainder remainder(columns);
     const VectorXd own_x = remainder(x), own_y = remainder(y);
     const auto degrees = static_cast<double>(x.size() - remainder.rank() - 1);
     const double square = own_x.squaredNorm();
@@ -138,13 +136,14 @@ std::optional<OrderTrend> find_order_trend(const Campaign& campaign,
     OrderTrend trend;
     trend.is_beside_joints = count >= 3 * (columns.cols() + 1);
     if (!trend.is_beside_joints) columns = columns.leftCols(1).eval();
+    const Remainder remainder(columns);
     const std::vector<std::string> axes = residual_axes(campaign);
     const auto axis_count = static_cast<double>(axes.size());
     const Index first_tenth = (count + 9) / 10;
     double rarest = 2;  // least probability by chance
     for (Index axis = 0; axis < means.cols(); ++axis) {
         const VectorXd y = means.col(axis);
-        const auto line = fit_line(order, y, columns);
+        const auto line = fit_line(order, y, remainder);
         if (!line) continue;
         const double by_chance = line->error > 0
                                      ? two_sided(line->slope / line->error, line->freedom)

@@ -1,10 +1,15 @@
 #pragma once
 
+#include "core/names.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/task/judgement.hpp"
 
 namespace posewise::detail {
+
+inline constexpr Names<LimitVerdict, 3> limit_verdicts{{{LimitVerdict::Kept, "pass"},
+                                                        {LimitVerdict::NotKept, "fail"},
+                                                        {LimitVerdict::Open, "undecided"}}};
 
 /// What poses were judged with: a robot calibrated at other ones.
 struct Judge {
