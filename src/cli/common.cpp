@@ -132,8 +132,9 @@ void warn_of_limits(const Campaign& campaign) {
 
 const std::vector<std::string>& given_warnings() { return warnings_of_run(); }
 
-void print_document(const std::string& document) {
-    print(io::with_warnings(document, given_warnings()));
+void print_document(const std::string& document,
+                    const std::optional<std::vector<Answer>>& answers) {
+    print(io::with_sentences(document, given_warnings(), answers));
 }
 
 ProgressLine::ProgressLine(std::string label, bool asked_for)

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "posewise/core/progress.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/task/answers.hpp"
 #include "posewise/task/plan.hpp"
 #include "report/sentences.hpp"
 #include "report/table.hpp"
@@ -50,8 +52,9 @@ void warn_of_limits(const Campaign& campaign);
 /// All that was warned of up to now.
 const std::vector<std::string>& given_warnings();
 
-/// Prints a document of io::to_json(), with what was warned of.
-void print_document(const std::string& document);
+/// Prints a document of io::to_json(), with its answers, if it has any, and what was warned of.
+void print_document(const std::string& document,
+                    const std::optional<std::vector<Answer>>& answers = std::nullopt);
 
 /// A counter on standard error, shown if that is a terminal or the user asks for it.
 class ProgressLine {

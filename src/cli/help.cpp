@@ -15,6 +15,7 @@
 
 #include "common.hpp"
 #include "core/text.hpp"
+#include "io/campaign/keys.hpp"
 #include "manual.hpp"
 #include "shell_help.hpp"
 
@@ -304,13 +305,44 @@ class BriefHelp : public CLI::Formatter {
 };
 
 std::string topics(const CLI::App& program) {
-    std::string text = "posewise help TOPIC prints one of these.\n\nCommands:\n";
+    std::string text =
+        "posewise help TOPIC prints one of these, or explains a key of campaign "
+        "files.\n\nCommands:\n";
     for (const CLI::App* const command : commands_of(program)) {
         text += fmt::format("  {:<22}{}\n", command->get_name(), command->get_description());
     }
     text += "\nSections of the manual:\n";
     for (const ManualSection& section : manual_sections()) {
         text += fmt::format("  {:<22}{}\n", section.topic, section.title);
+    }
+    return text;
+}
+
+/// The comments of the manual's source are not for its readers.
+std::string without_comments(std::string_view text) {
+    std::string kept;
+    std::size_t begin = 0;
+    while (begin < text.size()) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+        const std::string_view line = text.substr(begin, end - begin);
+        if (!line.starts_with("<!--")) kept += line;
+        begin = end;
+    }
+    return kept;
+}
+
+/// What the manual says of a key of campaign files, wherever it may stand; empty if nowhere.
+std::string explain_key(const std::string& name) {
+    std::string text;
+    for (const detail::YamlKeys* const keys : detail::keys::all()) {
+        for (const detail::YamlKey& key : keys->keys) {
+            const detail::NameWithUnit named = detail::split_unit(key.key);
+            if (key.key != name && named.stem != name) continue;
+            text += fmt::format("{} ({}{}{})\n    {}\n", key.key, keys->name,
+                                key.of.empty() ? "" : ", of ", key.of, key.means);
+            if (!key.absent.empty()) text += fmt::format("    default: {}\n", key.absent);
+            if (!key.example.empty()) text += fmt::format("    example: {}\n", key.example);
+        }
     }
     return text;
 }
@@ -323,9 +355,10 @@ void print_help(const CLI::App& program, const std::string& topic) {
         names.push_back(command->get_name());
     }
     for (const ManualSection& section : manual_sections()) {
-        if (section.topic == topic) return print(std::string(section.text));
+        if (section.topic == topic) return print(without_comments(section.text));
         names.push_back(section.topic);
     }
+    if (const std::string key = explain_key(topic); !key.empty()) return print(key);
     throw CLI::ValidationError(
         "TOPIC", detail::quote(topic) + " is no topic; " + detail::suggest(topic, names));
 }
@@ -339,8 +372,10 @@ void add_help_commands(CLI::App& program) {
     auto is_man = std::make_shared<bool>(false);
     CLI::App* const help = program.add_subcommand("help", "Explain a command or a topic in full");
     help->add_option("TOPIC", *topic,
-                     "A command, or a section of the manual (default: lists them)");
-    help->footer("\nExample:\n  posewise help plan\n  posewise help cell\n");
+                     "A command, a section of the manual or a key of campaign files (default: "
+                     "lists\nthe first two)");
+    help->footer(
+        "\nExample:\n  posewise help plan\n  posewise help cell\n  posewise help model_error_mm\n");
     help->add_flag("--man", *is_man, "Print the man page");
     help->callback([&program, topic, is_man] {
         if (*is_man) return print(man_page(program));

@@ -58,7 +58,7 @@ std::string format_time(std::filesystem::file_time_type time) {
 
 void print(const Printed& printed, const CommonOptions& common) {
     if (common.json) {
-        print_document(io::with_answers(printed.document(), printed.answers));
+        print_document(printed.document(), printed.answers);
     } else {
         print(text_of(printed));
     }
@@ -71,8 +71,7 @@ void write_page(const std::string& path, io::PagePart part, const Printed& print
     part.command = common.command_line;
     part.made_at = format_time(std::filesystem::file_time_type::clock::now());
     part.printed = text_of(printed);
-    part.document =
-        io::with_warnings(io::with_answers(printed.document(), printed.answers), given_warnings());
+    part.document = io::with_sentences(printed.document(), given_warnings(), printed.answers);
     io::write_page(path, {part}, given_warnings());
 }
 

@@ -181,7 +181,7 @@ ShownFile show_study_file(const std::string& path, io::SavedKind kind) {
     for (const std::vector<Study>& studies : read_store_groups(path)) {
         io::PagePart& part = shown.parts.emplace_back();
         part.title = studies.front().campaign;
-        part.document = io::with_answers(io::to_json(studies), answer(studies));
+        part.document = io::with_sentences(io::to_json(studies), {}, answer(studies));
     }
     if (shown.parts.size() > 1) shown.summary = fmt::format("{} studies", shown.parts.size());
     return shown;

@@ -25,12 +25,10 @@
 /// or id is not UTF-8.
 namespace posewise::io {
 
-/// The document with these sentences as its `warnings`, replacing any. Throws InputError if it is
-/// no JSON object.
-std::string with_warnings(const std::string& document, const std::vector<std::string>& warnings);
-
-/// Likewise with these `answers`.
-std::string with_answers(const std::string& document, const std::vector<Answer>& answers);
+/// The document with these sentences as its `warnings` and, if there are any to state, its
+/// `answers`, replacing those it has. Throws InputError if it is no JSON object.
+std::string with_sentences(const std::string& document, const std::vector<std::string>& warnings,
+                           const std::optional<std::vector<Answer>>& answers = std::nullopt);
 
 std::string to_json(const Inspection& inspection);
 

@@ -10,6 +10,7 @@
 #include "io/format/atomic_file.hpp"
 #include "io/format/file_kind.hpp"
 #include "io/format/text.hpp"
+#include "keys.hpp"
 #include "model/complete_model.hpp"
 #include "model/exact_angles.hpp"
 #include "model/joint_limits.hpp"
@@ -26,6 +27,7 @@ constexpr detail::Names<ErrorModel, 4> error_models{{{ErrorModel::Full, "full"},
                                                      {ErrorModel::Stated, "stated"}}};
 
 using detail::Quantity;
+namespace keys = detail::keys;
 using detail::YamlMap;
 using detail::YamlValue;
 
@@ -49,7 +51,7 @@ void read_base(const YamlMap& map, bool is_world, Campaign& campaign) {
             "if only roughly");
     }
     if (!value) return;
-    const YamlMap base(*value, {"position_<length>", "rpy_<angle>", "known"});
+    const YamlMap base(*value, keys::places, "base");
     campaign.nominal.world_from_base = read_frame(base);
     campaign.has_nominal_base = true;
     const auto known = base.find("known");
@@ -79,8 +81,7 @@ void place_within_reach(const std::vector<Index>& reached, Campaign& campaign) {
 /// `has_stated_errors`: the campaign has no other error parameters than the file says.
 ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
                             bool has_stated_errors) {
-    const YamlMap map(value, {"length_<length>", "angle_<angle>", "gravity_<angle>",
-                              "harmonic_<angle>", "tilt_<angle>", "offset_<angle>", "parameters"});
+    const YamlMap map(value, keys::spread);
     ParameterSpread spread = campaign.spread;
     const auto read = [&map](std::string_view key, double& size) {
         const auto measure = map.find_measure(key);
@@ -133,8 +134,8 @@ double read_unit(const YamlMap& map, std::string_view key, Quantity quantity) {
 }
 
 MatMapping read_mat_mapping(const YamlValue& measurements, Index target_count) {
-    const YamlValue value = YamlMap(measurements, {"mat"}).require("mat");
-    const YamlMap map(value, {"joints", "points", "torques", "angle_unit", "length_unit"});
+    const YamlValue value = YamlMap(measurements, keys::measurements).require("mat");
+    const YamlMap map(value, keys::mat);
     MatMapping mapping;
     mapping.joints = map.require("joints").text();
     if (const auto torques = map.find("torques")) mapping.torques = torques->text();
@@ -183,7 +184,7 @@ std::string read_name(const YamlValue& value) {
 
 /// The model to plan with. Poses chosen for a poorer one than is fitted may not identify it.
 ErrorModel read_planned_model(const YamlValue& value, ErrorModel fitted) {
-    const YamlMap planning(value, {"errors"});
+    const YamlMap planning(value, keys::planning);
     const YamlValue errors = planning.require("errors");
     const ErrorModel planned = detail::read_error_model(errors);
     if (planned >= fitted) return planned;
@@ -194,10 +195,7 @@ ErrorModel read_planned_model(const YamlValue& value, ErrorModel fitted) {
 /// With that error model, if one is asked for, else with the one that the file says.
 CampaignFile parse(const std::string& content, const std::string& path,
                    std::optional<ErrorModel> errors, const StopSignal& stop) {
-    const YamlMap map(detail::parse_yaml(content, path),
-                      {"name", "robot", "sensor", "model_error_<length>",
-                       "model_error_orientation_<angle>", "model_error_common", "base", "spread",
-                       "prior", "planning", "criterion", "seed", "measurements", "cell"});
+    const YamlMap map(detail::parse_yaml(content, path), keys::file);
     CampaignFile file;
     file.path = path;
     file.checksum = detail::checksum_of(content);

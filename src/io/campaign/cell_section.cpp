@@ -5,6 +5,7 @@
 
 #include "campaign_sections.hpp"
 #include "io/format/text.hpp"
+#include "keys.hpp"
 #include "model/halton.hpp"
 #include "model/joint_limits.hpp"
 
@@ -28,7 +29,7 @@ Vector3d read_direction(const YamlValue& value) {
 }
 
 Box read_box(const YamlValue& value, const Unit& unit) {
-    const YamlMap map(value, {"min", "max"});
+    const YamlMap map(value, keys::solid, "box");
     const Box box{point_to_si(map.require("min"), unit), point_to_si(map.require("max"), unit)};
     if (!(box.lower.array() < box.upper.array()).all()) {
         throw map.require("max").error("must be above min in x, y and z");
@@ -37,24 +38,23 @@ Box read_box(const YamlValue& value, const Unit& unit) {
 }
 
 Sphere read_sphere(const YamlValue& value, const Unit& unit) {
-    const YamlMap map(value, {"center", "radius"});
+    const YamlMap map(value, keys::solid, "sphere");
     return {point_to_si(map.require("center"), unit), positive_to_si(map.require("radius"), unit)};
 }
 
 Capsule read_capsule(const YamlValue& value, const Unit& unit) {
-    const YamlMap map(value, {"from", "to", "radius"});
+    const YamlMap map(value, keys::solid, "capsule");
     return {point_to_si(map.require("from"), unit), point_to_si(map.require("to"), unit),
             positive_to_si(map.require("radius"), unit)};
 }
 
 HalfSpace read_half_space(const YamlValue& value) {
-    const YamlMap map(value, {"point_<length>", "normal"});
+    const YamlMap map(value, keys::solid, "half_space");
     return {map.require_measure("point").vector_to_si(), read_direction(map.require("normal"))};
 }
 
 KeepOut read_keep_out(const YamlValue& value) {
-    const YamlMap map(
-        value, {"name", "box_<length>", "sphere_<length>", "capsule_<length>", "half_space"});
+    const YamlMap map(value, keys::keep_out);
     const auto name = map.find("name");
     std::vector<Shape> solids;
     if (const auto box = map.find_measure("box"))
@@ -103,7 +103,7 @@ Index read_frame(const YamlValue& after, const Chain& robot) {
 }
 
 Link read_link(const YamlValue& value, const Chain& robot) {
-    const YamlMap map(value, {"name", "after", "from_<length>", "to_<length>", "radius_<length>"});
+    const YamlMap map(value, keys::link);
     const YamlValue after = map.require("after");
     const auto name = map.find("name");
     return {name ? name->text() : "after " + after.text(), read_frame(after, robot),
@@ -121,8 +121,7 @@ Interval read_interval(const YamlMeasure& measure) {
 }
 
 void read_tracker(const YamlValue& value, Sight& sight) {
-    const YamlMap map(value,
-                      {"range_<length>", "azimuth_<angle>", "elevation_<angle>", "line_of_sight"});
+    const YamlMap map(value, keys::sight, "tracker");
     if (const auto range = map.find_measure("range")) {
         sight.range = read_interval(*range);
         if (sight.range.lower < 0) throw range->value.error("must not be negative");
@@ -147,7 +146,7 @@ void read_tracker(const YamlValue& value, Sight& sight) {
 }
 
 void read_reflectors(const YamlValue& value, Index target_count, Sight& sight) {
-    const YamlMap map(value, {"acceptance_half_angle_<angle>", "normals", "at_least_visible"});
+    const YamlMap map(value, keys::sight, "reflectors");
     if (const auto angle = map.find_measure("acceptance_half_angle")) {
         sight.acceptance_half_angle = read_positive(*angle);
         if (sight.acceptance_half_angle > std::numbers::pi) {
@@ -275,11 +274,7 @@ void read_margin(const YamlMap& map, const Chain& robot, Cell& cell) {
 }  // namespace
 
 Cell read_cell(const YamlValue& value, const Chain& robot, const Sensor& sensor) {
-    const YamlMap map(
-        value, {"margin_<angle>", "slide_margin_<length>", "fixed", "least_joint_distance_<angle>",
-                "target_boxes_<length>", "floor_z_<length>", "keep_out", "links",
-                "safety_distance_<length>", "tracker", "reflectors", "home_<angle>",
-                "speed_deg_per_s", "speed_rad_per_s", "dwell_s"});
+    const YamlMap map(value, keys::cell);
     Cell cell;
     read_margin(map, robot, cell);
     if (const auto fixed = map.find("fixed")) read_fixed(*fixed, robot, cell);

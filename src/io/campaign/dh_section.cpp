@@ -2,18 +2,12 @@
 
 #include "element_notation.hpp"
 #include "io/format/text.hpp"
+#include "keys.hpp"
 #include "posewise/model/dh.hpp"
 #include "robot_parts.hpp"
 
 namespace posewise::detail {
 namespace {
-
-std::vector<std::string> row_keys() {
-    std::vector<std::string> keys{"joint",      "kind",          "drive",         "a_<length>",
-                                  "d_<length>", "alpha_<angle>", "theta_<angle>", "beta_<angle>"};
-    keys.insert(keys.end(), joint_keys.begin(), joint_keys.end());
-    return keys;
-}
 
 /// A row as it stands in the file.
 struct RowText {
@@ -30,7 +24,7 @@ Motion read_kind(const YamlValue& value) {
 }
 
 RowText read_row_text(const YamlValue& value) {
-    const YamlMap map(value, row_keys());
+    const YamlMap map(value, keys::row);
     RowText row{map, map.find("joint")};
     const auto kind = row.map.find("kind");
     if (row.joint) {
@@ -125,7 +119,7 @@ std::vector<RowText> read_row_texts(const YamlValue& value) {
 }  // namespace
 
 RobotSection read_dh(const YamlValue& value) {
-    const YamlMap dh(value, {"convention", "rows"});
+    const YamlMap dh(value, keys::dh);
     const bool is_modified = read_is_modified(dh.require("convention"));
     const std::vector<RowText> rows = read_row_texts(dh.require("rows"));
     ElementParser parser(joint_names(rows));

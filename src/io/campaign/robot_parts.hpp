@@ -16,9 +16,6 @@ inline constexpr double most_turns = 3;
 inline constexpr std::size_t most_joints = 100;
 inline constexpr std::size_t most_elements = 1000;
 
-/// Keys of a joint: limits and repeatability, each with its unit.
-extern const std::vector<std::string> joint_keys;
-
 /// Throws InputError if a joint cannot have that name: it is part of columns and of elements.
 void check_joint_name(const std::string& name, const FileLocation& location);
 

@@ -5,12 +5,10 @@
 
 #include "element_notation.hpp"
 #include "io/format/text.hpp"
+#include "keys.hpp"
 #include "robot_parts.hpp"
 
 namespace posewise::detail {
-
-const std::vector<std::string> joint_keys{"limits_<angle>", "limits_<length>",
-                                          "repeatability_<angle>", "repeatability_<length>"};
 
 void check_joint_name(const std::string& name, const FileLocation& location) {
     if (!is_identifier(name) || find_unit(name) != nullptr) {
@@ -130,7 +128,7 @@ RobotSection read_elements(const YamlMap& robot) {
             throw input_error_at(entry.key_location, "joint " + quote(entry.key) +
                                                          " drives no element; must occur in one");
         }
-        const YamlMap map(entry.value, joint_keys);
+        const YamlMap map(entry.value, keys::joint);
         joints.push_back(read_limited_joint(map, entry.key, *motion));
         section.joint_repeatability[j] = read_repeatability(map, *motion);
     }
@@ -184,8 +182,7 @@ io::ErrorModel read_error_model(const YamlValue& errors) {
 }
 
 RobotSection read_robot(const YamlValue& value, std::optional<io::ErrorModel> errors) {
-    const YamlMap robot(value, {"joints", "elements", "dh", "urdf", "base_link", "tip_link",
-                                "errors", "gravity", "harmonics", "axis_tilt", "compliance"});
+    const YamlMap robot(value, keys::robot);
     RobotSection section = read_described(robot, find_description(value, robot));
     check_has_room(value, section.declared);
     section.error_model = errors ? *errors : find_error_model(robot, section.declared.elements());

@@ -6,6 +6,7 @@
 
 #include "campaign_sections.hpp"
 #include "io/format/text.hpp"
+#include "keys.hpp"
 #include "posewise/measurement/sensors.hpp"
 
 namespace posewise::detail {
@@ -75,7 +76,7 @@ PointNoise read_noise(const YamlValue& value, const YamlMap& sensor) {
         throw value.error("must have either sigma_mm or noise");
     }
     if (noise) {
-        const YamlMap tracker(*noise, {"range_<length>", "angle_<angle>"});
+        const YamlMap tracker(*noise, keys::noise);
         return LaserTrackerNoise{read_positive(tracker.require_measure("range")),
                                  read_positive(tracker.require_measure("angle"))};
     }
@@ -116,9 +117,7 @@ std::array<bool, 3> read_known_axes(const std::optional<YamlValue>& known) {
 enum class Body { Ball, None };
 
 TargetsSection read_targets(const YamlValue& value, Body body) {
-    std::vector<std::string> keys{"count", "position_<length>", "known"};
-    if (body == Body::Ball) keys.emplace_back("radius_<length>");
-    const YamlMap targets(value, keys);
+    const YamlMap targets(value, keys::places, "targets");
     const auto positions = targets.find_measure("position");
     const auto count = targets.find("count");
     if (positions.has_value() == count.has_value()) {
@@ -132,7 +131,12 @@ TargetsSection read_targets(const YamlValue& value, Body body) {
     const std::vector<Vector3d> nominal =
         positions ? stated_positions(*positions, "target") : generic_targets(*count);
     Targets found(nominal, std::vector<std::array<bool, 3>>(nominal.size(), is_known));
-    if (const auto radius = body == Body::Ball ? targets.find_measure("radius") : std::nullopt) {
+    if (const auto radius = targets.find_measure("radius")) {
+        if (body == Body::None) {
+            throw radius->value.error(
+                "is stated, but only targets of points and distances have a body; must be left "
+                "out");
+        }
         constexpr double largest = 1;  // m
         found = found.with_radius(read_positive(*radius, true, largest));
     }
@@ -149,7 +153,7 @@ TargetsSection read_targets(const YamlValue& value, Body body) {
 // ---- Kinds of sensors ----
 
 SensorSection read_points(const YamlValue& value) {
-    const YamlMap sensor(value, {"kind", "sigma_<length>", "noise", "targets"});
+    const YamlMap sensor(value, keys::sensor, "points");
     const PointNoise noise = read_noise(value, sensor);
     TargetsSection targets = read_targets(sensor.require("targets"), Body::Ball);
     return {std::make_shared<PointSensor>(std::move(targets.targets), noise), targets.unknowns,
@@ -157,8 +161,7 @@ SensorSection read_points(const YamlValue& value) {
 }
 
 SensorSection read_poses(const YamlValue& value) {
-    const YamlMap sensor(value,
-                         {"kind", "sigma_<length>", "noise", "sigma_orientation_<angle>", "tool"});
+    const YamlMap sensor(value, keys::sensor, "poses");
     const PointNoise noise = read_noise(value, sensor);
     const double sigma = read_positive(sensor.require_measure("sigma_orientation"));
     const auto tool_value = sensor.find("tool");
@@ -169,7 +172,7 @@ SensorSection read_poses(const YamlValue& value) {
         return {std::make_shared<PoseSensor>(std::nullopt, noise, sigma), tool_unknowns(somewhere),
                 false};
     }
-    const YamlMap tool(*tool_value, {"position_<length>", "rpy_<angle>", "known"});
+    const YamlMap tool(*tool_value, keys::places, "tool");
     const Isometry3d nominal = read_frame(tool);
     if (is_true(tool, "known")) {
         return {std::make_shared<PoseSensor>(nominal, noise, sigma), VectorXd(), true};
@@ -184,8 +187,8 @@ VectorXd join(const VectorXd& first, const VectorXd& second) {
 }
 
 SensorSection read_distances(const YamlValue& value) {
-    const YamlMap sensor(value, {"kind", "sigma_<length>", "anchors", "targets"});
-    const YamlMap anchors(sensor.require("anchors"), {"position_<length>", "known"});
+    const YamlMap sensor(value, keys::sensor, "distances");
+    const YamlMap anchors(sensor.require("anchors"), keys::places, "anchors");
     const std::vector<Vector3d> positions =
         stated_positions(anchors.require_measure("position"), "anchor");
     TargetsSection targets = read_targets(sensor.require("targets"), Body::Ball);
@@ -199,7 +202,7 @@ SensorSection read_distances(const YamlValue& value) {
 
 /// With what the list's own key says of all planes, if the plane says nothing of itself.
 Plane read_plane(const YamlValue& value, bool are_known) {
-    const YamlMap map(value, {"normal", "offset_<length>", "known"});
+    const YamlMap map(value, keys::places, "plane");
     const YamlValue normal = map.require("normal");
     const std::vector<double> xyz = normal.numbers(3);
     const auto known = map.find("known");
@@ -222,7 +225,7 @@ Plane read_plane(const YamlValue& value, bool are_known) {
 }
 
 SensorSection read_planes(const YamlValue& value) {
-    const YamlMap sensor(value, {"kind", "sigma_<length>", "planes", "known_planes", "targets"});
+    const YamlMap sensor(value, keys::sensor, "planes");
     const YamlValue list = sensor.require("planes");
     const bool are_known = is_true(sensor, "known_planes");
     std::vector<Plane> planes;
@@ -245,7 +248,7 @@ SensorSection read_planes(const YamlValue& value) {
 Vector3d generic_socket(std::size_t index) { return Vector3d(0.5, 0, 0.2) + generic_target(index); }
 
 Socket read_socket(const YamlValue& value, const std::vector<Socket>& before, bool& has_position) {
-    const YamlMap map(value, {"name", "position_<length>", "from", "distance_<length>"});
+    const YamlMap map(value, keys::places, "socket");
     Socket socket;
     const YamlValue name = map.require("name");
     socket.name = name.text();
@@ -322,7 +325,7 @@ void check_socket_place(const YamlValue& value, const SocketsSection& section, s
 }
 
 SensorSection read_sockets(const YamlValue& value) {
-    const YamlMap sensor(value, {"kind", "sigma_<length>", "sockets", "known_sockets", "targets"});
+    const YamlMap sensor(value, keys::sensor, "sockets");
     const YamlValue list = sensor.require("sockets");
     const SocketsSection section = read_socket_list(list);
     const bool are_known = is_true(sensor, "known_sockets");
@@ -370,10 +373,7 @@ YamlValue kind_of(const YamlValue& sensor) {
     for (const YamlEntry& entry : sensor.entries()) {
         if (entry.key == "kind") return entry.value;
     }
-    return YamlMap(sensor,
-                   {"kind", "sigma_<length>", "sigma_orientation_<angle>", "noise", "targets",
-                    "tool", "anchors", "planes", "known_planes", "sockets", "known_sockets"})
-        .require("kind");
+    return YamlMap(sensor, keys::sensor).require("kind");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "io/format/text.hpp"
+#include "keys.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "robot_parts.hpp"
 
@@ -69,7 +70,7 @@ void add_gravity(const YamlValue& value, RobotSection& section) {
     Chain& chain = section.declared;
     std::vector<Index> joints;
     if (value.is_map()) {
-        const YamlMap map(value, {"direction", "joints"});
+        const YamlMap map(value, keys::terms, "gravity");
         section.gravity = read_direction(map);
         joints = read_joints(map, chain);
         const auto listed = map.find("joints");
@@ -123,8 +124,8 @@ std::vector<double> read_range(const YamlValue& value) {
 
 /// `make` is with_harmonics() or with_axis_tilt().
 template <typename Make>
-Chain add_periodic(const YamlValue& value, const Chain& chain, const Make& make) {
-    const YamlMap map(value, {"orders", "joints"});
+Chain add_periodic(const YamlValue& value, const char* kind, const Chain& chain, const Make& make) {
+    const YamlMap map(value, keys::terms, kind);
     const YamlValue listed = map.require("orders");
     const std::vector<double> orders = listed.is_list() ? read_list(listed) : read_range(listed);
     if (orders.empty() || orders.size() > most_orders) {
@@ -144,7 +145,7 @@ double read_number_up_to(const YamlValue& value, double most, const char* unit) 
 }
 
 Load read_load(const YamlValue& value, Index link) {
-    const YamlMap map(value, {"mass_kg", "center_<length>"});
+    const YamlMap map(value, keys::weight);
     return {link, read_number_up_to(map.require("mass_kg"), 1e5, "kg"),
             map.require_measure("center").vector_to_si()};
 }
@@ -182,7 +183,7 @@ std::vector<MeasuredTorque> read_torques(const YamlValue& value, const Chain& ch
 }
 
 Chain add_compliance(const YamlValue& value, const RobotSection& section) {
-    const YamlMap map(value, {"links", "payload", "direction", "joints", "torques_Nm"});
+    const YamlMap map(value, keys::terms, "compliance");
     const Chain& chain = section.declared;
     if (const auto measured = map.find("torques_Nm")) {
         for (const char* const key : {"links", "payload", "direction", "joints"}) {
@@ -210,9 +211,9 @@ void add_stated_terms(const YamlMap& robot, RobotSection& section) {
     Chain& chain = section.declared;
     if (const auto gravity = robot.find("gravity")) add_gravity(*gravity, section);
     if (const auto stated = robot.find("harmonics"))
-        chain = add_periodic(*stated, chain, with_harmonics);
+        chain = add_periodic(*stated, "harmonics", chain, with_harmonics);
     if (const auto stated = robot.find("axis_tilt"))
-        chain = add_periodic(*stated, chain, with_axis_tilt);
+        chain = add_periodic(*stated, "axis_tilt", chain, with_axis_tilt);
     if (const auto stated = robot.find("compliance")) chain = add_compliance(*stated, section);
 }
 

@@ -1,5 +1,6 @@
 #include "yaml_reader.hpp"
 
+#include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
@@ -25,21 +26,34 @@ std::string describe(const YAML::Node& node) {
     return "has no value";
 }
 
-/// `sigma_<length>` as sigma_mm, sigma_m, ...; other keys as they are.
+/// `sigma_mm` with each unit of length, other keys as they are.
 std::vector<std::string> spell_out_units(const std::vector<std::string>& keys) {
     std::vector<std::string> spelled;
     for (const std::string& key : keys) {
-        const auto bracket = key.find('<');
-        if (bracket == std::string::npos) {
+        const NameWithUnit name = split_unit(key);
+        if (name.unit == nullptr) {
             spelled.push_back(key);
             continue;
         }
-        const auto quantity = key.ends_with("<angle>") ? Quantity::Angle : Quantity::Length;
-        for (const std::string& unit : unit_names(quantity)) {
-            spelled.push_back(key.substr(0, bracket) + unit);
+        for (const std::string& unit : unit_names(name.unit->quantity)) {
+            spelled.push_back(fmt::format("{}_{}", name.stem, unit));
         }
     }
     return spelled;
+}
+
+/// Whether the word occurs in the sentence.
+bool names_word(std::string_view sentence, std::string_view word) {
+    const auto is_letter = [](char c) { return c == '_' || (c >= 'a' && c <= 'z'); };
+    for (auto at = sentence.find(word); at != std::string_view::npos;
+         at = sentence.find(word, at + 1)) {
+        const auto end = at + word.size();
+        if ((at == 0 || !is_letter(sentence[at - 1])) &&
+            (end == sentence.size() || !is_letter(sentence[end]))) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /// The advice after an unknown key; one that only lacks its unit gets the usual unit.
@@ -208,6 +222,14 @@ VectorXd YamlMeasure::list_to_si(std::size_t count) const {
 }
 
 Vector3d YamlMeasure::vector_to_si() const { return list_to_si(3); }
+
+std::vector<std::string> YamlKeys::of(std::string_view map) const {
+    std::vector<std::string> found;
+    for (const YamlKey& key : keys) {
+        if (map.empty() || key.of.empty() || names_word(key.of, map)) found.emplace_back(key.key);
+    }
+    return found;
+}
 
 YamlMap::YamlMap(const YamlValue& value, const std::vector<std::string>& keys)
     : value_(value), entries_(value.entries()), keys_(spell_out_units(keys)) {

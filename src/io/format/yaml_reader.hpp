@@ -70,11 +70,29 @@ struct YamlMeasure {
     Vector3d vector_to_si() const;
 };
 
-/// A map of which all possible keys are known. `sigma_<length>` stands for `sigma` with any unit
-/// of length as suffix, `<angle>` likewise. Throws InputError for any other key, with a suggestion.
+/// A key that a map may have, and what the manual says of it. One that ends in a unit stands for
+/// all units of its quantity: `sigma_mm`, too, for `sigma_um`.
+struct YamlKey {
+    std::string_view key;
+    std::string_view of;  ///< which maps of the table have it, "points and poses"; empty: each
+    std::string_view means, absent, example;
+};
+/// The keys of one map, or of several alike.
+struct YamlKeys {
+    std::string_view name;
+    std::vector<YamlKey> keys;
+
+    /// Those of one of its maps; of all of them if `map` is empty.
+    std::vector<std::string> of(std::string_view map) const;
+};
+
+/// A map of which all possible keys are known. Throws InputError for any other key, with a
+/// suggestion.
 class YamlMap {
   public:
     YamlMap(const YamlValue& value, const std::vector<std::string>& keys);
+    YamlMap(const YamlValue& value, const YamlKeys& keys, std::string_view map = "")
+        : YamlMap(value, keys.of(map)) {}
 
     std::optional<YamlValue> find(std::string_view key) const;
     YamlValue require(std::string_view key) const;

@@ -250,21 +250,15 @@ Json read_back_to_json(const ReadBack& file) {
             {"configurations", file.difference.configuration_count}};
 }
 
-std::string with(const std::string& document, const char* key, const Json& value) {
-    Json json = Json::parse(document, nullptr, false);
-    if (!json.is_object()) throw InputError("a document is not JSON; must be one of posewise");
-    json[key] = value;
-    return detail::json_text(json);
-}
-
 }  // namespace
 
-std::string with_warnings(const std::string& document, const std::vector<std::string>& warnings) {
-    return with(document, "warnings", warnings);
-}
-
-std::string with_answers(const std::string& document, const std::vector<Answer>& answers) {
-    return with(document, "answers", detail::answers_to_json(answers));
+std::string with_sentences(const std::string& document, const std::vector<std::string>& warnings,
+                           const std::optional<std::vector<Answer>>& answers) {
+    Json json = Json::parse(document, nullptr, false);
+    if (!json.is_object()) throw InputError("a document is not JSON; must be one of posewise");
+    if (answers) json["answers"] = detail::answers_to_json(*answers);
+    json["warnings"] = warnings;
+    return detail::json_text(json);
 }
 
 std::string to_json(const Inspection& inspection) {

@@ -62,7 +62,7 @@ VectorXd without(const Chain& robot, VectorXd errors, const std::vector<std::str
 }
 
 Chain read_dh_robot(const std::string& path) {
-    const YamlMap file(parse_yaml(read_file(path), path), {"robot"});
+    const YamlMap file(parse_yaml(read_file(path), path), std::vector<std::string>{"robot"});
     return read_robot(file.require("robot"), ErrorModel::Stated).declared;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "io/campaign/keys.hpp"
 #include "io/campaign/robot_parts.hpp"
 #include "io/format/text.hpp"
 
@@ -53,7 +54,7 @@ RobotSection read_urdf_robot(const YamlMap& map) {
     if (const auto stated = map.find("joints")) {
         for (const YamlEntry& entry : stated->entries()) {
             const std::size_t j = find_joint(joints, entry);
-            const YamlMap settings(entry.value, joint_keys);
+            const YamlMap settings(entry.value, keys::joint);
             const Motion motion = joint_motion(*joints[j]);
             if (const auto joint = find_limited_joint(settings, entry.key, motion)) {
                 joints[j]->limits = Interval{joint->lower, joint->upper};

@@ -1,0 +1,338 @@
+#include "keys.hpp"
+
+namespace posewise::detail::keys {
+
+const YamlKeys file{
+    "file",
+    {
+        {"name", "", "one line of text", "required", "`arm in cell 4`"},
+        {"robot", "", "see below", "required", ""},
+        {"sensor", "", "see below", "required", ""},
+        {"base", "", "where the instrument sees the robot's base",
+         "made up; simulations need it, plans and random candidates where what poses tell depends "
+         "on it (a tracker's noise, lines of sight, distances, planes)",
+         "`{position_mm: [4500, 0, -600], rpy_deg: [0, 0, 180]}`"},
+        {"model_error_mm", "",
+         "what the model cannot express, as noise that repeats do not reduce; 0: nothing. With "
+         "`prior` only what is expected: a calibration finds it from the measurements, give or "
+         "take a factor of 2.5",
+         "`auto`: 0.1 mm", "`0.15`"},
+        {"model_error_orientation_mrad", "", "the same of measured orientations",
+         "`auto`: 0.1 mrad", "`0.25`"},
+        {"model_error_common", "",
+         "part of the model error's variance that is a motion of the flange, a translation and a "
+         "rotation about its origin, and so common to all targets of a configuration; the rest "
+         "each has by itself. On real robots with several targets 0.84 to 0.93 was found: with 0.9 "
+         "three targets count as the one witness that they are, expected errors are right at few "
+         "poses, and a rotation (`model_error_orientation_mrad`) is found, too. With hundreds of "
+         "poses a model that lacks smooth errors may be fitted worse with it. Robust losses weigh "
+         "targets one by one and take 0",
+         "0", "`0.9`"},
+        {"spread", "", "expected size of each error", "see below", "`{length_mm: 0.5}`"},
+        {"prior", "",
+         "whether these sizes are prior standard deviations, too: fewer poses than parameters will "
+         "do",
+         "`true` with `errors: full`, else `false`", "`true`"},
+        {"planning", "",
+         "with `{errors: full}`: `select` and `plan` reckon with these errors (what they predict "
+         "is that of a calibration with these), all other commands with those of `robot`, which "
+         "may be fewer and say how many poses are needed",
+         "as `robot` says", "`{errors: full}`"},
+        {"criterion", "", "default of `select` and `study`", "`v`", "`d`"},
+        {"seed", "", "default of every command", "1", "`7`"},
+        {"measurements", "", "what the variables of a MATLAB file are called", "CSV needs none",
+         "see below"},
+        {"cell", "", "limits of the place", "none", "see below"},
+    }};
+
+const YamlKeys planning{
+    "planning",
+    {
+        {"errors", "", "as `errors` of the robot: `full`", "required", "`full`"},
+    }};
+
+const YamlKeys robot{
+    "robot",
+    {
+        {"elements", "", "elementary transforms from base to flange", "", "see below"},
+        {"joints", "",
+         "with `elements`: every joint by name; with `urdf`: those that differ from it",
+         "required with `elements`", "`{q1: {limits_deg: [-90, 90]}}`"},
+        {"dh", "", "a Denavit-Hartenberg table", "", "see below"},
+        {"urdf", "", "a URDF, its path from this file's folder", "", "`ur10.urdf`"},
+        {"base_link", "", "of the URDF: where the robot begins", "its root", "`base_link`"},
+        {"tip_link", "", "of the URDF: what carries the targets", "its only leaf", "`tool0`"},
+        {"errors", "",
+         "`stated`: those named in brackets; `offsets`: the joints' zeros alone, those that base "
+         "and targets do not tell already; `geometric` (or `complete`): every error a rigid link "
+         "can have, less what cannot be identified; `full`: see below",
+         "`stated` where a bracket names a constant error, else `full`", "`geometric`"},
+        {"gravity", "", "errors of joints that bend under the arm's weight: `true`, or a map",
+         "none", "`{direction: [0, 0, -1], joints: [q2, q3]}`"},
+        {"harmonics", "", "errors of encoders and gears, periodic in the joint", "none",
+         "`{orders: [1, 2], joints: [q4]}`"},
+        {"axis_tilt", "",
+         "tilt error motion of the joints' axes, periodic in the joint (bearings; links that bend)",
+         "none", "`{orders: [1, 2]}`"},
+        {"compliance", "", "one compliance a joint, under known or measured torques", "none",
+         "see below"},
+    }};
+
+const YamlKeys joint{
+    "joint",
+    {
+        {"limits_deg", "", "lower and upper limit of a joint that turns, within three turns",
+         "required (URDF: its own)", "`[-90, 90]`"},
+        {"limits_mm", "", "those of a joint that slides", "required (URDF: its own)",
+         "`[0, 1200]`"},
+        {"repeatability_mrad", "",
+         "standard deviation about where it was sent, of a joint that turns", "0", "`0.01`"},
+        {"repeatability_mm", "", "that of a joint that slides", "0", "`0.02`"},
+    }};
+
+const YamlKeys dh{"dh",
+                  {
+                      {"convention", "",
+                       "`standard`: RotZ(theta) TransZ(d) TransX(a) RotX(alpha) RotY(beta); "
+                       "`modified`: RotX TransX RotZ TransZ",
+                       "required", "`standard`"},
+                      {"rows", "", "from base to flange", "required", "below"},
+                  }};
+
+const YamlKeys row{
+    "row",
+    {
+        {"a_mm", "", "length along x", "required", "`612`"},
+        {"alpha_deg", "", "angle about x", "required", "`90`"},
+        {"d_mm", "", "length along z", "required", "`127.3`"},
+        {"theta_deg", "", "angle about z", "required", "`0`"},
+        {"beta_deg", "",
+         "angle about y, only of the standard convention: for axes that are nearly parallel, with "
+         "`d_mm: 0` (Hayati)",
+         "0", "`0.02`"},
+        {"joint", "", "name of the joint that drives the row", "none: the row is fixed", "`q1`"},
+        {"kind", "", "`revolute` (drives theta) or `prismatic` (drives d)", "`revolute`",
+         "`prismatic`"},
+        {"drive", "", "the joint as it acts: reversed, coupled", "the joint itself", "`-q3 + q2`"},
+        {"limits_deg", "", "as of a joint", "required with `joint`", "`[-360, 360]`"},
+        {"limits_mm", "", "as of a joint", "required with a prismatic `joint`", "`[0, 800]`"},
+        {"repeatability_mrad", "", "as of a joint", "0", "`0.01`"},
+        {"repeatability_mm", "", "as of a joint", "0", "`0.02`"},
+    }};
+
+const YamlKeys terms{
+    "terms",
+    {
+        {"direction", "gravity and compliance", "that of gravity in the base frame", "`[0, 0, -1]`",
+         "`[0, 0, 1]`"},
+        {"joints", "",
+         "which joints have these errors; not of `gravity` with `errors: full`, which has them on "
+         "all",
+         "all that can", "`[q2, q3]`"},
+        {"orders", "harmonics and axis_tilt", "harmonics a turn: a list, or a range of whole ones",
+         "required", "`1..40`"},
+        {"links", "compliance",
+         "weight of the link after each joint, or `urdf` for the masses of the URDF", "none",
+         "`{q2: {mass_kg: 8, center_mm: [0, 0, 200]}}`"},
+        {"payload", "compliance", "weight in the flange frame", "none",
+         "`{mass_kg: 5, center_mm: [0, 0, 80]}`"},
+        {"torques_Nm", "compliance, instead of weights",
+         "the largest torques that occur; those of each sample are columns `tau_q2_Nm` of the "
+         "measurements",
+         "none", "`{q2: 200, q4: 80}`"},
+    }};
+
+const YamlKeys weight{
+    "weight",
+    {
+        {"mass_kg", "", "of a link or the payload", "required", "`8`"},
+        {"center_mm", "", "its centre of mass, in the frame after the joint or of the flange",
+         "required", "`[0, 0, 200]`"},
+    }};
+
+const YamlKeys sensor{
+    "sensor",
+    {
+        {"kind", "", "`points`, `poses`, `distances`, `planes` or `sockets`", "required",
+         "`points`"},
+        {"sigma_mm", "",
+         "standard deviation of one coordinate or length; of points and poses also one for each "
+         "axis",
+         "this or `noise` is required", "`0.05`, `[0.05, 0.05, 0.1]`"},
+        {"noise", "points and poses", "that of a laser tracker at the origin", "",
+         "`{range_um: 10, angle_urad: 15}`"},
+        {"targets", "points, distances, planes and sockets",
+         "what is measured on the flange; of sockets one, the ball", "required", "`{count: 3}`"},
+        {"sigma_orientation_mrad", "poses", "each of the three angles", "required", "`0.1`"},
+        {"tool", "poses", "the body that is measured", "at an unknown place",
+         "`{position_mm: [0, 0, 120], rpy_deg: [0, 0, 0]}`"},
+        {"anchors", "distances", "where they are measured from", "required",
+         "`{position_mm: [[1000, 2000, 0]], known: true}`"},
+        {"planes", "planes", "the faces that are touched", "required",
+         "`[{normal: [0, 0, 1], offset_mm: 300}]`"},
+        {"known_planes", "planes", "whether planes that do not say it themselves are as stated",
+         "`false`", "`true`"},
+        {"sockets", "sockets", "the places where the ball sits", "required",
+         "`[{name: s0}, {name: s1, from: s0, distance_mm: 50}]`"},
+        {"known_sockets", "sockets", "whether the sockets are where `position_mm` says", "`false`",
+         "`true`"},
+    }};
+
+const YamlKeys noise{"noise",
+                     {
+                         {"range_um", "", "along the beam", "required", "`10`"},
+                         {"angle_urad", "", "of each of the two angles", "required", "`15`"},
+                     }};
+
+const YamlKeys places{
+    "places",
+    {
+        {"count", "targets", "so many targets at unknown places", "this or `position_mm`", "`3`"},
+        {"position_mm", "targets, tool, anchors, socket and base",
+         "where they are expected (targets and tool in the flange frame, anchors and base in the "
+         "instrument's)",
+         "", "`[[0, 0, 50]]`"},
+        {"radius_mm", "targets",
+         "of points and distances: the ball's, a body that keeps off the cell's obstacles; 0: a "
+         "flat mark",
+         "19.05", "`6.35`"},
+        {"rpy_deg", "tool and base", "roll, pitch and yaw about the fixed axes x, y and z",
+         "required", "`[0, 0, 180]`"},
+        {"known", "targets, tool, anchors and base",
+         "fixed as stated: `true`, or the axes that are (targets: x, y, z; base: x, y, z, rx, ry, "
+         "rz)",
+         "`false`", "`[z]`"},
+        {"normal", "plane", "away from the face; its length says nothing", "required",
+         "`[0, 0, 1]`"},
+        {"offset_mm", "plane", "its distance from the origin along the normal", "required",
+         "`300`"},
+        {"known", "plane", "fixed as stated: `true`, or what of it is: `normal`, `offset`",
+         "as `known_planes` says", "`[normal]`"},
+        {"name", "socket", "one word, for the measurements' column `socket`", "required", "`s0`"},
+        {"from", "socket", "one listed before it, of the same body", "none", "`s0`"},
+        {"distance_mm", "socket", "of its centre from that of `from`", "unknown", "`50`"},
+    }};
+
+const YamlKeys spread{
+    "spread",
+    {
+        {"length_mm", "", "every length", "1 mm", "`0.5`"},
+        {"angle_mrad", "", "every angle", "1 mrad", "`0.7`"},
+        {"gravity_mrad", "", "gravity terms and compliances", "1 mrad", "`1`"},
+        {"harmonic_mrad", "", "harmonics", "0.15 mrad", "`0.05`"},
+        {"tilt_mrad", "", "tilts of axes, `axis_tilt`", "0.05 mrad", "`0.02`"},
+        {"offset_mrad", "", "offsets of joints that turn", "as other angles", "`20`"},
+        {"parameters", "", "exceptions by the name of the parameter, with unit", "none",
+         "`{Tx1: 2 mm, dq2: 20 mrad}`"},
+    }};
+
+const YamlKeys measurements{"measurements",
+                            {
+                                {"mat", "", "what the variables are called", "required", ""},
+                            }};
+
+const YamlKeys mat{
+    "mat",
+    {
+        {"joints", "", "samples x joints", "required", "`q`"},
+        {"points", "", "one variable a target, samples x 3", "required", "`[p1, p2, p3]`"},
+        {"torques", "", "samples x measured torques, N m", "`tau`", "`tau`"},
+        {"angle_unit", "", "of joints that turn", "`rad`", "`deg`"},
+        {"length_unit", "", "of points and of joints that slide", "`m`", "`mm`"},
+    }};
+
+const YamlKeys cell{
+    "cell",
+    {
+        {"margin_deg", "", "kept from the limits of joints that turn", "0", "`2`"},
+        {"slide_margin_mm", "", "kept from the limits of joints that slide", "0", "`10`"},
+        {"fixed", "", "joints that stay", "none", "`{q6: 0 deg}`"},
+        {"least_joint_distance_deg", "", "two poses of a plan differ by so much in some joint", "0",
+         "`5`"},
+        {"target_boxes_mm", "", "every target must lie in one of them", "anywhere",
+         "`[{min: [300, -2200, -400], max: [3000, 1800, 2400]}]`"},
+        {"safety_distance_mm", "",
+         "of links and the balls at the targets from obstacles and each other", "0", "`20`"},
+        {"floor_z_mm", "", "nothing below", "none", "`-670`"},
+        {"keep_out", "", "obstacles: a list of named solids", "none", "below"},
+        {"links", "",
+         "the robot's own solids: capsules; without them a warning says that the arm is not kept "
+         "off obstacles",
+         "none", "below"},
+        {"tracker", "", "what the instrument can see", "everything", "below"},
+        {"reflectors", "", "from where the targets can be seen", "everywhere", "below"},
+        {"home_deg", "", "where the tour of the poses begins", "anywhere",
+         "`[0, -30, 0, 0, 0, 0]`"},
+        {"speed_deg_per_s", "", "of each joint, for the time of a tour", "1 rad/s (URDF: its own)",
+         "`[130, 115, 125, 180, 180, 260]`"},
+        {"speed_rad_per_s", "", "the same in rad/s", "", "`[2.3, 2, 2.2, 3.1, 3.1, 4.5]`"},
+        {"dwell_s", "",
+         "how long the robot stands still for each sample, for the time a plan takes", "0", "`4`"},
+    }};
+
+const YamlKeys keep_out{
+    "keep_out",
+    {
+        {"name", "", "for messages", "its place in the list", "`fence`"},
+        {"box_mm", "", "a box along the axes of the base frame", "",
+         "`{min: [900, -600, -670], max: [1700, 600, -100]}`"},
+        {"sphere_mm", "", "a sphere", "", "`{center: [4500, -1500, 600], radius: 600}`"},
+        {"capsule_mm", "", "a capsule: what is within `radius` of a line", "",
+         "`{from: [1300, 0, -100], to: [1300, 0, 150], radius: 120}`"},
+        {"half_space", "", "all behind a plane", "",
+         "`{point_mm: [0, 2200, 0], normal: [0, -1, 0]}`"},
+    }};
+
+const YamlKeys solid{
+    "solid",
+    {
+        {"min", "box", "the corner with the least x, y and z, in the unit of `box_mm`", "required",
+         "`[900, -600, -670]`"},
+        {"max", "box", "the opposite corner", "required", "`[1700, 600, -100]`"},
+        {"center", "sphere", "its centre, in the unit of `sphere_mm`", "required",
+         "`[4500, -1500, 600]`"},
+        {"from", "capsule", "one end of the line, in the unit of `capsule_mm`", "required",
+         "`[1300, 0, -100]`"},
+        {"to", "capsule", "the other", "required", "`[1300, 0, 150]`"},
+        {"radius", "sphere and capsule", "in the same unit", "required", "`120`"},
+        {"point_mm", "half_space", "a point of the plane", "required", "`[0, 2200, 0]`"},
+        {"normal", "half_space", "points away from the obstacle", "required", "`[0, -1, 0]`"},
+    }};
+
+const YamlKeys link{
+    "link",
+    {
+        {"name", "", "for messages", "\"after ...\"", "`forearm`"},
+        {"after", "", "the frame it is fixed to: `base`, `flange`, or that after a joint",
+         "required", "`q3`"},
+        {"from_mm", "", "one end", "required", "`[-100, 0, 225]`"},
+        {"to_mm", "", "the other", "required", "`[900, 0, 225]`"},
+        {"radius_mm", "", "", "required", "`170`"},
+    }};
+
+const YamlKeys sight{
+    "sight",
+    {
+        {"range_mm", "tracker", "distance of a target from the instrument", "any",
+         "`[1500, 8000]`"},
+        {"azimuth_deg", "tracker", "direction of a target about the instrument's z axis", "any",
+         "`[-60, 30]`"},
+        {"elevation_deg", "tracker", "above its x-y plane", "any", "`[-20, 45]`"},
+        {"line_of_sight", "tracker", "whether obstacles and links hide targets",
+         "`true` where `tracker` or `reflectors` is stated", "`false`"},
+        {"acceptance_half_angle_deg", "reflectors", "of the beam from a target's normal", "30 deg",
+         "`50`"},
+        {"normals", "reflectors", "where each target looks, in the flange frame",
+         "seen from everywhere", "`[[1, 0, 0]]`"},
+        {"at_least_visible", "reflectors", "targets a pose must show", "all", "`1`"},
+    }};
+
+const std::vector<const YamlKeys*>& all() {
+    static const std::vector<const YamlKeys*> tables{
+        &file,   &planning, &robot, &joint,  &dh,     &row,          &terms,
+        &weight, &sensor,   &noise, &places, &spread, &measurements, &mat,
+        &cell,   &keep_out, &solid, &link,   &sight};
+    return tables;
+}
+
+}  // namespace posewise::detail::keys
