@@ -264,7 +264,7 @@ def check_calibrate():
         line = next((line for line in text.splitlines() if line.startswith(f"{name}, {kind}")), "")
         expect(close(group["rms_mm"], number_behind(line, "RMS"), 4), f"calibrate: {group}: {line}")
     both("calibrate", FANUC, "-m", "s.csv", "--model-selection", "--folds", 4)
-    both("calibrate", FANUC, "-m", "s.csv", "--prior", "--learn-sizes")
+    both("calibrate", FANUC, "-m", "s.csv", "--prior")
     run("calibrate", FANUC, "-m", "s.csv", "--folds", 0, "-o", "f.json")
     document, _ = both("select", FANUC, "--random", 60, "-k", 6, "--from", "f.json", "--as-prior",
                        "--moved", "base", "-o", "p.json")

@@ -97,6 +97,7 @@ Campaign with_model_error(const Campaign& campaign, const Estimate& estimate) {
     Campaign found = campaign;
     found.model_error = estimate.model_error;
     found.model_error_orientation = estimate.model_error_orientation;
+    if (estimate.spread) found.spread = *estimate.spread;
     return found;
 }
 

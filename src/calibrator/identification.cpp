@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/decompositions.hpp"
+#include "learned_sizes.hpp"
 #include "measurement/noise.hpp"
 #include "model_error.hpp"
 #include "normal_equations.hpp"
@@ -164,12 +165,25 @@ bool leaves_far_more(const detail::IdentificationProblem& problem, const Paramet
     return left > far * far * static_cast<double>(problem.observation_count());
 }
 
-/// Whether their model errors are the same within 5 %: parameters and deviations depend on them far
-/// less.
+/// Whether their model errors and sizes are the same within 5 %: parameters and deviations depend
+/// on them far less.
 bool is_alike(const Campaign& a, const Campaign& b) {
     const auto is_near = [](double x, double y) { return std::abs(x - y) <= 0.05 * x; };
+    const auto sizes_of = [](const Campaign& campaign) -> VectorXd {
+        return parameter_scale(campaign).segment(prior_begin(campaign), prior_count(campaign));
+    };
+    const VectorXd before = sizes_of(a);
     return is_near(a.model_error, b.model_error) &&
-           is_near(a.model_error_orientation, b.model_error_orientation);
+           is_near(a.model_error_orientation, b.model_error_orientation) &&
+           ((before - sizes_of(b)).array().abs() <= 0.05 * before.array()).all();
+}
+
+/// Whether what is left over may be the robot's: sizes learned beside gross errors would be those
+/// of a robot that bends to them.
+bool is_credible(const Campaign& stated, const Campaign& found) {
+    constexpr double credible = 20;
+    return found.model_error <= credible * stated.model_error &&
+           found.model_error_orientation <= credible * stated.model_error_orientation;
 }
 
 /// Under which model error the first step is taken, where that is to be found.
@@ -186,7 +200,9 @@ Estimate identify_from(const Campaign& campaign, const Measurements& measurement
     Estimate estimate = begin_estimate(problem, start);
     problem.loss = detail::complete_loss(options.loss, campaign);
     if (estimate.ending == Ending::NotIdentifiable) return estimate;
-    const bool is_open = options.finds_model_error && detail::is_model_error_open(campaign);
+    const bool finds_error = options.finds_model_error && detail::is_model_error_open(campaign);
+    const bool learns = options.finds_model_error && detail::are_sizes_open(campaign, options.loss);
+    const bool is_open = finds_error || learns;
     detail::LinearisedSystem system;
     constexpr int rounds = 5;
     bool stays = !is_open;
@@ -195,15 +211,24 @@ Estimate identify_from(const Campaign& campaign, const Measurements& measurement
                             leaves_far_more(problem, estimate.parameters))) {
             first = FirstError::Stated;
         } else if (is_open) {
-            const Campaign better = find_model_error(problem, estimate.parameters, stated);
+            Campaign better =
+                finds_error ? find_model_error(problem, estimate.parameters, stated) : stated;
+            if (learns && is_credible(stated, better)) {
+                better.spread = detail::learn_sizes(problem, estimate.parameters, stated.spread);
+            }
             stays = round > 1 && is_alike(found, better);
             found = better;  // problem refers to it
+            problem.units = detail::ParameterUnits(found);
         }
         estimate.ending = Ending::NotRun;
         system = search(problem, options, estimate, !stays && round < rounds);
         if (estimate.ending != Ending::Converged) break;
     }
     finish(problem, system, estimate);
+    if (learns) {
+        estimate.spread = found.spread;
+        estimate.spread->is_open = false;
+    }
     return estimate;
 }
 

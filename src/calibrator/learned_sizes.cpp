@@ -1,30 +1,31 @@
+#include "learned_sizes.hpp"
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
-#include "posewise/calibrator/identification.hpp"
-#include "posewise/core/errors.hpp"
+#include "normal_equations.hpp"
 
-namespace posewise {
+namespace posewise::detail {
 namespace {
 
 constexpr int iteration_limit = 100;
 constexpr double tolerance = 0.005;  // of a size, to end at
 
+const double log_factor = std::log(error_size_factor);
+
 /// The errors that share a size.
 struct Sharing {
-    double stated = 0;
+    double expected = 0;
     double squares = 0;  ///< summed up
     Index count = 0;
 };
 
-/// The most probable size: the root of n - S / s^2 + log(s / stated) / log(factor)^2, which grows
+/// The most probable size: the root of n - S / s^2 + log(s / expected) / log(factor)^2, which grows
 /// with s.
 double most_probable(const Sharing& errors) {
-    const double log_factor = std::log(error_size_factor);
-    const double middle = std::log(errors.stated);
+    const double middle = std::log(errors.expected);
     double low = middle - 20;
     double high = middle + 20;
     for (int i = 0; i < 60; ++i) {
@@ -36,106 +37,137 @@ double most_probable(const Sharing& errors) {
     return std::exp(high);
 }
 
-/// The next sizes; by how large a part any of them changed.
-double update(ParameterSpread& spread, ParameterSpread stated, const Chain& robot,
-              const VectorXd& squares) {
-    std::map<double*, Sharing> sizes;
-    const auto names = robot.parameter_names();
-    for (Index k = 0; k < squares.size(); ++k) {
-        if (stated.by_name.count(names[static_cast<std::size_t>(k)]) > 0) continue;
-        Sharing& errors = sizes[&size_of(spread, robot, k)];
-        errors.stated = size_of(stated, robot, k);
-        errors.squares += squares[k];
-        ++errors.count;
+/// What the measurements say of sizes, in the system linearised at some parameters. Its errors are
+/// in units of the sizes that the problem has.
+class SizeEvidence {
+  public:
+    SizeEvidence(const IdentificationProblem& problem, const Parameters& parameters,
+                 const ParameterSpread& expected)
+        : robot_(problem.campaign.robot), campaign_(problem.campaign), expected_(expected) {
+        const NormalEquations equations = normal_equations(problem, linearise(problem, parameters));
+        const Index begin = problem.prior_begin();
+        const Index count = problem.prior_count();
+        const VectorXd theta = problem.units.prior_coordinates(problem.campaign, parameters);
+        MatrixXd A = equations.M.selfadjointView<Eigen::Lower>();
+        A.diagonal().segment(begin, count).array() -= 1;
+        VectorXd b = equations.g + A.middleCols(begin, count) * theta;
+        b.segment(begin, count) += theta;
+        std::vector<Index> others;
+        for (Index k = 0; k < A.rows(); ++k) {
+            if (k < begin || k >= begin + count) others.push_back(k);
+        }
+        const MatrixXd A_oo = A(others, others);
+        const MatrixXd A_op = A(others, Eigen::seqN(begin, count));
+        const VectorXd b_o = b(others);
+        const Eigen::LLT<MatrixXd> cholesky(A_oo);
+        S_ = A.block(begin, begin, count, count) - A_op.transpose() * cholesky.solve(A_op);
+        b_ = b.segment(begin, count) - A_op.transpose() * cholesky.solve(b_o);
+        units_ = sizes_of(problem.campaign.spread);
     }
-    double change = 0;
-    for (const auto& [size, errors] : sizes) {
-        const double next = most_probable(errors);
-        change = std::max(change, std::abs(next / *size - 1));
-        *size = next;
+
+    /// Log of the density of the measurements and of the sizes, but for a constant.
+    double log_density(const ParameterSpread& spread) const {
+        const VectorXd precisions = units_.cwiseQuotient(sizes_of(spread)).cwiseAbs2();
+        MatrixXd M = S_;
+        M.diagonal() += precisions;
+        const Eigen::LLT<MatrixXd> root(M);
+        double sum = 0.5 * precisions.array().log().sum() -
+                     root.matrixLLT().diagonal().array().log().sum() + 0.5 * b_.dot(root.solve(b_));
+        const std::vector<SharedSize> sizes = shared_sizes(spread, robot_);
+        const std::vector<SharedSize> expected = shared_sizes(expected_, robot_);
+        for (std::size_t k = 0; k < sizes.size(); ++k) {
+            const double u = std::log(sizes[k].size / expected[k].size) / log_factor;
+            sum -= u * u / 2;
+        }
+        return sum;
     }
-    return change;
-}
 
-constexpr double looser = 100;        // than stated: holds nothing back
-constexpr double doubtful = 3;        // times the size learned
-constexpr double clear_evidence = 5;  // as a logarithm: 150 to 1
-
-double root_mean_square(const VectorXd& values) {
-    return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
-}
-
-/// Of the measurements under the campaign's sizes and model error, but for a constant, by the
-/// estimate under them (Laplace: as if it were linear).
-double log_evidence(const Campaign& campaign, const Estimate& estimate) {
-    const Eigen::LLT<MatrixXd> covariance(estimate.covariance);
-    if (estimate.ending == Ending::NotIdentifiable || covariance.info() != Eigen::Success) {
-        return -std::numeric_limits<double>::infinity();
+    /// The sizes of largest density, uphill from these: by expectation maximisation [Dempster,
+    /// Laird & Rubin 1977] over each error's square, estimate^2 + variance.
+    ParameterSpread climb(ParameterSpread spread) const {
+        for (int i = 0; i < iteration_limit; ++i) {
+            MatrixXd M = S_;
+            M.diagonal() += units_.cwiseQuotient(sizes_of(spread)).cwiseAbs2();
+            const MatrixXd C = M.llt().solve(MatrixXd::Identity(M.rows(), M.cols()));
+            const VectorXd squares =
+                units_.cwiseAbs2().cwiseProduct((C * b_).cwiseAbs2() + C.diagonal());
+            if (update(spread, squares) < tolerance) break;
+        }
+        return spread;
     }
-    const VectorXd sizes = parameter_scale(campaign).segment(base_parameter_count(campaign),
-                                                             campaign.robot.parameter_count());
-    return -0.5 * estimate.variance_factor * static_cast<double>(estimate.degrees_of_freedom) +
-           covariance.matrixLLT().diagonal().array().log().sum() - sizes.array().log().sum();
-}
+
+    /// What the sizes are on average where these are the most probable: the root of the mean of
+    /// their squares, with log-normal densities as wide as the number of errors that the
+    /// measurements tell of each class leaves them. With few poses larger ones remain possible.
+    ParameterSpread average(ParameterSpread spread) const {
+        MatrixXd M = S_;
+        M.diagonal() += units_.cwiseQuotient(sizes_of(spread)).cwiseAbs2();
+        const MatrixXd C = M.llt().solve(MatrixXd::Identity(M.rows(), M.cols()));
+        const VectorXd left = units_.cwiseQuotient(sizes_of(spread))
+                                  .cwiseAbs2()
+                                  .cwiseProduct(C.diagonal());  // of the prior variance
+        for (const SharedSize& shared : shared_sizes(expected_, robot_)) {
+            const double told = (1 - left(shared.members).array()).sum();
+            const double variance = 1 / (2 * told + 1 / (log_factor * log_factor));
+            size_of(spread, robot_, shared.members.front()) *= std::exp(variance);
+        }
+        return spread;
+    }
+
+  private:
+    VectorXd sizes_of(const ParameterSpread& spread) const {
+        Campaign campaign = campaign_;
+        campaign.spread = spread;
+        return parameter_scale(campaign).segment(base_parameter_count(campaign), b_.size());
+    }
+
+    /// The next sizes; by how large a part any of them changed.
+    double update(ParameterSpread& spread, const VectorXd& squares) const {
+        double change = 0;
+        for (const SharedSize& shared : shared_sizes(expected_, robot_)) {
+            double& size = size_of(spread, robot_, shared.members.front());
+            const double next = most_probable(
+                {shared.size, squares(shared.members).sum(), std::ssize(shared.members)});
+            change = std::max(change, std::abs(next / size - 1));
+            size = next;
+        }
+        return change;
+    }
+
+    const Chain& robot_;
+    const Campaign& campaign_;
+    const ParameterSpread& expected_;
+    MatrixXd S_;  ///< information of the measurements on the errors, whatever base and targets are
+    VectorXd b_;  ///< S times the errors that fit best
+    VectorXd units_;
+};
 
 }  // namespace
 
-ParameterSpread learn_sizes(const Campaign& campaign, const Measurements& measurements,
-                            const Parameters& start, const LevenbergMarquardtOptions& options) {
-    if (!campaign.spread.is_prior) {
-        throw InputError(
-            "sizes of errors can be learned only where expected sizes are priors "
-            "(`spread.is_prior`)");
-    }
-    Campaign learned = campaign;
-    Parameters from = start;
-    for (int i = 0; i < iteration_limit && !options.stop.is_set(); ++i) {
-        const Estimate estimate = identify(learned, measurements, from, options);
-        if (estimate.ending == Ending::NotIdentifiable) break;
-        from = estimate.parameters;
-        const VectorXd& errors = from.robot;
-        const VectorXd variances =
-            estimate.covariance.diagonal().segment(base_parameter_count(campaign), errors.size());
-        const VectorXd squares = errors.cwiseAbs2() + variances;
-        if (update(learned.spread, campaign.spread, campaign.robot, squares) < tolerance) break;
-    }
-    return learned.spread;
+bool are_sizes_open(const Campaign& campaign, const Loss& loss) {
+    return campaign.spread.is_prior && campaign.spread.is_open && !campaign.prior &&
+           loss.kind == LossKind::Squares && !shared_sizes(campaign.spread, campaign.robot).empty();
 }
 
-std::optional<HeldBackSize> find_held_back_size(const Campaign& learned,
-                                                const ParameterSpread& stated,
-                                                const Measurements& measurements,
-                                                const Parameters& start,
-                                                const LevenbergMarquardtOptions& options) {
-    if (options.loss.kind != LossKind::Squares) return std::nullopt;
-    LevenbergMarquardtOptions fixed = options;
-    fixed.finds_model_error = false;
-    const auto evidence_of = [&](const Campaign& campaign) {
-        return log_evidence(campaign, identify(campaign, measurements, start, fixed));
-    };
-    std::optional<HeldBackSize> found;
-    Campaign best = learned;
-    double largest = -std::numeric_limits<double>::infinity();
-    for (const SharedSize& shared : shared_sizes(learned.spread, learned.robot)) {
-        Campaign other = learned;
-        other.spread = stated;
-        double& size = size_of(other.spread, other.robot, shared.members.front());
-        size *= looser;
-        const Estimate loose = identify(other, measurements, start, fixed);
-        if (loose.ending == Ending::NotIdentifiable) continue;
-        size = root_mean_square(loose.parameters.robot(shared.members));
-        if (size < doubtful * shared.size) continue;
-        const double evidence = evidence_of(other);
-        if (evidence <= largest) continue;
-        largest = evidence;
-        best = other;
-        found = HeldBackSize{shared};
+ParameterSpread learn_sizes(const IdentificationProblem& problem, const Parameters& parameters,
+                            const ParameterSpread& expected) {
+    const SizeEvidence evidence(problem, parameters, expected);
+    ParameterSpread best = evidence.climb(problem.campaign.spread);
+    double highest = evidence.log_density(best);
+    // A size far too small holds its errors back, others absorb them: a maximum of its own.
+    for (const SharedSize& shared : shared_sizes(best, problem.campaign.robot)) {
+        for (const double times : {10.0, 100.0}) {
+            ParameterSpread other = best;
+            size_of(other, problem.campaign.robot, shared.members.front()) *= times;
+            if (!(evidence.log_density(other) > highest)) continue;
+            other = evidence.climb(other);
+            const double density = evidence.log_density(other);
+            if (!(density > highest)) continue;
+            best = other;
+            highest = density;
+        }
     }
-    if (!found || options.stop.is_set()) return std::nullopt;
-    best.spread = learn_sizes(best, measurements, start, options);
-    if (evidence_of(best) - evidence_of(learned) < clear_evidence) return std::nullopt;
-    found->fitting = size_of(best.spread, best.robot, found->held.members.front());
-    return found;
+    return evidence.average(best);
 }
 
-}  // namespace posewise
+}  // namespace posewise::detail

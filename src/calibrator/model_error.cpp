@@ -34,7 +34,8 @@ class PredictiveScore {
     PredictiveScore(const IdentificationProblem& problem, const Parameters& parameters,
                     const Campaign& expected)
         : expected_{std::log(expected.model_error), std::log(expected.model_error_orientation)},
-          common_(expected.model_error_common),
+          common_(common_part(expected)),
+          rows_per_target_(expected.sensor->rows_per_target()),
           size_(problem.units.size()),
           prior_begin_(problem.prior_begin()),
           prior_errors_(problem.prior_count() > 0
@@ -49,7 +50,7 @@ class PredictiveScore {
 
     double operator()(const LogErrors& errors, std::size_t kind) {
         whiten(errors);
-        return freedom_[kind] * (predict() - log_deviations_) + population(errors);
+        return freedom_[kind] * predict() + population(errors);
     }
 
   private:
@@ -75,7 +76,6 @@ class PredictiveScore {
         FlangeMotion motion;
         VectorXd q, repeats, predicted(sensor.row_count()), deviation(sensor.row_count());
         Index row = 0;
-        bool has_levers = false;
         for (const Index i : configurations) {
             q = problem.means.configurations.row(i).transpose();
             repeats = times.row(i).transpose();
@@ -85,10 +85,10 @@ class PredictiveScore {
             all.col(size_) = deviation;
             if ((repeats.array() == 0).all()) continue;
             if (common_ > 0) {
-                sensor.differentiate(motion.world_from_flange,
-                                     model_error_twists(motion.world_from_flange),
-                                     parameters.sensor, effect);
-                has_levers = has_levers || (repeats.array() > 0).count() > 1;
+                sensor.differentiate(
+                    motion.world_from_flange,
+                    model_error_twists(sensor, motion.world_from_flange, parameters.sensor),
+                    parameters.sensor, effect);
             }
             const MatrixXd& covariance = noise.covariance(motion, parameters.sensor, repeats);
             const Index count = covariance.rows();
@@ -100,12 +100,12 @@ class PredictiveScore {
             }
             first_row_.push_back(row);
         }
-        // One point alone does not tell how far the flange has turned.
         has_ = {sensor.has_lengths() && std::isfinite(expected_[0]),
-                (sensor.has_angles() || has_levers) && std::isfinite(expected_[1])};
+                sensor.has_angles() && std::isfinite(expected_[1])};
         stated_.conservativeResize(row, Eigen::NoChange);
         problem.units.scale_columns(stated_.leftCols(size_));
         whitened_.resize(row, size_ + 1);
+        if (common_ > 0) factors_.resize(row, sensor.row_count());
     }
 
     Index row_count() const { return stated_.rows(); }
@@ -126,17 +126,20 @@ class PredictiveScore {
             covariance_ = covariances_.block(first, 0, count, count);
             if (common_ > 0) {
                 const auto moved = effects_.middleRows(first, count);
-                const auto shift = moved.leftCols<3>();
-                const auto turn = moved.rightCols<3>();
-                covariance_.noalias() += common_ * squares[0] * shift * shift.transpose();
-                covariance_.noalias() += common_ * squares[1] * turn * turn.transpose();
+                covariance_.noalias() += common_ * squares[0] * moved * moved.transpose();
             }
             for (Index k = 0; k < count; ++k) {
-                covariance_(k, k) +=
-                    (1 - common_) * squares[is_angle_[static_cast<std::size_t>(first + k)] ? 1 : 0];
+                const bool turns = is_angle_[static_cast<std::size_t>(first + k)];
+                covariance_(k, k) += turns ? squares[1] : (1 - common_) * squares[0];
             }
-            detail::whiten(covariance_, whitened_.middleRows(first, count), factor_,
-                           &log_deviations_);
+            if (common_ == 0) {
+                detail::whiten(covariance_, whitened_.middleRows(first, count), factor_,
+                               &log_deviations_);
+                return;
+            }
+            cholesky_factor(covariance_, factor_);
+            factor_.triangularView<Eigen::Lower>().solveInPlace(whitened_.middleRows(first, count));
+            factors_.block(first, 0, count, count) = factor_;
         });
         const auto B = whitened_.leftCols(size_);
         const MatrixXd all = gram(whitened_);
@@ -170,10 +173,13 @@ class PredictiveScore {
         }
     }
 
-    /// Log of the predictive densities of the whitened residuals.
+    /// Log of the predictive densities of the observations of each configuration, given all others.
+    /// Where the targets of one share errors, those of each target by itself: how errors are shared
+    /// is hardly known, and a wrong share would make the whole look smaller. They count as many as
+    /// a body that moves has directions.
     double predict() {
         if (V_.cols() < row_count()) return -std::numeric_limits<double>::infinity();
-        double score = 0;
+        double score = -log_deviations_;
         for_each_configuration([&](Index first, Index count) {
             const auto V_i = V_.middleCols(first, count);
             factor_.noalias() = -V_i.transpose() * V_i;
@@ -185,9 +191,37 @@ class PredictiveScore {
             }
             predicted_ = residuals_.segment(first, count);
             root.matrixL().solveInPlace(predicted_);
-            score += factor_.diagonal().array().log().sum() - predicted_.squaredNorm() / 2;
+            if (common_ == 0) {
+                score += factor_.diagonal().array().log().sum() - predicted_.squaredNorm() / 2;
+                return;
+            }
+            // The residuals left out, F (I - G)^-1 r, and their covariance F (I - G)^-1 F^T.
+            const auto F = factors_.block(first, 0, count, count).triangularView<Eigen::Lower>();
+            spread_.setIdentity(count, count);
+            root.matrixL().solveInPlace(spread_);
+            spread_ = spread_ * MatrixXd(F).transpose();
+            root.matrixU().solveInPlace(predicted_);
+            predicted_ = F * predicted_;
+            covariance_.noalias() = spread_.transpose() * spread_;
+            constexpr double directions = 6;
+            score += std::min(1.0, directions / static_cast<double>(count)) *
+                     log_density_by_target(count);
         });
         return score;
+    }
+
+    /// That of predicted_ under covariance_, target by target.
+    double log_density_by_target(Index count) {
+        double sum = 0;
+        for (Index row = 0; row < count; row += rows_per_target_) {
+            const MatrixXd of_target =
+                covariance_.block(row, row, rows_per_target_, rows_per_target_);
+            const Eigen::LLT<MatrixXd> root(of_target);
+            VectorXd e = predicted_.segment(row, rows_per_target_);
+            root.matrixL().solveInPlace(e);
+            sum -= root.matrixLLT().diagonal().array().log().sum() + e.squaredNorm() / 2;
+        }
+        return sum;
     }
 
     double population(const LogErrors& errors) const {
@@ -201,7 +235,8 @@ class PredictiveScore {
     }
 
     LogErrors expected_;
-    double common_;  ///< Campaign::model_error_common
+    double common_;  ///< common_part()
+    Index rows_per_target_;
     Index size_;
     Index prior_begin_;
     VectorXd prior_errors_;
@@ -217,6 +252,7 @@ class PredictiveScore {
 
     // The same under one pair of model errors.
     RowMatrixXd whitened_;
+    RowMatrixXd factors_;        ///< of the covariances, where targets share errors
     double log_deviations_ = 0;  ///< of the observations, summed up
     RowMatrixXd V_;              ///< B M^-1 B^T = V^T V; empty where M has no inverse
     VectorXd residuals_;         ///< at the optimum
@@ -224,6 +260,7 @@ class PredictiveScore {
     // Of one configuration.
     MatrixXd covariance_;
     MatrixXd factor_;
+    MatrixXd spread_;
     VectorXd predicted_;
 };
 

@@ -10,9 +10,10 @@
 namespace posewise {
 namespace {
 
-constexpr const char* step_names[] = {"base and targets",  "+ joint offsets", "+ lengths",
-                                      "+ other geometric", "+ gravity terms", "+ free terms",
-                                      "+ harmonics",       "+ tilts of axes"};
+constexpr const char* step_names[] = {
+    "base and targets",  "+ joint offsets", "+ lengths",
+    "+ other geometric", "+ gravity terms", "+ free terms",
+    "+ harmonics",       "+ tilts of axes", "+ scales, gear ratios"};
 
 /// The step, an index of step_names, that adds this parameter.
 int step_of(const Chain& chain, Index parameter) {
@@ -27,6 +28,8 @@ int step_of(const Chain& chain, Index parameter) {
                 return 6;
             case TermKind::Tilt:
                 return 7;
+            case TermKind::Gain:
+                return 8;
         }
     }
     const Element& element = chain.parameter_element(parameter);

@@ -13,6 +13,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/io/result_files.hpp"
+#include "posewise/jacobian/identification.hpp"
 #include "posewise/report/reports.hpp"
 #include "report/plot.hpp"
 #include "task/calibration/calibration_options.hpp"
@@ -38,8 +39,10 @@ readings) from nothing, then identifies all parameters together, and prints
 What did not converge, has errors fifty times their expected size or a joint offset beyond 10 deg,
 leaves more over than a robot misses before it is calibrated, is spoilt by one configuration, or
 predicts poses that were held out worse than the nominal robot does, is printed and not written, with
-exit code 3; --force writes it, marked. Where something is doubtful, robust losses, --exclude,
---learn-sizes and richer errors are tried, and those that help are named with the error held out.
+exit code 3; --force writes it, marked. Where something is doubtful, robust losses, --exclude and
+richer errors are tried, and those that help are named with the error held out.
+How large the errors of each class are is learned beside a prior, about the expected sizes: few poses
+move them a little, many freely. Both are printed; --sizes stated keeps the expected ones.
 With --exclude it leaves out configurations by their ids and samples (7:2), and the estimate records it.
 With --plan the calibration sees only the plan's configurations. It is judged on those that the plan
 has to verify (plan --verification), as far as they were measured, and on the others, each by itself.
@@ -119,15 +122,17 @@ void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& ar
                 "needs --method " + owner);
     }
     const CalibrationOptions& options = arguments.options;
+    require(arguments.free.empty() || arguments.earlier.from.empty(), "--free",
+            "is without --from; --only says what is identified anew beside an estimate");
     const bool is_squares = arguments.loss == "squares";
     const bool is_lm = arguments.method == "lm";
     require(is_squares || is_lm, "--loss", "needs --method lm; the others know squares only");
-    require(arguments.earlier.from.empty() ||
-                (is_lm && !options.learns_sizes && !options.model_selection),
-            "--from", "needs --method lm, without --learn-sizes and --model-selection");
-    require(!options.learns_sizes || is_lm, "--learn-sizes", "needs --method lm");
-    require(!options.learns_sizes || arguments.prior.value_or(true), "--learn-sizes",
-            "needs priors; leave --no-prior out");
+    require(arguments.earlier.from.empty() || (is_lm && !options.model_selection), "--from",
+            "needs --method lm, without --model-selection");
+    require(arguments.sizes != "learned" || is_lm, "--sizes", "learned needs --method lm");
+    require(arguments.sizes != "learned" || arguments.prior.value_or(true), "--sizes",
+            "learned needs priors; leave --no-prior out");
+    require(arguments.sizes != "learned" || is_squares, "--sizes", "learned needs --loss squares");
     require(!is_squares || options.joint.loss.width == 0, "--loss-width",
             "needs --loss huber or cauchy");
     if (!options.model_selection) return;
@@ -143,7 +148,8 @@ void check_faults(const CalibrateArguments& arguments, const CommonOptions& comm
     print(printed, common);
     throw NoCalibration(fmt::format(
         "{}: {}; {}--force takes it all the same", arguments.paths.measurements, words,
-        (arguments.out + arguments.predict_out + arguments.page + arguments.plot).empty()
+        (arguments.out + arguments.predict_out + arguments.csv + arguments.page + arguments.plot)
+                .empty()
             ? ""
             : "nothing was written, "));
 }
@@ -160,17 +166,30 @@ Calibration calibrate_files(const CalibrateArguments& arguments, const io::Campa
     }
 }
 
+io::CampaignFile read_calibrated(const CalibrateArguments& arguments) {
+    io::CampaignFile file = read_with_prior(arguments.paths.campaign, arguments.prior);
+    if (!arguments.sizes.empty()) file.spread.is_open = arguments.sizes == "learned";
+    if (arguments.free.empty()) return file;
+    try {
+        static_cast<Campaign&>(file) = with_free_errors(file, arguments.free);
+    } catch (const InputError& error) {
+        throw CLI::ValidationError("--free", error.what());
+    }
+    return file;
+}
+
 void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
                const CommonOptions& common) {
     if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
     const InputPaths& paths = arguments.paths;
     const EarlierArguments& earlier = arguments.earlier;
-    const io::CampaignFile file = read_with_prior(paths.campaign, arguments.prior);
+    const io::CampaignFile file = read_calibrated(arguments);
     const Validation validation = read_validation(arguments, file);
     check_outputs(
         {&file, validation.campaign ? &*validation.campaign : nullptr},
         {paths.measurements, arguments.plan, arguments.validate, arguments.predict, earlier.from},
-        {arguments.out, arguments.predict_out, arguments.page, arguments.plot}, common);
+        {arguments.out, arguments.predict_out, arguments.csv, arguments.page, arguments.plot},
+        common);
     CalibrationOptions options = make_options(arguments, file.seed);
     const Measurements measured =
         read_measured_without(options.excluded, paths.measurements, file, earlier);
@@ -203,6 +222,9 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     }
     made_from.warnings = given_warnings();
     if (!arguments.out.empty()) io::write_estimate(arguments.out, result, made_from);
+    if (!arguments.csv.empty()) {
+        io::write_offsets_csv(arguments.csv, result.campaign, result.estimate);
+    }
     if (!arguments.predict_out.empty()) {
         io::write_predictions_csv(arguments.predict_out, predicted.ids, result.predicted);
     }

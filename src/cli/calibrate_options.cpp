@@ -83,9 +83,19 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
         ->check(real_number(0.1, 1e6));
     command.add_flag("--model-selection", options.model_selection,
                      "Compare nested parameter sets by their held-out error");
+    command
+        .add_option("--free", arguments.free,
+                    "Identify only these errors of the robot, by commas: dq2,dq3, or a class, "
+                    "class:offsets, lengths, angles, gravity, harmonics, tilts, gains, terms")
+        ->delimiter(',');
     add_prior_option(command, arguments.prior, ": fewer poses than parameters will do");
-    command.add_flag("--learn-sizes", options.learns_sizes,
-                     "Learn how large the errors of each class are, instead of the expected sizes");
+    command
+        .add_option(
+            "--sizes", arguments.sizes,
+            "learned: how large the errors of each class are is learned, about the expected "
+            "sizes of a prior; stated: they are as the campaign says (default: the "
+            "campaign's)")
+        ->check(CLI::IsMember({"learned", "stated"}));
     command.add_flag("--all-parameters", arguments.has_all_parameters, "List each, however many");
     add_earlier_options(command, arguments.earlier);
     let_force_take_measured(command);
@@ -101,6 +111,10 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
         ->check(file_name())
         ->needs(refit);
     command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
+        ->check(file_name());
+    command
+        .add_option("--csv", arguments.csv,
+                    "Write the offset of each joint (deg; mm where it slides), as for mastering")
         ->check(file_name());
     add_report_option(command, arguments.page);
     add_plot_option(command, arguments.plot, "Draw what is left of each reading");

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common.hpp"
 #include "estimates.hpp"
@@ -18,6 +19,8 @@ struct CalibrateArguments {
     std::optional<double> limit_mm;
     std::string predict;
     std::string predict_out;
+    std::string csv;
+    std::vector<std::string> free;
     std::string out;
     std::string page;
     std::string plot;
@@ -28,6 +31,7 @@ struct CalibrateArguments {
     double angle_error_deg = 20;
     std::optional<Index> iteration_limit;
     std::optional<bool> prior;
+    std::string sizes;  ///< empty: as the campaign says
     bool has_all_parameters = false;
     std::string validation_campaign;
     EarlierArguments earlier;

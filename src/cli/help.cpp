@@ -32,7 +32,7 @@ enum Group : std::size_t { Input, Asked, Errors, Earlier, Search, Judged, Output
 
 /// The group of each option, by its long name; it means the same in every command. Rare ones are
 /// named only.
-constexpr std::array<std::pair<std::string_view, Group>, 86> group_of_option{
+constexpr std::array<std::pair<std::string_view, Group>, 87> group_of_option{
     {{"poses", Asked},
      {"criterion", Asked},
      {"criteria", Asked},
@@ -71,7 +71,8 @@ constexpr std::array<std::pair<std::string_view, Group>, 86> group_of_option{
      {"workspace-target", Rare},
      {"prior", Errors},
      {"no-prior", Errors},
-     {"learn-sizes", Errors},
+     {"sizes", Errors},
+     {"free", Errors},
      {"method", Errors},
      {"loss", Errors},
      {"loss-width", Rare},

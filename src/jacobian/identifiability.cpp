@@ -9,9 +9,12 @@
 #include <utility>
 
 #include "core/decompositions.hpp"
+#include "core/text.hpp"
 #include "model/complete_model.hpp"
+#include "model/error_class.hpp"
 #include "model/sampling.hpp"
 #include "nominal_factor.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
 
 namespace posewise {
@@ -173,6 +176,29 @@ Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names)
         if (!empty) elements.push_back(std::move(element));
     }
     return chain.with_elements(std::move(elements));
+}
+
+Campaign with_free_errors(const Campaign& campaign, const std::vector<std::string>& errors) {
+    constexpr std::string_view of_class = "class:";
+    const auto names = campaign.robot.parameter_names();
+    std::vector<std::string> kept;
+    for (const std::string& error : errors) {
+        const std::size_t before = kept.size();
+        for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
+            const std::string& name = names[static_cast<std::size_t>(k)];
+            const std::string_view word = detail::name_of(
+                detail::error_class_names, detail::error_class_of(campaign.robot, k));
+            if (name == error || fmt::format("{}{}", of_class, word) == error) kept.push_back(name);
+        }
+        if (kept.size() > before) continue;
+        std::vector<std::string> known = names;
+        for (const std::string& word : detail::words_of(detail::error_class_names)) {
+            known.push_back(fmt::format("{}{}", of_class, word));
+        }
+        throw InputError(fmt::format("{} is no error of the robot; {}", detail::quote(error),
+                                     detail::suggest(error, known)));
+    }
+    return with_robot(campaign, keep_parameters(campaign.robot, kept));
 }
 
 Chain without_errors_of_base(const Chain& chain) {

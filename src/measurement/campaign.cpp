@@ -69,6 +69,7 @@ double& size_of(ParameterSpread& spread, const Chain& robot, Index parameter) {
     const ErrorTerm* const term = robot.parameter_term(parameter);
     if (term != nullptr && term->kind == TermKind::Harmonic) return spread.harmonic;
     if (term != nullptr && term->kind == TermKind::Tilt) return spread.tilt;
+    if (term != nullptr && term->kind == TermKind::Gain) return spread.gain;
     if (term != nullptr && term->kind != TermKind::Free) return spread.gravity;
     const bool is_offset = term == nullptr && turns && !element.joints.empty();
     if (is_offset && spread.offset) return *spread.offset;
@@ -82,6 +83,7 @@ std::vector<SharedSize> shared_sizes(const ParameterSpread& spread, const Chain&
         if (size == &sizes.angle) return "angle";
         if (size == &sizes.gravity) return "gravity";
         if (size == &sizes.tilt) return "tilt";
+        if (size == &sizes.gain) return "gain";
         return size == &sizes.harmonic ? "harmonic" : "offset";
     };
     const auto names = robot.parameter_names();

@@ -35,6 +35,35 @@ bool factorise(MatrixXd& covariance) {
 
 bool is_sigma(double value) { return std::isfinite(value) && value >= 0; }
 
+/// Where the targets are on the flange: their middle, and the RMS of their distances from it, m.
+struct TargetGroup {
+    Vector3d middle = Vector3d::Zero();
+    double lever = 0;
+};
+TargetGroup group_of_targets(const Sensor& sensor, const VectorXd& sensor_unknowns) {
+    TargetGroup group;
+    const Index count = sensor.target_count();
+    for (Index j = 0; j < count; ++j) group.middle += sensor.target_position(j, sensor_unknowns);
+    group.middle /= static_cast<double>(count);
+    double squares = 0;
+    for (Index j = 0; j < count; ++j) {
+        squares += (sensor.target_position(j, sensor_unknowns) - group.middle).squaredNorm();
+    }
+    group.lever = std::sqrt(squares / static_cast<double>(count));
+    return group;
+}
+
+// Half of a target's variance is the translation's, half the rotation's: of three turns about the
+// axes, two move the end of a lever.
+struct MotionShares {
+    double translation = 1;
+    double turn = 0;  ///< rad for 1 m at the targets
+};
+MotionShares shares_of(const TargetGroup& group) {
+    if (!(group.lever > 0)) return {};  // all in one place, which no turn moves
+    return {std::sqrt(0.5), std::sqrt(0.75) / group.lever};
+}
+
 }  // namespace
 
 void check_noise(const Campaign& campaign) {
@@ -45,10 +74,10 @@ void check_noise(const Campaign& campaign) {
     };
     check_model_error(campaign.model_error, "m");
     check_model_error(campaign.model_error_orientation, "rad");
-    if (!(campaign.model_error_common >= 0 && campaign.model_error_common <= 1)) {
+    const double common = campaign.model_error_common.value_or(0);
+    if (!(common >= 0 && common <= 1)) {
         throw InputError(
-            fmt::format("the common part of the model error is {:g}, must be from 0 to 1",
-                        campaign.model_error_common));
+            fmt::format("the common part of the model error is {:g}, must be from 0 to 1", common));
     }
     const VectorXd& s = campaign.joint_repeatability;
     if (s.size() != 0 && s.size() != campaign.robot.joint_count()) {
@@ -64,44 +93,37 @@ void check_noise(const Campaign& campaign) {
     }
 }
 
-TwistMatrix model_error_twists(const Isometry3d& world_from_flange) {
-    const Vector3d p = world_from_flange.translation();
+TwistMatrix model_error_twists(const Sensor& sensor, const Isometry3d& world_from_flange,
+                               const VectorXd& sensor_unknowns) {
+    const TargetGroup group = group_of_targets(sensor, sensor_unknowns);
+    const Vector3d p = world_from_flange * group.middle;
+    const auto [translation, turn] = shares_of(group);
     TwistMatrix twists = TwistMatrix::Zero(6, 6);
-    twists.block<3, 3>(3, 0).setIdentity();
-    twists.block<3, 3>(0, 3).setIdentity();
-    for (Index k = 0; k < 3; ++k) twists.block<3, 1>(3, 3 + k) = p.cross(Vector3d::Unit(k));
+    for (Index k = 0; k < 3; ++k) {
+        twists(3 + k, k) = translation;
+        twists(k, 3 + k) = turn;
+        twists.block<3, 1>(3, 3 + k) = turn * p.cross(Vector3d::Unit(k));
+    }
     return twists;
 }
 
-VectorXd model_error_motions(const Campaign& campaign) {
-    const double part = std::sqrt(campaign.model_error_common);
-    VectorXd sizes(6);
-    sizes.head<3>().setConstant(part * campaign.model_error);
-    sizes.tail<3>().setConstant(part * campaign.model_error_orientation);
-    return sizes;
+double common_part(const Campaign& campaign) {
+    if (campaign.sensor->seen_at_once() <= 1) return 0;
+    return campaign.model_error_common.value_or(campaign.spread.is_prior ? usual_model_error_common
+                                                                         : 0);
+}
+
+double common_model_error(const Campaign& campaign) {
+    return std::sqrt(common_part(campaign)) * campaign.model_error;
 }
 
 VectorXd own_model_errors(const Campaign& campaign) {
-    const double part = std::sqrt(1 - campaign.model_error_common);
+    const double own = std::sqrt(1 - common_part(campaign)) * campaign.model_error;
     VectorXd errors(campaign.sensor->row_count());
     for (Index row = 0; row < errors.size(); ++row) {
-        errors[row] = part * (campaign.sensor->is_angle(row) ? campaign.model_error_orientation
-                                                             : campaign.model_error);
+        errors[row] = campaign.sensor->is_angle(row) ? campaign.model_error_orientation : own;
     }
     return errors;
-}
-
-double left_over_rms(const Campaign& campaign, const VectorXd& sensor_unknowns) {
-    const Sensor& sensor = *campaign.sensor;
-    // Of three turns about the axes, two move the end of a lever.
-    double levers = 0;
-    for (Index j = 0; j < sensor.target_count(); ++j) {
-        levers += sensor.target_position(j, sensor_unknowns).squaredNorm();
-    }
-    const double turned = 2 * levers / static_cast<double>(sensor.target_count());
-    const double angle = campaign.model_error_orientation;
-    return std::sqrt(3 * campaign.model_error * campaign.model_error +
-                     campaign.model_error_common * turned * angle * angle);
 }
 
 MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
@@ -116,13 +138,8 @@ MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
 }
 
 bool has_constant_noise(const Campaign& campaign) {
-    const Sensor& sensor = *campaign.sensor;
-    const bool has_constant_model_error =
-        model_error_motions(campaign).isZero(0) ||
-        (campaign.model_error_orientation == 0 && sensor.lengths_per_target() == 3 &&
-         !sensor.has_angles());
-    return campaign.joint_repeatability.size() == 0 && has_constant_model_error &&
-           sensor.has_constant_covariance();
+    return campaign.joint_repeatability.size() == 0 && common_model_error(campaign) == 0 &&
+           campaign.sensor->has_constant_covariance();
 }
 
 MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& motion, Index joint,
@@ -145,15 +162,17 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
     if (campaign.joint_repeatability.size() > 0) {
         add(motion.joint_twists, rate.joint_twists, campaign.joint_repeatability);
     }
-    const VectorXd motions = model_error_motions(campaign);
-    if (!motions.isZero(0)) {
-        const Vector3d p = motion.world_from_flange.translation();
-        const Vector3d p_rate = direction.tail<3>() + direction.head<3>().cross(p);
+    if (const double common = common_model_error(campaign); common > 0) {
+        const TargetGroup group = group_of_targets(*campaign.sensor, sensor_unknowns);
+        const Vector3d p = motion.world_from_flange * group.middle;
+        const Vector3d p_rate =
+            shares_of(group).turn * (direction.tail<3>() + direction.head<3>().cross(p));
         TwistMatrix rates = TwistMatrix::Zero(6, 6);
         for (Index k = 0; k < 3; ++k) {
             rates.block<3, 1>(3, 3 + k) = p_rate.cross(Vector3d::Unit(k));
         }
-        add(model_error_twists(motion.world_from_flange), rates, motions);
+        add(model_error_twists(*campaign.sensor, motion.world_from_flange, sensor_unknowns), rates,
+            VectorXd::Constant(6, common));
     }
     return covariance_rate;
 }
@@ -180,12 +199,11 @@ void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows, MatrixXd& 
 PoseNoise::PoseNoise(const Campaign& campaign)
     : campaign_(campaign),
       is_constant_(has_constant_noise(campaign)),
-      motions_(model_error_motions(campaign).isZero(0) ? VectorXd()
-                                                       : model_error_motions(campaign)),
+      common_(common_model_error(campaign)),
       own_variances_(own_model_errors(campaign).cwiseAbs2()),
       of_sensor_(campaign.sensor->row_count(), campaign.sensor->row_count()),
-      effect_(campaign.sensor->row_count(), campaign.joint_repeatability.size() + motions_.size()) {
-}
+      effect_(campaign.sensor->row_count(),
+              campaign.joint_repeatability.size() + (common_ > 0 ? 6 : 0)) {}
 
 const MatrixXd& PoseNoise::covariance(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
                                       const VectorXd& repeats) {
@@ -214,16 +232,17 @@ const MatrixXd& PoseNoise::covariance(const FlangeMotion& motion, const VectorXd
 
 void PoseNoise::add_effects(const FlangeMotion& motion, const VectorXd& sensor_unknowns) {
     const Index joints = campaign_.joint_repeatability.size();
-    const auto fill = [&](const TwistMatrix& twists, const VectorXd& sizes, auto columns) {
+    const auto fill = [&](const TwistMatrix& twists, auto columns) {
         campaign_.sensor->differentiate(motion.world_from_flange, twists, sensor_unknowns, columns);
-        columns *= sizes.asDiagonal();
     };
     if (joints > 0) {
-        fill(motion.joint_twists, campaign_.joint_repeatability, effect_.leftCols(joints));
+        fill(motion.joint_twists, effect_.leftCols(joints));
+        effect_.leftCols(joints) *= campaign_.joint_repeatability.asDiagonal();
     }
-    if (motions_.size() > 0) {
-        fill(model_error_twists(motion.world_from_flange), motions_,
-             effect_.rightCols(motions_.size()));
+    if (common_ > 0) {
+        fill(model_error_twists(*campaign_.sensor, motion.world_from_flange, sensor_unknowns),
+             effect_.rightCols<6>());
+        effect_.rightCols<6>() *= common_;
     }
     seen_effect_.resize(covariance_.rows(), effect_.cols());
     for (Index k = 0; k < covariance_.rows(); ++k) {

@@ -11,21 +11,24 @@ namespace posewise::detail {
 /// a value that is negative or not finite, or if a model error is.
 void check_noise(const Campaign& campaign);
 
-/// The motion of the flange that the common part of the model error is: three translations (m),
-/// then three rotations about the flange's origin (rad), along the world's axes.
-TwistMatrix model_error_twists(const Isometry3d& world_from_flange);
-/// Standard deviations of these.
-VectorXd model_error_motions(const Campaign& campaign);
+/// Campaign::model_error_common; 0 where a pose shows one point or one body, which has nothing to
+/// share with another.
+double common_part(const Campaign& campaign);
+/// Standard deviation of what a pose's targets share of the model error, m.
+double common_model_error(const Campaign& campaign);
+/// The motions of the flange that it consists of, each with that deviation: three translations
+/// along the world's axes and three turns about them through the middle of the targets, scaled so
+/// that a target at the RMS distance from the middle moves by 1 (RMS of a coordinate), half of its
+/// square by each kind.
+TwistMatrix model_error_twists(const Sensor& sensor, const Isometry3d& world_from_flange,
+                               const VectorXd& sensor_unknowns);
 /// Standard deviations of the model error that each of the sensor's rows has by itself, m or rad.
 VectorXd own_model_errors(const Campaign& campaign);
 
-/// RMS, over its targets, of what the model error moves a target by, m.
-double left_over_rms(const Campaign& campaign, const VectorXd& sensor_unknowns);
-
 /// Covariance of the mean observation of the targets seen at a pose, target j over repeats[j]
 /// observations (0: not seen): the sensor's divided by repeats, plus what repeats do not reduce.
-/// That is the model error, own_model_errors() and L diag(s^2) L^T of model_error_motions() s (L:
-/// the observation's derivative by model_error_twists()), and J_q diag(r^2) J_q^T of the joints'
+/// That is the model error, own_model_errors() and s^2 L L^T of common_model_error() s (L: the
+/// observation's derivative by model_error_twists()), and J_q diag(r^2) J_q^T of the joints'
 /// repeatability r (the robot stands still while it is observed again). Both motions correlate the
 /// targets. Square, its rows those of seen_rows(), m^2.
 MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
@@ -74,7 +77,7 @@ class PoseNoise {
 
     const Campaign& campaign_;
     bool is_constant_;
-    VectorXd motions_;        ///< model_error_motions(); empty: none
+    double common_;           ///< common_model_error()
     VectorXd own_variances_;  ///< one a row of the sensor; so are the rows of what follows
     MatrixXd of_sensor_;
     RowMatrixXd effect_;  ///< by one standard deviation of each joint, then of each motion

@@ -139,10 +139,9 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
     check_contacts(campaign, is_seen, repeats);
     const Sensor& sensor = *campaign.sensor;
     const Index rows = sensor.row_count();
-    const VectorXd motions = detail::model_error_motions(campaign);
-    const bool moves_flange = !motions.isZero(0);
+    const double common = detail::common_model_error(campaign);
     const VectorXd own_errors = detail::own_model_errors(campaign);
-    RowMatrixXd effect(rows, motions.size());
+    RowMatrixXd effect(rows, 6);
     const bool has_contacts = sensor.has_contacts();
     Measurements measurements;
     measurements.configurations = configurations;
@@ -169,9 +168,10 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
         sensor.predict(flange, truth.sensor, predicted);
         detail::fill_normals(stream, drawn);
         drawn.array() *= own_errors.array();
-        if (moves_flange) {
-            sensor.differentiate(flange, detail::model_error_twists(flange), truth.sensor, effect);
-            drawn += effect * motions.cwiseProduct(stream.normals(motions.size()));
+        if (common > 0) {
+            sensor.differentiate(flange, detail::model_error_twists(sensor, flange, truth.sensor),
+                                 truth.sensor, effect);
+            drawn += common * effect * stream.normals(6);
         }
         sensor.deviate(predicted, drawn, expected);
         if (i == 0 || !sensor.has_constant_covariance()) {

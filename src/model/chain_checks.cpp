@@ -52,9 +52,8 @@ void check_element(const Element& element, std::size_t number, Index joint_count
         if (is_torque != (term.function.torque != nullptr)) {
             throw InputError(its_term + " has the shape of a torque without one, or the reverse");
         }
-        if (is_torque != term.function.joints.empty()) {
-            throw InputError(its_term +
-                             (is_torque ? " is a torque of joints" : " depends on no joint"));
+        if (!is_torque && term.function.joints.empty()) {
+            throw InputError(its_term + " depends on no joint");
         }
         check_sum(its_term, term.function.phase, term.function.joints, input_count);
     }

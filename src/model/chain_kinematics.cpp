@@ -63,12 +63,31 @@ Twist lie_bracket(const Twist& a, const Twist& b) {
     return result;
 }
 
+/// A function of shape Torque: the torque, or its product with a sum of joints.
+TorqueShare torque_times_sum(const JointFunction& function, const VectorXd& q, bool is_twice) {
+    TorqueShare share =
+        is_twice ? function.torque->evaluate_twice(q) : function.torque->evaluate(q);
+    if (function.joints.empty()) return share;
+    const double u = sum_of(function.phase, function.joints, q);
+    VectorXd slope = VectorXd::Zero(share.gradient.size());
+    for (const JointTerm& by : function.joints) {
+        if (by.joint < slope.size()) slope[by.joint] += by.coefficient;
+    }
+    if (is_twice) {
+        const MatrixXd half = share.gradient * slope.transpose();
+        share.hessian = u * share.hessian + half + half.transpose();
+    }
+    share.gradient = u * share.gradient + share.value * slope;
+    share.value *= u;
+    return share;
+}
+
 /// f(q); adds to the joints' twists, if there are any, what `coefficient` times it moves.
 double add_function(const JointFunction& function, double coefficient, const VectorXd& q,
                     const Twist& twist, FlangeMotion& motion) {
     if (motion.joint_twists.cols() == 0) return evaluate(function, q).value;
     if (function.torque != nullptr) {
-        const TorqueShare share = function.torque->evaluate(q);
+        const TorqueShare share = torque_times_sum(function, q, false);
         motion.joint_twists += coefficient * twist * share.gradient.transpose();
         return share.value;
     }
@@ -106,7 +125,7 @@ void add_function_rates(const JointFunction& function, double coefficient, const
                         const Twist& twist, Index k, const TwistMatrix& joint_twists,
                         std::vector<FlangeMotionRate>& rates) {
     const bool is_torque = function.torque != nullptr;
-    const TorqueShare share = is_torque ? function.torque->evaluate_twice(q) : TorqueShare{};
+    const TorqueShare share = is_torque ? torque_times_sum(function, q, true) : TorqueShare{};
     const FunctionValue f = is_torque ? FunctionValue{} : evaluate(function, q);
     for (Index j = 0; j < joint_twists.cols(); ++j) {
         const Twist change = lie_bracket(joint_twists.col(j), twist);

@@ -67,6 +67,30 @@ std::string axis_name(const Chain& chain, const DrivenAxisName& axis) {
     return numbered;
 }
 
+/// with_gains() of the axes for which `is_gained(element, owner)` says so.
+template <typename IsGained>
+Chain add_gains(const Chain& chain, const IsGained& is_gained) {
+    const std::vector<Index> owners = element_owners(chain);
+    const std::vector<DrivenAxisName> axes = name_axes(chain);
+    std::vector<Element> elements = chain.elements();
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+        if (axes[k].joint < 0 || !is_gained(elements[k], owners[k])) continue;
+        JointFunction amount;
+        for (const JointTerm& term : elements[k].joints) {
+            if (owners[k] >= 0 && term.joint != owners[k]) continue;
+            const Joint& joint = chain.joint(term.joint);
+            amount.joints.push_back(term);
+            amount.phase -= term.coefficient * (joint.lower + joint.upper) / 2;
+        }
+        const bool turns = elements[k].motion == Motion::Rotation;
+        const std::string name = axis_name(chain, axes[k]) + (turns ? ".gain" : ".scale");
+        const bool is_there = std::ranges::find(elements[k].terms, name, &ErrorTerm::parameter) !=
+                              elements[k].terms.end();
+        if (!is_there) elements[k].terms.push_back({name, std::move(amount), TermKind::Gain});
+    }
+    return chain.with_elements(std::move(elements));
+}
+
 }  // namespace
 
 Chain complete_model(const Chain& chain) {
@@ -98,7 +122,22 @@ Chain complete_model(const Chain& chain) {
 }
 
 Chain full_model(const Chain& chain, const Vector3d& gravity) {
-    return complete_model(with_harmonics(with_torque_shapes(chain, gravity), {1, 2}));
+    const Chain bending = with_harmonics(with_torque_shapes(chain, gravity), {1, 2});
+    return complete_model(add_gains(bending, [](const Element& element, Index owner) {
+        return element.motion == Motion::Translation || owner < 0;
+    }));
 }
 
 }  // namespace posewise::detail
+
+namespace posewise {
+
+Chain with_gains(const Chain& chain, const std::vector<Index>& joints) {
+    return detail::add_gains(chain, [&](const Element& element, Index) {
+        return joints.empty() || std::ranges::any_of(element.joints, [&](const JointTerm& term) {
+                   return std::ranges::find(joints, term.joint) != joints.end();
+               });
+    });
+}
+
+}  // namespace posewise

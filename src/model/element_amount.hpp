@@ -18,8 +18,10 @@ struct FunctionValue {
 };
 
 inline FunctionValue evaluate(const JointFunction& function, const VectorXd& q) {
-    if (function.torque != nullptr) return {function.torque->value(q), 0, 0};
     const double u = sum_of(function.phase, function.joints, q);
+    if (function.torque != nullptr) {
+        return {function.torque->value(q) * (function.joints.empty() ? 1 : u), 0, 0};
+    }
     if (function.shape == JointFunction::Shape::Linear) return {u, 1, 0};
     const auto [sine, cosine] = sine_and_cosine(u);
     return {sine, cosine, -sine};

@@ -10,12 +10,14 @@
 namespace posewise {
 namespace {
 
-/// The robot with an error parameter on each driven element and nowhere else.
-Chain with_driven_parameters(const Chain& chain) {
+/// The robot with an error parameter on each driven element, and on these, and nowhere else.
+Chain with_driven_parameters(const Chain& chain, const std::vector<std::size_t>& also) {
     std::vector<Element> elements = without_parameters(chain).elements();
     for (std::size_t k = 0; k < elements.size(); ++k) {
         elements[k].known_terms.clear();  // which bend it too little to matter
-        if (!elements[k].joints.empty()) elements[k].parameter = "element " + std::to_string(k);
+        const bool is_asked_for = std::find(also.begin(), also.end(), k) != also.end();
+        if (!elements[k].joints.empty() || is_asked_for)
+            elements[k].parameter = "element " + std::to_string(k);
     }
     return Chain(chain.joints(), std::move(elements));
 }
@@ -52,7 +54,8 @@ TorqueShare divided(TorqueShare torque, double largest) {
 
 // ---- The arm ----
 
-GravityTorque::Arm::Arm(const Chain& chain) : chain_(with_driven_parameters(chain)) {
+GravityTorque::Arm::Arm(const Chain& chain, const std::vector<std::size_t>& also)
+    : chain_(with_driven_parameters(chain, also)) {
     static std::atomic<std::uint64_t> last{0};
     number_ = ++last;
     driven_by_.setZero(driven_count(), joint_count());
@@ -85,13 +88,19 @@ Index GravityTorque::Arm::count_driven(Index link) const {
     Index count = 0;
     for (const Element& element : chain_.elements()) {
         if (link == 0) return 0;
-        if (element.joints.empty()) continue;
+        if (element.parameter.empty()) continue;
         ++count;
         for (const JointTerm& term : element.joints) {
             if (term.joint == link - 1) return count;
         }
     }
     return count;
+}
+
+Index GravityTorque::Arm::count_before(std::size_t element) const {
+    const auto begin = chain_.elements().begin();
+    return std::count_if(begin, begin + static_cast<std::ptrdiff_t>(element),
+                         [](const Element& one) { return !one.parameter.empty(); });
 }
 
 // ---- The torque ----
@@ -109,7 +118,7 @@ GravityTorque::GravityTorque(const Chain& chain, std::size_t element, const Vect
         throw InputError("the torque is of an element that no joint drives");
     }
     if (!gravity.allFinite()) throw InputError("gravity is not finite");
-    for (std::size_t k = 0; k < element; ++k) driven_ += chain.elements()[k].joints.empty() ? 0 : 1;
+    driven_ = arm_->count_before(element);
     for (const Load& load : loads) check_load(chain, load);
     weigh(loads);
     constexpr Index samples = 1000;

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 
 #include "chain_checks.hpp"
 #include "core/statistics.hpp"
+#include "element_amount.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "sampling.hpp"
 
@@ -48,17 +50,27 @@ struct TorqueShape {
     double size = 1;
 };
 
-/// Values of every probe's moment about one driven element, samples x probes, less their means.
+/// How far a slide is out of its lower limit, as a part of its range; nothing of what turns.
+struct Extension {
+    std::vector<JointTerm> joints = {};
+    double phase = 0;
+
+    double at(const VectorXd& q) const {
+        return joints.empty() ? 1 : detail::sum_of(phase, joints, q);
+    }
+};
+
+/// Values of every probe's moment about one element, samples x probes, less their means.
 MatrixXd evaluate_moments(const std::shared_ptr<const GravityTorque::Arm>& arm, Index driven,
                           const Vector3d& gravity, const std::vector<Probe>& probes,
-                          const RowMatrixXd& configurations) {
+                          const RowMatrixXd& configurations, const Extension& extension) {
     std::vector<GravityTorque> torques;
     for (const Probe& probe : probes) torques.emplace_back(arm, driven, gravity, probe.loads, 1.0);
     MatrixXd moments(configurations.rows(), static_cast<Index>(probes.size()));
     for (Index i = 0; i < configurations.rows(); ++i) {
         const VectorXd q = configurations.row(i).transpose();
         for (std::size_t k = 0; k < probes.size(); ++k) {
-            moments(i, static_cast<Index>(k)) = torques[k].value(q);
+            moments(i, static_cast<Index>(k)) = extension.at(q) * torques[k].value(q);
         }
     }
     moments.rowwise() -= moments.colwise().mean().eval();
@@ -102,6 +114,58 @@ std::vector<TorqueShape> find_shapes(const MatrixXd& moments, const std::vector<
     return shapes;
 }
 
+/// The robot, and where it has what bends under its weights.
+struct Bending {
+    struct Place {
+        std::size_t element = 0;
+        std::string name;  ///< before ".torque(...)"
+        Extension extension = {};
+    };
+    std::vector<Element> elements;
+    std::vector<Place> places;        ///< in the order of the elements
+    std::vector<std::size_t> slides;  ///< those of the places that no joint drives
+};
+
+/// Joints that turn; and behind each slide rotations about the middle of what is out, where a beam
+/// that a moment at its end bends seems to turn [beam theory: its end turns by M l / EI and moves
+/// by half of that times l].
+Bending find_bending(const Chain& chain) {
+    Bending bending;
+    const std::vector<Index> owners = element_owners(chain);
+    for (std::size_t k = 0; k < owners.size(); ++k) {
+        const Element& element = chain.elements()[k];
+        bending.elements.push_back(element);
+        if (owners[k] < 0) continue;
+        const Joint& joint = chain.joint(owners[k]);
+        if (element.motion == Motion::Rotation) {
+            bending.places.push_back({bending.elements.size() - 1, joint.name});
+            continue;
+        }
+        const auto own =
+            std::find_if(element.joints.begin(), element.joints.end(),
+                         [&](const JointTerm& term) { return term.joint == owners[k]; });
+        const double range = joint.upper - joint.lower;
+        if (!(range > 0)) continue;
+        Element half{Motion::Translation,
+                     element.axis,
+                     own->coefficient * joint.lower / 2,
+                     {{owners[k], -own->coefficient / 2}}};
+        bending.elements.push_back(half);
+        for (const auto& [axis, name] :
+             {std::pair(Axis::X, ".Rx"), std::pair(Axis::Y, ".Ry"), std::pair(Axis::Z, ".Rz")}) {
+            bending.slides.push_back(bending.elements.size());
+            bending.places.push_back({bending.elements.size(),
+                                      joint.name + name,
+                                      {{{owners[k], 1 / range}}, -joint.lower / range}});
+            bending.elements.push_back({Motion::Rotation, axis, 0, {}});
+        }
+        half.value = -half.value;
+        half.joints.front().coefficient = -half.joints.front().coefficient;
+        bending.elements.push_back(half);
+    }
+    return bending;
+}
+
 }  // namespace
 
 double extent(const Chain& chain) {
@@ -120,31 +184,27 @@ double extent(const Chain& chain) {
 Chain with_torque_shapes(const Chain& chain, const Vector3d& direction) {
     detail::check_direction(direction);
     const Vector3d gravity = direction.stableNormalized();
-    const auto arm = std::make_shared<const GravityTorque::Arm>(chain);
+    Bending bending = find_bending(chain);
+    const auto arm = std::make_shared<const GravityTorque::Arm>(
+        chain.with_elements(bending.elements), bending.slides);
     const RowMatrixXd configurations =
         detail::random_configurations(arm->chain(), samples, configuration_seed);
     const double size = extent(arm->chain());
     const std::vector<Probe> probes = make_probes(chain, beside * size);
-    const std::vector<Index> owners = element_owners(chain);
-    std::vector<Element> elements = chain.elements();
-    Index driven = -1;
-    for (std::size_t k = 0; k < elements.size(); ++k) {
-        if (elements[k].joints.empty()) continue;
-        ++driven;
-        if (owners[k] < 0 || elements[k].motion != Motion::Rotation) continue;
-        const MatrixXd moments = evaluate_moments(arm, driven, gravity, probes, configurations);
+    for (const Bending::Place& place : bending.places) {
+        const Index driven = arm->count_before(place.element);
+        const MatrixXd moments =
+            evaluate_moments(arm, driven, gravity, probes, configurations, place.extension);
         for (const TorqueShape& shape : find_shapes(moments, probes, size)) {
-            elements[k].terms.push_back(
-                {chain.joint(owners[k]).name + ".torque(" + shape.name + ')',
-                 {JointFunction::Shape::Torque,
-                  {},
-                  0,
+            bending.elements[place.element].terms.push_back(
+                {place.name + ".torque(" + shape.name + ')',
+                 {JointFunction::Shape::Torque, place.extension.joints, place.extension.phase,
                   std::make_shared<const GravityTorque>(arm, driven, gravity, shape.loads,
                                                         shape.size)},
                  TermKind::Torque});
         }
     }
-    return chain.with_elements(std::move(elements));
+    return chain.with_elements(std::move(bending.elements));
 }
 
 }  // namespace posewise

@@ -175,10 +175,12 @@ PositionErrors make_position_errors(const Campaign& campaign, const RowMatrixXd&
     };
     add(errors.by_joints, campaign.joint_repeatability,
         [](const FlangeMotion& motion) { return motion.joint_twists; });
-    add(errors.by_model, detail::model_error_motions(campaign), [](const FlangeMotion& motion) {
-        return detail::model_error_twists(motion.world_from_flange);
-    });
-    errors.own_error = std::sqrt(1 - campaign.model_error_common) * campaign.model_error;
+    add(errors.by_model, VectorXd::Constant(6, detail::common_model_error(campaign)),
+        [&](const FlangeMotion& motion) {
+            return detail::model_error_twists(*campaign.sensor, motion.world_from_flange,
+                                              campaign.nominal.sensor);
+        });
+    errors.own_error = std::sqrt(1 - detail::common_part(campaign)) * campaign.model_error;
     return errors;
 }
 

@@ -28,13 +28,30 @@ std::string describe_sizes(bool has_prior, const std::vector<SizeDoubt>& sizes) 
     }
     if (sizes.size() > shown) words += fmt::format(" and {} more", sizes.size() - shown);
     const bool are_terms = std::ranges::all_of(sizes, &SizeDoubt::is_term);
-    const std::string question = are_terms
-                                     ? "does the robot give way that much"
-                                     : "are sign, unit and nominal value in the campaign right";
+    const bool are_gains = std::ranges::all_of(sizes, [](const SizeDoubt& size) {
+        return size.parameter.ends_with(".scale") || size.parameter.ends_with(".gain");
+    });
+    const std::string question = are_gains   ? "are pitch or gear ratio in the controller right"
+                                 : are_terms ? "does the robot give way that much"
+                                             : "are sign, unit and nominal value in the campaign "
+                                               "right";
     return fmt::format("{}: {}; {}{}?",
                        has_prior ? "beyond three times the expected size, which holds them back"
                                  : "far above the expected size",
                        words, question, has_prior ? "" : ", and do the poses tell them apart");
+}
+
+std::string describe_learned_sizes(const std::vector<SizeDoubt>& sizes) {
+    std::string words;
+    for (const SizeDoubt& size : sizes) {
+        words += fmt::format("{}{} ({}, {} times)", words.empty() ? "" : ", ", size.parameter,
+                             detail::format_error(size.value, size.is_angle),
+                             detail::format_short(size.times, 3));
+    }
+    const bool are_terms = std::ranges::all_of(sizes, &SizeDoubt::is_term);
+    return fmt::format("sizes of errors were learned far above the expected ones: {}; {}?", words,
+                       are_terms ? "does the robot give way that much"
+                                 : "are lengths, units and signs in the campaign right");
 }
 
 std::string describe_model_errors(const std::vector<ModelErrorDoubt>& errors) {
@@ -93,16 +110,6 @@ std::string describe_no_length(const Sensor& sensor) {
               "(sensor.targets.known)");
 }
 
-std::string describe_held_back(const HeldBackSize& size) {
-    const bool is_angle = size.held.is_angle;
-    return fmt::format(
-        "the size learned for spread.{}_{}, {}, holds its errors back, the one stated is too "
-        "small: "
-        "{} would fit",
-        size.held.key, units_of(is_angle).error, detail::format_error(size.held.size, is_angle),
-        detail::format_error(size.fitting, is_angle));
-}
-
 std::string describe_held_out(const Campaign& campaign, const HeldOutComparison& held_out) {
     const bool is_angle = !campaign.sensor->has_lengths();
     return fmt::format(
@@ -143,6 +150,9 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
         sentences.push_back(at + "measured with another set-up than the earlier estimate, " +
                             describe_moved(*calibration.moved_since, "that found it", "--moved"));
     }
+    if (!doubts.learned_sizes.empty() && !has_moved) {
+        sentences.push_back(describe_learned_sizes(doubts.learned_sizes));
+    }
     if (!doubts.sizes.empty() && !has_moved) {
         sentences.push_back(describe_sizes(calibration.campaign.spread.is_prior, doubts.sizes));
     }
@@ -175,7 +185,6 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
          detail::describe_look(doubts.look, calibration.cures, calibration.campaign)) {
         sentences.push_back(at + sentence);
     }
-    if (doubts.held_back) sentences.push_back(describe_held_back(*doubts.held_back));
     if (doubts.held_out) {
         sentences.push_back(at + describe_held_out(calibration.campaign, *doubts.held_out));
     }

@@ -4,13 +4,12 @@
 #include <map>
 
 #include "core/format.hpp"
+#include "model/error_class.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/model/error_terms.hpp"
 
 namespace posewise::detail {
 namespace {
-
-enum class ErrorClass { Length, Slide, Angle, Offset, Gravity, Torque, Harmonic, Tilt, Other };
 
 const char* class_name(ErrorClass error_class) {
     switch (error_class) {
@@ -30,37 +29,19 @@ const char* class_name(ErrorClass error_class) {
             return "harmonics";
         case ErrorClass::Tilt:
             return "tilts of axes";
+        case ErrorClass::Gain:
+            return "scales, gear ratios";
         case ErrorClass::Other:
             break;
     }
     return "other terms";
 }
 
-ErrorClass class_of(const Chain& robot, Index parameter) {
-    if (const ErrorTerm* const term = robot.parameter_term(parameter)) {
-        switch (term->kind) {
-            case TermKind::Gravity:
-                return ErrorClass::Gravity;
-            case TermKind::Torque:
-                return ErrorClass::Torque;
-            case TermKind::Harmonic:
-                return ErrorClass::Harmonic;
-            case TermKind::Tilt:
-                return ErrorClass::Tilt;
-            case TermKind::Free:
-                return ErrorClass::Other;
-        }
-    }
-    const Element& element = robot.parameter_element(parameter);
-    const bool turns = element.motion == Motion::Rotation;
-    if (element.joints.empty()) return turns ? ErrorClass::Angle : ErrorClass::Length;
-    return turns ? ErrorClass::Offset : ErrorClass::Slide;
-}
-
 /// The robot's errors, those of a class together.
 std::map<ErrorClass, std::vector<Index>> members_by_class(const Chain& robot) {
     std::map<ErrorClass, std::vector<Index>> members;
-    for (Index k = 0; k < robot.parameter_count(); ++k) members[class_of(robot, k)].push_back(k);
+    for (Index k = 0; k < robot.parameter_count(); ++k)
+        members[error_class_of(robot, k)].push_back(k);
     return members;
 }
 

@@ -65,6 +65,7 @@ std::string describe_scaling(const Campaign& campaign, double repeats) {
     add(TermKind::Gravity, "gravity", campaign.spread.gravity);
     add(TermKind::Harmonic, "harmonic", campaign.spread.harmonic);
     add(TermKind::Tilt, "tilt", campaign.spread.tilt);
+    add(TermKind::Gain, "gain", campaign.spread.gain);
     if (!campaign.spread.by_name.empty()) text += ", others by name in the campaign file";
     text += '\n';
     if (campaign.prior) return text + "prior: that of an earlier estimate\n";

@@ -148,10 +148,10 @@ TEST_F(Calibrate, PredictsPosesThatNeedNotBeMeasured) {
         squares += mm[3] * mm[3];
     }
     EXPECT_FALSE(std::getline(lines, line));
-    EXPECT_NEAR(std::sqrt(squares / 2), total, 1e-4 * total);
+    EXPECT_NEAR(std::sqrt(squares / 2), total, 5e-5);
     const Json predicted = Json::parse(text_of("e.json")).at("accuracy").at("predicted");
     EXPECT_EQ(predicted.at("configuration_count"), 2);
-    EXPECT_NEAR(predicted.at("total_mm"), total, 1e-4 * total);
+    EXPECT_NEAR(predicted.at("total_mm"), total, 5e-5);
 
     write_text("q.csv", header + "a,10,20,-30,40,50,60\nfar,-20,5,10,80,-60,2000\n");
     const Outcome beyond = run(clean_ + predict);
@@ -189,9 +189,9 @@ TEST_F(Calibrate, PredictsEachRowOfAProgramThatComesBackToItsPoses) {
 
 TEST_F(Calibrate, RecordsWhichSizesWereLearned) {
     const std::string calibrate = clean_ + "--folds 0 --prior -o e.json ";
-    run_well(calibrate);
+    run_well(calibrate + "--sizes stated");
     EXPECT_FALSE(Json::parse(text_of("e.json")).contains("learned_sizes"));
-    run_well(calibrate + "--learn-sizes");
+    run_well(calibrate);
     const Json sizes = Json::parse(text_of("e.json")).at("learned_sizes");
     EXPECT_EQ(sizes.size(), 2U);
     EXPECT_EQ(sizes.at("length_m").at("stated"), 1e-3);
@@ -199,6 +199,38 @@ TEST_F(Calibrate, RecordsWhichSizesWereLearned) {
     EXPECT_GT(sizes.at("angle_rad").at("learned"), 0);
     write_text("q.csv", "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\na,1,2,3,4,5,6\n");
     run_well("correct " + fanuc_design + " e.json --poses q.csv");
+}
+
+TEST_F(Calibrate, FindsOnlyTheErrorsThatAreAskedFor) {
+    run_well(clean_ + "--folds 0 --free dq2,class:lengths --csv o.csv -o f.json");
+    const Json robot = Json::parse(text_of("f.json")).at("robot");
+    EXPECT_TRUE(robot.contains("dq2") && robot.contains("Tx1") && robot.contains("Tz2"));
+    EXPECT_FALSE(robot.contains("dq3") || robot.contains("Rx1"));
+    const std::string csv = text_of("o.csv");
+    EXPECT_EQ(csv.find("joint,offset,deviation,unit\nq2,"), 0U) << csv;
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 2);
+    const Outcome unknown = run(clean_ + "--free dq22");
+    EXPECT_EQ(unknown.code, 2);
+    EXPECT_NE(unknown.err.find("--free: 'dq22' is no error of the robot; did you mean 'dq2'"),
+              std::string::npos)
+        << unknown.err;
+}
+
+TEST_F(Calibrate, HasOnlyTheErrorsThatItsCampaignLists) {
+    std::string text = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml");
+    text.replace(text.find("robot:\n"), 7, "robot:\n  errors: [class:offsets, Tx3]\n");
+    write_text("list.yaml", text);
+    EXPECT_EQ(run("calibrate list.yaml -m s.csv --folds 0 --force -o l.json").code, 0);
+    const Json robot = Json::parse(text_of("l.json")).at("robot");
+    EXPECT_EQ(robot.size(), 7U);
+    EXPECT_TRUE(robot.contains("Tx3") && robot.contains("dq6"));
+    text.replace(text.find("[class:offsets, Tx3]"), 20, "none");
+    write_text("none.yaml", text);
+    EXPECT_EQ(run("calibrate none.yaml -m s.csv --folds 0 --force -o n.json").code, 0);
+    EXPECT_TRUE(Json::parse(text_of("n.json")).at("robot").empty());
+    text.replace(text.find("errors: none"), 12, "errors: [class:gains]");
+    write_text("bad.yaml", text);
+    expect_input_error("calibrate bad.yaml -m s.csv", "errors: 'class:gains' is no error");
 }
 
 TEST_F(Calibrate, ComparesSetsEvenIfTheWholeCannotBeIdentified) {

@@ -280,7 +280,7 @@ TEST_F(From, WhatIsWrongNamesTheFileThatItIsIn) {
 }
 
 TEST_F(From, TakesTheSizesLearned) {
-    run_well("calibrate c.yaml -m s.csv --prior --learn-sizes --folds 0 -o l.json");
+    run_well("calibrate c.yaml -m s.csv --prior --folds 0 -o l.json");
     const Json learned = Json::parse(text_of("l.json"));
     EXPECT_NE(learned["assumes"]["expected_error"]["Tx1_m"], 1e-3);
     run_well("select c.yaml --prior --from l.json --random 50 -k 9 --starts 2 -o p.json");

@@ -28,7 +28,7 @@ TEST_F(PlanningSection, AsksForAsManyPosesAsTheFittedModelNeeds) {
     const std::string words = "--poses is " + fewer + ", must be at least " +
                               std::to_string(needed) +
                               ": fewer do not identify the errors that calibrate fits";
-    const std::string plan = "plan c.yaml --pool 200 --starts 1 --workspace-poses 50 ";
+    const std::string plan = "plan c.yaml --pool 300 --starts 1 --workspace-poses 50 ";
     const std::string select = "select c.yaml --random 40 --starts 1 -o p.json ";
     expect_input_error(select + "-k " + fewer, words);
     expect_input_error(plan + "-o p.json -k " + fewer, words);
@@ -39,8 +39,6 @@ TEST_F(PlanningSection, AsksForAsManyPosesAsTheFittedModelNeeds) {
     run_well("simulate c.yaml --configurations p.csv -o m.csv");
     const Outcome outcome = run("calibrate c.yaml -m m.csv --folds 0");
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("too few poses, or too much alike"), std::string::npos)
-        << outcome.err;
 }
 
 TEST_F(PlanningSection, IsSaidWhereItIsUsedAndWhereNot) {

@@ -69,7 +69,9 @@ TEST_F(Refusal, OfOneConfigurationThatIsWrongIsCuredByLeavingItOut) {
     // What is forced says so to all that builds on it.
     run("calibrate " + fanuc_design + " -m bad.csv --force --folds 0 -o bad.json");
     Json estimate = Json::parse(text_of("bad.json"));
-    EXPECT_EQ(estimate.at("cures").at("found").at(0).at("option"), "--exclude 5");
+    EXPECT_TRUE(std::ranges::any_of(estimate.at("cures").at("found"), [](const Json& cure) {
+        return cure.at("option") == "--exclude 5";
+    }));
     // Its faults are said once, whatever it was warned of.
     estimate["warnings"] = {"this is no calibration: it says so here, too"};
     write_text("bad.json", estimate.dump());
@@ -91,7 +93,7 @@ TEST_F(Refusal, IsNotPutOffByLearnedSizes) {
     write_irb("");
     simulate("i.yaml");
     rewrite("s.csv", "z.csv", [](Cells& cells) { add(cells[3], 1.5707963); });
-    const Outcome outcome = run("calibrate i.yaml -m z.csv --folds 0 --learn-sizes -o z.json");
+    const Outcome outcome = run("calibrate i.yaml -m z.csv --folds 0 --sizes learned -o z.json");
     EXPECT_EQ(outcome.code, 3);
     EXPECT_NE(outcome.err.find("times the size expected of it"), std::string::npos) << outcome.err;
     EXPECT_FALSE(has_file("z.json"));

@@ -252,7 +252,7 @@ sensor: {kind: points, sigma_mm: 0.1, targets: {count: 3}}
     const CampaignFile unsaid = read(replaced(text, "  errors: full\n", ""));
     EXPECT_EQ(unsaid.error_model, ErrorModel::Full);
     EXPECT_EQ(read(text + "model_error_mm: auto\n").model_error, unsaid.model_error);
-    EXPECT_EQ(unsaid.model_error_common, 0);
+    EXPECT_FALSE(unsaid.model_error_common);
     EXPECT_EQ(read(text + "model_error_common: 0.9\n").model_error_common, 0.9);
     EXPECT_EQ(unsaid.robot.parameter_names(), file.robot.parameter_names());
 

@@ -35,6 +35,7 @@ Campaign noisy_campaign() {
     campaign.sensor = std::make_shared<PointSensor>(
         std::vector<std::optional<Vector3d>>(3, std::nullopt), LaserTrackerNoise{1e-5, 8e-6});
     campaign.joint_repeatability = VectorXd::LinSpaced(6, 1e-5, 6e-5);
+    campaign.model_error_common = 0.9;
     return campaign;
 }
 
@@ -72,29 +73,49 @@ TEST(MeanCovariance, JointErrorsCorrelateTheTargetsAndRepeatsDoNotReduceThem) {
 TEST(MeanCovariance, HasTheMotionOfTheFlangeThatTheModelErrorIs) {
     Campaign campaign = noisy_campaign();
     campaign.model_error = 3e-4;
-    campaign.model_error_orientation = 7e-4;
-    campaign.model_error_common = 0.9;
     const VectorXd q = VectorXd::LinSpaced(6, -0.5, 0.7);
     std::vector<FlangeMotionRate> rates;
     const FlangeMotion motion = motion_at(campaign, q, rates);
     const VectorXd& targets = campaign.nominal.sensor;
-    // By a translation of the flange and a rotation about its origin, along the world's axes.
+    // By a translation of the flange and a rotation about the middle of the targets, along the
+    // world's axes.
+    const auto target = [&](Index j) {
+        return Vector3d(motion.world_from_flange * campaign.sensor->target_position(j, targets));
+    };
+    const Vector3d middle = (target(0) + target(1) + target(2)) / 3;
+    double levers = 0;
+    for (Index j = 0; j < 3; ++j) levers += (target(j) - middle).squaredNorm() / 3;
     const auto predict = [&](const VectorXd& moved) {
-        Isometry3d flange = motion.world_from_flange;
-        flange.linear() = rotation_from_vector(moved.tail<3>()) * flange.linear();
-        flange.translation() += moved.head<3>();
-        return campaign.sensor->predict(flange, targets);
+        Isometry3d turn = Isometry3d::Identity();
+        turn.linear() = rotation_from_vector(moved.tail<3>());
+        const Isometry3d about_middle =
+            Eigen::Translation3d(middle + moved.head<3>()) * turn * Eigen::Translation3d(-middle);
+        return campaign.sensor->predict(about_middle * motion.world_from_flange, targets);
     };
     const MatrixXd effect = testing::numerical_jacobian(predict, VectorXd::Zero(6));
     VectorXd variances(6);
-    variances << 0.9 * 9e-8 * VectorXd::Ones(3), 0.9 * 49e-8 * VectorXd::Ones(3);
+    variances << 0.45 * 9e-8 * VectorXd::Ones(3), 0.45 * 9e-8 * 1.5 / levers * VectorXd::Ones(3);
     const MatrixXd moved = effect * variances.asDiagonal() * effect.transpose() +
                            0.1 * 9e-8 * MatrixXd::Identity(9, 9);
+    // As large as if each target had it by itself.
+    EXPECT_NEAR(moved.trace(), 9 * 9e-8, 1e-14);
     const MatrixXd with = mean_covariance(campaign, motion, targets, 5);
-    EXPECT_NEAR(left_over_rms(campaign, targets), std::sqrt(moved.trace() / 3), 1e-9);
-    campaign.model_error = campaign.model_error_orientation = 0;
+    campaign.model_error = 0;
     const MatrixXd without = mean_covariance(campaign, motion, targets, 5);
     EXPECT_TRUE((with - without).isApprox(moved, 1e-7));
+}
+
+TEST(MeanCovariance, SharesNothingWhereOneTargetIsShown) {
+    Campaign campaign = one_target_campaign(3e-5, 4e-5);
+    EXPECT_EQ(common_part(campaign), 0);
+    EXPECT_TRUE(has_constant_noise(campaign));
+    EXPECT_EQ(common_part(noisy_campaign()), 0.9);
+    EXPECT_FALSE(has_constant_noise(noisy_campaign()));
+    campaign = noisy_campaign();
+    campaign.model_error_common.reset();
+    EXPECT_EQ(common_part(campaign), 0);  // without priors
+    campaign.spread.is_prior = true;
+    EXPECT_EQ(common_part(campaign), usual_model_error_common);
 }
 
 TEST(MeanCovariance, DividesEachTargetByItsOwnRepeatsAndLeavesOutThoseNotSeen) {
@@ -117,8 +138,7 @@ TEST(MeanCovariance, DividesEachTargetByItsOwnRepeatsAndLeavesOutThoseNotSeen) {
 }
 
 TEST(MeanCovarianceRate, AgreesWithDifferences) {
-    Campaign campaign = noisy_campaign();
-    campaign.model_error_common = 0.9;
+    const Campaign campaign = noisy_campaign();
     const VectorXd& targets = campaign.nominal.sensor;
     std::vector<FlangeMotionRate> rates;
     std::vector<FlangeMotionRate> ignored;

@@ -71,6 +71,34 @@ TEST(CompleteModel, TakesACoupledJointWrittenInTwoElementsForOneAxis) {
     }
 }
 
+TEST(Gains, AreOfEveryAxisThatJointsDrive) {
+    const Chain gained = with_gains(arm_with_mimic());
+    EXPECT_EQ(gained.parameter_names(),
+              (std::vector<std::string>{"q1.gain", "q2.gain", "q2_2.gain", "q3.gain"}));
+    VectorXd errors = VectorXd::Zero(4);
+    errors[2] = 0.01;
+    const VectorXd q = Eigen::Vector3d(0.2, 0.4, -0.1);
+    // The axis that follows turns by -q2, times 1.01, about the middle of the range.
+    const Chain expected({{"q1", -1, 1}, {"q2", -1, 1}, {"q3", -1, 1}},
+                         {driven(Motion::Rotation, Axis::Z, 0), translation(Axis::X, 0.5),
+                          driven(Motion::Rotation, Axis::X, 1), rotation(Axis::Y, -1.2),
+                          Element{Motion::Rotation, Axis::X, 0, {{1, -1.01}}, ""},
+                          translation(Axis::X, 0.2), driven(Motion::Rotation, Axis::X, 2)});
+    EXPECT_TRUE(gained.base_from_flange(q, errors).isApprox(
+        expected.base_from_flange(q, VectorXd()), 1e-14));
+}
+
+TEST(Gains, ScaleASlideAboutItsMiddle) {
+    const Chain rail({{"rail", 0, 4}}, {driven(Motion::Translation, Axis::X, 0)});
+    const Chain gained = with_gains(rail);
+    ASSERT_EQ(gained.parameter_names(), (std::vector<std::string>{"rail.scale"}));
+    const VectorXd error = VectorXd::Constant(1, 3e-4);
+    for (const double q : {0.0, 2.0, 4.0}) {
+        EXPECT_NEAR(gained.base_from_flange(VectorXd::Constant(1, q), error).translation().x(),
+                    q + 3e-4 * (q - 2), 1e-15);
+    }
+}
+
 TEST(CompleteModel, OfItselfIsItself) {
     for (const Chain& chain : {fanuc(), arm_with_mimic()}) {
         const Chain once = complete_model(chain);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
+#include <algorithm>
 
 #include "../../src/model/complete_model.hpp"
 #include "../../src/model/sampling.hpp"
@@ -82,8 +83,13 @@ TEST(TorqueShapes, ExplainTheTorqueOfWeightsAtTheJointsAndOfAnyTool) {
     }
 }
 
-TEST(TorqueShapes, AreDifferentiatedInTheFullModel) {
-    const Chain robot = full_model(without_parameters(fanuc()));
+class DifferentiatedFullModel : public ::testing::TestWithParam<Chain> {};
+
+INSTANTIATE_TEST_SUITE_P(TorqueShapes, DifferentiatedFullModel,
+                         ::testing::Values(without_parameters(fanuc()), arm_on_lift()));
+
+TEST_P(DifferentiatedFullModel, AgreesWithDifferences) {
+    const Chain robot = full_model(GetParam());
     const RowMatrixXd configurations = random_configurations(robot, 3, 4);
     RandomStream stream(6, 0);
     const VectorXd parameters = random_vector(stream, robot.parameter_count(), 1e-2);
@@ -108,6 +114,42 @@ TEST(TorqueShapes, AreDifferentiatedInTheFullModel) {
         expect_is_jacobian(
             at_flange(motion.joint_twists),
             [&](const VectorXd& joints) { return position(joints, parameters); }, q);
+    }
+}
+
+TEST(TorqueShapes, BendASlideAboutTheMiddleOfWhatIsOut) {
+    const Chain robot = with_torque_shapes(arm_on_lift());
+    const auto names = robot.parameter_names();
+    const auto bends = [&](const char* start) {
+        return std::count_if(names.begin(), names.end(),
+                             [&](const std::string& name) { return name.starts_with(start); });
+    };
+    // Weights far out along x pull down about y, and none twists an upright column.
+    EXPECT_GE(bends("lift.Rx.torque("), 1);
+    EXPECT_GE(bends("lift.Ry.torque("), 1);
+    EXPECT_EQ(bends("lift.Rz.torque("), 0);
+    EXPECT_GE(bends("q2.torque("), 1);
+
+    const auto found = std::find(names.begin(), names.end(), "lift.Ry.torque(q2)");
+    ASSERT_NE(found, names.end());
+    const Index k = found - names.begin();
+    const GravityTorque& torque = *robot.parameter_term(k)->function.torque;
+    VectorXd bent = VectorXd::Zero(robot.parameter_count());
+    bent[k] = 1e-4;
+    const VectorXd straight = VectorXd::Zero(robot.parameter_count());
+    for (const double out : {0.0, 0.4, 0.8}) {
+        const VectorXd q = Eigen::Vector3d(0.2 + out, 0.3, 0.1);
+        const Isometry3d before = robot.base_from_flange(q, straight);
+        const Isometry3d after = robot.base_from_flange(q, bent);
+        EXPECT_TRUE(before.isApprox(arm_on_lift().base_from_flange(q, VectorXd()), 1e-14));
+        const double angle = 1e-4 * torque.value(q) * out / 0.8;
+        const Vector3d pivot(0, 0, 0.3 + 0.2 + out / 2);
+        const Vector3d expected =
+            angle * Vector3d::UnitY().cross(Vector3d(before.translation() - pivot));
+        EXPECT_TRUE((after.translation() - before.translation()).isApprox(expected, 1e-3) ||
+                    out == 0)
+            << out;
+        EXPECT_TRUE(out > 0 || after.isApprox(before, 1e-14));
     }
 }
 

@@ -45,9 +45,10 @@ TEST(FormatCalibration, ShowsLearnedSizesBesideTheExpected) {
     example.campaign.spread.is_prior = true;
     CalibrationOptions options;
     options.folds = 0;
+    example.campaign.spread.is_open = false;
     EXPECT_FALSE(
         holds(format(calibrate(example.campaign, example.measurements, options)), "class"));
-    options.learns_sizes = true;
+    example.campaign.spread.is_open = true;
     const std::string text = format(calibrate(example.campaign, example.measurements, options));
     EXPECT_TRUE(holds(text, "class           count  expected  learned     RMS")) << text;
 }
@@ -215,12 +216,8 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
     calibration.campaign.spread.by_name["dq2"] = 0.02;
     calibration.campaign.spread.is_prior = true;
     calibration.doubts.model_errors = {{9, 9e-4, false}};
-    calibration.doubts.held_back = HeldBackSize{{"offset", 2e-4, true, {0}}, 0.012};
     const auto sentences = describe_doubts(calibration);
-    ASSERT_EQ(sentences.size(), 3U);
-    EXPECT_EQ(sentences[2],
-              "the size learned for spread.offset_mrad, 0.2 mrad, holds its errors back, the one "
-              "stated is too small: 12 mrad would fit");
+    ASSERT_EQ(sentences.size(), 2U);
     EXPECT_EQ(sentences[0],
               "beyond three times the expected size, which holds them back: dq2 (70 mrad, 3.5 "
               "times); does the robot give way that much?");

@@ -93,6 +93,15 @@ inline Chain gantry_with_wrist() {
          driven(R, Axis::X, 5)});
 }
 
+/// An upright column that carries an arm of two joints; no error parameters.
+inline Chain arm_on_lift() {
+    const auto R = Motion::Rotation;
+    return Chain(
+        {{"lift", 0.2, 1.0}, {"q1", -2, 2}, {"q2", -1, 1}},
+        {translation(Axis::Z, 0.3), driven(Motion::Translation, Axis::Z, 0), driven(R, Axis::Z, 1),
+         translation(Axis::X, 0.5), driven(R, Axis::Y, 2), translation(Axis::X, 0.4)});
+}
+
 /// SCARA: two parallel arms, a vertical slide, a turning flange; no error parameters.
 inline Chain scara() {
     const auto R = Motion::Rotation;

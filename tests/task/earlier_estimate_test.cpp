@@ -268,6 +268,7 @@ TEST(EarlierEstimate, TellsWhereRobotBaseAndTargetsAre) {
                         .estimate};
     earlier.spread = campaign.spread;
     earlier.spread->length = 3e-3;
+    earlier.estimate.spread = earlier.spread;
     const Parameters& found = earlier.estimate.parameters;
     const Campaign expected = with_earlier(campaign, earlier);
     EXPECT_EQ(expected.nominal.robot, found.robot);

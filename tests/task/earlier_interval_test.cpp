@@ -69,10 +69,8 @@ TEST(EarlierEstimate, KnowsSizesAsWellAsItsErrorsTellThem) {
     const Campaign campaign = held_campaign();
     const Parameters truth = draw_truth(campaign, 2);
     const auto within_of = [&](Index count) {
-        CalibrationOptions options = without_folds();
-        options.learns_sizes = true;
         const Calibration found =
-            calibrate(campaign, measure_at_random(campaign, truth, count, 4), options);
+            calibrate(campaign, measure_at_random(campaign, truth, count, 4), without_folds());
         const Earlier earlier{found.estimate, {}, found.campaign.spread};
         EXPECT_EQ(with_earlier(campaign, {found.estimate}).known_within.error_size,
                   error_size_factor);

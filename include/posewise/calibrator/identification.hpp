@@ -58,7 +58,8 @@ struct LevenbergMarquardtOptions {
     Index iteration_limit = 100;
     double relative_tolerance =
         1e-12;  ///< stops at this predicted relative decrease of the squares
-    /// Whether to find the model error, too, if expected sizes are priors; else it is as stated.
+    /// Whether to find the model error, too, if expected sizes are priors, and to learn these where
+    /// they are open; else they are as stated.
     bool finds_model_error = true;
     Loss loss = {};        ///< width 0: 95 % of the efficiency of squares on normal errors
     StopSignal stop = {};  ///< ends it with the best result so far
@@ -72,38 +73,15 @@ struct LevenbergMarquardtOptions {
 /// 0, is then found in turn with the parameters, separately for lengths and angles. Its mean square
 /// follows from how well all other configurations predict each one, and from a log-normal prior
 /// about the stated value with a factor of 2.5 as one standard deviation.
+/// The sizes of the robot's errors, where the spread says that they are open, are learned in turn,
+/// too (with squares, and without an earlier estimate as prior): those under which the measurements
+/// are most probable [expectation maximisation, Dempster, Laird & Rubin 1977], with a log-normal
+/// density about the expected ones, one standard deviation a factor of error_size_factor.
 /// Ends NotIdentifiable if a target at an unknown place is seen in no sample, if there are fewer
 /// equations than parameters, or if these poses do not show a direction of parameter space, and
 /// names the parameters in it. Throws InputError for measurements that do not fit the campaign.
 Estimate identify(const Campaign& campaign, const Measurements& measurements,
                   const Parameters& start, const LevenbergMarquardtOptions& options = {});
-
-/// The campaign's spread with the error sizes of this robot, for lengths, angles, joint offsets,
-/// gravity (torque) terms, harmonics and tilts: the sizes under which the measurements are most
-/// probable, where the spread is a prior. They follow from expectation maximisation [Dempster,
-/// Laird & Rubin 1977] over each error's square, estimate^2 + variance, with a log-normal density
-/// about the stated size, its deviation a factor of error_size_factor. Sizes stated by parameter
-/// name are kept. Throws InputError if the spread is no prior, and as identify() does.
-ParameterSpread learn_sizes(const Campaign& campaign, const Measurements& measurements,
-                            const Parameters& start, const LevenbergMarquardtOptions& options = {});
-
-/// A size that was stated far too small to be learned.
-struct HeldBackSize {
-    SharedSize held;     ///< as learned
-    double fitting = 0;  ///< the size that fits, m or rad
-};
-
-/// Finds where learn_sizes() got stuck: a size stated far too small holds its errors back, and
-/// others absorb them. `learned` has the sizes learned from `stated`, and the model error found
-/// with them. Candidates are the sizes that their errors exceed more than three times when nothing
-/// holds them back. The one that alone makes the measurements most probable is tried: the sizes are
-/// learned again from it. Nothing if the measurements are then not clearly more probable (150 to
-/// 1), or for losses other than squares.
-std::optional<HeldBackSize> find_held_back_size(const Campaign& learned,
-                                                const ParameterSpread& stated,
-                                                const Measurements& measurements,
-                                                const Parameters& start,
-                                                const LevenbergMarquardtOptions& options = {});
 
 struct TwoStepOptions {
     Index iteration_limit = 200;
@@ -183,7 +161,8 @@ struct ParameterSet {
 
 /// The chain's parameters as nested sets, each with all of the previous one: none (base and targets
 /// only), joint offsets (constant errors of driven elements), + lengths (other constant errors
-/// along an axis), + other geometric, + gravity terms, + free terms, + harmonics, + tilts of axes.
+/// along an axis), + other geometric, + gravity terms, + free terms, + harmonics, + tilts of axes,
+/// + scales and gear ratios.
 /// Steps that add nothing are left out.
 std::vector<ParameterSet> nested_parameter_sets(const Chain& chain);
 

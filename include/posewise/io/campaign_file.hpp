@@ -25,13 +25,14 @@ struct MatMapping {
 
 /// The error parameters that the robot of a campaign has.
 enum class ErrorModel {
+    None,      ///< none: only base and targets are found
     Stated,    ///< those that the file names in brackets
     Offsets,   ///< joint zeros, reduced to those that can be told apart
     Complete,  ///< all geometric errors of rigid links, reduced to an irreducible set
     Full,      ///< geometric errors, torque shapes, harmonics; sizes are priors: the default
 };
 
-/// "stated", "offsets", "geometric" or "full", as in files under `errors`.
+/// "none", "stated", "offsets", "geometric" or "full", as in files under `errors`.
 std::string_view error_model_name(ErrorModel model);
 /// The model with that name ("complete" is geometric, too). Throws InputError for any other.
 ErrorModel parse_error_model(const std::string& name);

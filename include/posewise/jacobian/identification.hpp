@@ -101,6 +101,12 @@ std::vector<Index> weakest_kept(const Campaign& campaign, const Identifiability&
 /// The robot with only the named error parameters.
 Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names);
 
+/// The campaign with only these errors of its robot: names of parameters, and words of classes,
+/// "class:offsets" (offsets, lengths, angles, gravity, harmonics, tilts, gains, terms). All others
+/// are zero. Throws InputError for a name that is none of the robot's errors, or a class without
+/// any.
+Campaign with_free_errors(const Campaign& campaign, const std::vector<std::string>& errors);
+
 /// The robot without errors that only move it as a whole, like the first joint's zero. They mean
 /// nothing where everything is found in its base frame.
 Chain without_errors_of_base(const Chain& chain);

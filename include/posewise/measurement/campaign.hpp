@@ -32,11 +32,17 @@ struct ParameterSpread {
     double gravity = 1e-3;      ///< for terms of TermKind::Gravity and TermKind::Torque
     double harmonic = 0.15e-3;  ///< for terms of TermKind::Harmonic
     double tilt = 0.05e-3;      ///< for terms of TermKind::Tilt
+    double gain = 0.2e-3;       ///< for terms of TermKind::Gain, m/m and rad/rad
     std::optional<double> offset = {};  ///< for revolute joints; nothing: like other angles
+    /// Whether the sizes of a prior are only expected: a calibration learns the robot's own, which
+    /// are these within a factor of error_size_factor. Those of `by_name` are kept.
+    bool is_open = true;
 };
 
 /// Model errors differ between robots: one standard deviation is this factor.
 inline constexpr double model_error_factor = 2.5;
+/// Measured: 0.84 to 0.93 on five campaigns with several targets.
+inline constexpr double usual_model_error_common = 0.9;
 /// Sizes of the errors that are parameters differ, too: one standard deviation is this factor.
 inline constexpr double error_size_factor = 2;
 
@@ -86,10 +92,11 @@ struct Campaign {
     /// (m) and angles (rad).
     double model_error = 1e-4;
     double model_error_orientation = 1e-4;
-    /// The part of its variance that is a motion of the flange, a translation and a rotation about
-    /// its origin, and so common to all that is measured in a configuration; the rest each number
-    /// has by itself. 0: all of it. Measured: 0.84 to 0.93 on five campaigns with several targets.
-    double model_error_common = 0;
+    /// The part of the variance of lengths that is a motion of the flange, half of it a
+    /// translation, half a rotation about the middle of the targets, and so common to all targets
+    /// of a configuration; the rest each number has by itself. Nothing is common where one target
+    /// or body is shown. Not stated: usual_model_error_common where sizes are priors, else 0.
+    std::optional<double> model_error_common{};
     KnownWithin known_within{};  ///< for the intervals of predictions
     /// Standard deviation of each joint about its commanded value (rad or m): one error per
     /// configuration, shared by all its repeats. Empty: none.

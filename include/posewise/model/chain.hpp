@@ -37,7 +37,7 @@ struct JointFunction {
     enum class Shape {
         Linear,  ///< u: joint coupling, transmission ratio, compliance under a measured torque
         Sine,    ///< sin(u); a cosine has phase pi/2
-        Torque,  ///< torque of known weights, divided by its largest value; no joint terms
+        Torque,  ///< torque of weights, divided by its largest value; times u if there are terms
     };
     Shape shape = Shape::Linear;
     std::vector<JointTerm> joints;
@@ -52,6 +52,7 @@ enum class TermKind {
     Harmonic,  ///< periodic error of an encoder or a gear
     Torque,    ///< torque shape of unknown weights on a compliant joint
     Tilt,      ///< periodic tilt of a joint's axis as it turns
+    Gain,      ///< scale of a slide, ratio of a gear: in proportion to the joint
 };
 
 /// An error that depends on the configuration: the element's amount gains parameter * f(q).

@@ -83,11 +83,13 @@ class GravityTorque {
     bool varies_ = false;
 };
 
-/// Places of the nominal robot's links, and how its driven elements move them. Each thread
+/// Places of the nominal robot's links, and how its driven elements (those that joints drive, and
+/// others that bend) move them. Each thread
 /// remembers the last configuration.
 class GravityTorque::Arm {
   public:
-    explicit Arm(const Chain& chain);
+    /// `also`: elements that no joint drives, whose torque is asked for, too.
+    explicit Arm(const Chain& chain, const std::vector<std::size_t>& also = {});
 
     struct Motion {
         FlangeMotion flange;            ///< column 6 + e of its twists: by driven element e
@@ -102,11 +104,13 @@ class GravityTorque::Arm {
     Index driven_count() const { return chain_.parameter_count(); }
     /// Number of driven elements up to the first one that joint `link` (from 1) drives.
     Index count_driven(Index link) const;
+    /// Number of driven elements before this one of all elements.
+    Index count_before(std::size_t element) const;
     /// Driven elements x joints: how much each joint moves each element.
     const MatrixXd& driven_by() const { return driven_by_; }
 
   private:
-    Chain chain_;  ///< each driven element has one error parameter, for its motion
+    Chain chain_;  ///< each such element has one error parameter, for its motion
     MatrixXd driven_by_;
     std::uint64_t number_;  ///< unique to this arm
 };
@@ -148,7 +152,9 @@ Chain with_compliance(const Chain& chain, const std::vector<Load>& loads,
 /// remainder below 3 % of the joint's largest is dropped. All are scaled so that the joint's
 /// largest moment, before subtraction, has the RMS of a sine: their parameters (rad) compare with
 /// those of harmonics, and a minor shape has little effect. A joint with constant moments (upright
-/// axis) gets none. Throws InputError for a zero direction.
+/// axis) gets none. A slide bends, too, about each axis of its carriage and in proportion to how
+/// far it is out of its lower limit, as a beam does: about the middle of what is out
+/// (`lift.Rx.torque(q2)`). Throws InputError for a zero direction.
 Chain with_torque_shapes(const Chain& chain, const Vector3d& direction = -Vector3d::UnitZ());
 
 /// RMS distance (m) of the flange from its mean within the joint limits: the size of the robot.
@@ -182,6 +188,12 @@ Chain with_harmonics(const Chain& chain, const std::vector<double>& orders,
 /// `q4.Rx.sin(q4)`, `q4.Ry.cos(2q4)`. Throws InputError as with_harmonics() does.
 Chain with_axis_tilt(const Chain& chain, const std::vector<double>& orders,
                      const std::vector<Index>& joints = {});
+
+/// The robot with the scale of every slide and the ratio of every gear: each axis that joints drive
+/// gains its amount, counted from the middle of the limits, times a parameter (`rail.scale` in m/m,
+/// `q4.gain` in rad/rad). Axes that only move along with joints of others have their own. Only axes
+/// that one of `joints` moves (indices from 0; empty: all).
+Chain with_gains(const Chain& chain, const std::vector<Index>& joints = {});
 
 /// Names of the error terms whose parameters are not zero.
 std::vector<std::string> active_terms(const Chain& chain, const VectorXd& parameters);

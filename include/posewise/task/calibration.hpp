@@ -98,9 +98,6 @@ struct CalibrationOptions {
     /// Groups of configurations to hold out in turn; 0: none. Nothing: default_folds().
     std::optional<Index> folds{};
     bool model_selection = false;  ///< also compares nested parameter sets; needs folds and Joint
-    /// Replaces the expected sizes of the robot's errors by its actual ones, learn_sizes();
-    /// held-out groups are predicted with the same sizes. Needs Joint and a spread that is a prior.
-    bool learns_sizes = false;
     /// Called if there are doubts: campaigns with richer errors to try. Nothing: none.
     std::function<std::vector<OtherCampaign>()> richer{};
     /// Ends the identification with the best result so far; incomplete figures are left out.

@@ -334,6 +334,7 @@ struct Doubts {
     /// Likewise for orientations (RMS, rad).
     std::optional<double> orientations;
     std::vector<SizeDoubt> sizes;
+    std::vector<SizeDoubt> learned_sizes;       ///< of a class each, "spread.harmonic"
     std::vector<ModelErrorDoubt> model_errors;  ///< for lengths, for angles
     /// Approximate share, 0 to 1, of the remaining squares that follows bending and periodic
     /// errors of joints missing in the model; if that is clear, and more than a twentieth.
@@ -341,7 +342,6 @@ struct Doubts {
     std::optional<ScatterDoubt> scatter;
     bool lacks_length = false;  ///< see lacks_length()
     std::optional<DistanceDoubt> distance;
-    std::optional<HeldBackSize> held_back;  ///< if sizes were learned
     /// If the calibrated robot is not shown to predict held-out poses better than the nominal one.
     std::optional<HeldOutComparison> held_out;
     /// Residuals more than 1.2 times larger or smaller than stated, and in the 0.1 % tails of chi

@@ -30,7 +30,7 @@ struct HeldOutComparison {
     bool is_no_better() const;
 };
 
-/// What to calibrate with instead: an option ("exclude 5", "loss cauchy", "learn-sizes") or a
+/// What to calibrate with instead: an option ("exclude 5", "loss cauchy", "sizes learned") or a
 /// campaign key ("robot.errors: full").
 struct Remedy {
     std::string words;

@@ -21,10 +21,11 @@
 namespace posewise::io {
 namespace {
 
-constexpr detail::Names<ErrorModel, 4> error_models{{{ErrorModel::Full, "full"},
+constexpr detail::Names<ErrorModel, 5> error_models{{{ErrorModel::Full, "full"},
                                                      {ErrorModel::Complete, "geometric"},
                                                      {ErrorModel::Offsets, "offsets"},
-                                                     {ErrorModel::Stated, "stated"}}};
+                                                     {ErrorModel::Stated, "stated"},
+                                                     {ErrorModel::None, "none"}}};
 
 using detail::Quantity;
 namespace keys = detail::keys;
@@ -93,6 +94,7 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
     read("gravity", spread.gravity);
     read("harmonic", spread.harmonic);
     read("tilt", spread.tilt);
+    read("gain", spread.gain);
     if (map.find_measure("offset")) read("offset", spread.offset.emplace());
     const auto parameters = map.find("parameters");
     if (!parameters) return spread;
@@ -172,6 +174,15 @@ Campaign make_irreducible(const Campaign& campaign, ErrorModel model, const Yaml
     }
 }
 
+Campaign keep_free(const Campaign& campaign, const std::vector<std::string>& free,
+                   const YamlValue& robot) {
+    try {
+        return with_free_errors(campaign, free);
+    } catch (const InputError& problem) {
+        throw robot.error(std::string("errors: ") + problem.what());
+    }
+}
+
 /// One line of text: it becomes the title of plots and a comment of other files.
 std::string read_name(const YamlValue& value) {
     const std::string name = value.text();
@@ -227,16 +238,25 @@ CampaignFile parse(const std::string& content, const std::string& path,
             with_robot(campaign, sensor.is_in_base_frame ? without_errors_of_base(full) : full);
         campaign.spread = population_spread(robot.declared);
     }
+    if (!robot.free.empty()) campaign = keep_free(campaign, robot.free, map.require("robot"));
     read_model_error(map, "model_error", campaign.model_error);
     read_model_error(map, "model_error_orientation", campaign.model_error_orientation);
     if (const auto common = map.find("model_error_common")) {
-        campaign.model_error_common = common->number();
-        if (!(campaign.model_error_common >= 0 && campaign.model_error_common <= 1)) {
+        const double part = common->number();
+        campaign.model_error_common = part;
+        if (!(part >= 0 && part <= 1)) {
             throw common->error("is " + detail::quote(common->text()) + "; must be from 0 to 1");
         }
     }
     if (const auto spread = map.find("spread")) {
         campaign.spread = read_spread(*spread, campaign, !errors);
+    }
+    if (const auto sizes = map.find("sizes")) {
+        if (!sizes->is_text("learned") && !sizes->is_text("stated")) {
+            throw sizes->error("is " + detail::quote(sizes->text()) +
+                               "; must be learned or stated");
+        }
+        campaign.spread.is_open = sizes->is_text("learned");
     }
     if (const auto prior = map.find("prior")) set_prior(file, prior->boolean(), stop);
     if (const auto planning = map.find("planning")) {

@@ -20,19 +20,20 @@ const YamlKeys file{
         {"model_error_orientation_mrad", "", "the same of measured orientations",
          "`auto`: 0.1 mrad", "`0.25`"},
         {"model_error_common", "",
-         "part of the model error's variance that is a motion of the flange, a translation and a "
-         "rotation about its origin, and so common to all targets of a configuration; the rest "
-         "each has by itself. On real robots with several targets 0.84 to 0.93 was found: with 0.9 "
-         "three targets count as the one witness that they are, expected errors are right at few "
-         "poses, and a rotation (`model_error_orientation_mrad`) is found, too. With hundreds of "
-         "poses a model that lacks smooth errors may be fitted worse with it. Robust losses weigh "
-         "targets one by one and take 0",
-         "0", "`0.9`"},
+         "part of the model error's variance that moves the flange, half by a translation, half by "
+         "a rotation about the targets' middle, and so is common to all targets of a "
+         "configuration; the rest each has by itself. Found on real robots with several targets: "
+         "0.84 to 0.93. Robust losses, which weigh targets one by one, take 0",
+         "0.9 beside priors, else 0", "`0`"},
         {"spread", "", "expected size of each error", "see below", "`{length_mm: 0.5}`"},
         {"prior", "",
          "whether these sizes are prior standard deviations, too: fewer poses than parameters will "
          "do",
          "`true` with `errors: full`, else `false`", "`true`"},
+        {"sizes", "",
+         "whether a calibration learns the sizes of a prior, about these within a factor of 2 (one "
+         "standard deviation; few poses move them a little), or takes them as stated",
+         "`learned`", "`stated`"},
         {"planning", "",
          "with `{errors: full}`: `select` and `plan` reckon with these errors (what they predict "
          "is that of a calibration with these), all other commands with those of `robot`, which "
@@ -63,10 +64,13 @@ const YamlKeys robot{
         {"base_link", "", "of the URDF: where the robot begins", "its root", "`base_link`"},
         {"tip_link", "", "of the URDF: what carries the targets", "its only leaf", "`tool0`"},
         {"errors", "",
-         "`stated`: those named in brackets; `offsets`: the joints' zeros alone, those that base "
-         "and targets do not tell already; `geometric` (or `complete`): every error a rigid link "
-         "can have, less what cannot be identified; `full`: see below",
-         "`stated` where a bracket names a constant error, else `full`", "`geometric`"},
+         "`none`: base and targets alone (registration, hand-eye); `stated`: those named in "
+         "brackets; `offsets`: the joints' zeros alone, those that base and targets do not tell "
+         "already; `geometric` (or `complete`): every error a rigid link can have, less what "
+         "cannot be identified; `full`: see below; or a list of some of these, by name or class "
+         "(offsets, lengths, angles, gravity, harmonics, tilts, gains, terms)",
+         "`stated` where a bracket names a constant error, else `full`",
+         "`geometric`, `[class:offsets, Tx3]`"},
         {"gravity", "", "errors of joints that bend under the arm's weight: `true`, or a map",
          "none", "`{direction: [0, 0, -1], joints: [q2, q3]}`"},
         {"harmonics", "", "errors of encoders and gears, periodic in the joint", "none",
@@ -74,6 +78,10 @@ const YamlKeys robot{
         {"axis_tilt", "",
          "tilt error motion of the joints' axes, periodic in the joint (bearings; links that bend)",
          "none", "`{orders: [1, 2]}`"},
+        {"gains", "",
+         "ratios of gears, in proportion to the joint: `true`, or a map; slides and axes that "
+         "follow a joint have theirs with `errors: full` anyway",
+         "none", "`{joints: [q4]}`"},
         {"compliance", "", "one compliance a joint, under known or measured torques", "none",
          "see below"},
     }};
@@ -221,6 +229,8 @@ const YamlKeys spread{
         {"gravity_mrad", "", "gravity terms and compliances", "1 mrad", "`1`"},
         {"harmonic_mrad", "", "harmonics", "0.15 mrad", "`0.05`"},
         {"tilt_mrad", "", "tilts of axes, `axis_tilt`", "0.05 mrad", "`0.02`"},
+        {"gain_mrad", "", "scales of slides (mm a metre) and ratios of gears (mrad a radian)",
+         "0.2 mrad", "`0.3`"},
         {"offset_mrad", "", "offsets of joints that turn", "as other angles", "`20`"},
         {"parameters", "", "exceptions by the name of the parameter, with unit", "none",
          "`{Tx1: 2 mm, dq2: 20 mrad}`"},

@@ -75,8 +75,15 @@ Joint to_joint(const YamlMeasure& limits, const std::string& name, Motion motion
     return {name, values[0], values[1]};
 }
 
-io::ErrorModel find_error_model(const YamlMap& robot, const std::vector<Element>& elements) {
-    if (const auto errors = robot.find("errors")) return read_error_model(*errors);
+/// A list names some of all errors.
+io::ErrorModel find_error_model(const YamlMap& robot, const std::vector<Element>& elements,
+                                std::vector<std::string>& free) {
+    if (const auto errors = robot.find("errors")) {
+        if (!errors->is_list()) return read_error_model(*errors);
+        for (const YamlValue& error : errors->list()) free.push_back(error.text());
+        if (free.empty()) throw errors->error("is empty; must name errors, or be none");
+        return io::ErrorModel::Full;
+    }
     const auto is_stated = [](const Element& element) { return !element.parameter.empty(); };
     return std::any_of(elements.begin(), elements.end(), is_stated) ? io::ErrorModel::Stated
                                                                     : io::ErrorModel::Full;
@@ -185,8 +192,13 @@ RobotSection read_robot(const YamlValue& value, std::optional<io::ErrorModel> er
     const YamlMap robot(value, keys::robot);
     RobotSection section = read_described(robot, find_description(value, robot));
     check_has_room(value, section.declared);
-    section.error_model = errors ? *errors : find_error_model(robot, section.declared.elements());
-    add_stated_terms(robot, section);
+    section.error_model =
+        errors ? *errors : find_error_model(robot, section.declared.elements(), section.free);
+    if (section.error_model == io::ErrorModel::None) {
+        section.declared = without_parameters(section.declared);
+    } else {
+        add_stated_terms(robot, section);
+    }
     if (section.joint_repeatability.isZero(0)) section.joint_repeatability.resize(0);
     return section;
 }

@@ -34,6 +34,7 @@ Json term_statement(const Chain& robot, const ErrorTerm& term) {
     if (term.kind == TermKind::Gravity) return json;  // in proportion to the payload, which changes
     if (f.shape == JointFunction::Shape::Torque) {
         json["value"] = f.torque->value(comparison_configuration(robot));
+        if (!f.joints.empty()) json["times"] = joints_statement(robot, f.joints);
         return json;
     }
     const bool is_linear = f.shape == JointFunction::Shape::Linear;

@@ -136,6 +136,13 @@ Chain add_periodic(const YamlValue& value, const char* kind, const Chain& chain,
     return add(value, [&] { return make(chain, orders, joints); });
 }
 
+Chain add_gains(const YamlValue& value, const RobotSection& section) {
+    const Chain& chain = section.declared;
+    if (!value.is_map()) return value.boolean() ? with_gains(chain) : chain;
+    const std::vector<Index> joints = read_joints(YamlMap(value, keys::terms, "gains"), chain);
+    return add(value, [&] { return with_gains(chain, joints); });
+}
+
 double read_number_up_to(const YamlValue& value, double most, const char* unit) {
     constexpr double least = 1e-6;
     const double number = value.number();
@@ -214,6 +221,7 @@ void add_stated_terms(const YamlMap& robot, RobotSection& section) {
         chain = add_periodic(*stated, "harmonics", chain, with_harmonics);
     if (const auto stated = robot.find("axis_tilt"))
         chain = add_periodic(*stated, "axis_tilt", chain, with_axis_tilt);
+    if (const auto stated = robot.find("gains")) chain = add_gains(*stated, section);
     if (const auto stated = robot.find("compliance")) chain = add_compliance(*stated, section);
 }
 

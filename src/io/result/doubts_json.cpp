@@ -96,6 +96,9 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
         json["orientations"] = {{"rms_deg", to_degrees(*doubts.orientations)}};
     }
     if (!doubts.sizes.empty()) json["sizes"] = sizes_to_json(doubts.sizes);
+    if (!doubts.learned_sizes.empty()) {
+        json["learned_sizes"] = sizes_to_json(doubts.learned_sizes);
+    }
     if (!doubts.model_errors.empty()) {
         json["model_errors"] = model_errors_to_json(doubts.model_errors);
     }
@@ -108,12 +111,6 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
                             {"from", distance->from},
                             {"stated_mm", mm_per_m * distance->stated},
                             {"measured_mm", mm_per_m * distance->found}};
-    }
-    if (const auto& size = doubts.held_back) {
-        const std::string unit = error_suffix(size->held.is_angle);
-        json["held_back_size"] = {{"key", size->held.key + unit},
-                                  {"learned" + unit, mm_per_m * size->held.size},
-                                  {"fitting" + unit, mm_per_m * size->fitting}};
     }
     if (const auto& held_out = doubts.held_out) {
         const std::string unit = error_suffix(!campaign.sensor->has_lengths());

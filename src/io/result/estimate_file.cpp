@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/checksum.hpp"
 #include "doubts_json.hpp"
@@ -327,6 +328,29 @@ std::string to_json(const Calibration& calibration, const Provenance& made_from)
 void write_estimate(const std::string& path, const Calibration& calibration,
                     const Provenance& made_from) {
     detail::write_json(path, estimate_to_json(calibration, made_from));
+}
+
+void write_offsets_csv(const std::string& path, const Campaign& campaign,
+                       const Estimate& estimate) {
+    const Chain& robot = campaign.robot;
+    const std::vector<Index> owners = element_owners(robot);
+    const Index begin = base_parameter_count(campaign);
+    std::string text = "joint,offset,deviation,unit\n";
+    for (Index k = 0; k < robot.parameter_count(); ++k) {
+        const Element& element = robot.parameter_element(k);
+        const Index joint = owners[static_cast<std::size_t>(&element - robot.elements().data())];
+        if (robot.parameter_term(k) != nullptr || joint < 0) continue;
+        const auto own = std::ranges::find(element.joints, joint, &JointTerm::joint);
+        const bool turns = element.motion == Motion::Rotation;
+        const double unit = turns ? to_degrees(1) : mm_per_m;
+        fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.3g},{}\n",
+                       detail::csv_field(robot.joint(joint).name),
+                       unit * estimate.parameters.robot[k] / own->coefficient,
+                       unit * std::sqrt(estimate.covariance(begin + k, begin + k)) /
+                           std::abs(own->coefficient),
+                       turns ? "deg" : "mm");
+    }
+    detail::write_file(path, text);
 }
 
 void write_predictions_csv(const std::string& path, const std::vector<std::string>& ids,

@@ -143,6 +143,7 @@ EarlierFile read_root(const JsonValue& root, const Campaign& campaign, const Ear
 /// The campaign's, with those that the estimate learned.
 ParameterSpread read_learned_sizes(const JsonValue& sizes, const Campaign& campaign) {
     ParameterSpread spread = campaign.spread;
+    spread.is_open = false;
     for (const SharedSize& shared : shared_sizes(campaign.spread, campaign.robot)) {
         const std::string key = shared.key + detail::si_suffix(shared.is_angle);
         if (!sizes.has(key)) continue;
@@ -193,7 +194,10 @@ EarlierFile read_earlier(const std::string& path, const Campaign& campaign, cons
     earlier.use = use;
     if (root.has("warnings")) earlier.warnings = root["warnings"].texts();
     const bool has_learned = root.has("learned_sizes");
-    if (has_learned) earlier.spread = read_learned_sizes(root["learned_sizes"], campaign);
+    if (has_learned) {
+        earlier.spread = read_learned_sizes(root["learned_sizes"], campaign);
+        earlier.estimate.spread = earlier.spread;
+    }
     if (root.has("assumes")) earlier.changes = find_changes(root["assumes"], campaign, has_learned);
     return earlier;
 }

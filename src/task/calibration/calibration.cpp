@@ -164,6 +164,18 @@ void look(const Work& work, Calibration& result) {
     }
 }
 
+/// The campaign with sizes half way, as factors, from those expected to larger ones that were
+/// learned: these are as large as what is wrong may make them.
+Campaign with_credible_sizes(const Campaign& campaign, const Estimate& estimate) {
+    Campaign credible = campaign;
+    if (!estimate.spread) return credible;
+    for (const SharedSize& learned : shared_sizes(*estimate.spread, campaign.robot)) {
+        double& size = size_of(credible.spread, campaign.robot, learned.members.front());
+        size = std::max(size, std::sqrt(size * learned.size));
+    }
+    return credible;
+}
+
 /// All that `used` alone tell.
 void calibrate_with(Work& work, Calibration& result) {
     Registration registration = register_base_and_targets(work.campaign, work.used);
@@ -173,11 +185,6 @@ void calibrate_with(Work& work, Calibration& result) {
         return;
     }
     Parameters& registered = registration.parameters;
-    if (work.options.learns_sizes) {
-        result.stated_spread = work.campaign.spread;
-        work.campaign.spread =
-            learn_sizes(work.campaign, work.used, registered, work.stopped(work.options.joint));
-    }
     compare_models(work, registered, result);
     identify_by_method(work, registered, result);
     work.counter.count();
@@ -188,6 +195,7 @@ void calibrate_with(Work& work, Calibration& result) {
         make_metrics(result.nominal_residuals, work.campaign.sensor->lengths_per_target());
     result.repeatability = repeatability(*work.campaign.sensor, work.used);
     result.campaign = with_model_error(work.campaign, result.estimate);
+    if (result.estimate.spread) result.stated_spread = work.campaign.spread;
     result.held_out = hold_out(work, result);
     result.without_outliers = judge_without_outliers(work, result);
     const RowMatrixXd left = residuals(work.campaign, result.estimate.parameters, work.used);
@@ -198,21 +206,14 @@ void calibrate_with(Work& work, Calibration& result) {
     }
     result.doubts = find_doubts(work.campaign, work.used, registered, result.nominal);
     if (work.options.earlier) result.doubts.places.clear();  // by moved_since, where it matters
-    Campaign as_stated = work.campaign;
-    if (result.stated_spread) as_stated.spread = *result.stated_spread;
     result.faults =
-        find_faults(as_stated, result.estimate,
+        find_faults(with_credible_sizes(work.campaign, result.estimate), result.estimate,
                     result.method == CalibrationMethod::Global ? ValueCheck::None
                                                                : ValueCheck::ByExpectedSizes);
     add_doubts(work.campaign, work.used, result.estimate, result.doubts);
     look(work, result);
     detail::judge_data({work.campaign, work.whole.robot, work.used, registered, work.beside()},
                        work.options, result);
-    if (work.options.learns_sizes) {
-        result.doubts.held_back =
-            find_held_back_size(result.campaign, *result.stated_spread, work.used,
-                                result.estimate.parameters, work.stopped(work.options.joint));
-    }
     if (const auto& earlier = work.options.earlier) {
         if (!result.held.empty()) result.sigmas_beside_held = sigmas_by_name(result.estimate);
         result.estimate = detail::complete(work.whole, earlier->estimate, work.known, work.campaign,

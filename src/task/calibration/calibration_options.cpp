@@ -46,9 +46,8 @@ void check_options(const CalibrationOptions& options, Index configuration_count)
             fmt::format("`folds` is {}, must be 0 or from 2 to the number of configurations, {}",
                         folds, configuration_count));
     }
-    if (options.earlier && (!is_joint || options.learns_sizes || options.model_selection)) {
-        throw InputError(
-            "an earlier estimate needs the method lm, without model selection or learning sizes");
+    if (options.earlier && (!is_joint || options.model_selection)) {
+        throw InputError("an earlier estimate needs the method lm, without model selection");
     }
     const auto count_refitted = [&](const char* name) {
         return std::count(options.refitted.begin(), options.refitted.end(), name);
@@ -78,9 +77,6 @@ void check_options(const CalibrationOptions& options, Index configuration_count)
     }
     if (options.limit && !(*options.limit > 0)) {
         throw InputError(fmt::format("the limit is {} m, must be above 0", *options.limit));
-    }
-    if (options.learns_sizes && !is_joint) {
-        throw InputError("learning the sizes of errors needs the method lm");
     }
 }
 

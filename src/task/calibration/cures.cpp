@@ -42,13 +42,7 @@ bool fits_better(const Doubted& doubted, const CureTrial& trial, const Estimate&
 }
 
 std::optional<Judged> judge(const Doubted& doubted, const CureTrial& trial) {
-    Campaign campaign = trial.campaign;
-    if (trial.learns_sizes) {
-        const Registration registration = register_base_and_targets(campaign, trial.measurements);
-        if (!registration.is_determined()) return std::nullopt;
-        campaign.spread =
-            learn_sizes(campaign, trial.measurements, registration.parameters, trial.options);
-    }
+    const Campaign& campaign = trial.campaign;
     const auto found = identify_anew(campaign, trial.measurements, trial.options);
     if (!found || (!trial.learns_sizes && !fits_better(doubted, trial, *found))) {
         return std::nullopt;
@@ -144,7 +138,9 @@ std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
     }
     if (options.only_exclusions) return trials;
     if (options.can_learn_sizes && campaign.spread.is_prior && !is_far_above_prior(doubted)) {
-        add({"learn-sizes"}, campaign).learns_sizes = true;
+        CureTrial& trial = add({"sizes learned"}, campaign);
+        trial.learns_sizes = true;
+        trial.campaign.spread.is_open = true;
     }
     for (const OtherCampaign& other : options.campaigns) add({other.key, true}, other.campaign);
     // Without a prior, or before harmonics, tilts are more than most poses tell apart.

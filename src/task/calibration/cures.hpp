@@ -25,7 +25,7 @@ struct CureTrial {
     Campaign campaign;
     Measurements measurements;
     LevenbergMarquardtOptions options{};
-    bool learns_sizes = false;
+    bool learns_sizes = false;  ///< which predict better, not fit
 };
 
 /// Calibrates as the trial says and holds out as many groups; nothing unless that lowers the error

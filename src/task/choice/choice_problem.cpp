@@ -369,7 +369,7 @@ ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
         problem.options.positions = turning_joints(campaign.robot, problem.configurations);
     }
     const bool has_tests = options.test_poses.rows() > 0;
-    if (campaign.model_error_common > 0 && needs_test_poses(request.criterion)) {
+    if (common_part(campaign) > 0 && needs_test_poses(request.criterion)) {
         const RowMatrixXd once = RowMatrixXd::Ones(options.test_poses.rows(), problem.share.cols());
         state_test_poses(problem, campaign, has_tests ? options.test_poses : problem.configurations,
                          request.repeats * (has_tests ? once : problem.share));

@@ -70,8 +70,8 @@ bool asks_for_models(const Doubts& doubts) {
         std::ranges::any_of(doubts.residuals, [](const auto& doubt) { return doubt.ratio > 1; });
     return !doubts.misfit &&
            (has_large_residuals || !doubts.model_errors.empty() || !doubts.sizes.empty() ||
-            doubts.missing_errors || doubts.gross_error || doubts.orientations || doubts.scatter ||
-            doubts.held_out);
+            !doubts.learned_sizes.empty() || doubts.missing_errors || doubts.gross_error ||
+            doubts.orientations || doubts.scatter || doubts.held_out);
 }
 
 /// Whether it is worth while to look for what would do better.
@@ -107,11 +107,11 @@ std::vector<std::string> find_data_faults(const Doubted& doubted, const Calibrat
     return faults;
 }
 
-CureOptions cure_options(const CalibrationOptions& options, const Doubts& doubts) {
+CureOptions cure_options(const CalibrationOptions& options, const Calibration& calibration) {
     CureOptions cures;
-    cures.only_exclusions = !asks_for_models(doubts);
+    cures.only_exclusions = !asks_for_models(calibration.doubts);
     if (cures.only_exclusions || options.earlier) return cures;  // its sizes and errors are those
-    cures.can_learn_sizes = !options.learns_sizes;
+    cures.can_learn_sizes = !calibration.stated_spread;
     if (options.richer) cures.campaigns = options.richer();
     return cures;
 }
@@ -140,8 +140,7 @@ void judge_data(const CalibrationData& data, const CalibrationOptions& options,
     const std::vector<std::string> faults = find_data_faults(doubted, calibration, comparison);
     calibration.faults.insert(calibration.faults.begin(), faults.begin(), faults.end());
     if (options.method != CalibrationMethod::Joint || !asks_for_cures(calibration.doubts)) return;
-    calibration.cures =
-        find_cures(doubted, calibration.doubts, cure_options(options, calibration.doubts));
+    calibration.cures = find_cures(doubted, calibration.doubts, cure_options(options, calibration));
 }
 
 }  // namespace posewise::detail

@@ -3,6 +3,7 @@
 
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/task/doubts.hpp"
+#include "task/calibration/identify_anew.hpp"
 
 namespace posewise {
 namespace {
@@ -68,14 +69,19 @@ std::optional<DistanceDoubt> find_distance_doubt(const Campaign& campaign,
     constexpr double as_stated = 5;  // of noise and model error
     const SocketSensor* const sensor = unknown_sockets(campaign);
     if (sensor == nullptr) return std::nullopt;
-    const double left_over = rms_of(campaign, measured, estimate);
+    // A wrong length under sizes that were learned is made up for by errors as large as it takes.
+    Campaign expected = campaign;
+    expected.spread.is_open = false;
+    const auto under_expected =
+        estimate.spread ? detail::identify_anew(expected, measured) : std::optional<Estimate>();
+    const double left_over = rms_of(campaign, measured, under_expected.value_or(estimate));
     const double stated = std::sqrt(3.0) * std::hypot(sensor->sigma(), campaign.model_error);
     if (left_over <= as_stated * stated) return std::nullopt;
     std::optional<DistanceDoubt> doubt;
     double least = 0.5 * left_over;  // what is found otherwise is no accident
     for (Index k = 0; k < sensor->target_count(); ++k) {
         if (!sensor->has_distance(k)) continue;
-        const Campaign open = with_open_distance(campaign, *sensor, k);
+        const Campaign open = with_open_distance(expected, *sensor, k);
         const Registration start = register_base_and_targets(open, measured);
         if (!start.is_determined()) continue;
         const Estimate found = identify(open, measured, start.parameters, {.iteration_limit = 30});

@@ -110,6 +110,22 @@ std::vector<SizeDoubt> find_size_doubts(const Campaign& campaign, const Estimate
     return doubts;
 }
 
+/// Classes whose sizes were learned far above the expected ones.
+std::vector<SizeDoubt> find_class_doubts(const Campaign& campaign, const Estimate& estimate) {
+    constexpr double doubtful = error_size_factor * error_size_factor * error_size_factor;
+    std::vector<SizeDoubt> doubts;
+    if (!estimate.spread) return doubts;
+    const std::vector<SharedSize> learned = shared_sizes(*estimate.spread, campaign.robot);
+    const std::vector<SharedSize> expected = shared_sizes(campaign.spread, campaign.robot);
+    for (std::size_t k = 0; k < learned.size(); ++k) {
+        const double times = learned[k].size / expected[k].size;
+        if (times <= doubtful) continue;
+        doubts.push_back({"spread." + learned[k].key, times, learned[k].size, learned[k].is_angle,
+                          campaign.robot.parameter_term(learned[k].members.front()) != nullptr});
+    }
+    return doubts;
+}
+
 std::vector<ModelErrorDoubt> find_model_error_doubts(const Campaign& campaign,
                                                      const Estimate& estimate) {
     constexpr double doubtful = model_error_factor * model_error_factor;
@@ -232,7 +248,8 @@ Doubts find_doubts(const Campaign& campaign, const Measurements& measured,
 
 void add_doubts(const Campaign& campaign, const Measurements& measured, const Estimate& estimate,
                 Doubts& doubts) {
-    doubts.sizes = find_size_doubts(campaign, estimate);
+    doubts.sizes = find_size_doubts(with_model_error(campaign, estimate), estimate);
+    doubts.learned_sizes = find_class_doubts(campaign, estimate);
     doubts.model_errors = find_model_error_doubts(campaign, estimate);
     doubts.residuals = find_residual_doubts(campaign, measured, estimate);
     doubts.small_residuals = find_small_residuals(campaign, estimate);

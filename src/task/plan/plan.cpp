@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/text.hpp"
+#include "measurement/noise.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/measurement/campaign.hpp"
@@ -131,11 +132,13 @@ std::vector<NamedNumber> assumptions_of(const Campaign& campaign) {
             add(noise.name + place, noise.values[i]);
         }
     }
-    if (campaign.sensor->has_angles() || campaign.model_error_common > 0) {
+    if (campaign.sensor->has_angles()) {
         add("model_error_orientation_rad", campaign.model_error_orientation);
     }
     add("model_error_m", campaign.model_error);
-    if (campaign.model_error_common > 0) add("model_error_common", campaign.model_error_common);
+    if (const double common = detail::common_part(campaign); common > 0) {
+        add("model_error_common", common);
+    }
     for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {
         add("joint_repeatability/" +
                 escape_slashes(with_unit(joint_name(campaign.robot, j), turns(campaign.robot, j))),

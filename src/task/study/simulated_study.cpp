@@ -30,9 +30,8 @@ using detail::TrialRobot;
 double expected_there(const SimulationSetting& setting, const Estimate& estimate) {
     const double parameters = setting.H.cwiseProduct(estimate.covariance).sum();
     const double factor = setting.campaign.spread.is_prior ? 1 : estimate.variance_factor;
-    const double left_over = detail::left_over_rms(with_model_error(setting.campaign, estimate),
-                                                   estimate.parameters.sensor);
-    return std::sqrt(parameters + factor * left_over * left_over);
+    const double left_over = with_model_error(setting.campaign, estimate).model_error;
+    return std::sqrt(parameters + factor * 3 * left_over * left_over);
 }
 
 StudyCase run_case(const SimulationSetting& setting, const SimulatedStudyOptions& options,

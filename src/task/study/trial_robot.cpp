@@ -23,16 +23,17 @@ RowMatrixXd visited_positions(const Campaign& truth, const DrawnRobot& robot,
     Campaign own = truth;
     own.model_error = robot.model_error;
     own.model_error_orientation = robot.model_error_orientation;
-    const double own_error = std::sqrt(1 - own.model_error_common) * own.model_error;
+    const double own_error = std::sqrt(1 - common_part(own)) * own.model_error;
     positions.reshaped() += own_error * random.normals(positions.size());
-    const VectorXd sizes = model_error_motions(own);
-    if (sizes.isZero(0)) return positions;
-    RowMatrixXd effect(positions.cols(), sizes.size());
+    const double common = common_model_error(own);
+    if (common == 0) return positions;
+    RowMatrixXd effect(positions.cols(), 6);
     for (Index i = 0; i < visited.rows(); ++i) {
         const Isometry3d flange = world_from_flange(truth, robot.truth, visited.row(i).transpose());
-        truth.sensor->differentiate_positions(flange, model_error_twists(flange),
-                                              robot.truth.sensor, effect);
-        positions.row(i) += (effect * sizes.cwiseProduct(random.normals(sizes.size()))).transpose();
+        truth.sensor->differentiate_positions(
+            flange, model_error_twists(*truth.sensor, flange, robot.truth.sensor),
+            robot.truth.sensor, effect);
+        positions.row(i) += common * (effect * random.normals(6)).transpose();
     }
     return positions;
 }
