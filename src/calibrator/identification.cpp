@@ -169,17 +169,15 @@ bool leaves_far_more(const detail::IdentificationProblem& problem, const Paramet
 /// on them far less.
 bool is_alike(const Campaign& a, const Campaign& b) {
     const auto is_near = [](double x, double y) { return std::abs(x - y) <= 0.05 * x; };
-    const auto sizes_of = [](const Campaign& campaign) -> VectorXd {
-        return parameter_scale(campaign).segment(prior_begin(campaign), prior_count(campaign));
-    };
-    const VectorXd before = sizes_of(a);
+    const VectorXd before = robot_error_sizes(a.spread, a.robot);
+    const VectorXd after = robot_error_sizes(b.spread, b.robot);
     return is_near(a.model_error, b.model_error) &&
            is_near(a.model_error_orientation, b.model_error_orientation) &&
-           ((before - sizes_of(b)).array().abs() <= 0.05 * before.array()).all();
+           ((before - after).array().abs() <= 0.05 * before.array()).all();
 }
 
-/// Whether what is left over may be the robot's: sizes learned beside gross errors would be those
-/// of a robot that bends to them.
+/// Whether what is left over may be the robot's own. Gross errors in the measurements leave more,
+/// and sizes learned from them would let the robot bend to them.
 bool is_credible(const Campaign& stated, const Campaign& found) {
     constexpr double credible = 20;
     return found.model_error <= credible * stated.model_error &&

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "normal_equations.hpp"
 
@@ -15,22 +14,15 @@ constexpr double tolerance = 0.005;  // of a size, to end at
 
 const double log_factor = std::log(error_size_factor);
 
-/// The errors that share a size.
-struct Sharing {
-    double expected = 0;
-    double squares = 0;  ///< summed up
-    Index count = 0;
-};
-
-/// The most probable size: the root of n - S / s^2 + log(s / expected) / log(factor)^2, which grows
-/// with s.
-double most_probable(const Sharing& errors) {
-    const double middle = std::log(errors.expected);
+/// The most probable of a size whose `count` errors have these squares, summed up: the root of
+/// n - S / s^2 + log(s / expected) / log(factor)^2, which grows with s.
+double most_probable(double expected, double squares, Index count) {
+    const double middle = std::log(expected);
     double low = middle - 20;
     double high = middle + 20;
     for (int i = 0; i < 60; ++i) {
         const double u = 0.5 * (low + high);
-        const double slope = static_cast<double>(errors.count) - errors.squares * std::exp(-2 * u) +
+        const double slope = static_cast<double>(count) - squares * std::exp(-2 * u) +
                              (u - middle) / (log_factor * log_factor);
         (slope > 0 ? high : low) = u;
     }
@@ -43,7 +35,7 @@ class SizeEvidence {
   public:
     SizeEvidence(const IdentificationProblem& problem, const Parameters& parameters,
                  const ParameterSpread& expected)
-        : robot_(problem.campaign.robot), campaign_(problem.campaign), expected_(expected) {
+        : robot_(problem.campaign.robot), expected_(expected) {
         const NormalEquations equations = normal_equations(problem, linearise(problem, parameters));
         const Index begin = problem.prior_begin();
         const Index count = problem.prior_count();
@@ -62,15 +54,13 @@ class SizeEvidence {
         const Eigen::LLT<MatrixXd> cholesky(A_oo);
         S_ = A.block(begin, begin, count, count) - A_op.transpose() * cholesky.solve(A_op);
         b_ = b.segment(begin, count) - A_op.transpose() * cholesky.solve(b_o);
-        units_ = sizes_of(problem.campaign.spread);
+        units_ = robot_error_sizes(problem.campaign.spread, robot_);
     }
 
     /// Log of the density of the measurements and of the sizes, but for a constant.
     double log_density(const ParameterSpread& spread) const {
-        const VectorXd precisions = units_.cwiseQuotient(sizes_of(spread)).cwiseAbs2();
-        MatrixXd M = S_;
-        M.diagonal() += precisions;
-        const Eigen::LLT<MatrixXd> root(M);
+        const VectorXd precisions = precisions_of(spread);
+        const Eigen::LLT<MatrixXd> root = information(precisions);
         double sum = 0.5 * precisions.array().log().sum() -
                      root.matrixLLT().diagonal().array().log().sum() + 0.5 * b_.dot(root.solve(b_));
         const std::vector<SharedSize> sizes = shared_sizes(spread, robot_);
@@ -86,9 +76,7 @@ class SizeEvidence {
     /// Laird & Rubin 1977] over each error's square, estimate^2 + variance.
     ParameterSpread climb(ParameterSpread spread) const {
         for (int i = 0; i < iteration_limit; ++i) {
-            MatrixXd M = S_;
-            M.diagonal() += units_.cwiseQuotient(sizes_of(spread)).cwiseAbs2();
-            const MatrixXd C = M.llt().solve(MatrixXd::Identity(M.rows(), M.cols()));
+            const MatrixXd C = covariance(precisions_of(spread));
             const VectorXd squares =
                 units_.cwiseAbs2().cwiseProduct((C * b_).cwiseAbs2() + C.diagonal());
             if (update(spread, squares) < tolerance) break;
@@ -100,25 +88,28 @@ class SizeEvidence {
     /// their squares, with log-normal densities as wide as the number of errors that the
     /// measurements tell of each class leaves them. With few poses larger ones remain possible.
     ParameterSpread average(ParameterSpread spread) const {
-        MatrixXd M = S_;
-        M.diagonal() += units_.cwiseQuotient(sizes_of(spread)).cwiseAbs2();
-        const MatrixXd C = M.llt().solve(MatrixXd::Identity(M.rows(), M.cols()));
-        const VectorXd left = units_.cwiseQuotient(sizes_of(spread))
-                                  .cwiseAbs2()
-                                  .cwiseProduct(C.diagonal());  // of the prior variance
+        const VectorXd precisions = precisions_of(spread);
+        // The part of each prior variance that the measurements leave.
+        const VectorXd left = precisions.cwiseProduct(covariance(precisions).diagonal());
         for (const SharedSize& shared : shared_sizes(expected_, robot_)) {
             const double told = (1 - left(shared.members).array()).sum();
-            const double variance = 1 / (2 * told + 1 / (log_factor * log_factor));
-            size_of(spread, robot_, shared.members.front()) *= std::exp(variance);
+            size_of(spread, robot_, shared.members.front()) *= std::exp(log_size_variance(told));
         }
         return spread;
     }
 
   private:
-    VectorXd sizes_of(const ParameterSpread& spread) const {
-        Campaign campaign = campaign_;
-        campaign.spread = spread;
-        return parameter_scale(campaign).segment(base_parameter_count(campaign), b_.size());
+    /// Of the prior, in units.
+    VectorXd precisions_of(const ParameterSpread& spread) const {
+        return units_.cwiseQuotient(robot_error_sizes(spread, robot_)).cwiseAbs2();
+    }
+    Eigen::LLT<MatrixXd> information(const VectorXd& precisions) const {
+        MatrixXd M = S_;
+        M.diagonal() += precisions;
+        return M.llt();
+    }
+    MatrixXd covariance(const VectorXd& precisions) const {
+        return information(precisions).solve(MatrixXd::Identity(S_.rows(), S_.cols()));
     }
 
     /// The next sizes; by how large a part any of them changed.
@@ -126,8 +117,8 @@ class SizeEvidence {
         double change = 0;
         for (const SharedSize& shared : shared_sizes(expected_, robot_)) {
             double& size = size_of(spread, robot_, shared.members.front());
-            const double next = most_probable(
-                {shared.size, squares(shared.members).sum(), std::ssize(shared.members)});
+            const double next = most_probable(shared.size, squares(shared.members).sum(),
+                                              std::ssize(shared.members));
             change = std::max(change, std::abs(next / size - 1));
             size = next;
         }
@@ -135,7 +126,6 @@ class SizeEvidence {
     }
 
     const Chain& robot_;
-    const Campaign& campaign_;
     const ParameterSpread& expected_;
     MatrixXd S_;  ///< information of the measurements on the errors, whatever base and targets are
     VectorXd b_;  ///< S times the errors that fit best
@@ -143,6 +133,8 @@ class SizeEvidence {
 };
 
 }  // namespace
+
+double log_size_variance(double told) { return 1 / (2 * told + 1 / (log_factor * log_factor)); }
 
 bool are_sizes_open(const Campaign& campaign, const Loss& loss) {
     return campaign.spread.is_prior && campaign.spread.is_open && !campaign.prior &&

@@ -252,7 +252,7 @@ class PredictiveScore {
 
     // The same under one pair of model errors.
     RowMatrixXd whitened_;
-    RowMatrixXd factors_;        ///< of the covariances, where targets share errors
+    RowMatrixXd factors_;  ///< Cholesky factors of the covariances; only where targets share errors
     double log_deviations_ = 0;  ///< of the observations, summed up
     RowMatrixXd V_;              ///< B M^-1 B^T = V^T V; empty where M has no inverse
     VectorXd residuals_;         ///< at the optimum

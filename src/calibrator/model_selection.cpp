@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/progress_counter.hpp"
+#include "model/error_class.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "robust.hpp"
@@ -17,24 +18,28 @@ constexpr const char* step_names[] = {
 
 /// The step, an index of step_names, that adds this parameter.
 int step_of(const Chain& chain, Index parameter) {
-    if (const ErrorTerm* const term = chain.parameter_term(parameter)) {
-        switch (term->kind) {
-            case TermKind::Gravity:
-            case TermKind::Torque:
-                return 4;
-            case TermKind::Free:
-                return 5;
-            case TermKind::Harmonic:
-                return 6;
-            case TermKind::Tilt:
-                return 7;
-            case TermKind::Gain:
-                return 8;
-        }
+    using detail::ErrorClass;
+    switch (detail::error_class_of(chain, parameter)) {
+        case ErrorClass::Offset:
+        case ErrorClass::Slide:
+            return 1;
+        case ErrorClass::Length:
+            return 2;
+        case ErrorClass::Angle:
+            return 3;
+        case ErrorClass::Gravity:
+        case ErrorClass::Torque:
+            return 4;
+        case ErrorClass::Other:
+            return 5;
+        case ErrorClass::Harmonic:
+            return 6;
+        case ErrorClass::Tilt:
+            return 7;
+        case ErrorClass::Gain:
+            break;
     }
-    const Element& element = chain.parameter_element(parameter);
-    if (!element.joints.empty()) return 1;
-    return element.motion == Motion::Translation ? 2 : 3;
+    return 8;
 }
 
 /// A set with what its calibrations need and gave.

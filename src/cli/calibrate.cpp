@@ -41,8 +41,9 @@ leaves more over than a robot misses before it is calibrated, is spoilt by one c
 predicts poses that were held out worse than the nominal robot does, is printed and not written, with
 exit code 3; --force writes it, marked. Where something is doubtful, robust losses, --exclude and
 richer errors are tried, and those that help are named with the error held out.
-How large the errors of each class are is learned beside a prior, about the expected sizes: few poses
-move them a little, many freely. Both are printed; --sizes stated keeps the expected ones.
+With a prior the calibration learns how large the errors of each class are. It starts from the
+expected sizes; few poses move them a little, many freely. It prints both; --sizes stated keeps the
+expected ones.
 With --exclude it leaves out configurations by their ids and samples (7:2), and the estimate records it.
 With --plan the calibration sees only the plan's configurations. It is judged on those that the plan
 has to verify (plan --verification), as far as they were measured, and on the others, each by itself.
@@ -123,7 +124,7 @@ void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& ar
     }
     const CalibrationOptions& options = arguments.options;
     require(arguments.free.empty() || arguments.earlier.from.empty(), "--free",
-            "is without --from; --only says what is identified anew beside an estimate");
+            "excludes --from; beside an estimate --only says what is identified anew");
     const bool is_squares = arguments.loss == "squares";
     const bool is_lm = arguments.method == "lm";
     require(is_squares || is_lm, "--loss", "needs --method lm; the others know squares only");

@@ -94,9 +94,8 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     command
         .add_option(
             "--sizes", arguments.sizes,
-            "learned: how large the errors of each class are is learned, about the expected "
-            "sizes of a prior; stated: they are as the campaign says (default: the "
-            "campaign's)")
+            "learned: learn how large the errors of each class are, from the expected sizes of "
+            "the prior; stated: keep these (default: as the campaign says)")
         ->check(CLI::IsMember({"learned", "stated"}));
     command.add_flag("--all-parameters", arguments.has_all_parameters, "List each, however many");
     add_earlier_options(command, arguments.earlier);

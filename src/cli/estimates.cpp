@@ -39,7 +39,7 @@ void check_usable(const std::string& path, const Campaign& campaign, const io::E
         print_warning(path + ": was warned of when it was made: " + warning);
     }
     Campaign judged = campaign;
-    if (earlier.spread) judged.spread = *earlier.spread;
+    if (earlier.estimate.spread) judged.spread = *earlier.estimate.spread;
     std::vector<std::string> faults = find_faults(judged, earlier.estimate);
     for (const std::string& stated : earlier.faults) {
         if (!contains(faults, stated.c_str())) faults.push_back(stated);

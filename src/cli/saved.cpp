@@ -119,7 +119,6 @@ io::CampaignFile read_calibrated(const io::EstimateRecord& record, const std::st
             fmt::format("{}: {} says otherwise now: {}", path, campaign, join_some(read.changes)));
     }
     estimate = std::move(read.estimate);
-    if (read.spread) file.spread = *read.spread;
     static_cast<Campaign&>(file) = with_model_error(file, estimate);
     return file;
 }

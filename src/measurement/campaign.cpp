@@ -76,6 +76,17 @@ double& size_of(ParameterSpread& spread, const Chain& robot, Index parameter) {
     return turns ? spread.angle : spread.length;
 }
 
+VectorXd robot_error_sizes(const ParameterSpread& spread, const Chain& robot) {
+    ParameterSpread by_kind = spread;
+    VectorXd sizes(robot.parameter_count());
+    const auto names = robot.parameter_names();
+    for (Index k = 0; k < sizes.size(); ++k) {
+        const auto stated = spread.by_name.find(names[static_cast<std::size_t>(k)]);
+        sizes[k] = stated != spread.by_name.end() ? stated->second : size_of(by_kind, robot, k);
+    }
+    return sizes;
+}
+
 std::vector<SharedSize> shared_sizes(const ParameterSpread& spread, const Chain& robot) {
     ParameterSpread sizes = spread;
     const auto key_of = [&](const double* size) {
@@ -106,14 +117,12 @@ VectorXd parameter_scale(const Campaign& campaign) {
     const auto names = parameter_names(campaign);
     const auto is_angle = parameter_is_angle(campaign);
     const Index robot_begin = base_parameter_count(campaign);
-    ParameterSpread spread = campaign.spread;
     VectorXd scale(static_cast<Index>(names.size()));
     for (std::size_t k = 0; k < names.size(); ++k) {
         scale[static_cast<Index>(k)] = is_angle[k] ? campaign.spread.angle : campaign.spread.length;
     }
-    for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
-        scale[robot_begin + k] = size_of(spread, campaign.robot, k);
-    }
+    scale.segment(robot_begin, campaign.robot.parameter_count()) =
+        robot_error_sizes(campaign.spread, campaign.robot);
     for (const auto& [name, size] : campaign.spread.by_name) {
         const auto found = std::find(names.begin(), names.end(), name);
         if (found == names.end()) {

@@ -82,6 +82,11 @@ std::vector<Index> element_owners(const Chain& chain) {
     return owners;
 }
 
+Index parameter_owner(const Chain& chain, Index parameter) {
+    const auto element = &chain.parameter_element(parameter) - chain.elements().data();
+    return element_owners(chain)[static_cast<std::size_t>(element)];
+}
+
 std::string transform_name(const Element& element) {
     return {element.motion == Motion::Rotation ? 'R' : 'T',
             "xyz"[static_cast<std::size_t>(element.axis)]};

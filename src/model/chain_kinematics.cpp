@@ -68,7 +68,7 @@ TorqueShare torque_times_sum(const JointFunction& function, const VectorXd& q, b
     TorqueShare share =
         is_twice ? function.torque->evaluate_twice(q) : function.torque->evaluate(q);
     if (function.joints.empty()) return share;
-    const double u = sum_of(function.phase, function.joints, q);
+    const double u = detail::torque_factor(function, q);
     VectorXd slope = VectorXd::Zero(share.gradient.size());
     for (const JointTerm& by : function.joints) {
         if (by.joint < slope.size()) slope[by.joint] += by.coefficient;

@@ -12,16 +12,21 @@ inline double sum_of(double start, const std::vector<JointTerm>& joints, const V
     return start;
 }
 
+/// What a function of shape Torque multiplies its torque by: u, or 1 if it depends on no joint.
+inline double torque_factor(const JointFunction& function, const VectorXd& q) {
+    return function.joints.empty() ? 1 : sum_of(function.phase, function.joints, q);
+}
+
 /// A joint function and its derivatives by u.
 struct FunctionValue {
     double value, slope, curvature;
 };
 
 inline FunctionValue evaluate(const JointFunction& function, const VectorXd& q) {
-    const double u = sum_of(function.phase, function.joints, q);
     if (function.torque != nullptr) {
-        return {function.torque->value(q) * (function.joints.empty() ? 1 : u), 0, 0};
+        return {function.torque->value(q) * torque_factor(function, q), 0, 0};
     }
+    const double u = sum_of(function.phase, function.joints, q);
     if (function.shape == JointFunction::Shape::Linear) return {u, 1, 0};
     const auto [sine, cosine] = sine_and_cosine(u);
     return {sine, cosine, -sine};

@@ -233,15 +233,12 @@ std::vector<Compliance> compliances(const Chain& chain) {
         const ErrorTerm* const term = chain.parameter_term(k);
         if (term == nullptr) continue;
         const JointFunction& function = term->function;
-        const auto owner_of = [&] {
-            const auto element = &chain.parameter_element(k) - chain.elements().data();
-            return element_owners(chain)[static_cast<std::size_t>(element)];
-        };
         if (term->kind == TermKind::Torque) continue;
         if (function.torque != nullptr) {
-            found.push_back({k, owner_of(), function.torque->largest()});
+            found.push_back({k, parameter_owner(chain, k), function.torque->largest()});
         } else if (function.joints.front().joint >= chain.joint_count()) {
-            found.push_back({k, owner_of(), 1 / function.joints.front().coefficient});
+            found.push_back(
+                {k, parameter_owner(chain, k), 1 / function.joints.front().coefficient});
         }
     }
     return found;

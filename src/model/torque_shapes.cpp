@@ -50,27 +50,19 @@ struct TorqueShape {
     double size = 1;
 };
 
-/// How far a slide is out of its lower limit, as a part of its range; nothing of what turns.
-struct Extension {
-    std::vector<JointTerm> joints = {};
-    double phase = 0;
-
-    double at(const VectorXd& q) const {
-        return joints.empty() ? 1 : detail::sum_of(phase, joints, q);
-    }
-};
-
-/// Values of every probe's moment about one element, samples x probes, less their means.
+/// Values of every probe's moment about one element, times the factor of `bend`, samples x probes,
+/// less their means.
 MatrixXd evaluate_moments(const std::shared_ptr<const GravityTorque::Arm>& arm, Index driven,
                           const Vector3d& gravity, const std::vector<Probe>& probes,
-                          const RowMatrixXd& configurations, const Extension& extension) {
+                          const RowMatrixXd& configurations, const JointFunction& bend) {
     std::vector<GravityTorque> torques;
     for (const Probe& probe : probes) torques.emplace_back(arm, driven, gravity, probe.loads, 1.0);
     MatrixXd moments(configurations.rows(), static_cast<Index>(probes.size()));
     for (Index i = 0; i < configurations.rows(); ++i) {
         const VectorXd q = configurations.row(i).transpose();
         for (std::size_t k = 0; k < probes.size(); ++k) {
-            moments(i, static_cast<Index>(k)) = extension.at(q) * torques[k].value(q);
+            moments(i, static_cast<Index>(k)) =
+                detail::torque_factor(bend, q) * torques[k].value(q);
         }
     }
     moments.rowwise() -= moments.colwise().mean().eval();
@@ -119,7 +111,8 @@ struct Bending {
     struct Place {
         std::size_t element = 0;
         std::string name;  ///< before ".torque(...)"
-        Extension extension = {};
+        /// Without its torque. Of a slide it has how far that is out, as a part of its range.
+        JointFunction bend = {JointFunction::Shape::Torque, {}, 0, nullptr};
     };
     std::vector<Element> elements;
     std::vector<Place> places;        ///< in the order of the elements
@@ -141,9 +134,7 @@ Bending find_bending(const Chain& chain) {
             bending.places.push_back({bending.elements.size() - 1, joint.name});
             continue;
         }
-        const auto own =
-            std::find_if(element.joints.begin(), element.joints.end(),
-                         [&](const JointTerm& term) { return term.joint == owners[k]; });
+        const auto own = std::ranges::find(element.joints, owners[k], &JointTerm::joint);
         const double range = joint.upper - joint.lower;
         if (!(range > 0)) continue;
         Element half{Motion::Translation,
@@ -156,7 +147,10 @@ Bending find_bending(const Chain& chain) {
             bending.slides.push_back(bending.elements.size());
             bending.places.push_back({bending.elements.size(),
                                       joint.name + name,
-                                      {{{owners[k], 1 / range}}, -joint.lower / range}});
+                                      {JointFunction::Shape::Torque,
+                                       {{owners[k], 1 / range}},
+                                       -joint.lower / range,
+                                       nullptr}});
             bending.elements.push_back({Motion::Rotation, axis, 0, {}});
         }
         half.value = -half.value;
@@ -194,14 +188,13 @@ Chain with_torque_shapes(const Chain& chain, const Vector3d& direction) {
     for (const Bending::Place& place : bending.places) {
         const Index driven = arm->count_before(place.element);
         const MatrixXd moments =
-            evaluate_moments(arm, driven, gravity, probes, configurations, place.extension);
+            evaluate_moments(arm, driven, gravity, probes, configurations, place.bend);
         for (const TorqueShape& shape : find_shapes(moments, probes, size)) {
+            JointFunction bend = place.bend;
+            bend.torque = std::make_shared<const GravityTorque>(arm, driven, gravity, shape.loads,
+                                                                shape.size);
             bending.elements[place.element].terms.push_back(
-                {place.name + ".torque(" + shape.name + ')',
-                 {JointFunction::Shape::Torque, place.extension.joints, place.extension.phase,
-                  std::make_shared<const GravityTorque>(arm, driven, gravity, shape.loads,
-                                                        shape.size)},
-                 TermKind::Torque});
+                {place.name + ".torque(" + shape.name + ')', std::move(bend), TermKind::Torque});
         }
     }
     return chain.with_elements(std::move(bending.elements));

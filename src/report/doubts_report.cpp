@@ -14,18 +14,24 @@
 namespace posewise {
 namespace {
 
+/// "dq2 (70 mrad, 3.5 times)".
+std::string list_sizes(const std::vector<SizeDoubt>& sizes, bool has_values) {
+    std::string words;
+    for (const SizeDoubt& size : sizes) {
+        words += (words.empty() ? "" : ", ") + size.parameter + " (";
+        if (has_values) words += detail::format_error(size.value, size.is_angle) + ", ";
+        words += detail::format_short(size.times, 3) + " times)";
+    }
+    return words;
+}
+
 /// A prior holds values back.
 std::string describe_sizes(bool has_prior, const std::vector<SizeDoubt>& sizes) {
     constexpr std::size_t shown = 5;
     std::vector<SizeDoubt> largest = sizes;
     std::ranges::stable_sort(largest, std::greater{}, &SizeDoubt::times);
     largest.resize(std::min(shown, largest.size()));
-    std::string words;
-    for (const SizeDoubt& size : largest) {
-        words += (words.empty() ? "" : ", ") + size.parameter + " (";
-        if (has_prior) words += detail::format_error(size.value, size.is_angle) + ", ";
-        words += detail::format_short(size.times, 3) + " times)";
-    }
+    std::string words = list_sizes(largest, has_prior);
     if (sizes.size() > shown) words += fmt::format(" and {} more", sizes.size() - shown);
     const bool are_terms = std::ranges::all_of(sizes, &SizeDoubt::is_term);
     const bool are_gains = std::ranges::all_of(sizes, [](const SizeDoubt& size) {
@@ -42,14 +48,9 @@ std::string describe_sizes(bool has_prior, const std::vector<SizeDoubt>& sizes) 
 }
 
 std::string describe_learned_sizes(const std::vector<SizeDoubt>& sizes) {
-    std::string words;
-    for (const SizeDoubt& size : sizes) {
-        words += fmt::format("{}{} ({}, {} times)", words.empty() ? "" : ", ", size.parameter,
-                             detail::format_error(size.value, size.is_angle),
-                             detail::format_short(size.times, 3));
-    }
     const bool are_terms = std::ranges::all_of(sizes, &SizeDoubt::is_term);
-    return fmt::format("sizes of errors were learned far above the expected ones: {}; {}?", words,
+    return fmt::format("sizes of errors were learned far above the expected ones: {}; {}?",
+                       list_sizes(sizes, true),
                        are_terms ? "does the robot give way that much"
                                  : "are lengths, units and signs in the campaign right");
 }

@@ -53,8 +53,7 @@ double root_mean_square(const VectorXd& values) {
 }  // namespace
 
 Table expected_class_table(const Campaign& campaign) {
-    const VectorXd sizes = parameter_scale(campaign).segment(base_parameter_count(campaign),
-                                                             campaign.robot.parameter_count());
+    const VectorXd sizes = robot_error_sizes(campaign.spread, campaign.robot);
     Table table{{"class", "count", "expected", ""}, {}};
     for (const auto& [of_class, members] : members_by_class(campaign.robot)) {
         const bool is_length = of_class == ErrorClass::Length || of_class == ErrorClass::Slide;

@@ -69,9 +69,7 @@ TEST_F(Refusal, OfOneConfigurationThatIsWrongIsCuredByLeavingItOut) {
     // What is forced says so to all that builds on it.
     run("calibrate " + fanuc_design + " -m bad.csv --force --folds 0 -o bad.json");
     Json estimate = Json::parse(text_of("bad.json"));
-    EXPECT_TRUE(std::ranges::any_of(estimate.at("cures").at("found"), [](const Json& cure) {
-        return cure.at("option") == "--exclude 5";
-    }));
+    EXPECT_EQ(estimate.at("cures").at("found").at(0).at("option"), "--exclude 5");
     // Its faults are said once, whatever it was warned of.
     estimate["warnings"] = {"this is no calibration: it says so here, too"};
     write_text("bad.json", estimate.dump());

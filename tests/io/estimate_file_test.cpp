@@ -188,9 +188,9 @@ TEST_F(EstimateFile, IsReadAsAnEarlierOneWithTheSizesLearned) {
     folder_.write("estimate.json", document.dump());
     const EarlierFile earlier = read_earlier(path_, stated, {.is_prior = true});
     EXPECT_TRUE(earlier.use.is_prior);
-    ASSERT_TRUE(earlier.spread);
-    EXPECT_EQ(earlier.spread->length, 2.5e-3);
-    EXPECT_EQ(earlier.spread->angle, stated.spread.angle);
+    ASSERT_TRUE(earlier.estimate.spread);
+    EXPECT_EQ(earlier.estimate.spread->length, 2.5e-3);
+    EXPECT_EQ(earlier.estimate.spread->angle, stated.spread.angle);
     EXPECT_EQ(earlier.estimate.covariance, calibration_.estimate.covariance);
     EXPECT_TRUE(earlier.changes.empty()) << earlier.changes.front();
 

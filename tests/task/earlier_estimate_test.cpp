@@ -266,9 +266,8 @@ TEST(EarlierEstimate, TellsWhereRobotBaseAndTargetsAre) {
     Earlier earlier{calibrate(campaign, measure_at_random(campaign, draw_truth(campaign, 3), 24, 1),
                               without_folds())
                         .estimate};
-    earlier.spread = campaign.spread;
-    earlier.spread->length = 3e-3;
-    earlier.estimate.spread = earlier.spread;
+    earlier.estimate.spread = campaign.spread;
+    earlier.estimate.spread->length = 3e-3;
     const Parameters& found = earlier.estimate.parameters;
     const Campaign expected = with_earlier(campaign, earlier);
     EXPECT_EQ(expected.nominal.robot, found.robot);

@@ -199,7 +199,7 @@ TEST(SimulatedPlan, DrawsFromWhatAnEarlierEstimateTells) {
     const Parameters truth = draw_truth(campaign, 4);
     const Measurements measured = testing::measure_at_random(campaign, truth, 30, 5);
     const Estimate estimate = calibrate(assumed, measured, testing::without_folds()).estimate;
-    Earlier earlier{estimate, {}, {}};
+    Earlier earlier{estimate};
     earlier.use.is_prior = true;
     Campaign expected = with_earlier(assumed, earlier);
     expected.known_within = {1, 1};

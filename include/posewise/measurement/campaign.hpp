@@ -56,6 +56,9 @@ struct KnownWithin {
 /// The expected size of this robot error by its kind; `by_name` may state another.
 double& size_of(ParameterSpread& spread, const Chain& robot, Index parameter);
 
+/// The expected size of each error of the robot, m or rad.
+VectorXd robot_error_sizes(const ParameterSpread& spread, const Chain& robot);
+
 /// A size that several errors of a robot share.
 struct SharedSize {
     std::string key;  ///< under `spread` in a campaign file, without unit: "offset"
@@ -92,10 +95,10 @@ struct Campaign {
     /// (m) and angles (rad).
     double model_error = 1e-4;
     double model_error_orientation = 1e-4;
-    /// The part of the variance of lengths that is a motion of the flange, half of it a
-    /// translation, half a rotation about the middle of the targets, and so common to all targets
-    /// of a configuration; the rest each number has by itself. Nothing is common where one target
-    /// or body is shown. Not stated: usual_model_error_common where sizes are priors, else 0.
+    /// How much of the model error's variance (of lengths) the targets of a configuration share.
+    /// That part moves the flange: half of it is a translation, half a rotation about the middle of
+    /// the targets. Each number has the rest by itself. A sensor that shows one target or body
+    /// shares nothing. Not stated: usual_model_error_common where sizes are priors, else 0.
     std::optional<double> model_error_common{};
     KnownWithin known_within{};  ///< for the intervals of predictions
     /// Standard deviation of each joint about its commanded value (rad or m): one error per

@@ -214,6 +214,9 @@ class Chain {
 /// earlier element carries.
 std::vector<Index> element_owners(const Chain& chain);
 
+/// That of the element of an error parameter.
+Index parameter_owner(const Chain& chain, Index parameter);
+
 /// The robot without error parameters: a calibration then fits only base and targets.
 Chain without_parameters(const Chain& chain);
 

@@ -39,7 +39,6 @@ struct EarlierUse {
 struct Earlier {
     Estimate estimate;  ///< with the campaign's parameter names
     EarlierUse use{};
-    std::optional<ParameterSpread> spread{};  ///< the sizes of errors learned with it, if any
 };
 
 /// The campaign as an earlier estimate describes it, to select, plan, study and identify with.

@@ -334,7 +334,7 @@ struct Doubts {
     /// Likewise for orientations (RMS, rad).
     std::optional<double> orientations;
     std::vector<SizeDoubt> sizes;
-    std::vector<SizeDoubt> learned_sizes;       ///< of a class each, "spread.harmonic"
+    std::vector<SizeDoubt> learned_sizes;       ///< one for each class, "spread.harmonic"
     std::vector<ModelErrorDoubt> model_errors;  ///< for lengths, for angles
     /// Approximate share, 0 to 1, of the remaining squares that follows bending and periodic
     /// errors of joints missing in the model; if that is clear, and more than a twentieth.

@@ -163,24 +163,19 @@ Criterion read_criterion(const YamlValue& value) {
     }
 }
 
-Campaign make_irreducible(const Campaign& campaign, ErrorModel model, const YamlValue& robot,
-                          const StopSignal& stop) {
+/// What `make` returns; what is wrong is the robot's: "robot: `words`: ...".
+template <typename Make>
+Campaign make_of(const YamlValue& robot, const std::string& words, const Make& make) {
     try {
-        return with_robot(campaign, model == ErrorModel::Offsets
-                                        ? irreducible_offsets(campaign, stop)
-                                        : irreducible_model(campaign, stop));
+        return make();
     } catch (const InputError& problem) {
-        throw robot.error(std::string("no irreducible model was found: ") + problem.what());
+        throw robot.error(words + ": " + problem.what());
     }
 }
 
-Campaign keep_free(const Campaign& campaign, const std::vector<std::string>& free,
-                   const YamlValue& robot) {
-    try {
-        return with_free_errors(campaign, free);
-    } catch (const InputError& problem) {
-        throw robot.error(std::string("errors: ") + problem.what());
-    }
+Campaign make_irreducible(const Campaign& campaign, ErrorModel model, const StopSignal& stop) {
+    return with_robot(campaign, model == ErrorModel::Offsets ? irreducible_offsets(campaign, stop)
+                                                             : irreducible_model(campaign, stop));
 }
 
 /// One line of text: it becomes the title of plots and a comment of other files.
@@ -230,7 +225,8 @@ CampaignFile parse(const std::string& content, const std::string& path,
     campaign = with_robot(campaign, robot.declared);
     if (!sensor.reached.empty()) place_within_reach(sensor.reached, campaign);
     if (robot.error_model == ErrorModel::Complete || robot.error_model == ErrorModel::Offsets) {
-        campaign = make_irreducible(campaign, robot.error_model, map.require("robot"), stop);
+        campaign = make_of(map.require("robot"), "no irreducible model was found",
+                           [&] { return make_irreducible(campaign, robot.error_model, stop); });
     }
     if (robot.error_model == ErrorModel::Full) {
         const Chain full = detail::full_model(robot.declared, robot.gravity);
@@ -238,7 +234,10 @@ CampaignFile parse(const std::string& content, const std::string& path,
             with_robot(campaign, sensor.is_in_base_frame ? without_errors_of_base(full) : full);
         campaign.spread = population_spread(robot.declared);
     }
-    if (!robot.free.empty()) campaign = keep_free(campaign, robot.free, map.require("robot"));
+    if (!robot.free.empty()) {
+        campaign = make_of(map.require("robot"), "errors",
+                           [&] { return with_free_errors(campaign, robot.free); });
+    }
     read_model_error(map, "model_error", campaign.model_error);
     read_model_error(map, "model_error_orientation", campaign.model_error_orientation);
     if (const auto common = map.find("model_error_common")) {

@@ -20,10 +20,10 @@ const YamlKeys file{
         {"model_error_orientation_mrad", "", "the same of measured orientations",
          "`auto`: 0.1 mrad", "`0.25`"},
         {"model_error_common", "",
-         "part of the model error's variance that moves the flange, half by a translation, half by "
-         "a rotation about the targets' middle, and so is common to all targets of a "
-         "configuration; the rest each has by itself. Found on real robots with several targets: "
-         "0.84 to 0.93. Robust losses, which weigh targets one by one, take 0",
+         "how much of the model error's variance the targets of a configuration share. That part "
+         "moves the flange: half of it is a translation, half a rotation about the targets' "
+         "middle. Each target has the rest by itself. On real robots with several targets 0.84 to "
+         "0.93 was found. Robust losses weigh targets one by one and take 0",
          "0.9 beside priors, else 0", "`0`"},
         {"spread", "", "expected size of each error", "see below", "`{length_mm: 0.5}`"},
         {"prior", "",
@@ -31,8 +31,9 @@ const YamlKeys file{
          "do",
          "`true` with `errors: full`, else `false`", "`true`"},
         {"sizes", "",
-         "whether a calibration learns the sizes of a prior, about these within a factor of 2 (one "
-         "standard deviation; few poses move them a little), or takes them as stated",
+         "`learned`: a calibration learns the sizes of the robot's errors, starting from those of "
+         "the prior. One standard deviation is a factor of 2, so that few poses move them a "
+         "little. `stated`: it takes them as they are",
          "`learned`", "`stated`"},
         {"planning", "",
          "with `{errors: full}`: `select` and `plan` reckon with these errors (what they predict "
@@ -195,7 +196,8 @@ const YamlKeys noise{"noise",
 const YamlKeys places{
     "places",
     {
-        {"count", "targets", "so many targets at unknown places", "this or `position_mm`", "`3`"},
+        {"count", "targets", "number of targets, all at unknown places", "this or `position_mm`",
+         "`3`"},
         {"position_mm", "targets, tool, anchors, socket and base",
          "where they are expected (targets and tool in the flange frame, anchors and base in the "
          "instrument's)",

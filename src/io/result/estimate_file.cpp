@@ -333,12 +333,11 @@ void write_estimate(const std::string& path, const Calibration& calibration,
 void write_offsets_csv(const std::string& path, const Campaign& campaign,
                        const Estimate& estimate) {
     const Chain& robot = campaign.robot;
-    const std::vector<Index> owners = element_owners(robot);
     const Index begin = base_parameter_count(campaign);
     std::string text = "joint,offset,deviation,unit\n";
     for (Index k = 0; k < robot.parameter_count(); ++k) {
         const Element& element = robot.parameter_element(k);
-        const Index joint = owners[static_cast<std::size_t>(&element - robot.elements().data())];
+        const Index joint = parameter_owner(robot, k);
         if (robot.parameter_term(k) != nullptr || joint < 0) continue;
         const auto own = std::ranges::find(element.joints, joint, &JointTerm::joint);
         const bool turns = element.motion == Motion::Rotation;

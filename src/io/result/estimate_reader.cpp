@@ -195,8 +195,7 @@ EarlierFile read_earlier(const std::string& path, const Campaign& campaign, cons
     if (root.has("warnings")) earlier.warnings = root["warnings"].texts();
     const bool has_learned = root.has("learned_sizes");
     if (has_learned) {
-        earlier.spread = read_learned_sizes(root["learned_sizes"], campaign);
-        earlier.estimate.spread = earlier.spread;
+        earlier.estimate.spread = read_learned_sizes(root["learned_sizes"], campaign);
     }
     if (root.has("assumes")) earlier.changes = find_changes(root["assumes"], campaign, has_learned);
     return earlier;

@@ -344,7 +344,8 @@ Calibration calibrate(const Campaign& stated, const Measurements& measurements,
     const Index folds = options.folds.value_or(default_folds(used.configuration_count()));
     const auto& earlier = options.earlier;
     Campaign whole = campaign;
-    if (earlier && earlier->spread) whole.spread = *earlier->spread;
+    const bool has_learned = earlier && earlier->estimate.spread;
+    if (has_learned) whole.spread = *earlier->estimate.spread;
     Work work{whole,
               detail::known_parameters(campaign,
                                        earlier ? earlier->use.only : std::vector<std::string>{}),
@@ -355,7 +356,7 @@ Calibration calibrate(const Campaign& stated, const Measurements& measurements,
               detail::ProgressCounter(options.progress, part_count(campaign, options, folds))};
     Calibration result;
     result.campaign = whole;
-    if (earlier && earlier->spread) result.stated_spread = campaign.spread;
+    if (has_learned) result.stated_spread = campaign.spread;
     result.method = options.method;
     result.measured = count_measured(*campaign.sensor, used);
     result.excluded = options.excluded;

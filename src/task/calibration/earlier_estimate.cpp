@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "calibrator/learned_sizes.hpp"
 #include "core/text.hpp"
 #include "measurement/known_sensor.hpp"
 #include "posewise/core/errors.hpp"
@@ -86,9 +87,8 @@ double sizes_within(const Campaign& learned, const Estimate& estimate) {
             told += std::max(0.0, 1 - variances[k] / (shared.size * shared.size));
         }
     }
-    const double population = std::log(error_size_factor);
     const double each = told / static_cast<double>(std::max<std::size_t>(1, sizes.size()));
-    return std::exp(1 / std::sqrt(1 / (population * population) + 2 * each));
+    return std::exp(std::sqrt(detail::log_size_variance(each)));
 }
 
 /// By how much what was found moves where what was known is off: by e, then by the d of least
@@ -226,12 +226,10 @@ Campaign with_earlier(const Campaign& campaign, const Earlier& earlier) {
     if ((holds_base && use.has_new_base) || (known.targets && use.has_new_targets)) {
         throw InputError("base and targets that were moved must be identified, too");
     }
-    Campaign expected = campaign;
-    if (earlier.spread) expected.spread = *earlier.spread;
-    expected = with_model_error(expected, estimate);
+    Campaign expected = with_model_error(campaign, estimate);
     expected.known_within.model_error = elsewhere(estimate.model_error_within, model_error_factor);
     // Where the prior is drift besides, that is stated as roughly as sizes are.
-    if (earlier.spread && !use.is_prior) {
+    if (estimate.spread && !use.is_prior) {
         expected.known_within.error_size =
             elsewhere(sizes_within(expected, estimate), error_size_factor);
     }

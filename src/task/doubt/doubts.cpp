@@ -98,8 +98,7 @@ std::vector<SizeDoubt> find_size_doubts(const Campaign& campaign, const Estimate
     const VectorXd& errors = estimate.parameters.robot;
     const Index robot_begin = base_parameter_count(campaign);
     const VectorXd times =
-        errors.cwiseQuotient(parameter_scale(campaign).segment(robot_begin, errors.size()))
-            .cwiseAbs();
+        errors.cwiseQuotient(robot_error_sizes(campaign.spread, campaign.robot)).cwiseAbs();
     std::vector<SizeDoubt> doubts;
     for (Index k = 0; k < times.size(); ++k) {
         if (times[k] <= (campaign.spread.is_prior ? doubtful_under_prior : doubtful_size)) continue;
