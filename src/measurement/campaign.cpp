@@ -134,19 +134,6 @@ VectorXd parameter_scale(const Campaign& campaign) {
     return scale;
 }
 
-ParameterSpread population_spread(const Chain& robot) {
-    constexpr double length_per_extent = 4e-4;
-    constexpr double least_length = 1e-5;  // m: of axes that cross, without a length between them
-    ParameterSpread spread;
-    spread.length = std::max(length_per_extent * extent(robot), least_length);
-    spread.angle = 7e-4;
-    spread.offset = 20e-3;
-    spread.gravity = 7e-4;
-    spread.harmonic = 1.5e-4;
-    spread.is_prior = true;
-    return spread;
-}
-
 Index prior_begin(const Campaign& campaign) {
     return campaign.prior && campaign.prior->has_base ? 0 : base_parameter_count(campaign);
 }

@@ -11,6 +11,7 @@
 #include "posewise/core/types.hpp"
 #include "posewise/io/robot_files.hpp"
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/measurement/population.hpp"
 
 namespace posewise::io {
 
@@ -48,6 +49,7 @@ struct CampaignFile : Campaign {
     /// Number of robot angles that the file rounds; within 1e-6 rad of a multiple of 90 deg they
     /// are taken as that.
     Index rounded_angle_count = 0;
+    RobotClass robot_class = RobotClass::Unknown;
     ErrorModel error_model = ErrorModel::Stated;
     /// What select and plan use instead, as the file states under `planning`.
     std::optional<ErrorModel> planned_model;

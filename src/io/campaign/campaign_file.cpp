@@ -116,7 +116,7 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
     return spread;
 }
 
-/// "auto" is the default: beside priors it is found from what is measured.
+/// "auto" is what is expected of the robot's class: beside priors a calibration finds it.
 void read_model_error(const YamlMap& map, std::string_view key, double& error) {
     const auto measure = map.find_measure(key);
     if (!measure || measure->value.is_text("auto")) return;
@@ -213,9 +213,14 @@ CampaignFile parse(const std::string& content, const std::string& path,
     robot.declared = std::move(exact.chain);
     file.rounded_angle_count = exact.count;
     file.declared_robot = robot.declared;
+    file.robot_class = robot.robot_class;
     file.error_model = robot.error_model;
     file.urdf = robot.urdf;
     file.warnings = robot.warnings;
+    const Population population = population_of(robot.robot_class, robot.declared);
+    campaign.model_error = population.model_error;
+    campaign.model_error_orientation = population.model_error_orientation;
+    campaign.known_within = population.within;
     campaign.joint_repeatability = robot.joint_repeatability;
     const detail::SensorSection sensor = read_sensor(map.require("sensor"));
     campaign.sensor = sensor.sensor;
@@ -232,7 +237,7 @@ CampaignFile parse(const std::string& content, const std::string& path,
         const Chain full = detail::full_model(robot.declared, robot.gravity);
         campaign =
             with_robot(campaign, sensor.is_in_base_frame ? without_errors_of_base(full) : full);
-        campaign.spread = population_spread(robot.declared);
+        campaign.spread = population.spread;
     }
     if (!robot.free.empty()) {
         campaign = make_of(map.require("robot"), "errors",

@@ -12,6 +12,7 @@ namespace posewise::detail {
 
 struct RobotSection {
     Chain declared;
+    RobotClass robot_class = RobotClass::Unknown;
     io::ErrorModel error_model = io::ErrorModel::Stated;
     std::vector<std::string> free = {};     ///< the only errors of that model; empty: all
     Vector3d gravity = -Vector3d::UnitZ();  ///< its direction in the base frame

@@ -16,9 +16,9 @@ const YamlKeys file{
          "what the model cannot express, as noise that repeats do not reduce; 0: nothing. With "
          "`prior` only what is expected: a calibration finds it from the measurements, give or "
          "take a factor of 2.5",
-         "`auto`: 0.1 mm", "`0.15`"},
+         "`auto`: that of the robot's class, 0.1 mm where it is unknown", "`0.15`"},
         {"model_error_orientation_mrad", "", "the same of measured orientations",
-         "`auto`: 0.1 mrad", "`0.25`"},
+         "`auto`: as many mrad as mm", "`0.25`"},
         {"model_error_common", "",
          "how much of the model error's variance the targets of a configuration share. That part "
          "moves the flange: half of it is a translation, half a rotation about the targets' "
@@ -64,6 +64,12 @@ const YamlKeys robot{
         {"urdf", "", "a URDF, its path from this file's folder", "", "`ur10.urdf`"},
         {"base_link", "", "of the URDF: where the robot begins", "its root", "`base_link`"},
         {"tip_link", "", "of the URDF: what carries the targets", "its only leaf", "`tool0`"},
+        {"class", "",
+         "what kind of robot it is: `small` (stiff arms for assembly), `industrial`, "
+         "`collaborative`, `service` (coarse arms: mobile manipulators, humanoids, low-cost arms) "
+         "or `unknown`. Model error and sizes of `errors: full` are expected as such robots have "
+         "them, and intervals before measuring are narrower",
+         "`unknown`", "`collaborative`"},
         {"errors", "",
          "`none`: base and targets alone (registration, hand-eye); `stated`: those named in "
          "brackets; `offsets`: the joints' zeros alone, those that base and targets do not tell "

@@ -167,6 +167,17 @@ void refuse(const YamlMap& robot, std::string_view key, const YamlValue& beside,
     }
 }
 
+/// What `parse` makes of a word; its error gets the word's place.
+template <typename Parse>
+auto parse_word(const YamlValue& value, Parse parse) {
+    const std::string word = value.text();
+    try {
+        return parse(word);
+    } catch (const InputError& problem) {
+        throw value.error(problem.what());
+    }
+}
+
 RobotSection read_described(const YamlMap& robot, const YamlValue& description) {
     if (description.name() == "robot.urdf") return read_urdf_robot(robot);
     for (const char* const link : {"base_link", "tip_link"}) {
@@ -180,18 +191,14 @@ RobotSection read_described(const YamlMap& robot, const YamlValue& description) 
 }  // namespace
 
 io::ErrorModel read_error_model(const YamlValue& errors) {
-    const std::string name = errors.text();
-    try {
-        return io::parse_error_model(name);
-    } catch (const InputError& problem) {
-        throw errors.error(problem.what());
-    }
+    return parse_word(errors, io::parse_error_model);
 }
 
 RobotSection read_robot(const YamlValue& value, std::optional<io::ErrorModel> errors) {
     const YamlMap robot(value, keys::robot);
     RobotSection section = read_described(robot, find_description(value, robot));
     check_has_room(value, section.declared);
+    if (const auto kind = robot.find("class")) section.robot_class = parse_word(*kind, parse_robot_class);
     section.error_model =
         errors ? *errors : find_error_model(robot, section.declared.elements(), section.free);
     if (section.error_model == io::ErrorModel::None) {
