@@ -33,6 +33,7 @@ int step_of(const Chain& chain, Index parameter) {
         case ErrorClass::Other:
             return 5;
         case ErrorClass::Harmonic:
+        case ErrorClass::SlideHarmonic:
             return 6;
         case ErrorClass::Tilt:
             return 7;

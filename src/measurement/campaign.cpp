@@ -67,7 +67,9 @@ double& size_of(ParameterSpread& spread, const Chain& robot, Index parameter) {
     const Element& element = robot.parameter_element(parameter);
     const bool turns = element.motion == Motion::Rotation;
     const ErrorTerm* const term = robot.parameter_term(parameter);
-    if (term != nullptr && term->kind == TermKind::Harmonic) return spread.harmonic;
+    if (term != nullptr && term->kind == TermKind::Harmonic) {
+        return turns ? spread.harmonic : spread.slide_harmonic;
+    }
     if (term != nullptr && term->kind == TermKind::Tilt) return spread.tilt;
     if (term != nullptr && term->kind == TermKind::Gain) return spread.gain;
     if (term != nullptr && term->kind != TermKind::Free) return spread.gravity;
@@ -95,6 +97,7 @@ std::vector<SharedSize> shared_sizes(const ParameterSpread& spread, const Chain&
         if (size == &sizes.gravity) return "gravity";
         if (size == &sizes.tilt) return "tilt";
         if (size == &sizes.gain) return "gain";
+        if (size == &sizes.slide_harmonic) return "slide_harmonic";
         return size == &sizes.harmonic ? "harmonic" : "offset";
     };
     const auto names = robot.parameter_names();
@@ -106,7 +109,8 @@ std::vector<SharedSize> shared_sizes(const ParameterSpread& spread, const Chain&
         auto found = std::find_if(shared.begin(), shared.end(),
                                   [&](const SharedSize& one) { return one.key == key; });
         if (found == shared.end()) {
-            found = shared.insert(found, {key, size, key != "length", {}});
+            const bool is_angle = key != "length" && key != "slide_harmonic";
+            found = shared.insert(found, {key, size, is_angle, {}});
         }
         found->members.push_back(k);
     }

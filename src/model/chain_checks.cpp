@@ -22,6 +22,10 @@ void check_joint(const Joint& joint) {
             "joint '{}' has limits {:g} to {:g} (rad or m): must be finite, the lower one first",
             joint.name, joint.lower, joint.upper));
     }
+    if (!std::isfinite(joint.pitch) || joint.pitch < 0) {
+        throw InputError(fmt::format("joint '{}' has a pitch of {:g} m: must be positive",
+                                     joint.name, joint.pitch));
+    }
 }
 
 /// `subject` is "element 3 of the chain" or one of its terms.
@@ -105,6 +109,10 @@ std::vector<Motion> find_motions(const std::vector<Joint>& joints,
     std::vector<Motion> motions;
     for (std::size_t j = 0; j < joints.size(); ++j) {
         if (!driven[j]) throw InputError("joint '" + joints[j].name + "' drives no element");
+        if (*driven[j] == Motion::Rotation && joints[j].pitch != 0) {
+            throw InputError("joint '" + joints[j].name +
+                             "' turns; only one that slides has a pitch");
+        }
         motions.push_back(*driven[j]);
     }
     return motions;

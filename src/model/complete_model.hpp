@@ -14,11 +14,11 @@ namespace posewise::detail {
 Chain complete_model(const Chain& chain);
 
 /// complete_model() with the errors that depend on the configuration, too: those of joints and
-/// slides that bend, with_torque_shapes(), of encoders and gears, with_harmonics() of the orders 1
-/// and 2, and with_gains() of slides and of axes that only follow. (Gears have whole ratios: beside
-/// sines over a part of a turn a gain is hardly told apart, and poses are chosen worse with it.)
-/// Far more than poses can tell apart without a prior; a robot that has few of them loses little by
-/// the others, one whose errors are left out loses much.
+/// slides that bend, with_torque_shapes(), of encoders, gears and drives of slides,
+/// with_harmonics() of the orders 1 and 2, and with_gains() of slides and of axes that only follow.
+/// (Gears have whole ratios: beside sines over a part of a turn a gain is hardly told apart, and
+/// poses are chosen worse with it.) Far more than poses can tell apart without a prior; a robot
+/// that has few of them loses little by the others, one whose errors are left out loses much.
 Chain full_model(const Chain& chain, const Vector3d& gravity = -Vector3d::UnitZ());
 
 }  // namespace posewise::detail

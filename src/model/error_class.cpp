@@ -3,6 +3,8 @@
 namespace posewise::detail {
 
 ErrorClass error_class_of(const Chain& robot, Index parameter) {
+    const Element& element = robot.parameter_element(parameter);
+    const bool turns = element.motion == Motion::Rotation;
     if (const ErrorTerm* const term = robot.parameter_term(parameter)) {
         switch (term->kind) {
             case TermKind::Gravity:
@@ -10,7 +12,7 @@ ErrorClass error_class_of(const Chain& robot, Index parameter) {
             case TermKind::Torque:
                 return ErrorClass::Torque;
             case TermKind::Harmonic:
-                return ErrorClass::Harmonic;
+                return turns ? ErrorClass::Harmonic : ErrorClass::SlideHarmonic;
             case TermKind::Tilt:
                 return ErrorClass::Tilt;
             case TermKind::Gain:
@@ -19,8 +21,6 @@ ErrorClass error_class_of(const Chain& robot, Index parameter) {
                 return ErrorClass::Other;
         }
     }
-    const Element& element = robot.parameter_element(parameter);
-    const bool turns = element.motion == Motion::Rotation;
     if (element.joints.empty()) return turns ? ErrorClass::Angle : ErrorClass::Length;
     return turns ? ErrorClass::Offset : ErrorClass::Slide;
 }

@@ -14,20 +14,22 @@ enum class ErrorClass {
     Gravity,
     Torque,
     Harmonic,
+    SlideHarmonic,
     Tilt,
     Gain,
     Other
 };
 
-/// Their words where errors are named by class: offsets of both kinds of joints are one, and what
-/// gravity does is one.
-inline constexpr Names<ErrorClass, 10> error_class_names{{{ErrorClass::Offset, "offsets"},
+/// Their words where errors are named by class: offsets of both kinds of joints are one, so are
+/// their harmonics, and what gravity does is one.
+inline constexpr Names<ErrorClass, 11> error_class_names{{{ErrorClass::Offset, "offsets"},
                                                           {ErrorClass::Slide, "offsets"},
                                                           {ErrorClass::Length, "lengths"},
                                                           {ErrorClass::Angle, "angles"},
                                                           {ErrorClass::Gravity, "gravity"},
                                                           {ErrorClass::Torque, "gravity"},
                                                           {ErrorClass::Harmonic, "harmonics"},
+                                                          {ErrorClass::SlideHarmonic, "harmonics"},
                                                           {ErrorClass::Tilt, "tilts"},
                                                           {ErrorClass::Gain, "gains"},
                                                           {ErrorClass::Other, "terms"}}};

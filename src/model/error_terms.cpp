@@ -13,6 +13,7 @@ namespace posewise {
 namespace {
 
 constexpr double parallel_tolerance = std::numbers::pi / 180;
+constexpr double full_turn = 2 * std::numbers::pi;
 
 const std::string& joint_name(const Chain& chain, Index joint) {
     return chain.joints()[static_cast<std::size_t>(joint)].name;
@@ -49,14 +50,20 @@ void check_joints(const Chain& chain, const std::vector<Index>& joints) {
     }
 }
 
-/// Whether `element`, driven by joint `owner` (-1: by none), turns and is of one of `joints`.
-bool is_periodic(const Element& element, Index owner, const std::vector<Index>& joints) {
-    return owner >= 0 && element.motion == Motion::Rotation && is_wanted(joints, owner);
+/// How far the joint turns by its value, or of a slide its drive; 0: that is not known.
+double turn_rate(const Joint& joint) {
+    if (joint.motion == Motion::Rotation) return 1;
+    return joint.pitch > 0 ? full_turn / joint.pitch : 0;
 }
 
-/// Throws InputError unless all of `joints` turn and all orders are positive and finite.
+bool does_turn(const Joint& joint) { return joint.motion == Motion::Rotation; }
+
+/// Throws InputError unless `is_periodic(joint)` holds for all of `joints` and all orders are
+/// positive and finite.
+template <typename IsPeriodic>
 void check_periodic(const Chain& chain, const std::vector<double>& orders,
-                    const std::vector<Index>& joints) {
+                    const std::vector<Index>& joints, const IsPeriodic& is_periodic,
+                    const char* need) {
     check_joints(chain, joints);
     for (const double order : orders) {
         if (!std::isfinite(order) || order <= 0) {
@@ -64,9 +71,8 @@ void check_periodic(const Chain& chain, const std::vector<double>& orders,
         }
     }
     for (const Index joint : joints) {
-        if (chain.joint(joint).motion == Motion::Rotation) continue;
-        throw InputError("joint '" + joint_name(chain, joint) +
-                         "' slides; harmonics need one that turns");
+        if (is_periodic(chain.joint(joint))) continue;
+        throw InputError("joint '" + joint_name(chain, joint) + "' slides; " + need);
     }
 }
 
@@ -143,9 +149,12 @@ std::string describe_function(const JointFunction& function, const std::vector<J
     for (const JointTerm& term : function.joints) {
         if (term.coefficient < 0) sum += '-';
         if (term.coefficient > 0 && !sum.empty()) sum += '+';
-        const double size = std::abs(term.coefficient);
-        if (size != 1) sum += fmt::format("{:.9g}", size);
-        sum += joints[static_cast<std::size_t>(term.joint)].name;
+        const Joint& joint = joints[static_cast<std::size_t>(term.joint)];
+        const bool in_turns = is_sine && joint.pitch > 0;
+        const std::string size = fmt::format(
+            "{:.9g}", std::abs(term.coefficient) * (in_turns ? joint.pitch / full_turn : 1));
+        if (size != "1") sum += size;
+        sum += joint.name;
     }
     if (!is_cosine && function.phase != 0) sum += fmt::format("{:+.6g}", function.phase);
     return (is_cosine ? "cos(" : is_sine ? "sin(" : "lin(") + sum + ')';
@@ -246,14 +255,18 @@ std::vector<Compliance> compliances(const Chain& chain) {
 
 Chain with_harmonics(const Chain& chain, const std::vector<double>& orders,
                      const std::vector<Index>& joints) {
-    check_periodic(chain, orders, joints);
+    check_periodic(
+        chain, orders, joints, [](const Joint& joint) { return turn_rate(joint) > 0; },
+        "harmonics need its pitch, or a joint that turns");
     const std::vector<Index> owners = element_owners(chain);
     std::vector<Element> elements = chain.elements();
     for (std::size_t k = 0; k < elements.size(); ++k) {
-        if (!is_periodic(elements[k], owners[k], joints)) continue;
+        if (owners[k] < 0 || !is_wanted(joints, owners[k])) continue;
+        const double rate = turn_rate(chain.joint(owners[k]));
+        if (rate == 0) continue;
         for (const double order : orders) {
-            add_waves(chain, joint_name(chain, owners[k]), {{owners[k], order}}, TermKind::Harmonic,
-                      elements[k]);
+            add_waves(chain, joint_name(chain, owners[k]), {{owners[k], order * rate}},
+                      TermKind::Harmonic, elements[k]);
         }
     }
     return chain.with_elements(std::move(elements));
@@ -261,13 +274,15 @@ Chain with_harmonics(const Chain& chain, const std::vector<double>& orders,
 
 Chain with_axis_tilt(const Chain& chain, const std::vector<double>& orders,
                      const std::vector<Index>& joints) {
-    check_periodic(chain, orders, joints);
+    check_periodic(chain, orders, joints, does_turn, "tilts need one that turns");
     const std::vector<Index> owners = element_owners(chain);
     std::vector<Element> elements;
     for (std::size_t k = 0; k < owners.size(); ++k) {
         const Element& element = chain.elements()[k];
         elements.push_back(element);
-        if (!is_periodic(element, owners[k], joints)) continue;
+        if (owners[k] < 0 || !does_turn(chain.joint(owners[k])) || !is_wanted(joints, owners[k])) {
+            continue;
+        }
         for (const auto& [axis, name] :
              {std::pair(Axis::X, ".Rx"), std::pair(Axis::Y, ".Ry"), std::pair(Axis::Z, ".Rz")}) {
             if (axis == element.axis) continue;

@@ -27,6 +27,8 @@ const char* class_name(ErrorClass error_class) {
             return "torque shapes";
         case ErrorClass::Harmonic:
             return "harmonics";
+        case ErrorClass::SlideHarmonic:
+            return "harmonics of joints that slide";
         case ErrorClass::Tilt:
             return "tilts of axes";
         case ErrorClass::Gain:
@@ -56,7 +58,8 @@ Table expected_class_table(const Campaign& campaign) {
     const VectorXd sizes = robot_error_sizes(campaign.spread, campaign.robot);
     Table table{{"class", "count", "expected", ""}, {}};
     for (const auto& [of_class, members] : members_by_class(campaign.robot)) {
-        const bool is_length = of_class == ErrorClass::Length || of_class == ErrorClass::Slide;
+        const bool is_length = of_class == ErrorClass::Length || of_class == ErrorClass::Slide ||
+                               of_class == ErrorClass::SlideHarmonic;
         table.rows.push_back({class_name(of_class), std::to_string(members.size()),
                               format_short(root_mean_square(sizes(members)), 3),
                               is_length ? "mm" : "mrad"});

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/format.hpp"
+#include "model/error_class.hpp"
 #include "posewise/core/types.hpp"
 
 namespace posewise::detail {
@@ -54,18 +55,20 @@ std::string describe_scaling(const Campaign& campaign, double repeats) {
         text += fmt::format(", {} mrad a joint offset",
                             format_short(mrad_per_rad * *campaign.spread.offset));
     }
-    const auto add = [&](TermKind kind, const char* what, double size) {
+    const auto add = [&](ErrorClass of_class, const char* what, double size) {
+        const bool is_angle = of_class != ErrorClass::SlideHarmonic;
         for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
-            const ErrorTerm* const term = campaign.robot.parameter_term(k);
-            if (term == nullptr || term->kind != kind) continue;
-            text += fmt::format(", {} mrad a {} term", format_short(mrad_per_rad * size), what);
+            if (error_class_of(campaign.robot, k) != of_class) continue;
+            text += fmt::format(", {} {} a {} term", format_short(mrad_per_rad * size),
+                                units_of(is_angle).error, what);
             return;
         }
     };
-    add(TermKind::Gravity, "gravity", campaign.spread.gravity);
-    add(TermKind::Harmonic, "harmonic", campaign.spread.harmonic);
-    add(TermKind::Tilt, "tilt", campaign.spread.tilt);
-    add(TermKind::Gain, "gain", campaign.spread.gain);
+    add(ErrorClass::Gravity, "gravity", campaign.spread.gravity);
+    add(ErrorClass::Harmonic, "harmonic", campaign.spread.harmonic);
+    add(ErrorClass::SlideHarmonic, "harmonic", campaign.spread.slide_harmonic);
+    add(ErrorClass::Tilt, "tilt", campaign.spread.tilt);
+    add(ErrorClass::Gain, "gain", campaign.spread.gain);
     if (!campaign.spread.by_name.empty()) text += ", others by name in the campaign file";
     text += '\n';
     if (campaign.prior) return text + "prior: that of an earlier estimate\n";

@@ -195,6 +195,26 @@ TEST(BadCampaign, ALongTextIsCutInTheMessage) {
     EXPECT_NE(message.find("\u03a9...'; must be points"), std::string::npos) << message;
 }
 
+TEST(BadCampaign, PitchesThatCannotBe) {
+    const std::string number = ", which is not a number; must be a finite number without unit";
+    const std::string of_lift = "6:43: robot.joints.lift.pitch_mm is ";
+    const auto lift = [](const std::string& pitch) {
+        return "limits_mm: [0, 500], pitch_" + pitch;
+    };
+    expect_messages_of({
+        {"limits_mm: [0, 500]", lift("mm: 0"), of_lift + "'0'; must be from 0.001 to 1000 mm"},
+        {"limits_mm: [0, 500]", lift("mm: -20"), of_lift + "'-20'; must be from 0.001 to 1000 mm"},
+        {"limits_mm: [0, 500]", lift("mm: .nan"), of_lift + "'.nan'" + number},
+        {"limits_mm: [0, 500]", lift("m: 20"),
+         "6:42: robot.joints.lift.pitch_m is '20'; must be from 1e-06 to 1 m"},
+        {"limits_mm: [0, 500]", lift("deg: 20"),
+         "6:33: unknown key 'pitch_deg' in robot.joints.lift; did you mean 'pitch_mm'?"},
+        {"limits_deg: [-90, 90]", "limits_deg: [-90, 90], pitch_mm: 20",
+         "4:43: robot.joints.q1.pitch_mm is stated, but the joint turns; must be of one that "
+         "slides"},
+    });
+}
+
 TEST(BadCampaign, GravityAndHarmonicsThatCannotBe) {
     std::vector<Slip> slips{
         {"", "gravity: maybe", "7:12: ro[...]"},
@@ -211,8 +231,10 @@ TEST(BadCampaign, GravityAndHarmonicsThatCannotBe) {
         {"", "harmonics: {orders: []}", "7:23:[...]"},
         {"", "axis_tilt: {joints: [q1]}", "7:14: robot.axis_tilt has no key orders[...]"},
         {"", "harmonics: {orders: [1], joints: [lift]}",
-         "7:14: robot.harmonics is not possible: joint 'lift' slides; harmonics need one that "
-         "turns"},
+         "7:14: robot.harmonics is not possible: joint 'lift' slides; harmonics need its pitch, or "
+         "a joint that turns"},
+        {"", "axis_tilt: {orders: [1], joints: [lift]}",
+         "7:14: robot.axis_tilt is not possible: joint 'lift' slides; tilts need one that turns"},
     };
     for (Slip& slip : slips) {
         slip.part = "  elements:\n";

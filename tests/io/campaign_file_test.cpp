@@ -111,6 +111,42 @@ TEST(ReadCampaign, TakesGravityAndHarmonics) {
     EXPECT_EQ(parameter_scale(on_wall)[7], 1e-3);
 }
 
+TEST(ReadCampaign, GivesASlideWithAPitchItsHarmonics) {
+    const std::string text =
+        replaced(campaign_text, "limits_mm: [0, 500]", "limits_mm: [0, 500], pitch_mm: 20");
+    EXPECT_DOUBLE_EQ(read(text).robot.joint(2).pitch, 0.02);
+    const auto count = [](const CampaignFile& file) { return file.robot.parameter_count(); };
+    EXPECT_EQ(count(read(text)), 4) << "these are stated";
+    const std::string harmonics = "  harmonics: {orders: [1, 3], joints: [lift]}\n  elements:\n";
+    const CampaignFile some = read(replaced(text, "  elements:\n", harmonics));
+    const auto names = some.robot.parameter_names();
+    EXPECT_EQ(std::vector<std::string>(names.begin() + 1, names.begin() + 5),
+              (std::vector<std::string>{"lift.sin(lift)", "lift.cos(lift)", "lift.sin(3lift)",
+                                        "lift.cos(3lift)"}));
+
+    const std::string unsized = replaced(text, ", parameters: {dq2: 0.5 mrad, Tx1: 4 mm}", "");
+    const std::string full = replaced(unsized, "robot:\n", "robot:\n  errors: full\n");
+    const CampaignFile file = read(full);
+    EXPECT_EQ(count(file), count(read(replaced(full, ", pitch_mm: 20", ""))) + 4);
+    const auto sizes = shared_sizes(file.spread, file.robot);
+    const auto slide = std::ranges::find(sizes, "slide_harmonic", &SharedSize::key);
+    ASSERT_NE(slide, sizes.end());
+    EXPECT_EQ(slide->size, 8e-6);
+    EXPECT_FALSE(slide->is_angle);
+    EXPECT_EQ(slide->members.size(), 4U);
+    const CampaignFile stated =
+        read(replaced(full, "angle_mrad: 3",
+                      "angle_mrad: 3, slide_harmonic_um: 5, parameters: {lift.cos(2lift): 20 um}"));
+    const VectorXd scale = robot_error_sizes(stated.spread, stated.robot);
+    EXPECT_EQ((scale.array() == 5e-6).count(), 3);
+    EXPECT_EQ((scale.array() == 20e-6).count(), 1);
+    const auto freed = [&](const std::string& errors) {
+        return count(read(replaced(unsized, "robot:\n", "robot:\n  errors: " + errors + '\n')));
+    };
+    EXPECT_EQ(freed("[class:harmonics]"), 4 + 2 * 4);
+    EXPECT_EQ(freed("[lift.sin(2lift)]"), 1);
+}
+
 TEST(ReadCampaign, TakesTiltsOfAxes) {
     const CampaignFile file =
         read_level("  axis_tilt: {orders: [1, 2], joints: [q1]}\n", "tilt_mrad: 0.02");

@@ -4,6 +4,7 @@
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/model/chain.hpp"
+#include "posewise/model/error_terms.hpp"
 #include "support/robots.hpp"
 #include "support/slips.hpp"
 #include "support/sweep.hpp"
@@ -250,6 +251,20 @@ TEST(UrdfSection, TakesSpeedsUnlessTheCellStatesThem) {
     EXPECT_EQ(read_text(campaign_of_urdf("link2"), urdf).cell.speed, Eigen::Vector2d(3, 3));
     const std::string cell = "cell: {speed_rad_per_s: [1, 2]}\n";
     EXPECT_EQ(read_text(campaign_of_urdf("link2") + cell, urdf).cell.speed, Eigen::Vector2d(1, 2));
+}
+
+TEST(UrdfSection, TakesThePitchOfASlideFromTheCampaign) {
+    const std::string urdf = urdf_text({slides("0 0 1"), turns("0 1 0", "0.2 0 0")});
+    const auto read_with = [&](const std::string& joints) {
+        return read_text(campaign_of_urdf("link2", "  joints: {" + joints + "}\n"), urdf);
+    };
+    const Chain robot = read_with("q1: {pitch_mm: 20}").declared_robot;
+    EXPECT_DOUBLE_EQ(robot.joint(0).pitch, 0.02);
+    EXPECT_EQ(with_harmonics(robot, {1}, {0}).parameter_count(), 2);
+    EXPECT_NE(input_error_of([&] {
+                  read_with("q2: {pitch_mm: 20}");
+              }).find("robot.joints.q2.pitch_mm is stated, but the joint turns"),
+              std::string::npos);
 }
 
 TEST(UrdfSection, FindsTheFileFromTheCampaignsFolder) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -121,6 +122,23 @@ TEST(IrreducibleModel, KeepsTermsBesideTheWholeGeometry) {
     std::sort(names.begin(), names.end());
     std::sort(expected.begin(), expected.end());
     EXPECT_EQ(names, expected);
+}
+
+/// Four beside 4R + 2P + 3n. The tolerance does not matter: the singular values say the same.
+TEST(IrreducibleModel, HasTheHarmonicsOfASlideBesideTheWholeGeometry) {
+    const Chain rail = without_parameters(testing::with_pitch(testing::rail_with_fanuc(), 0, 0.02));
+    const Chain driven = with_harmonics(rail, {1, 2}, {0});
+    const Index formula = 4 * 6 + 2 * 1 + 3 * 3 + 4;
+    EXPECT_EQ(irreducible_count(driven), formula);
+    const Campaign campaign = tracked_campaign(complete_model(driven));
+    EXPECT_TRUE(has_clear_gap(find_identifiable(campaign)));
+    MatrixXd J = make_blocks(campaign, campaign.nominal, random_configurations(driven, 100, 5),
+                             MatrixXd::Ones(100, 3))
+                     .matrix;
+    for (Index k = 0; k < J.cols(); ++k) J.col(k) /= std::max(J.col(k).norm(), 1e-300);
+    const VectorXd singular = Eigen::BDCSVD<MatrixXd>(J).singularValues();
+    EXPECT_EQ((singular.array() > 1e-6 * singular[0]).count(), formula);
+    EXPECT_LT(singular[formula], 1e-12 * singular[0]);
 }
 
 TEST(IrreducibleModel, DropsTheTermThatGeometryExpresses) {

@@ -119,7 +119,8 @@ TEST(Chain, KnowsHowItsTwistsChangeWithTheJoints) {
                          driven(Motion::Rotation, Axis::Z, 1, "f", 2),
                          translation(Axis::Y, 0.1, "g")});
     for (const Chain& chain : {coupled, fanuc(), gantry_with_wrist(), scara(),
-                               with_gains(with_torque_shapes(arm_on_lift()))}) {
+                               with_gains(with_torque_shapes(arm_on_lift())),
+                               with_harmonics(with_pitch(arm_on_lift(), 0, 1), {1, 2})}) {
         for (std::uint64_t item = 0; item < static_cast<std::uint64_t>(sweep_count() / 50);
              ++item) {
             RandomStream stream(44, item);

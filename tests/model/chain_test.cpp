@@ -221,6 +221,12 @@ TEST(Chain, RefusesRobotsThatMakeNoSense) {
         << "NaN coefficient";
     EXPECT_THROW(Chain({q1}, {driven(Motion::Rotation, Axis::X, 0, "", 0)}), InputError)
         << "coefficient zero";
+    const Element slide = driven(Motion::Translation, Axis::Z, 0);
+    const auto rail = [](double pitch) { return Joint{"rail", 0, 1, Motion::Translation, pitch}; };
+    EXPECT_NO_THROW(Chain({rail(0.02)}, {slide}));
+    EXPECT_THROW(Chain({rail(0.02)}, {turn}), InputError) << "pitch of a joint that turns";
+    EXPECT_THROW(Chain({rail(-0.02)}, {slide}), InputError) << "pitch below 0";
+    EXPECT_THROW(Chain({rail(nan)}, {slide}), InputError) << "NaN pitch";
 }
 
 TEST(Chain, RefusesConfigurationsItCannotTake) {

@@ -143,6 +143,39 @@ TEST(Harmonics, AreSinesAndCosinesOfOrders) {
     EXPECT_THROW(with_harmonics(fanuc(), {0}), InputError);
 }
 
+TEST(Harmonics, OfASlideArePeriodicInItsPitch) {
+    const Chain rail = with_harmonics(with_pitch(rail_with_fanuc(), 0, 0.02), {1, 2}, {0});
+    std::vector<std::string> names = rail.parameter_names();
+    names.resize(4);
+    ASSERT_EQ(names,
+              (Names{"rail.sin(rail)", "rail.cos(rail)", "rail.sin(2rail)", "rail.cos(2rail)"}));
+    EXPECT_EQ(rail.parameter_element(0).motion, Motion::Translation);
+    VectorXd errors = VectorXd::Zero(rail.parameter_count());
+    errors.head<4>() << 8e-6, -3e-6, 2e-6, 1e-6;
+    VectorXd q = VectorXd::Zero(7);
+    const auto advance = [&](double at) {
+        q[0] = at;
+        return rail.base_from_flange(q, errors).translation().y() - at;
+    };
+    const double at_zero = rail.base_from_flange(VectorXd::Zero(7), 0 * errors).translation().y();
+    EXPECT_NEAR(advance(0) - at_zero, -3e-6 + 1e-6, 1e-14);
+    EXPECT_NEAR(advance(0.005) - at_zero, 8e-6 - 1e-6, 1e-14);  // a quarter of a turn
+    EXPECT_NEAR(advance(0.0137), advance(2.0137), 1e-14);
+}
+
+TEST(Harmonics, AreOfSlidesWhosePitchIsStated) {
+    const Chain gantry = with_pitch(gantry_with_wrist(), 1, 0.01);
+    EXPECT_EQ(with_harmonics(gantry, {1}).parameter_count(), 6 + 2);
+    EXPECT_EQ(terms_of(with_harmonics(gantry, {2.5}, {1})), (Names{"y.sin(2.5y)", "y.cos(2.5y)"}));
+    EXPECT_THROW(with_harmonics(gantry, {1}, {0}), InputError);
+    EXPECT_THROW(with_axis_tilt(gantry, {1}, {1}), InputError);
+    // With and without a pitch that divides 2 pi into no whole number.
+    for (const double pitch : {0.02, 0.012345, 1e-6, 0.3}) {
+        EXPECT_EQ(terms_of(with_harmonics(with_pitch(gantry, 1, pitch), {1, 3}, {1})),
+                  (Names{"y.sin(y)", "y.cos(y)", "y.sin(3y)", "y.cos(3y)"}));
+    }
+}
+
 TEST(Harmonics, AreNotAddedWhereGravityHasThem) {
     const Chain both = with_harmonics(with_gravity_terms(without_parameters(fanuc())), {1});
     EXPECT_EQ(both.parameter_count(), 6 + 12 - 2);

@@ -86,7 +86,8 @@ TEST(TorqueShapes, ExplainTheTorqueOfWeightsAtTheJointsAndOfAnyTool) {
 class DifferentiatedFullModel : public ::testing::TestWithParam<Chain> {};
 
 INSTANTIATE_TEST_SUITE_P(TorqueShapes, DifferentiatedFullModel,
-                         ::testing::Values(without_parameters(fanuc()), arm_on_lift()));
+                         ::testing::Values(without_parameters(fanuc()), arm_on_lift(),
+                                           with_pitch(arm_on_lift(), 0, 1)));
 
 TEST_P(DifferentiatedFullModel, AgreesWithDifferences) {
     const Chain robot = full_model(GetParam());

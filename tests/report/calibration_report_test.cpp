@@ -53,6 +53,20 @@ TEST(FormatCalibration, ShowsLearnedSizesBesideTheExpected) {
     EXPECT_TRUE(holds(text, "class           count  expected  learned     RMS")) << text;
 }
 
+TEST(FormatCalibration, ShowsHarmonicsOfSlidesAsLengths) {
+    const Chain rail = testing::with_pitch(testing::rail_with_fanuc(), 0, 0.02);
+    Campaign campaign = testing::tracked_campaign(with_harmonics(rail, {1}));
+    campaign.spread.is_prior = true;
+    campaign.spread.slide_harmonic = 5e-6;
+    const auto measured = simulate(campaign, {.pose_count = 12}).measurements;
+    const std::string text = format(calibrate(campaign, measured, {.folds = 0}));
+    const auto begin = text.find("\nharmonics of joints that slide      2     0.005");
+    ASSERT_NE(begin, std::string::npos) << text;
+    const std::string line = text.substr(begin + 1, text.find('\n', begin + 1) - begin - 1);
+    EXPECT_TRUE(holds(line, "  mm    rail.")) << line;
+    EXPECT_TRUE(holds(text, "\nharmonics                          12      0.15")) << text;
+}
+
 TEST(FormatCalibration, DoesNotClaimAModelErrorFoundFromNothing) {
     Example example(16);
     example.campaign.spread.is_prior = true;

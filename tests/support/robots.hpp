@@ -102,6 +102,13 @@ inline Chain arm_on_lift() {
          translation(Axis::X, 0.5), driven(R, Axis::Y, 2), translation(Axis::X, 0.4)});
 }
 
+/// The robot with the pitch (m) of a joint that slides.
+inline Chain with_pitch(const Chain& chain, Index joint, double pitch) {
+    std::vector<Joint> joints = chain.joints();
+    joints[static_cast<std::size_t>(joint)].pitch = pitch;
+    return Chain(std::move(joints), chain.elements(), chain.torques());
+}
+
 /// SCARA: two parallel arms, a vertical slide, a turning flange; no error parameters.
 inline Chain scara() {
     const auto R = Motion::Rotation;

@@ -40,6 +40,7 @@ struct UrdfJoint {
     /// 1000 rad. Nothing: the file states none, equal ones, or limits beyond 1000 m.
     std::optional<Interval> limits;
     double speed = 0;                   ///< largest, rad/s or m/s; 0: the file states none
+    double pitch = 0;                   ///< see Joint::pitch; no URDF states one
     std::optional<UrdfMimic> mimic;     ///< for a joint that does not move by itself
     std::vector<std::string> warnings;  ///< what was not understood and is ignored, a sentence each
     FileLocation location;

@@ -30,9 +30,11 @@ struct ParameterSpread {
     std::map<std::string, double> by_name;  ///< exceptions, by parameter name
     bool is_prior = false;      ///< whether it is also the prior standard deviation of robot errors
     double gravity = 1e-3;      ///< for terms of TermKind::Gravity and TermKind::Torque
-    double harmonic = 0.15e-3;  ///< for terms of TermKind::Harmonic
-    double tilt = 0.05e-3;      ///< for terms of TermKind::Tilt
-    double gain = 0.2e-3;       ///< for terms of TermKind::Gain, m/m and rad/rad
+    double harmonic = 0.15e-3;  ///< for terms of TermKind::Harmonic, of joints that turn
+    /// The same of slides, m: of the screw, which has nothing to do with gears.
+    double slide_harmonic = 8e-6;
+    double tilt = 0.05e-3;              ///< for terms of TermKind::Tilt
+    double gain = 0.2e-3;               ///< for terms of TermKind::Gain, m/m and rad/rad
     std::optional<double> offset = {};  ///< for revolute joints; nothing: like other angles
     /// Whether the sizes of a prior are only expected: a calibration learns the robot's own, which
     /// are these within a factor of error_size_factor. Those of `by_name` are kept.

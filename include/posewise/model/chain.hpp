@@ -49,7 +49,7 @@ struct JointFunction {
 enum class TermKind {
     Free,      ///< written by hand; as large as a constant error
     Gravity,   ///< gravity torque on a compliant joint
-    Harmonic,  ///< periodic error of an encoder or a gear
+    Harmonic,  ///< periodic error of an encoder, a gear, a slide's drive
     Torque,    ///< torque shape of unknown weights on a compliant joint
     Tilt,      ///< periodic tilt of a joint's axis as it turns
     Gain,      ///< scale of a slide, ratio of a gear: in proportion to the joint
@@ -91,6 +91,9 @@ struct Joint {
     double lower = 0;
     double upper = 0;
     Motion motion = Motion::Rotation;  ///< motion of the elements it drives; set by Chain
+    /// Of one that slides: how far it moves until the error of its drive repeats (lead of a screw,
+    /// circumference of a pinion, pitch of a rack's teeth), m; 0: unknown.
+    double pitch = 0;
 };
 
 /// A joint torque that is measured with each configuration.
@@ -129,7 +132,8 @@ class Chain {
     Chain& operator=(const Chain&) = default;
 
     /// Throws InputError if a joint drives no element, or both a rotation and a translation; if its
-    /// limits are not finite or out of order; if two parameters (or joints) share a name; if an
+    /// limits are not finite or out of order; if it turns and has a pitch, or one that is negative
+    /// or not finite; if two parameters (or joints) share a name; if an
     /// element names a joint that does not exist or has a number that is not finite; if an error
     /// term has no name or no joint; or if a measured torque belongs to no revolute joint, to one
     /// that has another, or has a largest value that is not positive.

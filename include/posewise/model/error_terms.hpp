@@ -117,8 +117,9 @@ class GravityTorque::Arm {
 
 // Error terms that follow from a robot's axes, and a robot without any.
 
-/// The function in words: "sin(q2-q3)", "cos(2q4)", "lin(q3)" for a linear one. The phase is added
-/// in rad if it is not that of a sine or cosine.
+/// The function in words: "sin(q2-q3)", "cos(2q4)", "lin(q3)" for a linear one. In a sine a slide
+/// with a pitch is counted in turns of its drive: "sin(2rail)" has two periods a pitch. The phase
+/// is added in rad if it is not that of a sine or cosine.
 std::string describe_function(const JointFunction& function, const std::vector<Joint>& joints);
 
 /// The robot with gravity terms for compliant joints: a weight turned by an angle about a level
@@ -175,17 +176,20 @@ struct Compliance {
 /// Compliances by with_compliance() and with_measured_compliance(), in parameter order.
 std::vector<Compliance> compliances(const Chain& chain);
 
-/// The robot with periodic errors of encoders and gears. Each of `joints` (empty: all revolute
-/// ones) gets a sine and a cosine of order * q for each order, in periods of the error per turn of
-/// the joint: `q4.sin(q4)`, `q4.cos(2q4)`. Terms that the joint already has are not added. Throws
-/// InputError for a prismatic joint or an order that is not positive and finite.
+/// The robot with periodic errors of encoders, gears and the drives of slides. Each of `joints`
+/// (empty: all that turn, and slides with a pitch) gets a sine and a cosine for each order, in
+/// periods of the error per turn: of order * q for a joint that turns, of order * 2 pi q / pitch
+/// for a slide, along which they are lengths (m). Parameters are named `q4.sin(q4)`,
+/// `rail.cos(2rail)`. Terms that the joint already has are not added. Throws InputError for a slide
+/// without a pitch, or an order that is not positive and finite.
 Chain with_harmonics(const Chain& chain, const std::vector<double>& orders,
                      const std::vector<Index>& joints = {});
 
 /// The robot with tilt error motion of its axes [ISO 230-7], from bearings and bending links.
 /// Each of `joints` (empty: all revolute ones) is followed by rotations about the two axes
 /// perpendicular to its own, each with a sine and a cosine of order * q for each order:
-/// `q4.Rx.sin(q4)`, `q4.Ry.cos(2q4)`. Throws InputError as with_harmonics() does.
+/// `q4.Rx.sin(q4)`, `q4.Ry.cos(2q4)`. Throws InputError for a prismatic joint or an order that is
+/// not positive and finite.
 Chain with_axis_tilt(const Chain& chain, const std::vector<double>& orders,
                      const std::vector<Index>& joints = {});
 

@@ -93,6 +93,7 @@ ParameterSpread read_spread(const YamlValue& value, const Campaign& campaign,
     read("angle", spread.angle);
     read("gravity", spread.gravity);
     read("harmonic", spread.harmonic);
+    read("slide_harmonic", spread.slide_harmonic);
     read("tilt", spread.tilt);
     read("gain", spread.gain);
     if (map.find_measure("offset")) read("offset", spread.offset.emplace());

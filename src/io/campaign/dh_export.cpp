@@ -48,6 +48,9 @@ std::string joint_text(const Chain& chain, const DhRow& row, Index own) {
         fmt::format(", limits_{}: [{}, {}]", units_of(row.motion).reading,
                     in_file_unit(row.motion, joint.lower), in_file_unit(row.motion, joint.upper));
     if (!turns) text += ", kind: prismatic";
+    if (joint.pitch > 0) {
+        text += fmt::format(", pitch_mm: {}", in_file_unit(row.motion, joint.pitch));
+    }
     const std::string drive = drive_text(chain, row.joints);
     return drive == joint.name ? text : text + ", drive: " + drive;
 }

@@ -35,7 +35,7 @@ RowText read_row_text(const YamlValue& value) {
     for (const auto& stated : {kind, row.map.find("drive")}) {
         if (stated) throw stated->error("is stated, but its row has no joint");
     }
-    for (const char* const key : {"limits", "repeatability"}) {
+    for (const char* const key : {"limits", "repeatability", "pitch"}) {
         if (const auto stated = row.map.find_measure(key)) {
             throw stated->value.error("is stated, but its row has no joint");
         }

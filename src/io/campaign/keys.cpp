@@ -80,8 +80,9 @@ const YamlKeys robot{
          "`geometric`, `[class:offsets, Tx3]`"},
         {"gravity", "", "errors of joints that bend under the arm's weight: `true`, or a map",
          "none", "`{direction: [0, 0, -1], joints: [q2, q3]}`"},
-        {"harmonics", "", "errors of encoders and gears, periodic in the joint", "none",
-         "`{orders: [1, 2], joints: [q4]}`"},
+        {"harmonics", "",
+         "errors of encoders, gears and drives of slides (with `pitch_mm`), periodic in the joint",
+         "none", "`{orders: [1, 2], joints: [q4]}`"},
         {"axis_tilt", "",
          "tilt error motion of the joints' axes, periodic in the joint (bearings; links that bend)",
          "none", "`{orders: [1, 2]}`"},
@@ -103,6 +104,12 @@ const YamlKeys joint{
         {"repeatability_mrad", "",
          "standard deviation about where it was sent, of a joint that turns", "0", "`0.01`"},
         {"repeatability_mm", "", "that of a joint that slides", "0", "`0.02`"},
+        {"pitch_mm", "",
+         "of a joint that slides: how far it moves until the error of its drive repeats (lead of "
+         "a screw, circumference of a pinion, pitch of a rack's teeth). With it the slide has "
+         "harmonics. A pitch beyond the range leaves less than a period there, which only a prior "
+         "tells from offset and scale",
+         "unknown: no harmonics", "`20`"},
     }};
 
 const YamlKeys dh{"dh",
@@ -133,6 +140,7 @@ const YamlKeys row{
         {"limits_mm", "", "as of a joint", "required with a prismatic `joint`", "`[0, 800]`"},
         {"repeatability_mrad", "", "as of a joint", "0", "`0.01`"},
         {"repeatability_mm", "", "as of a joint", "0", "`0.02`"},
+        {"pitch_mm", "", "as of a joint", "unknown: no harmonics", "`20`"},
     }};
 
 const YamlKeys terms{
@@ -144,7 +152,8 @@ const YamlKeys terms{
          "which joints have these errors; not of `gravity` with `errors: full`, which has them on "
          "all",
          "all that can", "`[q2, q3]`"},
-        {"orders", "harmonics and axis_tilt", "harmonics a turn: a list, or a range of whole ones",
+        {"orders", "harmonics and axis_tilt",
+         "harmonics a turn (of a slide a turn of its drive): a list, or a range of whole ones",
          "required", "`1..40`"},
         {"links", "compliance",
          "weight of the link after each joint, or `urdf` for the masses of the URDF", "none",
@@ -235,7 +244,8 @@ const YamlKeys spread{
         {"length_mm", "", "every length", "1 mm", "`0.5`"},
         {"angle_mrad", "", "every angle", "1 mrad", "`0.7`"},
         {"gravity_mrad", "", "gravity terms and compliances", "1 mrad", "`1`"},
-        {"harmonic_mrad", "", "harmonics", "0.15 mrad", "`0.05`"},
+        {"harmonic_mrad", "", "harmonics of joints that turn", "0.15 mrad", "`0.05`"},
+        {"slide_harmonic_mm", "", "harmonics of joints that slide", "0.008 mm", "`0.005`"},
         {"tilt_mrad", "", "tilts of axes, `axis_tilt`", "0.05 mrad", "`0.02`"},
         {"gain_mrad", "", "scales of slides (mm a metre) and ratios of gears (mrad a radian)",
          "0.2 mrad", "`0.3`"},

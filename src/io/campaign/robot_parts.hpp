@@ -22,11 +22,13 @@ void check_joint_name(const std::string& name, const FileLocation& location);
 /// The joint with the limits that `map` states; nothing if it states none. Throws InputError if
 /// they are in a unit that does not suit the motion.
 std::optional<Joint> find_limited_joint(const YamlMap& map, const std::string& name, Motion motion);
-/// The same, but the limits must be stated.
+/// The same, but the limits must be stated; with the pitch, if there is one.
 Joint read_limited_joint(const YamlMap& map, const std::string& name, Motion motion);
 
 /// rad or m; 0 if it is not stated.
 double read_repeatability(const YamlMap& map, Motion motion);
+/// Of the drive of a slide, m; 0 if it is not stated. Throws InputError for a joint that turns.
+double read_pitch(const YamlMap& map, Motion motion);
 
 /// `elements` and `joints`.
 RobotSection read_elements(const YamlMap& robot);

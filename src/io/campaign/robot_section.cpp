@@ -98,7 +98,9 @@ std::optional<Joint> find_limited_joint(const YamlMap& map, const std::string& n
 }
 
 Joint read_limited_joint(const YamlMap& map, const std::string& name, Motion motion) {
-    return to_joint(map.require_measure("limits"), name, motion);
+    Joint joint = to_joint(map.require_measure("limits"), name, motion);
+    joint.pitch = read_pitch(map, motion);
+    return joint;
 }
 
 double read_repeatability(const YamlMap& map, Motion motion) {
@@ -106,6 +108,21 @@ double read_repeatability(const YamlMap& map, Motion motion) {
     if (!measure) return 0;
     check_quantity(*measure, motion);
     return read_positive(*measure, true);
+}
+
+double read_pitch(const YamlMap& map, Motion motion) {
+    constexpr double least = 1e-6;  // m: that of gratings; positions say no less
+    constexpr double most = 1;      // m: of the largest pinions
+    const auto pitch = map.find_measure("pitch");
+    if (!pitch) return 0;
+    if (motion == Motion::Rotation) {
+        throw pitch->value.error("is stated, but the joint turns; must be of one that slides");
+    }
+    const double value = pitch->unit->to_si(pitch->value.number());
+    if (value >= least && value <= most) return value;
+    throw pitch->value.error(fmt::format("is {}; must be from {:g} to {:g} {}",
+                                         quote(pitch->value.text()), pitch->unit->from_si(least),
+                                         pitch->unit->from_si(most), pitch->unit->name));
 }
 
 RobotSection read_elements(const YamlMap& robot) {
@@ -198,7 +215,8 @@ RobotSection read_robot(const YamlValue& value, std::optional<io::ErrorModel> er
     const YamlMap robot(value, keys::robot);
     RobotSection section = read_described(robot, find_description(value, robot));
     check_has_room(value, section.declared);
-    if (const auto kind = robot.find("class")) section.robot_class = parse_word(*kind, parse_robot_class);
+    if (const auto kind = robot.find("class"))
+        section.robot_class = parse_word(*kind, parse_robot_class);
     section.error_model =
         errors ? *errors : find_error_model(robot, section.declared.elements(), section.free);
     if (section.error_model == io::ErrorModel::None) {

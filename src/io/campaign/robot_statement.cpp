@@ -95,8 +95,8 @@ void check_is_of_robot(const JsonValue& stated, const Chain& robot) {
             "the estimate is of another robot, or of this one before its nominal values were "
             "changed (a robot that it has corrected, for one)");
     compare(stated["terms"], here["terms"], "term",
-            "the estimate is of other errors, or the joint limits, from which the shapes of "
-            "torques follow, were others");
+            "the estimate is of other errors, or the joint limits and pitches, from which their "
+            "shapes follow, were others");
 }
 
 void check_is_same_robot(const std::string& path, const Chain& other, const Chain& robot) {

@@ -156,7 +156,8 @@ Chain make_chain(const UrdfRobot& robot) {
         if (!joint.limits) {
             throw input_error_at(joint.location, "joint " + quote(joint.name) + no_limits);
         }
-        joints.push_back({chain_joint_name(joint.name), joint.limits->lower, joint.limits->upper});
+        joints.push_back({chain_joint_name(joint.name), joint.limits->lower, joint.limits->upper,
+                          joint_motion(joint), joint.pitch});
     }
     try {
         return Chain(std::move(joints), std::move(elements));

@@ -59,6 +59,7 @@ RobotSection read_urdf_robot(const YamlMap& map) {
             if (const auto joint = find_limited_joint(settings, entry.key, motion)) {
                 joints[j]->limits = Interval{joint->lower, joint->upper};
             }
+            joints[j]->pitch = read_pitch(settings, motion);
             section.joint_repeatability[static_cast<Index>(j)] =
                 read_repeatability(settings, motion);
         }
