@@ -140,6 +140,19 @@ std::vector<std::vector<JointTerm>> partial_sums(const Chain& chain,
     return sums;
 }
 
+bool does_nothing(const Element& element) {
+    return element.value == 0 && element.joints.empty() && element.parameter.empty();
+}
+
+/// Whether one element takes back what the other does, as beside the middle of a slide that bends.
+bool do_nothing(const Element& element, const Element& next) {
+    if (element.motion != next.motion || element.axis != next.axis) return false;
+    std::vector<JointTerm> joints = element.joints;
+    add_to(joints, next.joints, 1);
+    return element.value + next.value == 0 && joints.empty() && element.parameter.empty() &&
+           next.parameter.empty();
+}
+
 }  // namespace
 
 std::string describe_function(const JointFunction& function, const std::vector<Joint>& joints) {
@@ -307,10 +320,16 @@ std::vector<std::string> active_terms(const Chain& chain, const VectorXd& parame
 }
 
 Chain without_terms(const Chain& chain) {
-    std::vector<Element> elements = chain.elements();
-    for (Element& element : elements) {
+    std::vector<Element> elements;
+    for (Element element : chain.elements()) {
         element.terms.clear();
         element.known_terms.clear();
+        if (does_nothing(element)) continue;
+        if (!elements.empty() && do_nothing(elements.back(), element)) {
+            elements.pop_back();
+        } else {
+            elements.push_back(std::move(element));
+        }
     }
     return chain.with_elements(std::move(elements));
 }

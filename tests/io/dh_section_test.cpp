@@ -63,6 +63,23 @@ TEST(DhSection, IsReadWithOffsetsSignsCouplingsAndFixedRows) {
     EXPECT_TRUE(robot.base_from_flange(q, VectorXd()).isApprox(expected, 1e-14));
 }
 
+TEST(DhSection, KeepsThePitchOfASlide) {
+    const std::string rows = testing::replaced(rows_of_a_rail, "limits_mm: [0, 900]",
+                                               "limits_mm: [0, 900], pitch_mm: 20");
+    const Chain robot = read(campaign_of(rows)).declared_robot;
+    EXPECT_DOUBLE_EQ(robot.joint(0).pitch, 0.02);
+    const Chain full = full_model(robot);
+    const VectorXd errors = VectorXd::Zero(full.parameter_count());
+    const Chain exported = without_terms(full);
+    const std::string text =
+        make_dh_text(exported, dh_rows(exported, VectorXd::Zero(exported.parameter_count())));
+    EXPECT_NE(text.find("kind: prismatic, pitch_mm: 20"), std::string::npos) << text;
+    const std::string sensor = "sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n";
+    const Chain again = read("name: again\n" + text + sensor).declared_robot;
+    EXPECT_DOUBLE_EQ(again.joint(0).pitch, 0.02);
+    EXPECT_LT(compare_flanges(full, errors, again, VectorXd()).position, 1e-12);
+}
+
 /// The first three rows of the PUMA 560 in both conventions [Craig 1986, fig. 3.21].
 TEST(DhSection, ConventionsAgreeOnOneRobot) {
     const std::string limits = ", limits_deg: [-100, 100]}\n";

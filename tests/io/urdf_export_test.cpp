@@ -5,11 +5,13 @@
 #include "../../src/model/complete_model.hpp"
 #include "../../src/model/sampling.hpp"
 #include "campaign_text.hpp"
+#include "lift_urdf.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/result_files.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "support/robots.hpp"
 #include "support/sweep.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/urdf_text.hpp"
@@ -251,6 +253,26 @@ TEST(CalibratedUrdf, LeavesOutAndNamesTermsThatDependOnTheConfiguration) {
     EXPECT_EQ(urdf.terms, (std::vector<std::string>{names[2], names[8], names[9]}));
     EXPECT_TRUE(urdf.not_expressed.empty());
     EXPECT_TRUE(expected.terms.empty());
+}
+
+/// What a slide bends by and its drive's errors are left out; its geometry is the same without
+/// them.
+TEST(CalibratedUrdf, HasTheGeometryOfASlideThatBends) {
+    const TemporaryFolder folder;
+    const UrdfSource source{folder.write("a.urdf", lift_urdf), "base", "tool"};
+    const Chain chain = with_pitch(make_chain(read_urdf(source)), 0, 0.02);
+    const Chain full = full_model(chain);
+    const Chain geometric = complete_model(chain);
+    const Chain written = without_terms(full);
+    ASSERT_EQ(written.parameter_names(), geometric.parameter_names());
+    RandomStream stream(25);
+    const VectorXd errors = random_vector(stream, written.parameter_count(), 1e-3);
+    EXPECT_EQ(make_calibrated_urdf(source, written, errors).text,
+              make_calibrated_urdf(source, geometric, errors).text);
+    const auto terms = active_terms(full, VectorXd::Ones(full.parameter_count()));
+    for (const char* const term : {"lift.sin(lift)", "lift.cos(2lift)", "lift.scale"}) {
+        EXPECT_NE(std::ranges::find(terms, term), terms.end()) << term;
+    }
 }
 
 TEST(CalibratedUrdf, IsOfTheRobotItself) {

@@ -202,7 +202,7 @@ Chain with_gains(const Chain& chain, const std::vector<Index>& joints = {});
 /// Names of the error terms whose parameters are not zero.
 std::vector<std::string> active_terms(const Chain& chain, const VectorXd& parameters);
 
-/// The robot without error terms and known terms.
+/// The robot without error terms and known terms, nor elements that were there only for them.
 Chain without_terms(const Chain& chain);
 
 }  // namespace posewise
