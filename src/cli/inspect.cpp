@@ -60,6 +60,13 @@ struct InspectArguments {
 void print_head(const io::CampaignFile& file) {
     print(fmt::format("{}\nsensor: {}; model error {}\n", file.name, file.sensor->words().sentence,
                       detail::describe_model_error(file)));
+    if (file.robot_class != RobotClass::Unknown) {
+        print(fmt::format(
+            "class: {}; its model error is expected within a factor of {:g}, the sizes of its "
+            "errors within {:g} (1 sigma)\n",
+            robot_class_name(file.robot_class), file.known_within.model_error,
+            file.known_within.error_size));
+    }
     if (file.urdf) {
         print(fmt::format("robot: {}, from base link {} to tip link {}\n",
                           detail::escape_controls(file.urdf->path),

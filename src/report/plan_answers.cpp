@@ -67,10 +67,15 @@ std::string describe_proof(const Plan& plan) {
 
 std::string describe_sureness(const Planning& planning,
                               const std::optional<SimulatedPlan>& simulated) {
-    std::string text =
-        planning.campaign.known_within.model_error < model_error_factor
-            ? "the interval is as wide as the earlier estimate leaves it"
-            : "the interval is how much robots differ; plan --from a first calibration narrows it";
+    std::string text = "the interval is as wide as the earlier estimate leaves it";
+    const KnownWithin& known = planning.campaign.known_within;
+    if (!detail::is_told_by_estimate(planning.plan, known)) {
+        const bool has_class = known.model_error < model_error_factor;
+        text = has_class ? "the interval is how much robots of that class differ; plan --from a "
+                           "first calibration narrows it"
+                         : "the interval is how much robots differ; robot.class in the campaign "
+                           "narrows it, plan --from a first calibration still more";
+    }
     if (!simulated || simulated->robot_count == 0) return text;
     const SimulatedNumber& number = simulated->expected;
     return text + fmt::format("; {} give {} where {} is predicted",

@@ -122,9 +122,14 @@ std::string describe_order(const Tour& tour) {
     return indent_lines(text);
 }
 
-/// Whether an earlier estimate tells more of the model error than of any robot is known.
-bool is_told(const PredictedAccuracy& accuracy) {
-    return accuracy.known_within.model_error < model_error_factor;
+/// What the interval is due to: model error and sizes, as surely as they are known.
+std::string describe_unknowns(const Plan& plan, const char* line_end) {
+    const KnownWithin& known = plan.predicted->known_within;
+    if (detail::is_told_by_estimate(plan, known)) {
+        return fmt::format("surely as{}the estimate tells that", line_end);
+    }
+    return fmt::format("that differs{}from robot to robot, within a factor of {} (1 sigma)",
+                       line_end, detail::format_short(known.model_error, 3));
 }
 
 /// What robots are found to be off by after calibration: not by their parameters alone.
@@ -136,8 +141,7 @@ std::string describe_total(const Planning& planning) {
         detail::format_mm(total.rms),
         detail::format_short(mm_per_m * planning.campaign.model_error),
         detail::format_mm(total.lower), detail::format_mm(total.upper),
-        is_told(*planning.plan.predicted) ? "surely as\n             the estimate tells that"
-                                          : "that differs\n             from robot to robot");
+        describe_unknowns(planning.plan, "\n             "));
 }
 
 std::string describe_made_up(const Campaign& campaign) {
@@ -269,9 +273,7 @@ std::string describe_prediction(const Plan& plan) {
         "mm;\n            {} to {} (90 %), as {}\n",
         detail::format_mm(plan.predicted->rms), detail::format_mm(total.rms),
         detail::format_short(mm_per_m * *model_error, 4), detail::format_mm(total.lower),
-        detail::format_mm(total.upper),
-        is_told(*plan.predicted) ? "surely as the estimate tells that"
-                                 : "that differs from robot to robot");
+        detail::format_mm(total.upper), describe_unknowns(plan, " "));
 }
 
 /// A search that converged from few starts has not said much.

@@ -34,6 +34,10 @@ std::string describe_repeatability(const Campaign& campaign) {
 
 }  // namespace
 
+bool is_told_by_estimate(const Plan& plan, const KnownWithin& known) {
+    return !plan.request.sources.estimate.empty() && known.model_error < model_error_factor;
+}
+
 std::string describe_model_error(const Campaign& campaign) {
     const Sensor& sensor = *campaign.sensor;
     std::string text;

@@ -7,12 +7,16 @@
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/judgement.hpp"
+#include "posewise/task/plan.hpp"
 
 /// Sentences about a campaign and about results, as reports and messages use them.
 namespace posewise::detail {
 
 /// The model error of what is measured, lengths and angles: "0.1 mm and 0.1 mrad".
 std::string describe_model_error(const Campaign& campaign);
+
+/// Whether an earlier estimate tells more of the model error than of any robot is known.
+bool is_told_by_estimate(const Plan& plan, const KnownWithin& known);
 
 /// The noise and column scales that whitened, scaled numbers rest on; `repeats` samples each.
 std::string describe_scaling(const Campaign& campaign, double repeats);

@@ -193,6 +193,33 @@ TEST(ReadCampaign, TakesOtherErrorModelsThanTheFileStates) {
     EXPECT_THROW(parse_error_model("geometry"), InputError);
 }
 
+TEST(ReadCampaign, ExpectsErrorsOfTheRobotsClass) {
+    const auto stated = replaced(
+        replaced(campaign_text, "model_error_mm: 0.2\n", ""),
+        "spread: {length_mm: 2, angle_mrad: 3, parameters: {dq2: 0.5 mrad, Tx1: 4 mm}}\n", "");
+    const auto of_class = [&](const std::string& name) {
+        return read(replaced(stated, "robot:", "robot:\n  errors: full\n  class: " + name));
+    };
+    const CampaignFile unknown = of_class("unknown");
+    EXPECT_EQ(unknown.robot_class, RobotClass::Unknown);
+    EXPECT_EQ(unknown.known_within.error_size, KnownWithin().error_size);
+    double previous = 0;
+    for (const std::string name : {"small", "industrial", "collaborative", "service"}) {
+        const CampaignFile file = of_class(name);
+        EXPECT_EQ(robot_class_name(file.robot_class), name);
+        const Population expected = population_of(file.robot_class, file.declared_robot);
+        EXPECT_GT(expected.model_error, previous) << name;
+        previous = expected.model_error;
+        EXPECT_EQ(file.model_error, expected.model_error) << name;
+        EXPECT_EQ(file.spread.gravity, expected.spread.gravity) << name;
+        EXPECT_EQ(file.spread.offset, expected.spread.offset) << name;
+        EXPECT_LT(file.known_within.model_error, unknown.known_within.model_error) << name;
+        EXPECT_LT(file.known_within.error_size, unknown.known_within.error_size) << name;
+    }
+    EXPECT_NE(input_error_of([&] { of_class("colaborative"); }).find("collaborative"),
+              std::string::npos);
+}
+
 TEST(ReadCampaign, TakesSensorBaseSpreadAndDefaults) {
     const CampaignFile file = read(campaign_text);
     const Campaign& campaign = file;

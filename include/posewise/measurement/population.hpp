@@ -11,7 +11,7 @@ namespace posewise {
 /// Kinds of robots that are built alike and so have errors of similar sizes.
 enum class RobotClass {
     Unknown,        ///< any robot
-    Small,          ///< stiff, light, for assembly: reach below 1 m
+    Small,          ///< stiff arms for assembly: reach below 1 m
     Industrial,     ///< heavier arms on the floor
     Collaborative,  ///< light arms with elastic gears
     Service,        ///< coarse arms: mobile manipulators, humanoids, low-cost arms
@@ -24,8 +24,8 @@ RobotClass parse_robot_class(const std::string& name);
 
 /// What is expected of robots of a class of which none was measured.
 struct Population {
-    ParameterSpread spread;             ///< sizes of the errors of ErrorModel::Full, as priors
-    double model_error = 0;             ///< of that model, m a coordinate
+    ParameterSpread spread;              ///< sizes of the errors of ErrorModel::Full, as priors
+    double model_error = 0;              ///< of that model, m a coordinate
     double model_error_orientation = 0;  ///< rad
     KnownWithin within{};
 };

@@ -121,7 +121,8 @@ std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
     const auto add = [&](Remedy remedy, const Campaign& other) -> CureTrial& {
         return trials.emplace_back(std::move(remedy), other, doubted.measurements, doubted.options);
     };
-    if (doubted.options.loss.kind == LossKind::Squares) {
+    const bool has_squares = doubted.options.loss.kind == LossKind::Squares;
+    if (has_squares) {
         std::vector<std::vector<std::string>> worst;
         if (doubts.scatter) worst.push_back({doubts.scatter->sample});
         if (doubts.look.outlying) {
@@ -137,7 +138,8 @@ std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
         add({"loss cauchy"}, campaign).options.loss.kind = LossKind::Cauchy;
     }
     if (options.only_exclusions) return trials;
-    if (options.can_learn_sizes && campaign.spread.is_prior && !is_far_above_prior(doubted)) {
+    if (options.can_learn_sizes && has_squares && campaign.spread.is_prior &&
+        !is_far_above_prior(doubted)) {
         CureTrial& trial = add({"sizes learned"}, campaign);
         trial.learns_sizes = true;
         trial.campaign.spread.is_open = true;

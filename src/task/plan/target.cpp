@@ -311,7 +311,10 @@ void find_floor(const PlanningProblem& problem, TargetPlanning& result) {
     };
     result.floor = floor_of(problem.campaign);
     Campaign known = problem.campaign;
-    if (known.known_within.model_error == model_error_factor) known.known_within.model_error = 1;
+    if (problem.request.sources.estimate.empty() ||
+        known.known_within.model_error == model_error_factor) {
+        known.known_within.model_error = 1;
+    }
     result.floor_of_known_model_error = floor_of(known).assured;
     const ErrorBudget budget = make_budget(problem.errors, problem.campaign, {}, {});
     result.left_over = budget.left_over;
