@@ -119,21 +119,25 @@ double add_function(const JointFunction& function, double coefficient, const Vec
 }
 
 /// What coefficient * f(q), part of the amount of an element, adds to the rates: the element's
-/// twist, which joint j changes by its Lie bracket, is multiplied by pi df/dq_i in the column of
-/// joint i and by f(q) in that of the error parameter k (-1: there is none).
+/// twist, which joint j changes by column j of `changes`, is multiplied by pi df/dq_i in the column
+/// of joint i and by f(q) in that of the error parameter k (-1: there is none).
 void add_function_rates(const JointFunction& function, double coefficient, const VectorXd& q,
-                        const Twist& twist, Index k, const TwistMatrix& joint_twists,
+                        const Twist& twist, Index k, const TwistMatrix& changes,
                         std::vector<FlangeMotionRate>& rates) {
+    // Errors that are 0, as all are before one is known, move no joint's twist.
+    const bool moves_joints = coefficient != 0;
     const bool is_torque = function.torque != nullptr;
-    const TorqueShare share = is_torque ? torque_times_sum(function, q, true) : TorqueShare{};
+    const TorqueShare share =
+        is_torque ? torque_times_sum(function, q, moves_joints) : TorqueShare{};
     const FunctionValue f = is_torque ? FunctionValue{} : evaluate(function, q);
-    for (Index j = 0; j < joint_twists.cols(); ++j) {
-        const Twist change = lie_bracket(joint_twists.col(j), twist);
+    for (Index j = 0; j < changes.cols(); ++j) {
+        const auto change = changes.col(j);
         FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
         if (is_torque) {
             if (k >= 0) {
                 rate.twists.col(6 + k) = share.value * change + share.gradient[j] * twist;
             }
+            if (!moves_joints) continue;
             rate.joint_twists +=
                 coefficient * (change * share.gradient.transpose() + twist * share.hessian.row(j));
             continue;
@@ -143,6 +147,7 @@ void add_function_rates(const JointFunction& function, double coefficient, const
             if (by.joint == j) du_dqj += by.coefficient;
         }
         if (k >= 0) rate.twists.col(6 + k) = f.value * change + f.slope * du_dqj * twist;
+        if (!moves_joints) continue;
         for (const JointTerm& by : function.joints) {
             if (by.joint >= rate.joint_twists.cols()) continue;  // a measured torque
             rate.joint_twists.col(by.joint) +=
@@ -154,14 +159,14 @@ void add_function_rates(const JointFunction& function, double coefficient, const
 /// The same of all terms of an element, error parameters k on.
 [[gnu::noinline]] void add_term_rates(const Element& element, const VectorXd& q,
                                       const VectorXd& parameters, const Twist& twist, Index k,
-                                      const TwistMatrix& joint_twists,
+                                      const TwistMatrix& changes,
                                       std::vector<FlangeMotionRate>& rates) {
     for (const ErrorTerm& term : element.terms) {
-        add_function_rates(term.function, parameters[k], q, twist, k, joint_twists, rates);
+        add_function_rates(term.function, parameters[k], q, twist, k, changes, rates);
         ++k;
     }
     for (const KnownTerm& term : element.known_terms) {
-        add_function_rates(term.function, term.coefficient, q, twist, -1, joint_twists, rates);
+        add_function_rates(term.function, term.coefficient, q, twist, -1, changes, rates);
     }
 }
 
@@ -246,20 +251,21 @@ void Chain::differentiate_twice(const Isometry3d& world_from_base, const VectorX
         rate.twists.setZero(6, 6 + parameter_count());
         rate.joint_twists.setZero(6, joint_count());
     }
+    TwistMatrix changes(6, joint_count());  // of the element's twist, by each joint
     const auto visit = [&](const Element& element, const Twist& twist, Index first) {
         const bool is_error = !element.parameter.empty();
         for (Index j = 0; j < joint_count(); ++j) {
             // So far motion.joint_twists holds what joint j moves up to this element.
-            const Twist change = lie_bracket(motion.joint_twists.col(j), twist);
+            changes.col(j) = lie_bracket(motion.joint_twists.col(j), twist);
             FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
-            if (is_error) rate.twists.col(6 + first) = change;
+            if (is_error) rate.twists.col(6 + first) = changes.col(j);
             for (const JointTerm& term : element.joints) {
-                rate.joint_twists.col(term.joint) += term.coefficient * change;
+                rate.joint_twists.col(term.joint) += term.coefficient * changes.col(j);
             }
         }
         if (!element.has_functions()) return;
         const Index next = element.parameter.empty() ? first : first + 1;
-        add_term_rates(element, q, parameters, twist, next, motion.joint_twists, rates);
+        add_term_rates(element, q, parameters, twist, next, changes, rates);
     };
     walk(world_from_base, q, parameters, motion, true, visit);
 }

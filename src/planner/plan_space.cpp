@@ -6,6 +6,7 @@
 #include <exception>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "core/decompositions.hpp"
 #include "core/parallel.hpp"
@@ -20,11 +21,12 @@ namespace posewise::detail {
 namespace {
 
 constexpr Index test_pose_limit = 500;
-constexpr Index most_starts = 16;     // where it is not stated
-constexpr Index agreeing_starts = 5;  // end the search
-constexpr Index kicks_at_once = 4;    // whatever the number of threads
-constexpr Index draws_a_pose = 30;    // of the pool, the most sensitive of which replaces a pose
-constexpr double same = 1e-6;         // relative to the value
+// Where their number is not stated; along constraints refinement finds less, and kicks less still.
+constexpr Index usual_starts = 5;
+constexpr Index usual_starts_constrained = 16;
+constexpr Index kicks_at_once = 4;  // whatever the number of threads
+constexpr Index draws_a_pose = 30;  // of the pool, the most sensitive of which replaces a pose
+constexpr double same = 1e-6;       // relative to the value
 
 /// What the starts share.
 struct Problem {
@@ -62,9 +64,8 @@ SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
     select.stop.interrupted = options.stop.interrupted;
     // Refinement mends what a short selection leaves; exchange by the worst of many test poses is
     // slow.
-    const bool is_slow = options.criterion == Criterion::G;
-    select.starts = is_slow ? 1 : 4;
-    select.kicks = is_slow ? 0 : 4;
+    select.starts = 1;
+    select.kicks = options.criterion == Criterion::G ? 0 : 4;
     select.proof = 0.01;
     select.gap = 1e-3;
     if (space.least_joint_distance > 0) {
@@ -88,6 +89,29 @@ Criterion smooth_relative(Criterion criterion) {
     return needs_test_poses(criterion) ? Criterion::V : Criterion::A;
 }
 
+/// Of some poses drawn from the pool, that keep their distance from `others`, the one that is most
+/// sensitive to Z; nothing if none does.
+std::optional<Index> draw_sensitive(const Problem& problem, const RowMatrixXd& others,
+                                    const MatrixXd& Z, RandomStream& random) {
+    const double least = problem.space.least_joint_distance;
+    std::optional<Index> best;
+    double largest = 0;
+    for (Index draw = 0; draw < draws_a_pose; ++draw) {
+        const Index drawn = random.index(problem.pool.rows());
+        const auto block = problem.blocks[drawn];
+        const double sensitivity = (block * Z).cwiseProduct(block).sum();
+        if (best && !(sensitivity > largest)) continue;
+        const auto q = problem.pool.row(drawn);
+        if (!is_apart(others, q, least) ||
+            !is_apart(problem.options.held.configurations, q, least)) {
+            continue;
+        }
+        largest = sensitivity;
+        best = drawn;
+    }
+    return best;
+}
+
 /// A choice from a random part of the pool, so that starts differ.
 RowMatrixXd choose_from_part(const Problem& problem, Index start) {
     const PlanOptions& options = problem.options;
@@ -99,6 +123,7 @@ RowMatrixXd choose_from_part(const Problem& problem, Index start) {
     select.criterion = smooth_relative(options.criterion);
     select.starts = 1;
     select.kicks = 0;
+    select.gap = 0.05;
     select.stop = options.stop;
     return candidates(determined(select_poses(take(problem.blocks, part), select)).poses,
                       Eigen::all);
@@ -110,8 +135,9 @@ bool is_cut_short(Ending ending, const StopSignal& stop) {
            (ending == Ending::NotRun && stop.is_set());
 }
 
-Index start_limit(const PlanOptions& options) {
-    return options.starts > 0 ? options.starts : most_starts;
+Index start_limit(const Problem& problem) {
+    if (problem.options.starts > 0) return problem.options.starts;
+    return problem.space.margin ? usual_starts_constrained : usual_starts;
 }
 
 /// The best start alone is made sharper and finished.
@@ -137,11 +163,6 @@ Index count_at_best(const std::vector<Refinement>& results, const StopSignal& st
         return !is_cut_short(result.ending, stop) && std::isfinite(result.value) &&
                best - result.value <= same * std::abs(best);
     });
-}
-
-/// Whether more starts would find nothing else; where their number is stated, never.
-bool is_agreed(const std::vector<Refinement>& results, const PlanOptions& options) {
-    return options.starts == 0 && count_at_best(results, options.stop) >= agreeing_starts;
 }
 
 /// Information of held and planned poses.
@@ -170,8 +191,8 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
                                       Choice& pool_choice) {
     std::atomic<double> pool_bound = std::numeric_limits<double>::infinity();  // until it is made
     const PlanOptions& options = problem.options;
-    const Index limit = start_limit(options);
-    std::vector<Refinement> results;
+    const Index limit = start_limit(problem);
+    std::vector<Refinement> results(static_cast<std::size_t>(limit));
     std::exception_ptr first_error;
     ProgressCounter counter(options.progress, limit + 1);  // kicks are the last part
     const auto run = [&](Index start) {
@@ -201,11 +222,7 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
                                              interesting_count(problem));
         });
     };
-    for (Index first = 0; first < limit && !is_agreed(results, options); first += agreeing_starts) {
-        const Index count = std::min(agreeing_starts, limit - first);
-        results.resize(static_cast<std::size_t>(first + count));
-        for_each_index(count, [&](Index i) { run(first + i); });
-    }
+    for_each_index(limit, run);
     const bool is_any_usable = std::any_of(results.begin(), results.end(), [](const auto& result) {
         return std::isfinite(result.value);
     });
@@ -243,32 +260,32 @@ Refinement cross(const Problem& problem, std::vector<Refinement>& results) {
     return best;
 }
 
-/// The plan with one to three poses redrawn: each the most sensitive of some of the pool that keep
-/// their distance.
+/// The plan with one to three poses redrawn: the best of some tries, once the new ones have moved
+/// to where they tell most beside the others.
 RowMatrixXd kick(const Problem& problem, const RowMatrixXd& plan, const MatrixXd& Z,
                  RandomStream& random) {
-    RowMatrixXd kicked = plan;
+    constexpr Index tries = 3;
     const Index most = std::min<Index>(3, plan.rows());
-    for (const Index at : random.subset(plan.rows(), 1 + random.index(most))) {
-        double largest = -std::numeric_limits<double>::infinity();
-        RowMatrixXd others(plan.rows() - 1, plan.cols());
-        others << kicked.topRows(at), kicked.bottomRows(plan.rows() - 1 - at);
-        for (Index draw = 0; draw < draws_a_pose; ++draw) {
-            const Index drawn = random.index(problem.pool.rows());
-            const auto block = problem.blocks[drawn];
-            const double sensitivity = (block * Z).cwiseProduct(block).sum();
-            if (sensitivity <= largest) continue;
-            const auto q = problem.pool.row(drawn);
-            const double least = problem.space.least_joint_distance;
-            if (!is_apart(others, q, least) ||
-                !is_apart(problem.options.held.configurations, q, least)) {
-                continue;
-            }
-            largest = sensitivity;
-            kicked.row(at) = q;
+    RefineOptions refine = rough_refinement(problem.options, 1e-4);
+    Refinement best;
+    for (Index k = 0; k < tries; ++k) {
+        RowMatrixXd kicked = plan;
+        refine.moved = random.subset(plan.rows(), 1 + random.index(most));
+        for (const Index at : refine.moved) {
+            RowMatrixXd others(plan.rows() - 1, plan.cols());
+            others << kicked.topRows(at), kicked.bottomRows(plan.rows() - 1 - at);
+            const auto drawn = draw_sensitive(problem, others, Z, random);
+            if (drawn) kicked.row(at) = problem.pool.row(*drawn);
+        }
+        try {
+            const Refinement tried = refine_poses(problem.space, problem.objective,
+                                                  problem.options.held, kicked, refine);
+            if (tried.value > best.value) best = tried;
+        } catch (const InputError&) {
+            // It identifies too little.
         }
     }
-    return kicked;
+    return best.configurations;
 }
 
 /// Kicks without gain to give up after: some for each pose, fewer where a refinement takes long, as
@@ -276,25 +293,33 @@ RowMatrixXd kick(const Problem& problem, const RowMatrixXd& plan, const MatrixXd
 Index patience(const Problem& problem) {
     const auto L = static_cast<double>(problem.space.parameter_count);
     const auto K = static_cast<double>(problem.options.pose_count);
-    const double each = std::max(0.25, std::min({1e5 / (L * L * K), K / 6, 4.0}));
+    const double each = 10 * std::max(0.5, std::min({std::sqrt(1e5 / (L * L * K)), K / 12, 2.0}));
     const bool is_quick = is_smooth(problem.options.criterion) && !problem.space.margin;
-    return static_cast<Index>(each * (is_quick ? 1 : 0.25) *
-                              static_cast<double>(start_limit(problem.options)));
+    return static_cast<Index>(each * (is_quick ? 1 : 0.1) *
+                              static_cast<double>(start_limit(problem)));
 }
 
 /// Kicks the best plan and refines it again, some kicks at once, of which the best is kept, until
 /// many in a row, the more the more starts there may be, have gained nothing.
 Refinement improve_with_kicks(const Problem& problem, Refinement best) {
     const PlanOptions& options = problem.options;
-    const RefineOptions rough = rough_refinement(options, 1e-4);
+    RefineOptions rough = rough_refinement(options, 1e-4);
     Objective softened = problem.objective;
     if (!is_smooth(options.criterion)) softened.sharpness = 16;
     const Index most_failures = patience(problem);
-    std::uint64_t stream = static_cast<std::uint64_t>(start_limit(options));
+    // Less may be what the same plan gains by another refinement.
+    const auto least_gain = [&] {
+        const double size = is_logarithm(options.criterion)
+                                ? static_cast<double>(problem.space.parameter_count)
+                                : std::abs(best.value);
+        return rough.tolerance * size;
+    };
+    std::uint64_t stream = static_cast<std::uint64_t>(start_limit(problem));
     for (Index failures = kicks_at_once; failures <= most_failures && !options.stop.is_set();
          failures += kicks_at_once) {
         const MatrixXd Z = gradient(softened, information_of(problem, best.configurations));
         std::vector<Refinement> found(kicks_at_once);
+        rough.worth = best.value;
         for_each_index(kicks_at_once, [&](Index i) {
             RandomStream random(options.seed, stream + static_cast<std::uint64_t>(i));
             try {
@@ -308,7 +333,7 @@ Refinement improve_with_kicks(const Problem& problem, Refinement best) {
         stream += static_cast<std::uint64_t>(kicks_at_once);
         Refinement& better = best_of(found);
         if (better.value <= best.value) continue;
-        if (better.value > best.value + same * std::abs(best.value)) failures = 0;
+        if (better.value > best.value + least_gain()) failures = 0;
         best.value = better.value;
         best.configurations = std::move(better.configurations);
     }
@@ -364,7 +389,7 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     planned.starts_at_best = count_at_best(results, options.stop);
     Refinement best = improve_with_kicks(problem, cross(problem, results));
     if (options.progress) {
-        const Index parts = start_limit(options) + 1;
+        const Index parts = start_limit(problem) + 1;
         const double bound = planned.pool_choice.bound;
         options.progress(
             {parts, parts, best.value, bound,
@@ -387,8 +412,8 @@ void add_searched_bound(const DesignSpace& space, const RowMatrixXd& pool, const
     const SelectOptions select = select_options(space, pool, options);
     const Objective objective = make_objective(blocks, select);
     planned.searched_bound =
-        std::max(planned.value, search_bound(space, objective, select, planned.configurations, pool,
-                                             blocks, options.bound_iterations, options.stop));
+        std::max(planned.value, search_bound(space, objective, select, planned, pool, blocks,
+                                             options.bound_iterations, options.stop));
     planned.efficiency =
         efficiency(options.criterion, planned.value, planned.searched_bound,
                    space.parameter_count - static_cast<Index>(options.nuisance.size()));

@@ -6,10 +6,10 @@
 namespace posewise::detail {
 
 /// K continuous poses: starts from selection on the pool (the first on all of it, the others on
-/// random parts), each refined by refine_poses() on one thread; the best kicked and
-/// refined again until that gains nothing, then finished. The result does
-/// not depend on the number of threads. `blocks` are those of `pool` (poses x joints, feasible).
-/// Throws InputError as select_poses(), or if pool and blocks differ in count.
+/// random parts), each refined by refine_poses() on one thread; the best kicked and refined again
+/// until that gains nothing, then finished. The result does not depend on the number of threads.
+/// `blocks` are those of `pool` (poses x joints, feasible). Throws InputError as select_poses(), or
+/// if pool and blocks differ in count.
 PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const Blocks& blocks,
                         const PlanOptions& options);
 

@@ -2,20 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/decompositions.hpp"
 #include "core/elementary.hpp"
 #include "core/nlopt_adapter.hpp"
+#include "core/products.hpp"
 #include "pose_merit.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::detail {
 namespace {
 
+constexpr int no_limit = std::numeric_limits<int>::max();
+
 /// What is maximised: D as it is, the others' logarithm, so that differences are relative.
-double merit(const Objective& objective, const MatrixXd& M) {
-    const double value = evaluate(objective, M);
+double merit_of(const Objective& objective, double value) {
     return is_logarithm(objective.criterion) || !std::isfinite(value) ? value : logarithm(value);
+}
+double merit(const Objective& objective, const MatrixXd& M) {
+    return merit_of(objective, evaluate(objective, M));
 }
 
 /// The merit and the symmetric Z with d merit = trace(Z dM).
@@ -68,10 +74,13 @@ class Refiner {
     void climb(const Objective& objective, double tolerance) {
         tolerance_ = tolerance;
         ending_ = Ending::IterationLimit;
+        for (const Index i : options_.moved) move_one(objective, i, Method::Lbfgs);
+        if (!options_.moved.empty()) return;
         for (Index round = 0; round < options_.round_limit && !has_stopped(); ++round) {
             const double before = current(objective);
             if (is_constrained() || !is_swept_) sweep(objective, Method::Lbfgs);
             is_swept_ = true;
+            if (round == 0 && !is_promising(objective)) return;
             move_together(objective);
             if (current(objective) - before > tolerance) continue;
             ending_ = Ending::Converged;
@@ -105,6 +114,17 @@ class Refiner {
     }
 
   private:
+    /// Whether first steps of all poses together come near what it is worth to go on for.
+    bool is_promising(const Objective& objective) {
+        constexpr int first_steps = 20;
+        constexpr double most_missing = 0.5;  // of what they gain
+        if (std::isinf(options_.worth) || is_constrained()) return true;
+        const double before = current(objective);
+        move_together(objective, first_steps);
+        const double after = current(objective);
+        return merit_of(objective, options_.worth) - after <= most_missing * (after - before);
+    }
+
     bool is_constrained() const { return space_.margin || space_.least_joint_distance > 0; }
     VectorXd pose(Index i) const { return poses_.row(i).transpose(); }
     MatrixXd information(const VectorXd& q) const { return space_.information(q); }
@@ -194,25 +214,49 @@ class Refiner {
     }
 
     /// All poses at once, then each as far as it is feasible; taken back if that is worse.
-    void move_together(const Objective& objective) {
+    void move_together(const Objective& objective, int most_evaluations = no_limit) {
         const Index m = poses_.rows();
         const Index n = poses_.cols();
         BoxProblem problem;
         problem.lower = space_.lower.replicate(m, 1);
         problem.upper = space_.upper.replicate(m, 1);
         problem.value = [&](const VectorXd& x, VectorXd* slope) {
-            MatrixXd M = held_information_;
-            for (Index i = 0; i < m; ++i) M += information(x.segment(n * i, n));
+            const auto at = [&](Index i) -> VectorXd { return x.segment(n * i, n); };
+            Blocks blocks;
+            std::vector<RowMatrixXd> told;
+            for (Index i = 0; i < m; ++i) {
+                told.push_back(space_.rows(at(i)));
+                blocks.first_row.push_back(blocks.first_row.back() + told.back().rows());
+            }
+            blocks.matrix.resize(blocks.first_row.back(), space_.parameter_count);
+            for (Index i = 0; i < m; ++i) {
+                const RowMatrixXd& rows = told[static_cast<std::size_t>(i)];
+                blocks.matrix.middleRows(blocks.first_row[static_cast<std::size_t>(i)],
+                                         rows.rows()) = rows;
+            }
+            const MatrixXd M = held_information_ + symmetric_gram(blocks.matrix);
             if (slope == nullptr) return merit(objective, M);
             const SlopedMerit sloped = sloped_merit(objective, M);
+            if (!space_.weighed_gradient || !std::isfinite(sloped.value)) {
+                for (Index i = 0; i < m; ++i) {
+                    slope->segment(n * i, n) = space_.information_gradient(at(i), sloped.Z);
+                }
+                return sloped.value;
+            }
+            const RowMatrixXd weighed = transposed_product(blocks.matrix.transpose(), sloped.Z);
             for (Index i = 0; i < m; ++i) {
                 slope->segment(n * i, n) =
-                    space_.information_gradient(x.segment(n * i, n), sloped.Z);
+                    space_.weighed_gradient(at(i), [&](const RowMatrixXd& rows) -> RowMatrixXd {
+                        return weighed.middleRows(blocks.first_row[static_cast<std::size_t>(i)],
+                                                  rows.rows());
+                    });
             }
             return sloped.value;
         };
         const VectorXd start = poses_.reshaped<Eigen::RowMajor>();
-        const VectorXd free = maximise(problem, start, maximise_options(Method::Lbfgs)).x;
+        MaximiseOptions maximising = maximise_options(Method::Lbfgs);
+        maximising.evaluation_limit = std::min(maximising.evaluation_limit, most_evaluations);
+        const VectorXd free = maximise(problem, start, maximising).x;
         if (is_constrained() && has_stopped()) return;  // distances of many poses take their time
         const double before = current(objective);
         for (Index i = 0; i < m; ++i) {
@@ -269,7 +313,8 @@ void keep_better(const Objective& objective, const Refiner& refiner, Refinement&
 
 /// Climbs the smoothed objective with growing sharpness, then finishes on the objective itself.
 void refine_with_kinks(const DesignSpace& space, const Objective& objective, const HeldPoses& held,
-                       const RefineOptions& options, Refinement& result) {
+                       RefineOptions options, Refinement& result) {
+    options.worth = -std::numeric_limits<double>::infinity();  // not of a smoothed objective
     Refiner smooth(space, held, result.configurations, options);
     constexpr double rough = 1e-5;
     for (const double sharpness : options.sharpness) {

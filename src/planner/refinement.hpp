@@ -15,6 +15,11 @@ struct RefineOptions {
     Index kink_rounds = 2;        ///< sweeps without derivatives, for criteria with kinks
     double tolerance = 1e-10;     ///< relative gain of a round to stop at
     int evaluation_limit = 2000;  ///< of one run of an optimiser
+    /// A value that is to be beaten: given up is what first steps do not bring near it. Infinity:
+    /// nothing is. For smooth criteria.
+    double worth = -std::numeric_limits<double>::infinity();
+    /// Only these poses are moved, one at a time, in one sweep. Empty: all.
+    std::vector<Index> moved{};
     StopSignal stop{};
 };
 

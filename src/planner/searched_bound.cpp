@@ -8,29 +8,49 @@
 #include "core/parallel.hpp"
 #include "core/sensitivities.hpp"
 #include "criteria/information_function.hpp"
+#include "selection/bound.hpp"
 #include "selection/objective_bound.hpp"
 #include "selection/relaxation.hpp"
 
 namespace posewise::detail {
 namespace {
 
-constexpr Index search_count = 24;  // followed uphill, of the pool and of the poses met
-constexpr double apart = 0.5;       // rad or m in some joint, at least
-constexpr double least_gap = 1e-5;  // of the relaxations over the poses met, when it ends
+constexpr Index search_count = 24;   // followed uphill, of the pool and of the poses met
+constexpr double apart = 0.5;        // rad or m in some joint, at least
+constexpr double most_gap = 1e-2;    // of the relaxations over the poses met, at first
+constexpr double least_gap = 1e-5;   // and when it ends
+constexpr double open_part = 0.05;   // of the gap to the plan, that it may leave of itself
+constexpr Index part_size = 2000;    // of the pool, which searches start from
+constexpr Index relaxed_size = 300;  // poses of the pool that its relaxation may give weight
+
+std::vector<Index> by_decreasing(const VectorXd& values) {
+    std::vector<Index> order(static_cast<std::size_t>(values.size()));
+    std::iota(order.begin(), order.end(), Index{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return values[a] > values[b]; });
+    return order;
+}
 
 /// The most sensitive poses that are apart, after those in `chosen`.
 void choose_starts(const RowMatrixXd& poses, const VectorXd& sensitivity, RowMatrixXd& chosen) {
-    std::vector<Index> order(static_cast<std::size_t>(poses.rows()));
-    std::iota(order.begin(), order.end(), Index{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](Index a, Index b) { return sensitivity[a] > sensitivity[b]; });
     const Index enough = chosen.rows() + search_count;
-    for (const Index i : order) {
+    for (const Index i : by_decreasing(sensitivity)) {
         if (chosen.rows() == enough) return;
         if (!is_apart(chosen, poses.row(i), apart)) continue;
         chosen.conservativeResize(chosen.rows() + 1, poses.cols());
         chosen.bottomRows(1) = poses.row(i);
     }
+}
+
+/// The poses of the pool that are most sensitive at its relaxed optimum.
+RowMatrixXd relaxed_poses(const Objective& objective, const Certificate& certificate,
+                          const RowMatrixXd& pool, const Blocks& blocks) {
+    Objective softened = objective;
+    softened.sharpness = certificate.sharpness;
+    std::vector<Index> poses =
+        by_decreasing(sensitivities(blocks, supporting_matrix(softened, certificate.M)));
+    poses.resize(std::min(poses.size(), static_cast<std::size_t>(relaxed_size)));
+    return pool(poses, Eigen::all);
 }
 
 /// Uphill from one start; where that leaves the feasible, along the constraint.
@@ -83,7 +103,7 @@ std::vector<Maximum> search_maxima(const DesignSpace& space, const MatrixXd& Z,
 }  // namespace
 
 double search_bound(const DesignSpace& space, const Objective& objective,
-                    const SelectOptions& options, const RowMatrixXd& plan, const RowMatrixXd& pool,
+                    const SelectOptions& options, const PlannedPoses& plan, const RowMatrixXd& pool,
                     const Blocks& blocks, Index iterations, const StopSignal& stop) {
     double bound = std::numeric_limits<double>::infinity();
     if (!has_information_function(objective.criterion)) return bound;
@@ -92,15 +112,23 @@ double search_bound(const DesignSpace& space, const Objective& objective,
     anywhere.excluded.clear();
     anywhere.positions.resize(0, 0);
     anywhere.least_distance = 0;
-    anywhere.gap = 1e-3;  // at first
+    anywhere.gap = most_gap;
     anywhere.stop = stop;
     const auto K = static_cast<double>(options.pose_count);
     if (space.margin) iterations = (iterations + 3) / 4;  // ten times as long along constraints
     VectorXd weights;
     Support support;
-    for (Index i = 0; i < plan.rows() && !stop.is_set(); ++i) {
-        support.add(space, plan.row(i));
+    for (Index i = 0; i < plan.configurations.rows() && !stop.is_set(); ++i) {
+        support.add(space, plan.configurations.row(i));
     }
+    const Certificate& certificate = plan.pool_choice.certificate;
+    if (certificate.M.size() > 0 && !stop.is_set()) {
+        support.add(space, relaxed_poses(objective, certificate, pool, blocks));
+    }
+    std::vector<Index> first(static_cast<std::size_t>(std::min(part_size, pool.rows())));
+    std::iota(first.begin(), first.end(), Index{0});
+    const RowMatrixXd part = pool(first, Eigen::all);
+    const Blocks part_blocks = take(blocks, first);
     for (Index t = 0; t < iterations && !stop.is_set(); ++t) {
         if (weights.size() > 0)
             weights.conservativeResizeLike(VectorXd::Zero(support.blocks.count()));
@@ -112,7 +140,8 @@ double search_bound(const DesignSpace& space, const Objective& objective,
         if (!std::isfinite(evaluate(softened, relaxed.M))) break;
         const MatrixXd Z = supporting_matrix(softened, relaxed.M);
         const double inside = sensitivities(support.blocks, Z).maxCoeff();
-        const std::vector<Maximum> maxima = search_maxima(space, Z, pool, blocks, support, stop);
+        const std::vector<Maximum> maxima =
+            search_maxima(space, Z, part, part_blocks, support, stop);
         if (stop.is_set()) break;
         const double held = Z.cwiseProduct(held_information(blocks, options)).sum();
         double largest = inside;
@@ -126,6 +155,9 @@ double search_bound(const DesignSpace& space, const Objective& objective,
             (1 + bound_rounding(objective.criterion, relaxed.M)) * (held + K * largest);
         bound = std::min(bound, value_of_information(objective, phi, Z.rows()));
         const double excess = largest / inside - 1;
+        const double reached =
+            efficiency(objective.criterion, plan.value, bound, interest_count(objective, Z.rows()));
+        if (excess <= open_part * (1 / reached - 1)) break;
         if (excess <= 1e-4 && anywhere.gap <= least_gap) break;
         anywhere.gap = std::clamp(0.1 * excess, least_gap, anywhere.gap);
     }

@@ -59,17 +59,12 @@ double choice_value(const Blocks& candidates, const SelectOptions& options,
     return choice_value(make_objective(candidates, options), candidates, options, poses);
 }
 
-double upper_bound(const Objective& objective, const Blocks& candidates,
-                   const SelectOptions& options, const MatrixXd& M) {
-    const MatrixXd held = held_information(candidates, options);
-    return price(objective, M, all_open(candidates, options, held), 1).bound;
-}
-
 double upper_bound(const Blocks& candidates, const SelectOptions& options,
                    const Certificate& certificate) {
     Objective objective = make_objective(candidates, options);
     objective.sharpness = certificate.sharpness;
-    return upper_bound(objective, candidates, options, certificate.M);
+    const MatrixXd held = held_information(candidates, options);
+    return price(objective, certificate.M, all_open(candidates, options, held), 1).bound;
 }
 
 double bound_rounding(Criterion criterion, const MatrixXd& M) {

@@ -15,8 +15,4 @@ OpenChoices all_open(const Blocks& candidates, const SelectOptions& options, con
 double choice_value(const Objective& objective, const Blocks& candidates,
                     const SelectOptions& options, const std::vector<Index>& poses);
 
-/// upper_bound() with the objective made once for many M.
-double upper_bound(const Objective& objective, const Blocks& candidates,
-                   const SelectOptions& options, const MatrixXd& M);
-
 }  // namespace posewise::detail

@@ -44,6 +44,7 @@ class Relaxer {
           options_(options),
           objective_(objective),
           held_(held_information(candidates, options)),
+          open_(all_open(candidates, options, held_)),
           set_(candidates),
           is_inside_(static_cast<std::size_t>(candidates.count()), 0) {
         if (!is_smooth(options.criterion)) objective_.sharpness = first_sharpness;
@@ -60,7 +61,7 @@ class Relaxer {
         for (Index round = 0; round < round_limit; ++round) {
             const double tolerance =
                 std::isinf(objective_.sharpness)
-                    ? 0.5 * options_.gap
+                    ? std::clamp(0.05 * open_gap_, 0.5 * options_.gap, 0.05)
                     : std::max(0.5 * options_.gap, 0.02 / objective_.sharpness);
             const WeightSearch search =
                 ascend({objective_, set_, held_, upper_, static_cast<double>(options_.pose_count)},
@@ -69,12 +70,15 @@ class Relaxer {
                        options_.stop);
             weights_ = search.weights;
             result_.iterations += search.iterations;
-            keep_if_better(search.M);
-            if (options_.stop.is_set() || is_closed(search.M)) break;
-            const bool grown = grow(search);
+            const Pricing pricing = price(objective_, search.M, open_, 1);
+            const VectorXd sensitivity = sensitivity_of(search.M, pricing);
+            keep_if_better(search.M, pricing.bound, sensitivity);
+            open_gap_ = gap(search.M);
+            if (options_.stop.is_set() || open_gap_ <= options_.gap) break;
+            const bool grown = grow(sensitivity, search.threshold);
             if (!grown && !sharpen()) break;
         }
-        return finish();
+        return std::move(result_);
     }
 
   private:
@@ -118,31 +122,44 @@ class Relaxer {
         }
     }
 
-    void keep_if_better(const MatrixXd& M) {
-        const double bound = upper_bound(objective_, candidates_, options_, M);
+    /// Of all candidates, of the logarithm at M. Their prices, too, are sensitivities, but for a
+    /// factor.
+    VectorXd sensitivity_of(const MatrixXd& M, const Pricing& pricing) const {
+        const Criterion criterion = objective_.criterion;
+        const MatrixXd slope = log_gradient(objective_, M);
+        if (pricing.prices.size() == 0 || criterion == Criterion::G ||
+            !has_information_function(criterion)) {
+            return sensitivities(candidates_, slope);
+        }
+        return slope.norm() / supporting_matrix(objective_, M).norm() * pricing.prices;
+    }
+
+    void keep_if_better(const MatrixXd& M, double bound, const VectorXd& sensitivity) {
         if (result_.certificate.M.size() > 0 && !(bound < result_.bound)) return;
         result_.certificate = {M, objective_.sharpness};
         result_.bound = bound;
+        result_.sensitivity = sensitivity;
         result_.weights = VectorXd::Zero(candidates_.count());
         result_.weights(set_.members()) = weights_;
     }
 
-    bool is_closed(const MatrixXd& M) const {
+    /// How much the information of the bound exceeds that of M, relative to it.
+    double gap(const MatrixXd& M) const {
         Objective exact = objective_;
         exact.sharpness = std::numeric_limits<double>::infinity();
         const Index L = M.rows();
         const double value = evaluate(exact, M);
-        return std::isfinite(value) &&
-               information_of_value(exact, result_.bound, L) <=
-                   (1 + options_.gap) * information_of_value(exact, value, L);
+        if (!std::isfinite(value)) return std::numeric_limits<double>::infinity();
+        return information_of_value(exact, result_.bound, L) /
+                   information_of_value(exact, value, L) -
+               1;
     }
 
-    bool grow(const WeightSearch& search) {
-        const VectorXd d = sensitivities(candidates_, log_gradient(objective_, search.M));
+    bool grow(const VectorXd& sensitivity, double threshold) {
         const std::vector<Index> joining =
-            best_outside(d, is_inside_, search.threshold, std::max<Index>(200, set_.size() / 4));
+            best_outside(sensitivity, is_inside_, threshold, std::max<Index>(200, set_.size() / 4));
         if (joining.empty()) return false;
-        drop_idle(d);
+        drop_idle(sensitivity);
         join(joining);
         return true;
     }
@@ -174,21 +191,17 @@ class Relaxer {
         return true;
     }
 
-    Relaxation finish() {
-        objective_.sharpness = result_.certificate.sharpness;
-        result_.sensitivity =
-            sensitivities(candidates_, log_gradient(objective_, result_.certificate.M));
-        return std::move(result_);
-    }
-
     const Blocks& candidates_;
     const SelectOptions& options_;
     Objective objective_;
     MatrixXd held_;
+    OpenChoices open_;
     WorkingSet set_;
     std::vector<char> is_inside_;  // or excluded
     VectorXd weights_;             // of the set's members
     VectorXd upper_;
+    double open_gap_ =
+        std::numeric_limits<double>::infinity();  // what is far off is solved roughly
     Relaxation result_;
 };
 

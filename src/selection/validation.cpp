@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "core/decompositions.hpp"
+#include "core/products.hpp"
 #include "core/text.hpp"
 #include "limits.hpp"
 #include "objective_bound.hpp"
@@ -73,15 +74,32 @@ MatrixXd separate(MatrixXd V) {
     return V;
 }
 
-/// Which directions all candidates together leave unseen; empty: none. Their information matrix
-/// only tells where there is no doubt; else the rows themselves do.
-std::string describe_unseen(const Blocks& candidates, const SelectOptions& options) {
+/// What makes the diagonal 1.
+VectorXd scale_of(const MatrixXd& M) {
+    return M.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+}
+
+/// Whether the information matrix tells without doubt that all directions are seen.
+bool sees_all(const MatrixXd& M) {
     constexpr double doubt = 1e-8;
-    const MatrixXd M = held_information(candidates, options) + information(candidates);
-    const Index L = M.rows();
-    const VectorXd scale = M.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const VectorXd scale = scale_of(M);
     const MatrixXd normalised = scale.asDiagonal() * M * scale.asDiagonal();
-    if (eigen_decomposition(normalised, Eigen::EigenvaluesOnly).eigenvalues()[0] > doubt) return "";
+    return eigen_decomposition(normalised, Eigen::EigenvaluesOnly).eigenvalues()[0] > doubt;
+}
+
+/// Which directions all candidates together leave unseen; empty: none. Their information matrix,
+/// that of the first ones if they do, only tells where there is no doubt; else the rows themselves.
+std::string describe_unseen(const Blocks& candidates, const SelectOptions& options) {
+    constexpr Index first_count = 1000;
+    const MatrixXd held = held_information(candidates, options);
+    const Index L = held.rows();
+    if (candidates.count() > first_count) {
+        const Index rows = candidates.first_row[static_cast<std::size_t>(first_count)];
+        if (sees_all(held + symmetric_gram(candidates.matrix.topRows(rows)))) return "";
+    }
+    const MatrixXd M = held + information(candidates);
+    if (sees_all(M)) return "";
+    const VectorXd scale = scale_of(M);
     const MatrixXd R = triangular_factor_of_many(stack(options.held_rows, candidates.matrix));
     const Index missing = L - count_independent_columns(R);
     if (missing == 0) return "";

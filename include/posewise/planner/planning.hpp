@@ -25,8 +25,8 @@ struct PlanOptions {
     HeldPoses held;             ///< a prior, poses measured, or both
     Index held_pose_count = 0;  ///< poses measured; they count in the m of O1
 
-    /// Plans to refine; the first is the best of the pool. 0: until five of them agree, at most 16.
-    /// With a larger limit, more kicks of the best plan are tried before giving up.
+    /// Plans to refine; the first is the best of the pool. 0: 5, in a cell that restricts
+    /// places 16. With a larger number, more kicks of the best plan are tried before giving up.
     Index starts = 0;
     Index bound_iterations = 30;  ///< limit for the searched bound; 0: no bound beyond the pool
     std::uint64_t seed = 1;       ///< start i draws from stream (seed, i)
@@ -57,9 +57,10 @@ struct PlannedPoses {
 /// Plans K continuous poses in a cell, at nominal parameters. Starts come from selection on the
 /// pool (the first on all of it, the others on random parts); each is refined continuously on one
 /// thread. The best choice among all poses they end at is refined, too, as long as that is better.
-/// The best plan is kicked (one to three poses redrawn from the pool, then all refined again) until
-/// kicks gain nothing, and finished. Independent of the number of threads. Throws InputError as
-/// select_poses(), or if the pool has too few poses.
+/// The best plan is kicked (one to three poses redrawn from the pool and moved to where they tell
+/// most, the best of some tries; then all refined again, unless first steps show that it leads
+/// nowhere) until kicks gain nothing, and finished. Independent of the number of threads. Throws
+/// InputError as select_poses(), or if the pool has too few poses.
 PlannedPoses plan_poses(const Campaign& campaign, const Constraints& constraints, const Pool& pool,
                         double repeats, const PlanOptions& options);
 
