@@ -14,6 +14,10 @@ namespace posewise::cli {
 class ProgressNote {
   public:
     std::string operator()(const Progress& state) const {
+        if (state.pose_count > 0) {
+            return fmt::format("about {} poses, as choices from the pool have it",
+                               state.pose_count);
+        }
         using Seconds = std::chrono::duration<double>;
         const double elapsed = Seconds(std::chrono::steady_clock::now() - begin_).count();
         const double left = elapsed * static_cast<double>(state.total - state.done) /

@@ -61,6 +61,7 @@ struct Progress {
     double value = -std::numeric_limits<double>::infinity();  ///< value of the best plan so far
     double bound = std::numeric_limits<double>::infinity();   ///< no plan has a larger value
     double efficiency = 0;  ///< efficiency of the value against the bound, from 0 to 1
+    Index pose_count = 0;   ///< what a search for a number of poses has come to; 0: nothing
 };
 
 /// Called from one thread at a time. An exception it throws ends the computation and reaches the

@@ -21,7 +21,7 @@ std::vector<CountAccuracy> predict_other_counts(const Planning& planning, const 
             rows.push_back({k, true, planning.plan.predicted});
             continue;
         }
-        const auto chosen = k >= least ? choices.choose(k, stop, true) : std::nullopt;
+        const auto chosen = k >= least ? choices.choose(k, stop) : std::nullopt;
         if (!stop.is_set()) {  // else it may be any choice
             rows.push_back({k, false, std::nullopt});
             if (chosen) {

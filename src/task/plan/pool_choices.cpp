@@ -20,22 +20,19 @@ PoolChoices::PoolChoices(const Campaign& campaign, const Pool& pool, double repe
     select_.nuisance = search.nuisance;
     select_.held_rows = search.held.rows;
     select_.held_pose_count = search.held_pose_count;
-    select_.starts = 4;  // one alone may be far off where poses hardly suffice
+    select_.starts = 1;
+    select_.kicks = 0;
     select_.proof = 0;
     select_.gap = 1e-2;
     select_.seed = search.seed;
 }
 
-std::optional<std::vector<Index>> PoolChoices::choose(Index pose_count, const StopSignal& stop,
-                                                      bool is_rough) const {
+std::optional<std::vector<Index>> PoolChoices::choose(Index pose_count,
+                                                      const StopSignal& stop) const {
     if (pose_count > blocks_.count()) return std::nullopt;
     SelectOptions select = select_;
     select.pose_count = pose_count;
     select.stop = stop;
-    if (is_rough) {
-        select.starts = 1;
-        select.kicks = 0;
-    }
     const Choice choice = select_poses(blocks_, select);
     if (choice.ending == Ending::NotIdentifiable) return std::nullopt;
     return choice.poses;

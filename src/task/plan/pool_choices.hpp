@@ -21,10 +21,8 @@ class PoolChoices {
 
     Index candidate_count() const { return blocks_.count(); }
     /// Candidates by index; nothing: they do not identify the parameters, or there are too few.
-    /// After a stop any that were found by then.
-    /// Roughly: from one start.
-    std::optional<std::vector<Index>> choose(Index pose_count, const StopSignal& stop = {},
-                                             bool is_rough = false) const;
+    /// From one start; after a stop any that were found by then.
+    std::optional<std::vector<Index>> choose(Index pose_count, const StopSignal& stop = {}) const;
     /// The blocks of chosen poses, and the information with what is held.
     Blocks blocks(const std::vector<Index>& chosen) const { return take(blocks_, chosen); }
     MatrixXd information(const std::vector<Index>& chosen) const;

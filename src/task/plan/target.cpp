@@ -90,18 +90,23 @@ class Search {
             result_.ending = TargetEnding::TooManyPoses;
             return fill_curve();
         }
-        const Index by_quick_plans =
-            least_count(std::min(by_choices, most_), least_, most_, [&](Index count) {
-                check_stop();
-                return has_crossed(maker_.make_quickly(count));
-            });
-        settle(by_quick_plans);
+        tell(by_choices);
+        const Index by_plans = options_.stop.is_set() ? by_choices : count_by_plans(by_choices);
+        tell(by_plans);
+        settle(by_plans);
         look_around();
         fill_curve();
     }
 
   private:
     bool has_limit() const { return target_.limit.has_value(); }
+
+    /// The number so far: plans around it take most of the time.
+    void tell(Index count) const {
+        if (options_.progress && !options_.stop.is_set()) {
+            options_.progress({.done = ++told_, .total = 20, .pose_count = count});
+        }
+    }
 
     void check_stop() const {
         options_.stop.check(has_limit() ? "it was found how many poses keep the target"
@@ -129,9 +134,6 @@ class Search {
     bool has_crossed(const std::optional<ErrorRange>& error, double duration) const {
         if (has_limit()) return error && error->assured <= *target_.limit;
         return duration > *target_.duration;
-    }
-    bool has_crossed(const Planning& planning) const {
-        return has_crossed(has_limit() ? judge(planning) : std::nullopt, planning.duration);
     }
 
     /// After a stop perhaps without an error; it is not kept then.
@@ -166,6 +168,24 @@ class Search {
     Index count_by_choices() {
         return least_count(least_, least_, most_chosen(),
                            [&](Index count) { return is_crossed_by_choice(count); });
+    }
+
+    /// As choices have it, from that of one plan and how much it is better than a choice of as
+    /// many.
+    Index count_by_plans(Index by_choices) {
+        const Index count = std::min(by_choices, most_chosen());
+        const CountPrediction chosen = choose(count);
+        const Planning quick = maker_.make_quickly(count);
+        const auto planned = judge(quick);
+        if (options_.stop.is_set() || !planned || !chosen.error) return by_choices;
+        const double gain = planned->assured / chosen.error->assured;
+        const double time = quick.duration / chosen.duration;
+        const Index found = least_count(count, least_, most_chosen(), [&](Index n) {
+            CountPrediction at = choose(n);
+            if (at.error) at.error->assured *= gain;
+            return !options_.stop.is_set() && has_crossed(at.error, time * at.duration);
+        });
+        return options_.stop.is_set() ? by_choices : std::min(found, most_);
     }
 
     /// What does not keep what was asked for, made after the stop, says nothing of its number.
@@ -301,6 +321,7 @@ class Search {
     std::map<Index, CountPrediction> chosen_;
     std::map<Index, CountPrediction> planned_;
     std::set<Index> finished_;  ///< planned, not stopped early
+    mutable Index told_ = 0;
 };
 
 void find_floor(const PlanningProblem& problem, TargetPlanning& result) {
