@@ -112,11 +112,14 @@ std::string describe_more(const std::vector<ErrorAtCount>& chosen,
                           const ErrorBudget& budget) {
     const auto found = more_poses(chosen.size() > 1 ? chosen : planned, count);
     if (!found || found->most <= count) return "";
-    if (found->more) return fmt::format("about {} more", count_of(*found->more, "new pose"));
+    const std::string ends = detail::describe_ends(found->more, "no number tried");
+    if (found->more.expected) {
+        return fmt::format("about {} more{}", count_of(*found->more.expected, "new pose"), ends);
+    }
     return fmt::format(
-        "no number tried: {} leave {:.0f} % of what {} leave; {} would be left if all parameters "
+        "no number tried{}: {} leave {:.0f} % of what {} leave; {} would be left if all parameters "
         "were known",
-        count_of(found->most, "new pose"), 100 * found->ratio, count,
+        ends, count_of(found->most, "new pose"), 100 * found->ratio, count,
         format_error(std::hypot(budget.left_over, budget.repeatability), false));
 }
 
@@ -144,8 +147,8 @@ std::vector<Answer> answer(const Planning& planning, const std::vector<CountAccu
     std::vector<ErrorAtCount> chosen, planned;
     for (const CountAccuracy& one : counts) {
         if (!one.accuracy) continue;
-        (one.is_planned ? planned : chosen)
-            .push_back({one.pose_count, predict_total(*one.accuracy).rms});
+        const auto [rms, lower, upper] = predict_total(*one.accuracy);
+        (one.is_planned ? planned : chosen).push_back({one.pose_count, rms, lower, upper});
     }
     return complete(planning, sum_up(planning, "RMS", total.rms, total.lower, total.upper),
                     simulated,
@@ -160,7 +163,8 @@ std::vector<Answer> answer(const TargetPlanning& found,
     std::vector<ErrorAtCount> chosen, planned;
     for (const CountPrediction& one : found.curve) {
         if (!one.error) continue;
-        (one.is_planned ? planned : chosen).push_back({one.pose_count, one.error->expected});
+        (one.is_planned ? planned : chosen)
+            .push_back({one.pose_count, one.error->expected, one.error->lower, one.error->upper});
     }
     return complete(planning,
                     sum_up(planning, detail::name_of(found.target.quantity), error.expected,

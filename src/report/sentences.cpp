@@ -47,6 +47,14 @@ std::string describe_model_error(const Campaign& campaign) {
            format_short(mrad_per_rad * campaign.model_error_orientation, 4) + " mrad";
 }
 
+std::string describe_ends(const CountBand& band, const std::string& none) {
+    if (band.lower == band.upper) return "";
+    const auto text = [&](const std::optional<Index>& count) {
+        return count ? std::to_string(*count) : none;
+    };
+    return fmt::format(" (90 %: {} to {})", text(band.lower), text(band.upper));
+}
+
 std::string describe_scaling(const Campaign& campaign, double repeats) {
     std::string text = fmt::format(
         "noise: {}, {}{}, model error {}\nscale: {} mm and {} mrad a parameter",

@@ -5,6 +5,7 @@
 
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/task/answers.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/judgement.hpp"
 #include "posewise/task/plan.hpp"
@@ -29,6 +30,9 @@ std::string describe(const Cure& cure, const Campaign& campaign);
 
 /// Whether the model error was worth looking for: there are errors of the robot to identify.
 bool is_model_error_found(const Calibration& calibration);
+
+/// " (90 %: 5 to 14)"; empty if the ends are the same. `none` says that no number does.
+std::string describe_ends(const CountBand& band, const std::string& none);
 
 /// "the joints' repeatability: 0.1 mm, 60 % of the square": the largest of the parts whose squares
 /// add up to that of the total; empty for a total of 0.

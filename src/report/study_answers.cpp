@@ -15,7 +15,10 @@ namespace {
 using detail::count_of;
 using detail::format_error;
 
-/// Medians of the poses that the first criterion chose, by count, with their rows.
+constexpr Index few_splits = 5;  // tell no range
+
+/// Medians of the poses that the first criterion chose, and what 5 and 95 % of the splits or robots
+/// are below, by count, with their rows.
 struct Curve {
     std::vector<ErrorAtCount> points;
     std::vector<const StudyRow*> rows;
@@ -25,21 +28,36 @@ Curve curve_of(const Study& study) {
     Curve curve;
     if (study.criteria.empty()) return curve;
     for (const StudyRow& row : study.rows) {
-        const auto median = held_out_quantile(planned_cases(row, 0, study.criteria.size()), 0.5);
+        const StudyCases cases = planned_cases(row, 0, study.criteria.size());
+        const auto median = held_out_quantile(cases, 0.5);
         if (!median) continue;
-        curve.points.push_back({row.pose_count, *median});
+        const bool has_ends = split_count(row, study.criteria.size()) >= few_splits;
+        curve.points.push_back({row.pose_count, *median,
+                                has_ends ? held_out_quantile(cases, 0.05).value_or(0) : 0,
+                                has_ends ? held_out_quantile(cases, 0.95).value_or(0) : 0});
         curve.rows.push_back(&row);
     }
     return curve;
 }
 
 /// The least number of poses within 10 % of the smallest error.
-std::size_t enough(const std::vector<ErrorAtCount>& points) {
+std::size_t enough(const std::vector<ErrorAtCount>& points,
+                   double ErrorAtCount::*error = &ErrorAtCount::error) {
     constexpr double alike = 1.1;
-    const double best = std::ranges::min(points, {}, &ErrorAtCount::error).error;
+    const double best = std::ranges::min(points, {}, error).*error;
     return static_cast<std::size_t>(
-        std::ranges::find_if(points, [&](const auto& one) { return one.error <= alike * best; }) -
+        std::ranges::find_if(points, [&](const auto& one) { return one.*error <= alike * best; }) -
         points.begin());
+}
+
+/// How that number differs between splits or robots.
+std::string describe_ends(const std::vector<ErrorAtCount>& points) {
+    const bool has_ends =
+        std::ranges::all_of(points, [](const auto& one) { return one.lower > 0 && one.upper > 0; });
+    if (!has_ends) return "";
+    const Index low = points[enough(points, &ErrorAtCount::lower)].pose_count;
+    const Index high = points[enough(points, &ErrorAtCount::upper)].pose_count;
+    return detail::describe_ends({std::nullopt, std::min(low, high), std::max(low, high)}, "");
 }
 
 std::string sum_up(const Study& study, const Curve& curve) {
@@ -53,7 +71,8 @@ std::string sum_up(const Study& study, const Curve& curve) {
     if (expected) text += fmt::format(", {} expected", format_error(*expected, false));
     if (random) text += fmt::format(", random ones {}", format_error(*random, false));
     return text +
-           (k + 1 == curve.points.size() ? "; more were not tried" : "; more gain less than 10 %");
+           (k + 1 == curve.points.size() ? "; more were not tried" : "; more gain less than 10 %") +
+           describe_ends(curve.points);
 }
 
 std::string describe_sureness(const Study& study, const Curve& curve) {
@@ -91,8 +110,9 @@ std::string describe_more(const std::vector<ErrorAtCount>& points) {
     for (const ErrorAtCount& one : points) {
         const auto found = more_poses(points, one.pose_count);
         if (!found || found->most == one.pose_count) continue;
-        if (found->more) {
-            steps.push_back(fmt::format("from {}: {} more", one.pose_count, *found->more));
+        if (found->more.expected) {
+            steps.push_back(fmt::format("from {}: {} more{}", one.pose_count, *found->more.expected,
+                                        detail::describe_ends(found->more, "no number tried")));
             without = 0;
         } else if (without == 0) {
             without = one.pose_count;

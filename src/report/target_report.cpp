@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +10,7 @@
 #include "core/text.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/report/reports.hpp"
+#include "sentences.hpp"
 #include "table.hpp"
 
 namespace posewise {
@@ -17,6 +19,7 @@ namespace {
 using detail::count_of;
 using detail::format_mm;
 using detail::format_short;
+using detail::is_told_by_estimate;
 using detail::name_of;
 using detail::Table;
 
@@ -104,6 +107,18 @@ std::string describe_best(const TargetPlanning& found, double longest) {
                        format_mm(best->error->assured));
 }
 
+/// What narrows a number that may be off by more than a factor of 2.
+std::string describe_narrowing(const TargetPlanning& found) {
+    const Planning& planning = *found.planning;
+    const CountRange& counts = *found.counts;
+    const bool is_narrow = counts.lower && counts.upper && *counts.upper <= 2 * *counts.lower;
+    if (is_narrow || is_told_by_estimate(planning.plan, planning.campaign.known_within)) return "";
+    return fmt::format(
+        "; plan --poses {}, measure them, calibrate --out estimate.json and ask again with --from "
+        "estimate.json: that knows the robot",
+        std::min<Index>(12, planning.search.pose_count));
+}
+
 /// "9 poses with 5 % probability, more than 60 with 95 %".
 std::string describe_counts(const CountRange& counts, double floor, double limit) {
     std::string text = counts.lower ? count_of(*counts.lower, "new pose")
@@ -187,8 +202,9 @@ std::string format(const TargetPlanning& found) {
                             found.is_settled ? "" : "; stopped early: fewer may do");
         if (found.counts) {
             text +=
-                fmt::format("enough:      {}\n",
-                            describe_counts(*found.counts, found.floor.upper, *found.target.limit));
+                fmt::format("enough:      {}{}\n",
+                            describe_counts(*found.counts, found.floor.upper, *found.target.limit),
+                            describe_narrowing(found));
         }
     }
     if (found.target.duration) {

@@ -116,15 +116,30 @@ TEST(MorePoses, AreReadOffTheCurve) {
         points.push_back({count, 1 / std::sqrt(static_cast<double>(count))});
     }
     // 1 / sqrt(n) falls to 0.8 of itself at 1.5625 n.
-    EXPECT_EQ(more_poses(points, 8)->more, 5);
-    EXPECT_EQ(more_poses(points, 10)->more, 6);
+    EXPECT_EQ(more_poses(points, 8)->more.expected, 5);
+    EXPECT_EQ(more_poses(points, 10)->more.expected, 6);
+    EXPECT_EQ(more_poses(points, 10)->more.lower, 6) << "no band, no difference";
     const MorePoses none = more_poses(points, 30).value();
-    EXPECT_FALSE(none.more);
+    EXPECT_FALSE(none.more.expected);
     EXPECT_EQ(none.most, 32);
     EXPECT_NEAR(none.ratio, std::sqrt(30.0 / 32), 1e-12);
     EXPECT_FALSE(more_poses(points, 3));
     EXPECT_FALSE(more_poses(points, 33));
     EXPECT_FALSE(more_poses({}, 5));
+}
+
+/// Where errors turn out large, a part that no number of poses reduces hides the others.
+TEST(MorePoses, HaveABandWhereTheErrorHasOne) {
+    std::vector<ErrorAtCount> points;
+    for (const Index count : {4, 8, 16, 32}) {
+        const double by_poses = 1 / static_cast<double>(count);
+        points.push_back(
+            {count, std::sqrt(by_poses + 0.04), std::sqrt(by_poses), std::sqrt(by_poses + 1)});
+    }
+    const MorePoses found = more_poses(points, 8).value();
+    EXPECT_EQ(found.more.lower, 5);
+    EXPECT_GT(found.more.expected, 5);
+    EXPECT_FALSE(found.more.upper);
 }
 
 TEST(Calibrate, AnswersByItsResiduals) {

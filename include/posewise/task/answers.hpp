@@ -53,17 +53,27 @@ struct Influence {
 /// An error, m, at a number of poses.
 struct ErrorAtCount {
     Index pose_count = 0;
-    double error = 0;
+    double error = 0;  ///< as expected
+    /// As small and as large as it may turn out (5 and 95 %); 0: not known.
+    double lower = 0;
+    double upper = 0;
+};
+
+/// A number that is not known for sure: nothing stands for "no number does".
+struct CountBand {
+    std::optional<Index> expected;
+    std::optional<Index> lower;  ///< suffices with 5 % probability
+    std::optional<Index> upper;  ///< with 95 %
 };
 
 /// How many more poses leave 80 % of an error.
 struct MorePoses {
-    std::optional<Index> more;  ///< nothing: no count up to `most` does
-    Index most = 0;             ///< the largest count known
-    double ratio = 1;           ///< error with `more` poses, or at `most`, divided by that now
+    CountBand more;    ///< nothing: no count up to `most` does
+    Index most = 0;    ///< the largest count known
+    double ratio = 1;  ///< error with the `more` expected, or at `most`, divided by that now
 };
-/// Interpolated between the points on logarithmic axes. Nothing if `count` is not among their
-/// range.
+/// Interpolated between the points on logarithmic axes; as expected for the ends of the band if the
+/// points have none. Nothing if `count` is not among their range.
 std::optional<MorePoses> more_poses(std::vector<ErrorAtCount> points, Index count);
 
 }  // namespace posewise

@@ -205,29 +205,52 @@ std::optional<RmsInterval> held_out_interval(const Campaign& campaign,
 
 }  // namespace detail
 
+namespace {
+
+constexpr double wanted = 0.8;  // of an error, that more poses shall leave
+
+/// Between the points, which are in the order of their counts, on logarithmic axes.
+double error_at(const std::vector<ErrorAtCount>& points, double ErrorAtCount::*error, Index n) {
+    const auto next = std::ranges::lower_bound(points, n, {}, &ErrorAtCount::pose_count);
+    if (next->pose_count == n) return (*next).*error;
+    const ErrorAtCount& last = *(next - 1);
+    const auto log_of = [&](Index k) {
+        return std::log(static_cast<double>(k) / static_cast<double>(last.pose_count));
+    };
+    return last.*error *
+           std::pow((*next).*error / (last.*error), log_of(n) / log_of(next->pose_count));
+}
+
+std::optional<Index> find_more(const std::vector<ErrorAtCount>& points, double ErrorAtCount::*error,
+                               Index count) {
+    const double now = error_at(points, error, count);
+    for (Index n = count + 1; n <= points.back().pose_count; ++n) {
+        if (error_at(points, error, n) <= wanted * now) return n - count;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<MorePoses> more_poses(std::vector<ErrorAtCount> points, Index count) {
-    constexpr double wanted = 0.8;
     std::erase_if(points, [](const ErrorAtCount& one) { return !(one.error > 0); });
     std::ranges::sort(points, {}, &ErrorAtCount::pose_count);
     if (points.empty() || count < points.front().pose_count || count > points.back().pose_count) {
         return std::nullopt;
     }
-    const auto error_at = [&](Index n) {
-        const auto next = std::ranges::lower_bound(points, n, {}, &ErrorAtCount::pose_count);
-        if (next->pose_count == n) return next->error;
-        const ErrorAtCount& last = *(next - 1);
-        const auto log_of = [&](Index k) {
-            return std::log(static_cast<double>(k) / static_cast<double>(last.pose_count));
-        };
-        return last.error *
-               std::pow(next->error / last.error, log_of(n) / log_of(next->pose_count));
-    };
-    const double now = error_at(count);
-    const Index most = points.back().pose_count;
-    for (Index n = count + 1; n <= most; ++n) {
-        if (error_at(n) <= wanted * now) return MorePoses{n - count, most, error_at(n) / now};
-    }
-    return MorePoses{std::nullopt, most, error_at(most) / now};
+    MorePoses found;
+    found.most = points.back().pose_count;
+    found.more.expected = find_more(points, &ErrorAtCount::error, count);
+    const bool has_band = std::ranges::all_of(
+        points, [](const ErrorAtCount& one) { return one.lower > 0 && one.upper > 0; });
+    found.more.lower =
+        has_band ? find_more(points, &ErrorAtCount::lower, count) : found.more.expected;
+    found.more.upper =
+        has_band ? find_more(points, &ErrorAtCount::upper, count) : found.more.expected;
+    const Index reached = found.more.expected ? count + *found.more.expected : found.most;
+    found.ratio = error_at(points, &ErrorAtCount::error, reached) /
+                  error_at(points, &ErrorAtCount::error, count);
+    return found;
 }
 
 }  // namespace posewise
