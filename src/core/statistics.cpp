@@ -16,6 +16,10 @@ namespace posewise::detail {
 
 namespace {
 
+/// In double as it is: long double tells the same 15 digits in ten times as long.
+using ChiSquared = boost::math::chi_squared_distribution<
+    double, boost::math::policies::policy<boost::math::policies::promote_double<false>>>;
+
 double between(double number, double next, double part) {
     return std::isinf(next) ? next : number + part * (next - number);
 }
@@ -126,7 +130,7 @@ double two_sided(double t, double degrees_of_freedom) {
 }
 
 double chi_squared_quantile(double p, double degrees_of_freedom) {
-    return boost::math::quantile(boost::math::chi_squared(degrees_of_freedom), p);
+    return boost::math::quantile(ChiSquared(degrees_of_freedom), p);
 }
 
 double mixture_quantile(double p, const std::vector<ScaledChiSquared>& parts,
@@ -140,7 +144,7 @@ double mixture_quantile(double p, const std::vector<ScaledChiSquared>& parts,
             } else if (degrees_of_freedom > 0) {
                 sum += cdf(boost::math::fisher_f(freedom, degrees_of_freedom), x / mean);
             } else {
-                sum += cdf(boost::math::chi_squared(freedom), freedom * x / mean);
+                sum += cdf(ChiSquared(freedom), freedom * x / mean);
             }
         }
         return sum / static_cast<double>(parts.size()) - p;

@@ -83,7 +83,7 @@ void BM_refinement(benchmark::State& state) {
 }
 BENCHMARK(BM_refinement)->Unit(benchmark::kMillisecond);
 
-/// The whole: 24 poses from a pool of 20 000, 16 starts (target: under 30 s on 2 cores).
+/// The whole: 24 poses from a pool of 20 000.
 void BM_plan_of_the_fanuc(benchmark::State& state) {
     const auto criterion = static_cast<Criterion>(state.range(0));
     const Scene scene;
