@@ -157,7 +157,7 @@ double search_bound(const DesignSpace& space, const Objective& objective,
         const double excess = largest / inside - 1;
         const double reached =
             efficiency(objective.criterion, plan.value, bound, interest_count(objective, Z.rows()));
-        if (excess <= open_part * (1 / reached - 1)) break;
+        if (excess + anywhere.gap <= open_part * (1 / reached - 1)) break;
         if (excess <= 1e-4 && anywhere.gap <= least_gap) break;
         anywhere.gap = std::clamp(0.1 * excess, least_gap, anywhere.gap);
     }

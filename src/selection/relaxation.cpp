@@ -59,10 +59,11 @@ class Relaxer {
 
     Relaxation run() {
         for (Index round = 0; round < round_limit; ++round) {
-            const double tolerance =
-                std::isinf(objective_.sharpness)
-                    ? std::clamp(0.05 * open_gap_, 0.5 * options_.gap, 0.05)
-                    : std::max(0.5 * options_.gap, 0.02 / objective_.sharpness);
+            const double finest = std::isinf(objective_.sharpness)
+                                      ? 0.5 * options_.gap
+                                      : std::max(0.5 * options_.gap, 0.02 / objective_.sharpness);
+            // What is far off is solved roughly.
+            const double tolerance = std::clamp(0.05 * open_gap_, finest, std::max(finest, 0.05));
             const WeightSearch search =
                 ascend({objective_, set_, held_, upper_, static_cast<double>(options_.pose_count)},
                        weights_, tolerance,
@@ -74,9 +75,14 @@ class Relaxer {
             const VectorXd sensitivity = sensitivity_of(search.M, pricing);
             keep_if_better(search.M, pricing.bound, sensitivity);
             open_gap_ = gap(search.M);
-            if (options_.stop.is_set() || open_gap_ <= options_.gap) break;
-            const bool grown = grow(sensitivity, search.threshold);
-            if (!grown && !sharpen()) break;
+            const bool is_rough = tolerance > finest;
+            if (options_.stop.is_set() || (open_gap_ <= options_.gap && !is_rough)) break;
+            if (grow(sensitivity, search.threshold)) continue;
+            if (is_rough) {
+                open_gap_ = 0;  // there is nothing left but to solve it better
+            } else if (!sharpen()) {
+                break;
+            }
         }
         return std::move(result_);
     }
@@ -200,8 +206,7 @@ class Relaxer {
     std::vector<char> is_inside_;  // or excluded
     VectorXd weights_;             // of the set's members
     VectorXd upper_;
-    double open_gap_ =
-        std::numeric_limits<double>::infinity();  // what is far off is solved roughly
+    double open_gap_ = std::numeric_limits<double>::infinity();
     Relaxation result_;
 };
 

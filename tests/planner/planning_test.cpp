@@ -188,7 +188,7 @@ TEST(PlanPoses, TellsItsProgressAndPassesOnWhatTheCallbackThrows) {
     ASSERT_EQ(told.size(), 4U);  // the last of the kicks
     EXPECT_EQ(told.back().done, 4);
     EXPECT_EQ(told.back().total, 4);
-    EXPECT_NEAR(told.back().value, plan.value, 1e-3);
+    EXPECT_NEAR(told.back().value, plan.value, 1e-2);  // before it is finished
     EXPECT_EQ(told.back().bound, plan.pool_choice.bound);
 
     options.progress = [](const Progress&) { throw std::domain_error("enough"); };
@@ -243,7 +243,7 @@ TEST(PlanPoses, FocusOnTheRobotLeavesBaseAndTargetsAside) {
 }
 
 /// A line measured at two places of [0, 1]: both ends are best, M = [2 1; 1 1].
-TEST(PlanPoses, EndsWhenFiveStartsAgreeAndBoundsWhatIsBest) {
+TEST(PlanPoses, StartsFiveTimesAndBoundsWhatIsBest) {
     DesignSpace space;
     space.lower = VectorXd::Zero(1);
     space.upper = VectorXd::Ones(1);
@@ -283,13 +283,25 @@ TEST(PlanPoses, KicksReachWhatStartsDoNot) {
     EXPECT_GT(plan_poses(scene.space, scene.pool, scene.blocks, options).value, 303.46);
 }
 
-/// Kicks of the best of these starts alone lead to 303.513.
+/// Where poses can hardly be moved: a start is as good as what it was chosen from.
 TEST(PlanPoses, CrossesWhatStartsEndedAt) {
-    const Scene scene(1000);
+    Scene scene(2000);
+    scene.space.margin = [](const VectorXd& q) {
+        return (3 * q.head<3>()).array().cos().minCoeff() - 0.2;
+    };
+    std::vector<Index> feasible;
+    for (Index i = 0; i < scene.pool.rows(); ++i) {
+        if (scene.space.margin(scene.pool.row(i).transpose()) >= 0) feasible.push_back(i);
+    }
+    const RowMatrixXd pool = scene.pool(feasible, Eigen::all);
     PlanOptions options = scene.options(Criterion::D, 24, 6);
     options.bound_iterations = 0;
-    options.seed = 2;
-    EXPECT_GT(plan_poses(scene.space, scene.pool, scene.blocks, options).value, 303.55);
+    double best_start = 0;
+    options.progress = [&](const Progress& progress) {
+        if (progress.done < progress.total) best_start = progress.value;
+    };
+    const PlannedPoses plan = plan_poses(scene.space, pool, take(scene.blocks, feasible), options);
+    EXPECT_GT(plan.value, best_start + 0.1);
 }
 
 TEST(PlanPoses, TheSearchedBoundDoesNotDependOnThePool) {
