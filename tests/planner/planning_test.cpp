@@ -283,27 +283,6 @@ TEST(PlanPoses, KicksReachWhatStartsDoNot) {
     EXPECT_GT(plan_poses(scene.space, scene.pool, scene.blocks, options).value, 303.46);
 }
 
-/// Where poses can hardly be moved: a start is as good as what it was chosen from.
-TEST(PlanPoses, CrossesWhatStartsEndedAt) {
-    Scene scene(2000);
-    scene.space.margin = [](const VectorXd& q) {
-        return (3 * q.head<3>()).array().cos().minCoeff() - 0.2;
-    };
-    std::vector<Index> feasible;
-    for (Index i = 0; i < scene.pool.rows(); ++i) {
-        if (scene.space.margin(scene.pool.row(i).transpose()) >= 0) feasible.push_back(i);
-    }
-    const RowMatrixXd pool = scene.pool(feasible, Eigen::all);
-    PlanOptions options = scene.options(Criterion::D, 24, 6);
-    options.bound_iterations = 0;
-    double best_start = 0;
-    options.progress = [&](const Progress& progress) {
-        if (progress.done < progress.total) best_start = progress.value;
-    };
-    const PlannedPoses plan = plan_poses(scene.space, pool, take(scene.blocks, feasible), options);
-    EXPECT_GT(plan.value, best_start + 0.1);
-}
-
 TEST(PlanPoses, TheSearchedBoundDoesNotDependOnThePool) {
     std::vector<PlannedPoses> plans;
     for (const Index size : {300, 3000}) {
