@@ -140,6 +140,8 @@ TEST(MorePoses, HaveABandWhereTheErrorHasOne) {
     EXPECT_EQ(found.more.lower, 5);
     EXPECT_GT(found.more.expected, 5);
     EXPECT_FALSE(found.more.upper);
+    for (ErrorAtCount& point : points) std::swap(point.lower, point.upper);
+    EXPECT_EQ(more_poses(points, 8)->more.lower, 5) << "whichever curve asks for less";
 }
 
 TEST(Calibrate, AnswersByItsResiduals) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "core/statistics.hpp"
@@ -243,10 +244,18 @@ std::optional<MorePoses> more_poses(std::vector<ErrorAtCount> points, Index coun
     found.more.expected = find_more(points, &ErrorAtCount::error, count);
     const bool has_band = std::ranges::all_of(
         points, [](const ErrorAtCount& one) { return one.lower > 0 && one.upper > 0; });
-    found.more.lower =
-        has_band ? find_more(points, &ErrorAtCount::lower, count) : found.more.expected;
-    found.more.upper =
-        has_band ? find_more(points, &ErrorAtCount::upper, count) : found.more.expected;
+    found.more.lower = found.more.upper = found.more.expected;
+    if (has_band) {
+        // Which end asks for more differs: where errors turn out large, by what poses reduce or
+        // not.
+        const auto is_less = [](const std::optional<Index>& x, const std::optional<Index>& y) {
+            return x && (!y || *x < *y);
+        };
+        std::tie(found.more.lower, found.more.upper) =
+            std::minmax({found.more.expected, find_more(points, &ErrorAtCount::lower, count),
+                         find_more(points, &ErrorAtCount::upper, count)},
+                        is_less);
+    }
     const Index reached = found.more.expected ? count + *found.more.expected : found.most;
     found.ratio = error_at(points, &ErrorAtCount::error, reached) /
                   error_at(points, &ErrorAtCount::error, count);
