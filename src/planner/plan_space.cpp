@@ -16,14 +16,16 @@
 #include "posewise/core/random.hpp"
 #include "searched_bound.hpp"
 #include "selection/bound.hpp"
+#include "selection/local_search.hpp"
 
 namespace posewise::detail {
 namespace {
 
 constexpr Index test_pose_limit = 500;
-// Where their number is not stated; along constraints refinement finds less, and kicks less still.
+// Where their number is not stated; along constraints refinement finds less, and kicks less still,
+// and where poses hardly suffice optima differ much.
 constexpr Index usual_starts = 5;
-constexpr Index usual_starts_constrained = 16;
+constexpr Index more_starts = 16;
 constexpr Index kicks_at_once = 4;  // whatever the number of threads
 constexpr Index draws_a_pose = 30;  // of the pool, the most sensitive of which replaces a pose
 constexpr double same = 1e-6;       // relative to the value
@@ -137,7 +139,11 @@ bool is_cut_short(Ending ending, const StopSignal& stop) {
 
 Index start_limit(const Problem& problem) {
     if (problem.options.starts > 0) return problem.options.starts;
-    return problem.space.margin ? usual_starts_constrained : usual_starts;
+    constexpr double ample = 1.5;  // numbers for each parameter
+    const double rows = mean_rows(problem.blocks) * static_cast<double>(problem.options.pose_count);
+    const bool hardly_suffices = problem.options.held.rows.rows() == 0 &&
+                                 rows < ample * static_cast<double>(problem.space.parameter_count);
+    return problem.space.margin || hardly_suffices ? more_starts : usual_starts;
 }
 
 /// The best start alone is made sharper and finished.

@@ -112,7 +112,8 @@ std::string describe_more(const std::vector<ErrorAtCount>& chosen,
                           const ErrorBudget& budget) {
     const auto found = more_poses(chosen.size() > 1 ? chosen : planned, count);
     if (!found || found->most <= count) return "";
-    const std::string ends = detail::describe_ends(found->more, "no number tried");
+    const std::string ends =
+        detail::describe_ends(found->more, fmt::format("more than {}", found->most - count));
     if (found->more.expected) {
         return fmt::format("about {} more{}", count_of(*found->more.expected, "new pose"), ends);
     }

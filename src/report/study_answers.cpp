@@ -111,8 +111,10 @@ std::string describe_more(const std::vector<ErrorAtCount>& points) {
         const auto found = more_poses(points, one.pose_count);
         if (!found || found->most == one.pose_count) continue;
         if (found->more.expected) {
-            steps.push_back(fmt::format("from {}: {} more{}", one.pose_count, *found->more.expected,
-                                        detail::describe_ends(found->more, "no number tried")));
+            steps.push_back(fmt::format(
+                "from {}: {} more{}", one.pose_count, *found->more.expected,
+                detail::describe_ends(found->more,
+                                      fmt::format("more than {}", found->most - one.pose_count))));
             without = 0;
         } else if (without == 0) {
             without = one.pose_count;

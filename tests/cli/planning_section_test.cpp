@@ -28,7 +28,7 @@ TEST_F(PlanningSection, AsksForAsManyPosesAsTheFittedModelNeeds) {
     const std::string words = "--poses is " + fewer + ", must be at least " +
                               std::to_string(needed) +
                               ": fewer do not identify the errors that calibrate fits";
-    const std::string plan = "plan c.yaml --pool 300 --starts 1 --workspace-poses 50 ";
+    const std::string plan = "plan c.yaml --pool 300 --workspace-poses 50 ";
     const std::string select = "select c.yaml --random 40 --starts 1 -o p.json ";
     expect_input_error(select + "-k " + fewer, words);
     expect_input_error(plan + "-o p.json -k " + fewer, words);

@@ -89,7 +89,7 @@ TEST_F(SmallCampaign, OfTwoJointsIsCalibrated) {
 TEST_F(SmallCampaign, IsCalibratedWithAsManyPosesAsInspectAndPlanPromise) {
     write_text("c.yaml", one_target);
     EXPECT_EQ(number_behind(run_well("inspect c.yaml"), "least number of poses:"), 5);
-    const std::string plan = "plan c.yaml --pool 300 --starts 1 --workspace-poses 50 --poses ";
+    const std::string plan = "plan c.yaml --pool 300 --workspace-poses 50 --poses ";
     expect_input_error(plan + "4",
                        "--poses is 4, must be at least 5: fewer are not enough to register base");
     expect_input_error("select c.yaml --random 50 -k 4",
@@ -98,7 +98,9 @@ TEST_F(SmallCampaign, IsCalibratedWithAsManyPosesAsInspectAndPlanPromise) {
     EXPECT_NE(others.find("  4  chosen from the pool       -  "), std::string::npos) << others;
     run_well(plan + "5 --csv p.csv");
     run_well("simulate c.yaml --configurations p.csv -o s.csv");
-    run_well("calibrate c.yaml -m s.csv --folds 0");
+    // So few poses may leave doubts.
+    const Outcome outcome = run("calibrate c.yaml -m s.csv --folds 0");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
 TEST_F(SmallCampaign, SaysWhichKeyStatesWhatNoPoseTells) {

@@ -25,8 +25,9 @@ struct PlanOptions {
     HeldPoses held;             ///< a prior, poses measured, or both
     Index held_pose_count = 0;  ///< poses measured; they count in the m of O1
 
-    /// Plans to refine; the first is the best of the pool. 0: 5, in a cell that restricts
-    /// places 16. With a larger number, more kicks of the best plan are tried before giving up.
+    /// Plans to refine; the first is the best of the pool. 0: 5; 16 in a cell that restricts
+    /// places and where poses hardly suffice. With a larger number, more kicks of the best plan are
+    /// tried before giving up.
     Index starts = 0;
     Index bound_iterations = 30;  ///< limit for the searched bound; 0: no bound beyond the pool
     std::uint64_t seed = 1;       ///< start i draws from stream (seed, i)
