@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 
 namespace posewise::detail {
 
@@ -116,6 +117,14 @@ std::optional<double> quantile_of_many(const VisitNumbers& visit, double p, std:
 
 double rms_spread(const RowMatrixXd& points) {
     return std::sqrt((points.rowwise() - points.colwise().mean()).rowwise().squaredNorm().mean());
+}
+
+std::vector<Index> by_decreasing(const VectorXd& values) {
+    std::vector<Index> order(static_cast<std::size_t>(values.size()));
+    std::iota(order.begin(), order.end(), Index{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return values[a] > values[b]; });
+    return order;
 }
 
 double normal_quantile(double p) { return boost::math::quantile(boost::math::normal(), p); }

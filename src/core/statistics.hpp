@@ -26,6 +26,9 @@ using VisitNumbers = std::function<void(const std::function<void(double)>& visit
 std::optional<double> quantile_of_many(const VisitNumbers& visit, double p,
                                        std::size_t in_memory = std::size_t{1} << 16);
 
+/// The places of the values, that of the largest first; of equal ones in their order.
+std::vector<Index> by_decreasing(const VectorXd& values);
+
 /// RMS distance of points (n x 3) from their mean.
 double rms_spread(const RowMatrixXd& points);
 

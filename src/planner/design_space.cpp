@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "core/decompositions.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
@@ -57,6 +60,12 @@ void Support::add(const DesignSpace& space, const RowMatrixXd& added) {
     }
     poses.conservativeResize(poses.rows() + added.rows(), added.cols());
     poses.bottomRows(added.rows()) = added;
+}
+
+Blocks take_first(const Blocks& blocks, Index count) {
+    std::vector<Index> first(static_cast<std::size_t>(std::min(blocks.count(), count)));
+    std::iota(first.begin(), first.end(), Index{0});
+    return take(blocks, first);
 }
 
 RowMatrixXd rows_of(const DesignSpace& space, const HeldPoses& held, const RowMatrixXd& poses) {

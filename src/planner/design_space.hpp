@@ -55,6 +55,10 @@ struct Support {
     void add(const DesignSpace& space, const RowMatrixXd& added);
 };
 
+/// The first blocks of a pool, so many or all: its poses are of a low-discrepancy sequence, so that
+/// the first ones are spread as all of them are.
+Blocks take_first(const Blocks& blocks, Index count);
+
 /// Rows held, and below them those of poses.
 RowMatrixXd rows_of(const DesignSpace& space, const HeldPoses& held, const RowMatrixXd& poses);
 

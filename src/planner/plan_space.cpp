@@ -5,7 +5,6 @@
 #include <cmath>
 #include <exception>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 #include "core/decompositions.hpp"
@@ -42,13 +41,6 @@ struct Problem {
 /// Parameters that count.
 Index interesting_count(const Problem& problem) {
     return problem.space.parameter_count - static_cast<Index>(problem.options.nuisance.size());
-}
-
-/// The first poses of a pool spread over it as all of them do, being of a low-discrepancy sequence.
-Blocks default_test_poses(const Blocks& blocks) {
-    std::vector<Index> poses(static_cast<std::size_t>(std::min(blocks.count(), test_pose_limit)));
-    std::iota(poses.begin(), poses.end(), Index{0});
-    return take(blocks, poses);
 }
 
 /// Selection of K from the pool, as far as its time goes.
@@ -369,7 +361,7 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
     PlanOptions options = asked_for;
     Blocks test_poses;
     if (needs_test_poses(options.criterion) && options.test_poses == nullptr) {
-        test_poses = default_test_poses(blocks);
+        test_poses = take_first(blocks, test_pose_limit);
         options.test_poses = &test_poses;
     }
     if (options.starts < 0) {

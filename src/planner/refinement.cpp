@@ -222,18 +222,9 @@ class Refiner {
         problem.upper = space_.upper.replicate(m, 1);
         problem.value = [&](const VectorXd& x, VectorXd* slope) {
             const auto at = [&](Index i) -> VectorXd { return x.segment(n * i, n); };
-            Blocks blocks;
-            std::vector<RowMatrixXd> told;
-            for (Index i = 0; i < m; ++i) {
-                told.push_back(space_.rows(at(i)));
-                blocks.first_row.push_back(blocks.first_row.back() + told.back().rows());
-            }
-            blocks.matrix.resize(blocks.first_row.back(), space_.parameter_count);
-            for (Index i = 0; i < m; ++i) {
-                const RowMatrixXd& rows = told[static_cast<std::size_t>(i)];
-                blocks.matrix.middleRows(blocks.first_row[static_cast<std::size_t>(i)],
-                                         rows.rows()) = rows;
-            }
+            Support planned;
+            planned.add(space_, x.reshaped<Eigen::RowMajor>(m, n));
+            const Blocks& blocks = planned.blocks;
             const MatrixXd M = held_information_ + symmetric_gram(blocks.matrix);
             if (slope == nullptr) return merit(objective, M);
             const SlopedMerit sloped = sloped_merit(objective, M);

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/nlopt_adapter.hpp"
 #include "core/parallel.hpp"
 #include "core/sensitivities.hpp"
+#include "core/statistics.hpp"
 #include "criteria/information_function.hpp"
 #include "selection/bound.hpp"
 #include "selection/objective_bound.hpp"
@@ -22,14 +22,6 @@ constexpr double least_gap = 1e-5;   // and when it ends
 constexpr double open_part = 0.05;   // of the gap to the plan, that it may leave of itself
 constexpr Index part_size = 2000;    // of the pool, which searches start from
 constexpr Index relaxed_size = 300;  // poses of the pool that its relaxation may give weight
-
-std::vector<Index> by_decreasing(const VectorXd& values) {
-    std::vector<Index> order(static_cast<std::size_t>(values.size()));
-    std::iota(order.begin(), order.end(), Index{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](Index a, Index b) { return values[a] > values[b]; });
-    return order;
-}
 
 /// The most sensitive poses that are apart, after those in `chosen`.
 void choose_starts(const RowMatrixXd& poses, const VectorXd& sensitivity, RowMatrixXd& chosen) {
@@ -125,10 +117,8 @@ double search_bound(const DesignSpace& space, const Objective& objective,
     if (certificate.M.size() > 0 && !stop.is_set()) {
         support.add(space, relaxed_poses(objective, certificate, pool, blocks));
     }
-    std::vector<Index> first(static_cast<std::size_t>(std::min(part_size, pool.rows())));
-    std::iota(first.begin(), first.end(), Index{0});
-    const RowMatrixXd part = pool(first, Eigen::all);
-    const Blocks part_blocks = take(blocks, first);
+    const Blocks part_blocks = take_first(blocks, part_size);
+    const RowMatrixXd part = pool.topRows(part_blocks.count());
     for (Index t = 0; t < iterations && !stop.is_set(); ++t) {
         if (weights.size() > 0)
             weights.conservativeResizeLike(VectorXd::Zero(support.blocks.count()));

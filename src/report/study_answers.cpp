@@ -52,9 +52,7 @@ std::size_t enough(const std::vector<ErrorAtCount>& points,
 
 /// How that number differs between splits or robots.
 std::string describe_ends(const std::vector<ErrorAtCount>& points) {
-    const bool has_ends =
-        std::ranges::all_of(points, [](const auto& one) { return one.lower > 0 && one.upper > 0; });
-    if (!has_ends) return "";
+    if (!std::ranges::all_of(points, &ErrorAtCount::has_ends)) return "";
     const Index low = points[enough(points, &ErrorAtCount::lower)].pose_count;
     const Index high = points[enough(points, &ErrorAtCount::upper)].pose_count;
     return detail::describe_ends({std::nullopt, std::min(low, high), std::max(low, high)}, "");

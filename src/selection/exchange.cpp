@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
-#include <numeric>
 #include <optional>
 #include <span>
 
@@ -13,6 +12,7 @@
 #include "core/parallel.hpp"
 #include "core/progress_counter.hpp"
 #include "core/sensitivities.hpp"
+#include "core/statistics.hpp"
 #include "objective_bound.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/selection/choice.hpp"
@@ -23,6 +23,7 @@
 namespace posewise {
 namespace {
 
+using detail::by_decreasing;
 using detail::Relaxation;
 using detail::ScoredPoses;
 using detail::SearchProblem;
@@ -31,15 +32,6 @@ using detail::Shortlist;
 constexpr Index sweep_limit = 50;  // of the last sweeps over all candidates
 constexpr Index sweep_size = 4096;
 constexpr Index few_starts = 5;  // fewer, as each takes seconds, run side by side before any proof
-
-std::vector<Index> by_decreasing(const VectorXd& values) {
-    std::vector<Index> order(static_cast<std::size_t>(values.size()));
-    std::iota(order.begin(), order.end(), Index{0});
-    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-        return values[a] != values[b] ? values[a] > values[b] : a < b;
-    });
-    return order;
-}
 
 ScoredPoses make_choice(const SearchProblem& problem, std::vector<Index> poses) {
     const detail::Score score = problem.score(problem.regularised_information(poses));

@@ -57,6 +57,7 @@ struct ErrorAtCount {
     /// As small and as large as it may turn out (5 and 95 %); 0: not known.
     double lower = 0;
     double upper = 0;
+    bool has_ends() const { return lower > 0 && upper > 0; }
 };
 
 /// A number that is not known for sure: nothing stands for "no number does".

@@ -242,12 +242,9 @@ std::optional<MorePoses> more_poses(std::vector<ErrorAtCount> points, Index coun
     MorePoses found;
     found.most = points.back().pose_count;
     found.more.expected = find_more(points, &ErrorAtCount::error, count);
-    const bool has_band = std::ranges::all_of(
-        points, [](const ErrorAtCount& one) { return one.lower > 0 && one.upper > 0; });
     found.more.lower = found.more.upper = found.more.expected;
-    if (has_band) {
-        // Which end asks for more differs: where errors turn out large, by what poses reduce or
-        // not.
+    if (std::ranges::all_of(points, &ErrorAtCount::has_ends)) {
+        // Either end may be the one that needs more poses.
         const auto is_less = [](const std::optional<Index>& x, const std::optional<Index>& y) {
             return x && (!y || *x < *y);
         };

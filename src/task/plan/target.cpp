@@ -90,9 +90,9 @@ class Search {
             result_.ending = TargetEnding::TooManyPoses;
             return fill_curve();
         }
-        tell(by_choices);
+        tell(1, by_choices);
         const Index by_plans = options_.stop.is_set() ? by_choices : count_by_plans(by_choices);
-        tell(by_plans);
+        tell(2, by_plans);
         settle(by_plans);
         look_around();
         fill_curve();
@@ -102,9 +102,9 @@ class Search {
     bool has_limit() const { return target_.limit.has_value(); }
 
     /// The number so far: plans around it take most of the time.
-    void tell(Index count) const {
+    void tell(Index step, Index count) const {
         if (options_.progress && !options_.stop.is_set()) {
-            options_.progress({.done = ++told_, .total = 20, .pose_count = count});
+            options_.progress({.done = step, .total = 20, .pose_count = count});
         }
     }
 
@@ -321,7 +321,6 @@ class Search {
     std::map<Index, CountPrediction> chosen_;
     std::map<Index, CountPrediction> planned_;
     std::set<Index> finished_;  ///< planned, not stopped early
-    mutable Index told_ = 0;
 };
 
 void find_floor(const PlanningProblem& problem, TargetPlanning& result) {
