@@ -15,10 +15,8 @@
 namespace posewise::detail {
 namespace {
 
-/// What is found is from this part of the expected to so many times it: beyond, the model or a
-/// measurement is wrong.
+/// The smallest that is looked for, in expected ones.
 constexpr double least_part = 0.1;
-constexpr double most_times = 40;
 /// More configurations would not tell the two numbers any better.
 constexpr Index most_configurations = 400;
 /// A direction that one configuration alone determines has no prediction by the others.
@@ -336,7 +334,7 @@ double average(const Function& f, double x, double highest, double deviation) {
 }
 
 double within_reach(double found, double expected) {
-    return std::clamp(found, expected * least_part, expected * most_times);
+    return std::clamp(found, expected * least_part, expected * most_model_errors);
 }
 
 }  // namespace

@@ -4,6 +4,10 @@
 
 namespace posewise::detail {
 
+/// The largest model error that is looked for, in expected ones: beyond, the model or a measurement
+/// is wrong.
+constexpr double most_model_errors = 40;
+
 /// Whether identify() is to find the model error: it stands beside priors, and is not stated to be
 /// none.
 bool is_model_error_open(const Campaign& campaign);

@@ -7,7 +7,7 @@
 namespace posewise::cli {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 14> flags{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 15> flags{
     {{"count", "--random"},
      {"dropped", "--drop"},
      {"earlier", "--from"},
@@ -21,7 +21,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 14> flags{
      {"pool_count", "--pool"},
      {"pose_count", "--poses"},
      {"spread.is_prior", "--prior"},
-     {"starts", "--starts"}}};
+     {"starts", "--starts"},
+     {"time", "--time"}}};
 
 }  // namespace
 

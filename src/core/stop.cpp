@@ -13,7 +13,8 @@ StopSignal StopSignal::with_half_the_time() const {
 
 void StopSignal::check(const std::string& what) const {
     if (is_interrupted()) throw InputError("interrupted while " + what);
-    if (is_late()) throw InputError("the time was up while " + what + "; must be given more");
+    if (is_late())
+        throw InputError("the time was up while " + what + "; must be given more (`time`)");
 }
 
 Ending StopSignal::ending_or(Ending ending) const {

@@ -72,6 +72,22 @@ MatrixXd express_dropped(const MatrixXd& J, const Identifiability& result) {
     return norms.cwiseInverse().asDiagonal() * combination;
 }
 
+/// What was meant by `unknown`: an error of the robot, or a class of those that it has.
+std::string suggest_error(const std::string& unknown, const std::vector<std::string>& names,
+                          std::vector<std::string> classes) {
+    std::sort(classes.begin(), classes.end());
+    classes.erase(std::unique(classes.begin(), classes.end()), classes.end());
+    for (const std::string& one : classes) {
+        if (one == "class:" + unknown) return detail::suggest(one, {one});
+    }
+    if (unknown.starts_with("class:")) {
+        classes.insert(classes.begin(), "one of its errors");
+        return "must be " + detail::list_words(classes);
+    }
+    classes.insert(classes.begin(), names.begin(), names.end());
+    return detail::suggest(unknown, classes);
+}
+
 }  // namespace
 
 Identifiability find_independent_columns(const MatrixXd& J, const std::vector<Index>& priority,
@@ -179,24 +195,22 @@ Chain keep_parameters(const Chain& chain, const std::vector<std::string>& names)
 }
 
 Campaign with_free_errors(const Campaign& campaign, const std::vector<std::string>& errors) {
-    constexpr std::string_view of_class = "class:";
     const auto names = campaign.robot.parameter_names();
+    std::vector<std::string> classes;  // of each error
+    for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
+        classes.emplace_back("class:").append(
+            detail::name_of(detail::error_class_names, detail::error_class_of(campaign.robot, k)));
+    }
     std::vector<std::string> kept;
     for (const std::string& error : errors) {
         const std::size_t before = kept.size();
-        for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
-            const std::string& name = names[static_cast<std::size_t>(k)];
-            const std::string_view word = detail::name_of(
-                detail::error_class_names, detail::error_class_of(campaign.robot, k));
-            if (name == error || fmt::format("{}{}", of_class, word) == error) kept.push_back(name);
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            if (names[k] == error || classes[k] == error) kept.push_back(names[k]);
         }
-        if (kept.size() > before) continue;
-        std::vector<std::string> known = names;
-        for (const std::string& word : detail::words_of(detail::error_class_names)) {
-            known.push_back(fmt::format("{}{}", of_class, word));
+        if (kept.size() == before) {
+            throw InputError(fmt::format("{} is no error of the robot; {}", detail::quote(error),
+                                         suggest_error(error, names, classes)));
         }
-        throw InputError(fmt::format("{} is no error of the robot; {}", detail::quote(error),
-                                     detail::suggest(error, known)));
     }
     return with_robot(campaign, keep_parameters(campaign.robot, kept));
 }

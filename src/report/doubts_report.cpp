@@ -58,9 +58,10 @@ std::string describe_learned_sizes(const std::vector<SizeDoubt>& sizes) {
 std::string describe_model_errors(const std::vector<ModelErrorDoubt>& errors) {
     std::string words;
     for (const ModelErrorDoubt& error : errors) {
-        words += fmt::format("{}{}, {} times what is expected", words.empty() ? "" : " and ",
-                             detail::format_error(error.value, error.is_angle),
-                             detail::format_short(error.times, 3));
+        words +=
+            fmt::format("{}{}{}, {} times what is expected", words.empty() ? "" : " and ",
+                        detail::format_error(error.value, error.is_angle),
+                        error.is_limit ? " or more" : "", detail::format_short(error.times, 3));
     }
     return fmt::format(
         "the model error found is {}: so much is left over that neither the robot's model nor the "

@@ -230,7 +230,14 @@ TEST_F(Calibrate, HasOnlyTheErrorsThatItsCampaignLists) {
     EXPECT_TRUE(Json::parse(text_of("n.json")).at("robot").empty());
     text.replace(text.find("errors: none"), 12, "errors: [class:gains]");
     write_text("bad.yaml", text);
-    expect_input_error("calibrate bad.yaml -m s.csv", "errors: 'class:gains' is no error");
+    expect_input_error(
+        "calibrate bad.yaml -m s.csv",
+        "'class:gains' is no error of the robot; must be one of its errors, "
+        "class:angles, class:gravity, class:harmonics, class:lengths or class:offsets");
+    text.replace(text.find("[class:gains]"), 13, "[Tx3, offsets]");
+    write_text("bad.yaml", text);
+    expect_input_error("calibrate bad.yaml -m s.csv",
+                       "'offsets' is no error of the robot; did you mean 'class:offsets'?");
 }
 
 TEST_F(Calibrate, ComparesSetsEvenIfTheWholeCannotBeIdentified) {

@@ -237,6 +237,9 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
               "times); does the robot give way that much?");
     EXPECT_TRUE(sentences[1].starts_with(
         "the model error found is 0.9 mm, 9 times what is expected: so much is left over"));
+    calibration.doubts.model_errors = {{40, 4e-3, false, true}};
+    EXPECT_TRUE(describe_doubts(calibration)[1].starts_with(
+        "the model error found is 4 mm or more, 40 times what is expected: "));
 }
 
 TEST(DescribeBeyondLimits, CountsThemAndNamesTheFirst) {

@@ -290,6 +290,18 @@ TEST(EarlierEstimate, TellsWhereRobotBaseAndTargetsAre) {
     EXPECT_GT(missed(campaign), 1e-3);
 }
 
+TEST(EarlierEstimate, ExpectsTheModelErrorThatResidualsShow) {
+    const Campaign whole = held_campaign();
+    const Measurements measured = measure_at_random(whole, draw_truth(whole, 3), 60, 1);
+    // No error of the robot is found, and without priors no model error is either.
+    const Campaign campaign = with_robot(whole, without_parameters(whole.robot));
+    const Earlier earlier{calibrate(campaign, measured, without_folds()).estimate};
+    const double left = earlier.estimate.fit.distance_rms / std::sqrt(3);
+    EXPECT_GT(left, 5 * campaign.model_error);
+    EXPECT_EQ(earlier.estimate.model_error, campaign.model_error);
+    EXPECT_NEAR(with_earlier(campaign, earlier).model_error / left, 1, 0.2);
+}
+
 TEST(EarlierEstimate, HoldsWhatGivesWayUnderMeasuredTorques) {
     Campaign campaign = testing::tracked_campaign(
         with_measured_compliance(without_parameters(testing::fanuc()), {{1, 300}, {2, 200}}));

@@ -280,6 +280,7 @@ struct ModelErrorDoubt {
     double times = 0;  ///< multiple of the expected one
     double value = 0;  ///< m or rad
     bool is_angle = false;
+    bool is_limit = false;  ///< the largest that is looked for: it may be larger
 };
 
 /// Residuals that clearly differ from those stated: all, or separately lengths and angles.

@@ -174,6 +174,19 @@ Campaign make_of(const YamlValue& robot, const std::string& words, const Make& m
     }
 }
 
+Campaign with_listed_errors(const Campaign& campaign, const std::vector<YamlValue>& free) {
+    std::vector<std::string> errors;
+    for (const YamlValue& error : free) {
+        errors.push_back(error.text());
+        try {
+            with_free_errors(campaign, {errors.back()});
+        } catch (const InputError& problem) {
+            throw error.error(problem.what());
+        }
+    }
+    return with_free_errors(campaign, errors);
+}
+
 Campaign make_irreducible(const Campaign& campaign, ErrorModel model, const StopSignal& stop) {
     return with_robot(campaign, model == ErrorModel::Offsets ? irreducible_offsets(campaign, stop)
                                                              : irreducible_model(campaign, stop));
@@ -241,8 +254,7 @@ CampaignFile parse(const std::string& content, const std::string& path,
         campaign.spread = population.spread;
     }
     if (!robot.free.empty()) {
-        campaign = make_of(map.require("robot"), "errors",
-                           [&] { return with_free_errors(campaign, robot.free); });
+        campaign = with_listed_errors(campaign, robot.free);
     }
     read_model_error(map, "model_error", campaign.model_error);
     read_model_error(map, "model_error_orientation", campaign.model_error_orientation);

@@ -14,7 +14,7 @@ struct RobotSection {
     Chain declared;
     RobotClass robot_class = RobotClass::Unknown;
     io::ErrorModel error_model = io::ErrorModel::Stated;
-    std::vector<std::string> free = {};     ///< the only errors of that model; empty: all
+    std::vector<YamlValue> free = {};       ///< the only errors of that model; empty: all
     Vector3d gravity = -Vector3d::UnitZ();  ///< its direction in the base frame
     VectorXd joint_repeatability;           ///< rad or m; empty if not stated
     std::optional<io::UrdfSource> urdf;     ///< where the robot comes from

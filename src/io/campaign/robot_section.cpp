@@ -77,10 +77,10 @@ Joint to_joint(const YamlMeasure& limits, const std::string& name, Motion motion
 
 /// A list names some of all errors.
 io::ErrorModel find_error_model(const YamlMap& robot, const std::vector<Element>& elements,
-                                std::vector<std::string>& free) {
+                                std::vector<YamlValue>& free) {
     if (const auto errors = robot.find("errors")) {
         if (!errors->is_list()) return read_error_model(*errors);
-        for (const YamlValue& error : errors->list()) free.push_back(error.text());
+        free = errors->list();
         if (free.empty()) throw errors->error("is empty; must name errors, or be none");
         return io::ErrorModel::Full;
     }

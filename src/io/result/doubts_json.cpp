@@ -48,7 +48,8 @@ Json model_errors_to_json(const std::vector<ModelErrorDoubt>& errors) {
     Json json = Json::array();
     for (const ModelErrorDoubt& error : errors) {
         json.push_back({{"value" + error_suffix(error.is_angle), mm_per_m * error.value},
-                        {"times_expected", error.times}});
+                        {"times_expected", error.times},
+                        {"at_least", error.is_limit}});
     }
     return json;
 }

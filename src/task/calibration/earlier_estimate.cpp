@@ -8,13 +8,16 @@
 #include <numeric>
 
 #include "calibrator/learned_sizes.hpp"
+#include "calibrator/model_error.hpp"
 #include "core/text.hpp"
 #include "measurement/known_sensor.hpp"
+#include "model/sampling.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/model/chain.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "task/doubt/residual_ratio.hpp"
 
 namespace posewise {
 namespace {
@@ -73,6 +76,36 @@ Prior make_prior(const Campaign& campaign, const Campaign& reduced, const Earlie
 double elsewhere(double within, double of_any) {
     constexpr double factor = 1.2;
     return std::min(std::exp(std::hypot(std::log(within), std::log(factor))), of_any);
+}
+
+/// The campaign with the model error that its estimate has found. Without priors none is found, and
+/// beyond the largest none is looked for: there the residuals show one, if they are clearly larger
+/// than stated.
+Campaign with_shown_model_error(const Campaign& campaign, const Estimate& estimate) {
+    constexpr Index configurations = 64;
+    Campaign shown = with_model_error(campaign, estimate);
+    shown.known_within.model_error = estimate.model_error_within;
+    const auto predictions = predict_errors(
+        shown, estimate,
+        detail::random_configurations(campaign.robot, configurations, campaign.seed));
+    for (const ErrorPrediction& prediction : predictions) {
+        const bool is_angle = prediction.is_angle;
+        const double found = is_angle ? estimate.model_error_orientation : estimate.model_error;
+        const double stated = is_angle ? campaign.model_error_orientation : campaign.model_error;
+        if (detail::is_model_error_open(campaign) && found < detail::most_model_errors * stated) {
+            continue;
+        }
+        const auto ratio = detail::clear_ratio(estimate.variance_of(is_angle), estimate.loss.kind);
+        if (!ratio || *ratio < 1) continue;
+        (is_angle ? shown.model_error_orientation : shown.model_error) =
+            detail::fitting_model_error(campaign, estimate, prediction.overall, is_angle);
+        if (is_angle) continue;
+        // Of the logarithm of a variance; the targets of a configuration are off alike.
+        const double freedom = estimate.variance_of(is_angle).degrees_of_freedom /
+                               static_cast<double>(campaign.sensor->target_count());
+        shown.known_within.model_error = std::exp(1 / std::sqrt(2 * freedom));
+    }
+    return shown;
 }
 
 /// How surely sizes are known that were learned along, in the mean of them: the more, the more of
@@ -226,8 +259,9 @@ Campaign with_earlier(const Campaign& campaign, const Earlier& earlier) {
     if ((holds_base && use.has_new_base) || (known.targets && use.has_new_targets)) {
         throw InputError("base and targets that were moved must be identified, too");
     }
-    Campaign expected = with_model_error(campaign, estimate);
-    expected.known_within.model_error = elsewhere(estimate.model_error_within, model_error_factor);
+    Campaign expected = with_shown_model_error(campaign, estimate);
+    expected.known_within.model_error =
+        elsewhere(expected.known_within.model_error, model_error_factor);
     // Where the prior is drift besides, that is stated as roughly as sizes are.
     if (estimate.spread && !use.is_prior) {
         expected.known_within.error_size =

@@ -8,14 +8,15 @@
 
 #include "absurd_values.hpp"
 #include "calibrator/missing_errors.hpp"
+#include "calibrator/model_error.hpp"
 #include "core/format.hpp"
-#include "core/statistics.hpp"
 #include "gross_errors.hpp"
 #include "model/joint_limits.hpp"
 #include "plane_doubts.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/planner/prediction.hpp"
+#include "residual_ratio.hpp"
 
 namespace posewise {
 namespace {
@@ -35,37 +36,6 @@ constexpr double incredible_residuals = 300;
 constexpr double incredible_offset = 10 * std::numbers::pi / 180;
 constexpr double incredible_offset_size = 5;
 
-std::optional<double> clear_ratio(const ResidualVariance& variance, LossKind loss) {
-    constexpr double tolerated = 1.2;  // intervals of 95 % would hold 90 %
-    constexpr double chance = 1e-3;    // of a doubt without a reason, on either side
-    // Degrees of freedom for which the median tells as much as the mean square [Rousseeuw & Croux
-    // 1993].
-    const double efficiency = loss == LossKind::Squares ? 1 : 0.37;
-    if (variance.degrees_of_freedom <= 0) return std::nullopt;
-    const double freedom = efficiency * variance.degrees_of_freedom;
-    const double squares = freedom * variance.factor;
-    const double ratio = std::sqrt(variance.factor);
-    const bool is_chance = squares >= detail::chi_squared_quantile(chance, freedom) &&
-                           squares <= detail::chi_squared_quantile(1 - chance, freedom);
-    if (is_chance || (ratio <= tolerated && ratio >= 1 / tolerated)) return std::nullopt;
-    return ratio;
-}
-
-/// The model error with which residuals of a kind would be as stated.
-double fitting_model_error(const Campaign& found, const Measurements& measured,
-                           const Estimate& estimate, bool is_angle) {
-    const double factor = estimate.variance_of(is_angle).factor;
-    if (!(factor > 0)) return 0;
-    const ExpectedError expected = expected_error(found, estimate, measured, is_angle);
-    // Without priors the expected errors are scaled by the factor already.
-    const double scaled = found.spread.is_prior ? 1 : factor;
-    const double noise = expected.noise * expected.noise / scaled;
-    const double model = expected.model * expected.model / scaled;
-    const Index lengths = found.sensor->lengths_per_target();
-    const Index count = is_angle ? found.sensor->rows_per_target() - lengths : lengths;
-    return std::sqrt(std::max(0.0, factor * (model + noise) - noise) / static_cast<double>(count));
-}
-
 std::vector<ResidualDoubt> find_residual_doubts(const Campaign& campaign,
                                                 const Measurements& measured,
                                                 const Estimate& estimate) {
@@ -74,9 +44,11 @@ std::vector<ResidualDoubt> find_residual_doubts(const Campaign& campaign,
     for (const bool is_angle : {false, true}) {
         const Sensor& sensor = *campaign.sensor;
         if (!(is_angle ? sensor.has_angles() : sensor.has_lengths())) continue;
-        if (const auto ratio = clear_ratio(estimate.variance_of(is_angle), estimate.loss.kind)) {
-            doubts.push_back(
-                {*ratio, is_angle, fitting_model_error(found, measured, estimate, is_angle)});
+        if (const auto ratio =
+                detail::clear_ratio(estimate.variance_of(is_angle), estimate.loss.kind)) {
+            const ExpectedError expected = expected_error(found, estimate, measured, is_angle);
+            doubts.push_back({*ratio, is_angle,
+                              detail::fitting_model_error(found, estimate, expected, is_angle)});
         }
     }
     return doubts;
@@ -130,7 +102,10 @@ std::vector<ModelErrorDoubt> find_model_error_doubts(const Campaign& campaign,
     constexpr double doubtful = model_error_factor * model_error_factor;
     std::vector<ModelErrorDoubt> doubts;
     const auto add = [&](double found, double expected, bool is_angle) {
-        if (found > doubtful * expected) doubts.push_back({found / expected, found, is_angle});
+        const bool is_limit = found >= detail::most_model_errors * expected;
+        if (found > doubtful * expected) {
+            doubts.push_back({found / expected, found, is_angle, is_limit});
+        }
     };
     add(estimate.model_error, campaign.model_error, false);
     add(estimate.model_error_orientation, campaign.model_error_orientation, true);

@@ -102,15 +102,18 @@ class Search {
     bool has_limit() const { return target_.limit.has_value(); }
 
     /// The number so far: plans around it take most of the time.
-    void tell(Index step, Index count) const {
+    void tell(Index step, Index count) {
+        told_ = count;
         if (options_.progress && !options_.stop.is_set()) {
             options_.progress({.done = step, .total = 20, .pose_count = count});
         }
     }
 
     void check_stop() const {
-        options_.stop.check(has_limit() ? "it was found how many poses keep the target"
-                                        : "it was found how many poses fit in the time");
+        std::string sought = has_limit() ? "it was found how many poses keep the target"
+                                         : "it was found how many poses fit in the time";
+        if (told_) sought += fmt::format(": about {}, as choices from the pool have it", *told_);
+        options_.stop.check(sought);
     }
 
     /// Nothing: drop-outs leave parameters unidentified.
@@ -318,6 +321,7 @@ class Search {
     Index least_;
     PoolChoices choices_;
     Index most_;
+    std::optional<Index> told_;  ///< the number so far
     std::map<Index, CountPrediction> chosen_;
     std::map<Index, CountPrediction> planned_;
     std::set<Index> finished_;  ///< planned, not stopped early
