@@ -65,7 +65,10 @@ std::string format_interval(const RmsInterval& interval, bool is_angle) {
 }
 
 std::string sum_up(const Calibration& calibration, const Judged& judged, bool is_angle) {
-    const double nominal = calibration.nominal.rms();
+    // The nominal robot at the same poses, base and targets fitted to the others as well.
+    const auto& comparison = calibration.held_out_comparison;
+    const bool is_compared = !judged.group && comparison;
+    const double nominal = is_compared ? comparison->nominal : calibration.nominal.rms();
     const double found = judged.found.rms();
     std::string text;
     if (!calibration.faults.empty()) text = "no calibration, " + calibration.faults.front() + "; ";

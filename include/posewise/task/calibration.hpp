@@ -147,8 +147,10 @@ struct Calibration {
     std::optional<Repeatability> repeatability;  ///< nothing: no configuration was repeated
     std::optional<CrossValidation> held_out;
     std::optional<RmsInterval> held_out_interval;  ///< 95 %, of the samples' RMS
-    std::optional<Influence> influence;            ///< the pose that matters most
-    std::optional<OrderTrend> order_trend;         ///< whether residuals drift
+    /// The nominal robot at the same poses; only where the fit has converged.
+    std::optional<HeldOutComparison> held_out_comparison;
+    std::optional<Influence> influence;     ///< the pose that matters most
+    std::optional<OrderTrend> order_trend;  ///< whether residuals drift
     /// For means at poses like the measured ones; for samples over the workspace that
     /// estimated_geometry() draws (nothing where it cannot, and for contacts).
     ExpectedError expected;

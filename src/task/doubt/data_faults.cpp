@@ -135,6 +135,9 @@ void judge_data(const CalibrationData& data, const CalibrationOptions& options,
     const auto comparison = compare_with_nominal(data.campaign, data.robot, data.measurements,
                                                  data.registered, held_out, as_found);
     if (options.stop.is_set()) return;
+    if (calibration.held_out && held_out.samples.point_count > 0) {
+        calibration.held_out_comparison = comparison;
+    }
     if (comparison && comparison->is_no_better()) calibration.doubts.held_out = comparison;
     const Doubted doubted{data.campaign, data.measurements, estimate, held_out, data.options};
     const std::vector<std::string> faults = find_data_faults(doubted, calibration, comparison);
