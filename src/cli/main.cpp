@@ -102,7 +102,7 @@ void add_commands(CLI::App& program, posewise::cli::CommonOptions& common) {
     program.formatter(make_brief_help());
     for (const auto add :
          {add_inspect, add_indices, add_select, add_plan, add_verify, add_calibrate, add_export,
-          add_correct, add_study, add_simulate, add_report}) {
+          add_correct, add_program, add_study, add_simulate, add_report}) {
         add(program, common);
     }
     for (CLI::App* command : program.get_subcommands(nullptr)) add_common_options(*command, common);

@@ -277,6 +277,9 @@ CampaignFile parse(const std::string& content, const std::string& path,
         file.cell = read_cell(*cell, campaign.robot, *sensor.sensor);
     }
     if (file.cell.speed.size() == 0) file.cell.speed = robot.speed;
+    const auto controller = map.find("controller");
+    file.controller = controller ? detail::read_controller(*controller, campaign.robot)
+                                 : ControllerJoints(campaign.robot);
     return file;
 }
 
