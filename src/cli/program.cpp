@@ -213,6 +213,9 @@ void write_program(const ProgramArguments& arguments, const CommonOptions& commo
     report.stop_count = std::ssize(program.stops);
     report.visit_count = std::ranges::count(program.stops, true, &io::ProgramStop::is_measured);
     std::vector<std::string> outputs = report.files;
+    const bool is_new_folder =
+        format == io::ProgramFormat::Staubli && !std::filesystem::exists(arguments.out);
+    if (is_new_folder) outputs = {arguments.out};
     outputs.push_back(report.sent);
     check_outputs({&both.campaign}, {arguments.plan}, outputs, common);
     report.loss = compute_from(arguments.plan, [&] { return find_loss(both, sent); });

@@ -94,11 +94,6 @@ VectorXd read_pulses(const YamlMap& map, const Chain& robot) {
     constexpr double most = 1e9;
     const auto pulses = map.find_measure("pulses_per");
     if (!pulses) return {};
-    if (pulses->unit->quantity != Quantity::Angle) {
-        throw pulses->value.error(
-            "is in a unit of length; must be pulses_per_deg, in which joints that slide count "
-            "their mm");
-    }
     const auto count = static_cast<std::size_t>(robot.joint_count());
     const std::vector<double> numbers = pulses->value.numbers(count);
     VectorXd per_unit(robot.joint_count());

@@ -67,7 +67,7 @@ std::vector<io::ProgramStop> read_abb(const std::string& path, const ControllerJ
     std::vector<io::ProgramStop> stops;
     std::string comment;
     for (const TextLine& line : file.lines()) {
-        if (line.begins_with("!")) comment = trim(line.text.substr(1));
+        if (line.begins_with("!")) note_comment(line.text.substr(1), comment);
         for (const char* const other : {"MoveJ", "MoveL", "MoveC"}) {
             if (line.begins_with(other)) throw line.error("is no move to joints; must be MoveAbsJ");
         }

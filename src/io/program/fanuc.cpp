@@ -118,7 +118,7 @@ TextLine fanuc_statement(TextLine line) {
 std::vector<FileContent> fanuc_files(const std::string& path, const io::RobotProgram& program) {
     FanucBody body;
     std::string positions;
-    body.add(fmt::format("  !{}", comment_text(program.title).substr(0, 32)));
+    body.add(fmt::format("  !{}", comment_text(program.title, 32)));
     body.add("  UFRAME_NUM=0");
     body.add("  UTOOL_NUM=1");
     for (std::size_t k = 0; k < program.stops.size(); ++k) {
@@ -155,7 +155,7 @@ std::vector<io::ProgramStop> read_fanuc(const std::string& path, const Controlle
     std::string comment;
     for (std::size_t k = section("/MN"); k < end; ++k) {
         const TextLine line = fanuc_statement(lines[k]);
-        if (line.begins_with("!")) comment = trim(line.text.substr(1));
+        if (line.begins_with("!")) note_comment(line.text.substr(1), comment);
         for (const char* const other : {"L P", "C P", "A P", "J PR"}) {
             if (line.begins_with(other)) {
                 throw line.error("is no joint move to a position of the program; must be J P[...]");

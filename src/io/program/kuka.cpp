@@ -98,7 +98,7 @@ void read_module(const std::string& path, const ControllerJoints& joints, bool h
     std::string comment;
     for (const TextLine& line : file.lines()) {
         if (line.begins_with(";FOLD") || line.begins_with(";ENDFOLD")) continue;
-        if (line.begins_with(";")) comment = trim(line.text.substr(1));
+        if (line.begins_with(";")) note_comment(line.text.substr(1), comment);
         if (has_parts && line.begins_with(part) && line.text.ends_with(')')) {
             const std::string name(trim(line.text.substr(0, line.text.find('('))));
             read_module(sibling_of(path, name + ending_of(path)), joints, false, stops);

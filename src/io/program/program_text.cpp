@@ -45,7 +45,7 @@ std::string legal_name(std::string_view text, std::size_t longest, bool is_upper
     return name.substr(0, longest);
 }
 
-std::string comment_text(std::string_view text) {
+std::string comment_text(std::string_view text, std::size_t longest) {
     std::string comment;
     for (const char letter : text) {
         const bool is_plain =
@@ -53,7 +53,7 @@ std::string comment_text(std::string_view text) {
             std::string_view("\"'\\[]{}<>;").find(letter) == std::string_view::npos;
         comment += is_plain ? letter : '_';
     }
-    return comment.substr(0, 60);
+    return std::string(trim(comment.substr(0, longest)));
 }
 
 std::string stem_of(const std::string& path) { return std::filesystem::path(path).stem().string(); }
@@ -84,7 +84,10 @@ std::string joints_text(const ProgramRules& rules, const ControllerJoints& joint
     return text;
 }
 
-std::string seconds_text(double seconds) { return fmt::format("{:g}", seconds); }
+std::string seconds_text(double seconds) {
+    const std::string text = fmt::format("{:g}", seconds);
+    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
 
 double dwell_of(const io::RobotProgram& program, const io::ProgramStop& stop) {
     return program.dwell * static_cast<double>(stop.samples);
@@ -128,6 +131,13 @@ std::vector<double> read_numbers(const TextLine& line, std::string_view text) {
         numbers.push_back(number.value);
         if (comma == text.size()) return numbers;
         text.remove_prefix(comma + 1);
+    }
+}
+
+void note_comment(std::string_view text, std::string& comment) {
+    const std::string_view word = trim(text);
+    if (!word.empty() && word.size() <= longest_label && is_identifier('_' + std::string(word))) {
+        comment = word;
     }
 }
 

@@ -28,12 +28,14 @@ struct ProgramRules {
 };
 const ProgramRules& rules_of(io::ProgramFormat format);
 
+inline constexpr std::size_t longest_label = 16;
+
 /// Letters, digits and underscores, the first a letter, none of the words (whatever their case).
 std::string legal_name(std::string_view text, std::size_t longest, bool is_upper,
                        const std::vector<std::string_view>& words);
 
 /// One line of printable ASCII without quotes, backslashes and brackets, for comments.
-std::string comment_text(std::string_view text);
+std::string comment_text(std::string_view text, std::size_t longest = 60);
 
 /// The file's name without folder and ending.
 std::string stem_of(const std::string& path);
@@ -47,7 +49,7 @@ std::string joint_text(const ProgramRules& rules, Motion motion, double si);
 /// All of a stop, separated.
 std::string joints_text(const ProgramRules& rules, const ControllerJoints& joints,
                         const VectorXd& values, std::string_view separator);
-/// 2.5 as "2.5", 2 as "2".
+/// 2.5 as "2.5", 2 as "2.0".
 std::string seconds_text(double seconds);
 /// How long a measured stop lasts.
 double dwell_of(const io::RobotProgram& program, const io::ProgramStop& stop);
@@ -78,6 +80,10 @@ class ProgramFile {
 
 /// The finite numbers of `text`, separated by commas. Throws InputError at the line.
 std::vector<double> read_numbers(const TextLine& line, std::string_view text);
+
+/// A comment of a program: it names the next move if it could be a pose's label, home or via; else
+/// it says something to people, and what stood before holds.
+void note_comment(std::string_view text, std::string& comment);
 
 /// Joints in the file's unit as a stop, named by the comment before it. Throws InputError at the
 /// line for another number of joints.

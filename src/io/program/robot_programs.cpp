@@ -150,7 +150,7 @@ VectorXd joint_steps(ProgramFormat format, const ControllerJoints& joints) {
 }
 
 std::vector<std::string> pose_labels(const std::vector<std::string>& ids) {
-    constexpr std::size_t longest = 16;
+    constexpr std::size_t longest = detail::longest_label;
     const std::vector<std::string_view> passed{"home", "via"};
     std::set<std::string> taken;
     std::map<std::string, Index> next;  // number to try for names alike

@@ -12,9 +12,8 @@
 namespace posewise::detail {
 namespace {
 
-constexpr std::string_view xml_begin = "<?xml_begin version=\"1.0\" encoding=\"utf-8\"?>\n";
-constexpr std::string_view xml_instance =
-    "xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-xml_instance\"";
+constexpr std::string_view xml_begin = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n";
+constexpr std::string_view xml_instance = "xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\"";
 constexpr std::string_view val3_schemas = "http://www.staubli.com/robotics/VAL3/";
 
 std::string folder_name(const std::string& path) {
@@ -139,7 +138,7 @@ std::vector<io::ProgramStop> read_staubli(const std::string& path, const Control
     std::vector<io::ProgramStop> stops;
     std::string comment;
     for (const TextLine& line : file.lines()) {
-        if (line.begins_with("//")) comment = trim(line.text.substr(2));
+        if (line.begins_with("//")) note_comment(line.text.substr(2), comment);
         for (const char* const other : {"movel(", "movec("}) {
             if (line.begins_with(other)) throw line.error("is no joint move; must be movej(...)");
         }

@@ -65,7 +65,7 @@ std::vector<io::ProgramStop> read_ur(const std::string& path, const ControllerJo
     std::vector<io::ProgramStop> stops;
     std::string comment;
     for (const TextLine& line : file.lines()) {
-        if (line.begins_with("#")) comment = trim(line.text.substr(1));
+        if (line.begins_with("#")) note_comment(line.text.substr(1), comment);
         for (const char* const other : {"movel", "movep", "movec", "servoj", "speedj"}) {
             if (line.begins_with(other)) throw line.error("is no joint move; must be movej([...])");
         }

@@ -90,7 +90,7 @@ std::vector<FileContent> yaskawa_files(const std::string& path, const io::RobotP
         body += yaskawa_stop(program, stop, k);
     }
     text += fmt::format("//INST\r\n///DATE {}\r\n///ATTR SC,RW\r\n///GROUP1 RB1\r\nNOP\r\n'{}\r\n",
-                        program.date, comment_text(program.title).substr(0, 32));
+                        program.date, comment_text(program.title, 32));
     return {{path, text + body + "END\r\n"}};
 }
 
@@ -103,7 +103,7 @@ std::vector<io::ProgramStop> read_yaskawa(const std::string& path, const Control
     for (const TextLine& line : file.lines()) {
         check_kind(line);
         if (line.begins_with("//INST")) is_instruction = true;
-        if (line.begins_with("'")) comment = trim(line.text.substr(1));
+        if (line.begins_with("'")) note_comment(line.text.substr(1), comment);
         const std::size_t equals = line.text.find('=');
         if (!is_instruction && line.begins_with("C") && equals != std::string_view::npos) {
             positions[position_name(line, 0)] = read_numbers(line, line.text.substr(equals + 1));
