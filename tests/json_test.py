@@ -230,6 +230,16 @@ def check_plan():
     expect(found["limit"] == "kept" and "verified:    the limit is kept" in text, "plan: verified")
 
 
+def check_program():
+    document, text = both("program", "campaign.poses.json", "--for", "csv", "-o", "program.csv")
+    expect(document["measured"] == 15 and f"15 poses in {document['moves']} moves" in text, "program: moves")
+    expect(close(document["rounding"]["sent"]["value"], float(re.search(r"planned, (\S+) as sent", text)[1]), 7),
+           "program: value")
+    content, text = both("program", "campaign.poses.json", "--for", "csv", "--read", "program.csv", "-o", "back.csv")
+    row, one = next(csv.DictReader(open("back.csv"))), content["configurations"][0]
+    expect(row["config"] == one["id"] and close(float(row["q1_deg"]), one["joints"]["q1_deg"], 11), "program: read")
+
+
 def check_verify():
     document, text = both("verify", "s.plan.json")
     values = {one["name"]: one for one in document["findings"]}
@@ -392,7 +402,7 @@ with tempfile.TemporaryDirectory() as folder:
     pathlib.Path("arm.urdf").write_text(URDF)
     pathlib.Path("arm.yaml").write_text(ARM)
     for check in (check_simulate, check_inspect, check_indices, check_select, check_relax, check_verify,
-                  check_calibrate, check_study, check_plan, check_correct, check_export, check_report, check_writers,
+                  check_calibrate, check_study, check_plan, check_program, check_correct, check_export, check_report, check_writers,
                   check_errors, check_threads):
         check()
     expect(PRINTED | {""} == set(MANUAL), f"sections {sorted(MANUAL)}, printed {sorted(PRINTED)}")

@@ -57,13 +57,14 @@ struct ProgramArguments {
     std::string out;
     std::string read;
     std::optional<double> dwell;
-    Index speed_percent = 20;
+    std::optional<Index> speed_percent;
     std::string handshake = "none";
     RouteOptions route;
     bool is_dry_run = false;
 };
 
 constexpr Index dry_run_percent = 10;
+constexpr Index usual_percent = 20;
 constexpr double usual_dwell = 2;  // s
 
 /// The campaign of a plan as its poses were planned with, and the plan.
@@ -134,7 +135,7 @@ io::RobotProgram make_program(const ProgramArguments& arguments, const io::Campa
     program.joints = campaign.controller;
     program.stops = stops;
     program.joint_speed = campaign.cell.speed;
-    program.speed_percent = arguments.speed_percent;
+    program.speed_percent = arguments.speed_percent.value_or(usual_percent);
     program.dwell =
         arguments.dwell.value_or(campaign.cell.dwell > 0 ? campaign.cell.dwell : usual_dwell);
     program.handshake = parse_handshake(arguments.handshake);
@@ -269,6 +270,9 @@ void run_program(const ProgramArguments& arguments, const CommonOptions& common)
                                    "needs --repeats 2 or more, of which every second "
                                    "pass is reversed");
     }
+    if (arguments.speed_percent && arguments.format == "csv") {
+        throw CLI::ValidationError("--speed", "a CSV file has no speed");
+    }
     write_program(arguments, common);
 }
 
@@ -294,9 +298,8 @@ void add_program_options(CLI::App& command, ProgramArguments& arguments) {
     writing(command
                 .add_option("--speed", arguments.speed_percent,
                             "Per cent of the controller's full speed, of 1000 mm/s (abb), of 120 "
-                            "deg/s (ur), of the cell's speed (ros2)")
-                ->check(whole_number(1, 100))
-                ->capture_default_str());
+                            "deg/s (ur), of the cell's speed (ros2); default: 20")
+                ->check(whole_number(1, 100)));
     writing(command
                 .add_option("--handshake", arguments.handshake,
                             "At each pose: pause until an operator continues, or io: output 1 (ur: "
