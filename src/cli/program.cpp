@@ -41,14 +41,14 @@ pulses); without it they are the model's. posewise help controller explains it, 
 has an example for each maker. Nothing is guessed: what is not stated and is needed is asked for.
 
 Joints are rounded to the digits of the file first, then checked again. They are what is measured:
-they are written to PLAN.as_sent.csv, in the model's joints, for calibrate and select. What rounding
-costs is printed.
+they are written to PLAN.as_sent.csv, in the model's joints, for calibrate and select. The loss by
+rounding is printed: the criterion's value and the predicted accuracy, as planned and as sent.
 
---read brings a program back that was edited on the pendant, as configurations (CSV): which poses
-were dropped or moved is printed. Instead of the plan a campaign file does, if no plan is at hand.
+--read converts a program that was edited on the pendant to configurations (CSV) and lists the poses
+that were dropped or moved. A campaign file will do instead of the plan, but then nothing is compared.
 
-No program was run on a controller of each kind by whoever wrote this: read it, and run it first with
---dry-run (no waiting, 10 % at most) and a hand on the stop.)";
+These formats were not tested on real controllers: read the program, and run it first with --dry-run
+(no waiting, at most 10 % speed) and a hand on the stop.)";
 
 struct ProgramArguments {
     std::string plan;
@@ -297,18 +297,20 @@ void add_program_options(CLI::App& command, ProgramArguments& arguments) {
                 ->check(real_number(0, 1e4)));
     writing(command
                 .add_option("--speed", arguments.speed_percent,
-                            "Per cent of the controller's full speed, of 1000 mm/s (abb), of 120 "
-                            "deg/s (ur), of the cell's speed (ros2); default: 20")
+                            "Per cent of full speed (abb: of 1000 mm/s; ur: of 120 deg/s; ros2: of "
+                            "the cell's speed); default: 20")
                 ->check(whole_number(1, 100)));
     writing(command
                 .add_option("--handshake", arguments.handshake,
-                            "At each pose: pause until an operator continues, or io: output 1 (ur: "
-                            "0) on, until the input of that number is on")
+                            "What the robot waits for at a pose, after the dwell: pause (an "
+                            "operator continues) or io (output 1, of ur 0, is set until the input "
+                            "of that number answers)")
                 ->check(CLI::IsMember({"none", "pause", "io"}))
                 ->capture_default_str());
-    writing(command.add_option("--repeats", arguments.route.repeats, "Visit all poses so often")
-                ->check(whole_number(1, 1000))
-                ->capture_default_str());
+    writing(
+        command.add_option("--repeats", arguments.route.repeats, "Number of passes over all poses")
+            ->check(whole_number(1, 1000))
+            ->capture_default_str());
     writing(command.add_flag("--reverse", arguments.route.is_reversed,
                              "Go back the same way in every second pass: poses are reached from "
                              "the other side"));

@@ -26,8 +26,8 @@ class ElementParser {
     std::vector<JointTerm> parse_drive(std::string_view text, const FileLocation& start,
                                        Motion motion);
 
-    /// A sum of joints and amounts, `q3 - q2 + 90 deg`, of that motion. Throws InputError as parse()
-    /// does, and if there is no joint in it.
+    /// A sum of joints and amounts, `q3 - q2 + 90 deg`, of that motion. Throws InputError as
+    /// parse() does, and if there is no joint in it.
     Element parse_joint_sum(std::string_view text, const FileLocation& start, Motion motion) const;
 
     /// What a joint drives in the elements so far; nothing if none.
