@@ -242,6 +242,10 @@ void read_program(const ProgramArguments& arguments, const CommonOptions& common
         campaign = io::read_campaign(arguments.plan);
     }
     check_outputs({&campaign}, {arguments.plan, arguments.read}, {arguments.out}, common);
+    if (campaign.robot.configuration_size() != campaign.robot.joint_count()) {
+        throw input_error_at({campaign.path},
+                             "measures torques with each configuration, which no program holds");
+    }
     const VectorXd steps =
         compute_from(campaign.path, [&] { return io::joint_steps(format, campaign.controller); });
     if (sent) {
@@ -262,7 +266,14 @@ void read_program(const ProgramArguments& arguments, const CommonOptions& common
                       detail::escape_controls(arguments.plan), fmt::join(content.dropped, ",")));
 }
 
-void run_program(const ProgramArguments& arguments, const CommonOptions& common) {
+/// A folder may be typed with a slash at its end.
+void drop_slashes(std::string& path) {
+    while (path.size() > 1 && path.back() == '/') path.pop_back();
+}
+
+void run_program(ProgramArguments arguments, const CommonOptions& common) {
+    drop_slashes(arguments.out);
+    drop_slashes(arguments.read);
     if (!arguments.read.empty()) return read_program(arguments, common);
     if (arguments.out.empty()) throw CLI::RequiredError("--out");
     if (arguments.route.is_reversed && arguments.route.repeats < 2) {

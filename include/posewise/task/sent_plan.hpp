@@ -14,7 +14,8 @@ namespace posewise {
 /// The plan with every configuration, also vias, at joint values that are whole multiples of
 /// `steps` (of each controller joint, rad or m): the nearest ones that keep the joint limits and
 /// the cell and show the targets that the pose states, among the two of each joint that are next to
-/// the planned value. Measured torques stay. Throws InputError for a plan of another campaign, a
+/// the planned value. Measured torques stay. Poses of a choice, which states no way, are put in the
+/// order of a short tour, with vias. Throws InputError for a plan of another campaign, a
 /// pose without free way, a pose that violates limits or the cell as it is planned or however it is
 /// rounded, and where sockets are to be touched, which no program can.
 Plan sent_plan(const Plan& plan, const Campaign& campaign, const ControllerJoints& controller,

@@ -91,6 +91,9 @@ std::vector<double> read_axes(const TextLine& line) {
     return numbers;
 }
 
+void read_part(const std::string& path, const TextLine& call, const ControllerJoints& joints,
+               std::vector<io::ProgramStop>& stops);
+
 void read_module(const std::string& path, const ControllerJoints& joints, bool has_parts,
                  std::vector<io::ProgramStop>& stops) {
     const ProgramFile file(path);
@@ -100,8 +103,7 @@ void read_module(const std::string& path, const ControllerJoints& joints, bool h
         if (line.begins_with(";FOLD") || line.begins_with(";ENDFOLD")) continue;
         if (line.begins_with(";")) note_comment(line.text.substr(1), comment);
         if (has_parts && line.begins_with(part) && line.text.ends_with(')')) {
-            const std::string name(trim(line.text.substr(0, line.text.find('('))));
-            read_module(sibling_of(path, name + ending_of(path)), joints, false, stops);
+            read_part(path, line, joints, stops);
         }
         for (const char* const other : {"LIN", "CIRC", "SPL", "SPTP", "SLIN", "PTP_REL"}) {
             if (line.begins_with(other)) throw line.error("is no joint move; must be PTP {A1 ...}");
@@ -112,6 +114,19 @@ void read_module(const std::string& path, const ControllerJoints& joints, bool h
         }
         stops.push_back(
             make_stop(line, rules_of(io::ProgramFormat::Kuka), joints, read_axes(line), comment));
+    }
+}
+
+/// The program in a file beside `path` that a line of it calls.
+void read_part(const std::string& path, const TextLine& call, const ControllerJoints& joints,
+               std::vector<io::ProgramStop>& stops) {
+    const std::string_view name = trim(call.text.substr(0, call.text.find('(')));
+    if (!is_identifier(name)) throw call.error("calls no program; must be like NAME_1( )");
+    const std::string part = sibling_of(path, std::string(name) + ending_of(path));
+    try {
+        read_module(part, joints, false, stops);
+    } catch (const InputError& problem) {
+        throw call.error(fmt::format("calls a program that cannot be used: {}", problem.what()));
     }
 }
 

@@ -119,10 +119,15 @@ void check_sendable(const Plan& plan, const Campaign& campaign,
             if (!pose.configuration.allFinite() || (pose.via && !pose.via->allFinite())) {
                 throw InputError("pose " + quote(pose.id) + " has a joint that is not finite");
             }
-            if (!pose.is_blocked) continue;
-            throw InputError("the way to pose " + quote(pose.id) +
-                             " is BLOCKED; plan again with more room, or without it: `dropped`");
         }
+    }
+}
+
+void check_ways(const std::vector<PlannedPose>& poses) {
+    for (const PlannedPose& pose : poses) {
+        if (!pose.is_blocked) continue;
+        throw InputError("the way to pose " + quote(pose.id) +
+                         " is BLOCKED; plan again with more room, or without it: `dropped`");
     }
 }
 
@@ -142,15 +147,19 @@ VectorXd send(const Grid& grid, const std::string& what, const VectorXd& q,
         what, fault));
 }
 
+VectorXd send_via(const Grid& grid, const Constraints& constraints, const VectorXd& via,
+                  const std::string& id) {
+    return send(grid, "the via before pose " + quote(id), via,
+                [&](const VectorXd& q) { return find_fault_of_stop(constraints, q); });
+}
+
 void send_all(std::vector<PlannedPose>& poses, const Constraints& constraints, const Grid& grid) {
     for (PlannedPose& pose : poses) {
         pose.configuration = send(
             grid, "pose " + quote(pose.id), pose.configuration,
             [&](const VectorXd& q) { return find_fault_of_pose(constraints, q, pose.targets); });
         if (pose.clearance) pose.clearance = constraints.nearest(pose.configuration);
-        if (!pose.via) continue;
-        pose.via = send(grid, "the via before pose " + quote(pose.id), *pose.via,
-                        [&](const VectorXd& q) { return find_fault_of_stop(constraints, q); });
+        if (pose.via) pose.via = send_via(grid, constraints, *pose.via, pose.id);
     }
 }
 
@@ -159,9 +168,9 @@ Constraints constraints_of(const Campaign& campaign) { return {campaign, campaig
 RoundingLoss compare_joints(const Plan& plan, const Plan& sent, const Campaign& campaign) {
     RoundingLoss loss;
     loss.criterion = plan.request.criterion;
-    for (std::size_t i = 0; i < plan.poses.size(); ++i) {
-        const VectorXd change =
-            (sent.poses[i].configuration - plan.poses[i].configuration).cwiseAbs();
+    for (const PlannedPose& pose : sent.poses) {
+        const auto planned = std::ranges::find(plan.poses, pose.id, &PlannedPose::id);
+        const VectorXd change = (pose.configuration - planned->configuration).cwiseAbs();
         for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
             double& largest = campaign.robot.joint(j).motion == Motion::Rotation
                                   ? loss.largest_turn
@@ -233,16 +242,37 @@ class Route {
     std::vector<RouteStop> stops_;
 };
 
+/// Choices are in no order that a robot could follow, and their ways were never looked at.
+void order_choice(Plan& sent, const Constraints& constraints, const Grid& grid) {
+    detail::TourOptions options;
+    options.order.seed = sent.request.seed.value_or(1);
+    const Tour tour = detail::plan_tour(
+        constraints, detail::configurations_of(sent.poses, sent.poses[0].configuration.size()),
+        options);
+    std::vector<PlannedPose> ordered;
+    for (const Visit& visit : tour.visits) {
+        PlannedPose& pose = ordered.emplace_back(sent.poses[static_cast<std::size_t>(visit.pose)]);
+        pose.is_blocked = visit.is_blocked;
+        if (visit.via) pose.via = send_via(grid, constraints, *visit.via, pose.id);
+    }
+    sent.poses = ordered;
+}
+
 }  // namespace
 
 Plan sent_plan(const Plan& plan, const Campaign& campaign, const ControllerJoints& controller,
                const VectorXd& steps) {
     check_sendable(plan, campaign, controller);
+    check_ways(plan.poses);
+    check_ways(plan.verification);
     const Constraints constraints = constraints_of(campaign);
     const Grid grid(controller, steps);
     Plan sent = plan;
     send_all(sent.poses, constraints, grid);
     send_all(sent.verification, constraints, grid);
+    if (sent.is_continuous()) return sent;
+    order_choice(sent, constraints, grid);
+    check_ways(sent.poses);
     return sent;
 }
 
