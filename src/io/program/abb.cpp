@@ -23,7 +23,7 @@ std::string with_carriage_returns(const std::string& text) {
 }
 
 std::string abb_stop(const io::RobotProgram& program, const io::ProgramStop& stop) {
-    const ProgramRules& rules = rules_of(io::ProgramFormat::Abb);
+    const ProgramRules& rules = abb_program().rules;
     std::string text = fmt::format(
         "    ! {}\n    MoveAbsJ [[{}],[9E9,9E9,9E9,9E9,9E9,9E9]]\\NoEOffs,slow,fine,tool0;\n",
         stop.label, joints_text(rules, program.joints, stop.joints, ","));
@@ -49,8 +49,6 @@ std::string_view abb_joints(const TextLine& line) {
     return line.text.substr(open + 2, close - open - 2);
 }
 
-}  // namespace
-
 std::vector<FileContent> abb_files(const std::string& path, const io::RobotProgram& program) {
     const std::string name = io::legal_program_name(io::ProgramFormat::Abb, stem_of(path));
     std::string text = fmt::format(
@@ -75,10 +73,29 @@ std::vector<io::ProgramStop> read_abb(const std::string& path, const ControllerJ
         if (!line.has(",fine,") && !line.has(", fine,")) {
             throw line.error("does not stop at its position; must have the zone fine");
         }
-        stops.push_back(make_stop(line, rules_of(io::ProgramFormat::Abb), joints,
+        stops.push_back(make_stop(line, abb_program().rules, joints,
                                   read_numbers(line, abb_joints(line)), comment));
     }
     return stops;
+}
+
+}  // namespace
+
+const ProgramKind& abb_program() {
+    static const ProgramKind kind{
+        {.ending = ".mod",
+         .decimals = 4,
+         .has_program_name = false,
+         .longest_name = 28,
+         .words = "ALIAS AND BACKWARD CASE CONNECT CONST DEFAULT DIV DO ELSE ELSEIF "
+                  "ENDFOR ENDFUNC ENDIF ENDMODULE ENDPROC ENDRECORD ENDTEST ENDTRAP "
+                  "ENDWHILE ERROR EXIT FALSE FOR FROM FUNC GOTO IF INOUT LOCAL MOD MODULE "
+                  "NOSTEPIN NOT NOVIEW OR PERS PROC RAISE READONLY RECORD RETRY RETURN "
+                  "STEP SYSMODULE TASK TEST THEN TO TRAP TRUE TRYNEXT UNDO VAR VIEWONLY "
+                  "WHILE WITH XOR main user base"},
+        &abb_files,
+        &read_abb};
+    return kind;
 }
 
 }  // namespace posewise::detail

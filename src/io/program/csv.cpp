@@ -31,10 +31,8 @@ std::vector<std::size_t> find_columns(const CsvReader& reader,
     return columns;
 }
 
-}  // namespace
-
 std::vector<FileContent> csv_files(const std::string& path, const io::RobotProgram& program) {
-    const ProgramRules& rules = rules_of(io::ProgramFormat::Csv);
+    const ProgramRules& rules = csv_program().rules;
     std::string text = "name";
     for (Index i = 0; i < program.joints.count(); ++i) text += ',' + column_of(program.joints, i);
     text += ",dwell_s\n";
@@ -66,10 +64,24 @@ std::vector<io::ProgramStop> read_program_table(const std::string& path,
             const TextLine field{reader.fields()[columns[k]], reader.locate(columns[k])};
             numbers.push_back(read_numbers(field, field.text).front());
         }
-        stops.push_back(make_stop({"", reader.locate(0)}, rules_of(io::ProgramFormat::Csv), joints,
-                                  numbers, comment));
+        stops.push_back(
+            make_stop({"", reader.locate(0)}, csv_program().rules, joints, numbers, comment));
     }
     return stops;
+}
+
+}  // namespace
+
+const ProgramKind& csv_program() {
+    static const ProgramKind kind{{.ending = ".csv",
+                                   .decimals = 6,
+                                   .has_six_joints = false,
+                                   .has_program_name = false,
+                                   .has_pause = false,
+                                   .has_io = false},
+                                  &csv_files,
+                                  &read_program_table};
+    return kind;
 }
 
 }  // namespace posewise::detail

@@ -47,7 +47,7 @@ void add_fanuc_stop(const io::RobotProgram& program, const io::ProgramStop& stop
 
 std::string fanuc_position(const io::RobotProgram& program, const io::ProgramStop& stop,
                            std::size_t number) {
-    const ProgramRules& rules = rules_of(io::ProgramFormat::Fanuc);
+    const ProgramRules& rules = fanuc_program().rules;
     std::string text = fmt::format("P[{}]{{\n   GP1:\n\tUF : 0, UT : 1,\n", number);
     for (Index i = 0; i < stop.joints.size(); ++i) {
         const bool ends_line = i % 3 == 2 || i + 1 == stop.joints.size();
@@ -113,8 +113,6 @@ TextLine fanuc_statement(TextLine line) {
     return line;
 }
 
-}  // namespace
-
 std::vector<FileContent> fanuc_files(const std::string& path, const io::RobotProgram& program) {
     FanucBody body;
     std::string positions;
@@ -167,10 +165,22 @@ std::vector<io::ProgramStop> read_fanuc(const std::string& path, const Controlle
         if (found == positions.end() || found->second.empty()) {
             throw line.error("moves to a position without joints; must be in degrees under /POS");
         }
-        stops.push_back(
-            make_stop(line, rules_of(io::ProgramFormat::Fanuc), joints, found->second, comment));
+        stops.push_back(make_stop(line, fanuc_program().rules, joints, found->second, comment));
     }
     return stops;
+}
+
+}  // namespace
+
+const ProgramKind& fanuc_program() {
+    static const ProgramKind kind{{.ending = ".ls",
+                                   .decimals = 3,
+                                   .longest_name = 32,
+                                   .is_upper = true,
+                                   .words = "CON PRN AUX NUL COM1 LPT1"},
+                                  &fanuc_files,
+                                  &read_fanuc};
+    return kind;
 }
 
 }  // namespace posewise::detail

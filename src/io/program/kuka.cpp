@@ -16,7 +16,7 @@ constexpr std::string_view krl_header = "&ACCESS RVP\n&REL 1\n";
 
 /// Lines of one stop, each ended.
 std::string kuka_stop(const io::RobotProgram& program, const io::ProgramStop& stop) {
-    const ProgramRules& rules = rules_of(io::ProgramFormat::Kuka);
+    const ProgramRules& rules = kuka_program().rules;
     std::string text = fmt::format("; {}\nPTP {{", stop.label);
     for (Index i = 0; i < stop.joints.size(); ++i) {
         fmt::format_to(std::back_inserter(text), "{}A{} {}", i == 0 ? "" : ",", i + 1,
@@ -112,8 +112,7 @@ void read_module(const std::string& path, const ControllerJoints& joints, bool h
         if (line.has("C_PTP") || line.has("C_DIS")) {
             throw line.error("does not stop at its position; must have no C_PTP");
         }
-        stops.push_back(
-            make_stop(line, rules_of(io::ProgramFormat::Kuka), joints, read_axes(line), comment));
+        stops.push_back(make_stop(line, kuka_program().rules, joints, read_axes(line), comment));
     }
 }
 
@@ -129,8 +128,6 @@ void read_part(const std::string& path, const TextLine& call, const ControllerJo
         throw call.error(fmt::format("calls a program that cannot be used: {}", problem.what()));
     }
 }
-
-}  // namespace
 
 std::vector<FileContent> kuka_files(const std::string& path, const io::RobotProgram& program) {
     const std::string name = stem_of(path);
@@ -157,6 +154,24 @@ std::vector<io::ProgramStop> read_kuka(const std::string& path, const Controller
     std::vector<io::ProgramStop> stops;
     read_module(path, joints, true, stops);
     return stops;
+}
+
+}  // namespace
+
+const ProgramKind& kuka_program() {
+    static const ProgramKind kind{
+        {.ending = ".src",
+         .decimals = 5,
+         .longest_name = 20,
+         .words = "ANIN ANOUT BRAKE CASE CCLOSE CHAR CIRC CONST DECL DEF DEFAULT DEFDAT "
+                  "DEFFCT DO ELSE END ENDDAT ENDFCT ENDFOR ENDIF ENDLOOP ENDSWITCH "
+                  "ENDWHILE ENUM EXIT EXT EXTFCT FALSE FOR GLOBAL GOTO HALT IF IMPORT INT "
+                  "INTERRUPT IS LIN LOOP BAS BOOL CONTINUE PTP PULSE REAL REPEAT RETURN "
+                  "SIGNAL STRUC SWITCH THEN TO TRIGGER TRUE UNTIL WAIT WHILE AND OR NOT "
+                  "EXOR B_AND B_OR"},
+        &kuka_files,
+        &read_kuka};
+    return kind;
 }
 
 }  // namespace posewise::detail

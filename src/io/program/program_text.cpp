@@ -19,10 +19,13 @@ char upper_case(char letter) {
 
 bool is_same_letter(char a, char b) { return upper_case(a) == upper_case(b); }
 
-bool is_word(std::string_view text, const std::vector<std::string_view>& words) {
-    return std::ranges::any_of(words, [&](std::string_view word) {
-        return std::ranges::equal(text, word, is_same_letter);
-    });
+bool is_word(std::string_view text, std::string_view words) {
+    while (!words.empty()) {
+        const std::size_t end = std::min(words.find(' '), words.size());
+        if (std::ranges::equal(text, words.substr(0, end), is_same_letter)) return true;
+        words.remove_prefix(std::min(end + 1, words.size()));
+    }
+    return false;
 }
 
 const Unit& unit_of(const ProgramRules& rules, Motion motion) {
@@ -33,7 +36,7 @@ const Unit& unit_of(const ProgramRules& rules, Motion motion) {
 }  // namespace
 
 std::string legal_name(std::string_view text, std::size_t longest, bool is_upper,
-                       const std::vector<std::string_view>& words) {
+                       std::string_view words) {
     std::string name;
     for (const char letter : text) {
         const bool is_legal = is_identifier('_' + std::string(1, letter));

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,17 +20,25 @@ struct ProgramRules {
     bool has_program_name = true;  ///< the file must be called as the program is
     std::size_t longest_name = 32;
     bool is_upper = false;
-    std::vector<std::string_view> words = {};  ///< that name no program
+    std::string_view words = "";  ///< that name no program, separated by blanks
     bool has_pause = true;
     bool has_io = true;
 };
-const ProgramRules& rules_of(io::ProgramFormat format);
+
+/// A format, which stands in a file of its own: its rules, its writer and its reader, both of the
+/// path as the user states it.
+struct ProgramKind {
+    ProgramRules rules;
+    std::vector<FileContent> (*write)(const std::string& path, const io::RobotProgram& program);
+    std::vector<io::ProgramStop> (*read)(const std::string& path, const ControllerJoints& joints);
+};
 
 inline constexpr std::size_t longest_label = 16;
 
-/// Letters, digits and underscores, the first a letter, none of the words (whatever their case).
+/// Letters, digits and underscores, the first a letter, none of the words (separated by blanks,
+/// whatever their case).
 std::string legal_name(std::string_view text, std::size_t longest, bool is_upper,
-                       const std::vector<std::string_view>& words);
+                       std::string_view words);
 
 /// One line of printable ASCII without quotes, backslashes and brackets, for comments.
 std::string comment_text(std::string_view text, std::size_t longest = 60);
@@ -91,23 +97,13 @@ io::ProgramStop make_stop(const TextLine& line, const ProgramRules& rules,
                           const ControllerJoints& joints, const std::vector<double>& numbers,
                           std::string& comment);
 
-std::vector<FileContent> fanuc_files(const std::string& path, const io::RobotProgram& program);
-std::vector<FileContent> kuka_files(const std::string& path, const io::RobotProgram& program);
-std::vector<FileContent> abb_files(const std::string& path, const io::RobotProgram& program);
-std::vector<FileContent> ur_files(const std::string& path, const io::RobotProgram& program);
-std::vector<FileContent> yaskawa_files(const std::string& path, const io::RobotProgram& program);
-std::vector<FileContent> staubli_files(const std::string& path, const io::RobotProgram& program);
-std::vector<FileContent> ros2_files(const std::string& path, const io::RobotProgram& program);
-std::vector<FileContent> csv_files(const std::string& path, const io::RobotProgram& program);
-
-std::vector<io::ProgramStop> read_fanuc(const std::string& path, const ControllerJoints& joints);
-std::vector<io::ProgramStop> read_kuka(const std::string& path, const ControllerJoints& joints);
-std::vector<io::ProgramStop> read_abb(const std::string& path, const ControllerJoints& joints);
-std::vector<io::ProgramStop> read_ur(const std::string& path, const ControllerJoints& joints);
-std::vector<io::ProgramStop> read_yaskawa(const std::string& path, const ControllerJoints& joints);
-std::vector<io::ProgramStop> read_staubli(const std::string& path, const ControllerJoints& joints);
-std::vector<io::ProgramStop> read_ros2(const std::string& path, const ControllerJoints& joints);
-std::vector<io::ProgramStop> read_program_table(const std::string& path,
-                                                const ControllerJoints& joints);
+const ProgramKind& fanuc_program();
+const ProgramKind& kuka_program();
+const ProgramKind& abb_program();
+const ProgramKind& ur_program();
+const ProgramKind& yaskawa_program();
+const ProgramKind& staubli_program();
+const ProgramKind& ros2_program();
+const ProgramKind& csv_program();
 
 }  // namespace posewise::detail

@@ -29,41 +29,34 @@ constexpr detail::Names<ProgramFormat, 8> formats{{{ProgramFormat::Fanuc, "fanuc
                                                    {ProgramFormat::Ros2, "ros2"},
                                                    {ProgramFormat::Csv, "csv"}}};
 
-using Write = std::vector<FileContent> (*)(const std::string&, const RobotProgram&);
-using Read = std::vector<ProgramStop> (*)(const std::string&, const ControllerJoints&);
-struct Functions {
-    Write write;
-    Read read;
-};
-
-Functions functions_of(ProgramFormat format) {
+const detail::ProgramKind& kind_of(ProgramFormat format) {
     using namespace detail;
     switch (format) {
         case ProgramFormat::Fanuc:
-            return {&fanuc_files, &read_fanuc};
+            return fanuc_program();
         case ProgramFormat::Kuka:
-            return {&kuka_files, &read_kuka};
+            return kuka_program();
         case ProgramFormat::Abb:
-            return {&abb_files, &read_abb};
+            return abb_program();
         case ProgramFormat::Ur:
-            return {&ur_files, &read_ur};
+            return ur_program();
         case ProgramFormat::Yaskawa:
-            return {&yaskawa_files, &read_yaskawa};
+            return yaskawa_program();
         case ProgramFormat::Staubli:
-            return {&staubli_files, &read_staubli};
+            return staubli_program();
         case ProgramFormat::Ros2:
-            return {&ros2_files, &read_ros2};
+            return ros2_program();
         case ProgramFormat::Csv:
             break;
     }
-    return {&csv_files, &read_program_table};
+    return csv_program();
 }
 
 std::string_view name_of(ProgramFormat format) { return detail::name_of(formats, format); }
 
 void check_joints(ProgramFormat format, const ControllerJoints& joints) {
     constexpr Index six = 6;
-    const ProgramRules& rules = detail::rules_of(format);
+    const ProgramRules& rules = kind_of(format).rules;
     if (!rules.has_six_joints) return;
     bool turn = true;
     for (Index i = 0; i < joints.count(); ++i) turn = turn && joints.motion(i) == Motion::Rotation;
@@ -75,7 +68,7 @@ void check_joints(ProgramFormat format, const ControllerJoints& joints) {
 }
 
 void check_program(ProgramFormat format, const RobotProgram& program) {
-    const ProgramRules& rules = detail::rules_of(format);
+    const ProgramRules& rules = kind_of(format).rules;
     const bool is_pause = program.handshake == Handshake::Pause;
     const bool is_io = program.handshake == Handshake::Io;
     if ((is_pause && !rules.has_pause) || (is_io && !rules.has_io)) {
@@ -99,7 +92,7 @@ std::string lower_case(std::string text) {
 }
 
 void check_path(const std::string& path, ProgramFormat format) {
-    const ProgramRules& rules = detail::rules_of(format);
+    const ProgramRules& rules = kind_of(format).rules;
     const std::string stem = detail::stem_of(path);
     if (lower_case(detail::ending_of(path)) != rules.ending) {
         throw InputError(
@@ -139,7 +132,7 @@ VectorXd joint_steps(ProgramFormat format, const ControllerJoints& joints) {
         }
         return joints.pulses_per_unit().cwiseInverse();
     }
-    const ProgramRules& rules = detail::rules_of(format);
+    const ProgramRules& rules = kind_of(format).rules;
     VectorXd steps(joints.count());
     for (Index i = 0; i < steps.size(); ++i) {
         const AmountUnits& units = units_of(joints.motion(i));
@@ -151,12 +144,11 @@ VectorXd joint_steps(ProgramFormat format, const ControllerJoints& joints) {
 
 std::vector<std::string> pose_labels(const std::vector<std::string>& ids) {
     constexpr std::size_t longest = detail::longest_label;
-    const std::vector<std::string_view> passed{"home", "via"};
     std::set<std::string> taken;
     std::map<std::string, Index> next;  // number to try for names alike
     std::vector<std::string> labels;
     for (const std::string& id : ids) {
-        std::string label = detail::legal_name(id, longest, false, passed);
+        std::string label = detail::legal_name(id, longest, false, "home via");
         // Numbers are usual names of measured poses.
         const bool is_plain =
             !id.empty() && id.size() <= longest && detail::is_identifier('_' + id);
@@ -172,7 +164,7 @@ std::vector<std::string> pose_labels(const std::vector<std::string>& ids) {
 }
 
 std::string legal_program_name(ProgramFormat format, std::string_view text) {
-    const ProgramRules& rules = detail::rules_of(format);
+    const ProgramRules& rules = kind_of(format).rules;
     return detail::legal_name(text, rules.longest_name, rules.is_upper, rules.words);
 }
 
@@ -180,7 +172,7 @@ std::vector<std::string> program_files(const std::string& path, ProgramFormat fo
                                        const RobotProgram& program) {
     check_path(path, format);
     std::vector<std::string> paths;
-    for (const FileContent& file : functions_of(format).write(path, program)) {
+    for (const FileContent& file : kind_of(format).write(path, program)) {
         paths.push_back(file.path);
     }
     return paths;
@@ -191,12 +183,12 @@ void write_robot_program(const std::string& path, ProgramFormat format, const Ro
     joint_steps(format, program.joints);
     check_program(format, program);
     check_path(path, format);
-    std::vector<FileContent> files = functions_of(format).write(path, program);
+    std::vector<FileContent> files = kind_of(format).write(path, program);
     if (!sent_path.empty()) {
         files.push_back(
             {sent_path, detail::configurations_text(campaign, sent.poses, sent.verification)});
     }
-    const bool is_folder = detail::rules_of(format).ending.empty();
+    const bool is_folder = kind_of(format).rules.ending.empty();
     std::error_code problem;
     const bool is_new = is_folder && std::filesystem::create_directory(path, problem);
     if (problem) throw InputError(fmt::format("{}: {}; must be writable", path, problem.message()));
@@ -211,7 +203,7 @@ void write_robot_program(const std::string& path, ProgramFormat format, const Ro
 std::vector<ProgramStop> read_robot_program(const std::string& path, ProgramFormat format,
                                             const ControllerJoints& joints) {
     joint_steps(format, joints);
-    std::vector<ProgramStop> stops = functions_of(format).read(path, joints);
+    std::vector<ProgramStop> stops = kind_of(format).read(path, joints);
     if (stops.empty()) {
         throw input_error_at(
             {path}, fmt::format("has no joint move; must be a program for {}", name_of(format)));
@@ -220,112 +212,3 @@ std::vector<ProgramStop> read_robot_program(const std::string& path, ProgramForm
 }
 
 }  // namespace posewise::io
-
-namespace posewise::detail {
-
-const ProgramRules& rules_of(io::ProgramFormat format) {
-    using io::ProgramFormat;
-    static const std::map<ProgramFormat, ProgramRules> rules{
-        {ProgramFormat::Fanuc,
-         {.ending = ".ls",
-          .decimals = 3,
-          .longest_name = 32,
-          .is_upper = true,
-          .words = {"CON", "PRN", "AUX", "NUL", "COM1", "LPT1"}}},
-        {ProgramFormat::Kuka,
-         {.ending = ".src",
-          .decimals = 5,
-          .longest_name = 20,
-          .words = {"ANIN",      "ANOUT",    "BRAKE",  "CASE",    "CCLOSE", "CHAR",   "CIRC",
-                    "CONST",     "DECL",     "DEF",    "DEFAULT", "DEFDAT", "DEFFCT", "DO",
-                    "ELSE",      "END",      "ENDDAT", "ENDFCT",  "ENDFOR", "ENDIF",  "ENDLOOP",
-                    "ENDSWITCH", "ENDWHILE", "ENUM",   "EXIT",    "EXT",    "EXTFCT", "FALSE",
-                    "FOR",       "GLOBAL",   "GOTO",   "HALT",    "IF",     "IMPORT", "INT",
-                    "INTERRUPT", "IS",       "LIN",    "LOOP",    "BAS",    "BOOL",   "CONTINUE",
-                    "PTP",       "PULSE",    "REAL",   "REPEAT",  "RETURN", "SIGNAL", "STRUC",
-                    "SWITCH",    "THEN",     "TO",     "TRIGGER", "TRUE",   "UNTIL",  "WAIT",
-                    "WHILE",     "AND",      "OR",     "NOT",     "EXOR",   "B_AND",  "B_OR"}}},
-        {ProgramFormat::Abb,
-         {.ending = ".mod",
-          .decimals = 4,
-          .has_program_name = false,
-          .longest_name = 28,
-          .words = {"ALIAS",    "AND",      "BACKWARD",  "CASE",     "CONNECT",   "CONST",
-                    "DEFAULT",  "DIV",      "DO",        "ELSE",     "ELSEIF",    "ENDFOR",
-                    "ENDFUNC",  "ENDIF",    "ENDMODULE", "ENDPROC",  "ENDRECORD", "ENDTEST",
-                    "ENDTRAP",  "ENDWHILE", "ERROR",     "EXIT",     "FALSE",     "FOR",
-                    "FROM",     "FUNC",     "GOTO",      "IF",       "INOUT",     "LOCAL",
-                    "MOD",      "MODULE",   "NOSTEPIN",  "NOT",      "NOVIEW",    "OR",
-                    "PERS",     "PROC",     "RAISE",     "READONLY", "RECORD",    "RETRY",
-                    "RETURN",   "STEP",     "SYSMODULE", "TASK",     "TEST",      "THEN",
-                    "TO",       "TRAP",     "TRUE",      "TRYNEXT",  "UNDO",      "VAR",
-                    "VIEWONLY", "WHILE",    "WITH",      "XOR",      "main",      "user",
-                    "base"}}},
-        {ProgramFormat::Ur,
-         {.ending = ".script",
-          .decimals = 6,
-          .is_in_radians = true,
-          .has_program_name = false,
-          .longest_name = 32,
-          .words = {"and",
-                    "break",
-                    "continue",
-                    "def",
-                    "elif",
-                    "else",
-                    "end",
-                    "enter_critical",
-                    "exit_critical",
-                    "False",
-                    "global",
-                    "halt",
-                    "if",
-                    "join",
-                    "kill",
-                    "local",
-                    "not",
-                    "or",
-                    "pass",
-                    "return",
-                    "run",
-                    "sec",
-                    "thread",
-                    "True",
-                    "while",
-                    "xor",
-                    "movej",
-                    "sleep",
-                    "popup",
-                    "textmsg",
-                    "sync"}}},
-        {ProgramFormat::Yaskawa,
-         {.ending = ".jbi", .decimals = 0, .longest_name = 32, .is_upper = true}},
-        {ProgramFormat::Staubli,
-         {.ending = "",
-          .decimals = 5,
-          .longest_name = 15,
-          .words = {"start",  "stop",  "begin",  "end",    "if",    "then",     "else",
-                    "endif",  "for",   "to",     "do",     "while", "endwhile", "until",
-                    "switch", "case",  "call",   "return", "and",   "or",       "not",
-                    "true",   "false", "flange", "world"},
-          .has_io = false}},
-        {ProgramFormat::Ros2,
-         {.ending = ".yaml",
-          .decimals = 9,
-          .is_in_radians = true,
-          .has_six_joints = false,
-          .has_program_name = false,
-          .has_pause = false,
-          .has_io = false}},
-        {ProgramFormat::Csv,
-         {.ending = ".csv",
-          .decimals = 6,
-          .has_six_joints = false,
-          .has_program_name = false,
-          .has_pause = false,
-          .has_io = false}},
-    };
-    return rules.at(format);
-}
-
-}  // namespace posewise::detail

@@ -29,7 +29,7 @@ double ros_move_time(const io::RobotProgram& program, std::size_t stop) {
 }
 
 std::string ros_goal(const io::RobotProgram& program, std::size_t number) {
-    const ProgramRules& rules = rules_of(io::ProgramFormat::Ros2);
+    const ProgramRules& rules = ros2_program().rules;
     const io::ProgramStop& stop = program.stops[number];
     const double time = std::ceil(ros_move_time(program, number) * 100) / 100;
     const double seconds = std::floor(time);
@@ -47,7 +47,7 @@ std::string ros_goal(const io::RobotProgram& program, std::size_t number) {
 
 /// As in group_state of an SRDF, each pose once.
 std::string ros_states(const io::RobotProgram& program) {
-    const ProgramRules& rules = rules_of(io::ProgramFormat::Ros2);
+    const ProgramRules& rules = ros2_program().rules;
     std::string text = "named_states:\n";
     std::vector<std::string> known;
     for (const io::ProgramStop& stop : program.stops) {
@@ -94,8 +94,6 @@ std::vector<double> read_ros_positions(const YamlMap& trajectory, const Controll
     return ordered;
 }
 
-}  // namespace
-
 std::vector<FileContent> ros2_files(const std::string& path, const io::RobotProgram& program) {
     std::string text = fmt::format(
         "# {}\n# One goal a stop for a follow_joint_trajectory action: stand still for dwell_s "
@@ -115,10 +113,25 @@ std::vector<io::ProgramStop> read_ros2(const std::string& path, const Controller
         std::string comment = name ? name->text() : "";
         const YamlMap trajectory(map.require("trajectory"), {"header", "joint_names", "points"});
         const TextLine line{"", map.require("trajectory").location()};
-        stops.push_back(make_stop(line, rules_of(io::ProgramFormat::Ros2), joints,
+        stops.push_back(make_stop(line, ros2_program().rules, joints,
                                   read_ros_positions(trajectory, joints), comment));
     }
     return stops;
+}
+
+}  // namespace
+
+const ProgramKind& ros2_program() {
+    static const ProgramKind kind{{.ending = ".yaml",
+                                   .decimals = 9,
+                                   .is_in_radians = true,
+                                   .has_six_joints = false,
+                                   .has_program_name = false,
+                                   .has_pause = false,
+                                   .has_io = false},
+                                  &ros2_files,
+                                  &read_ros2};
+    return kind;
 }
 
 }  // namespace posewise::detail

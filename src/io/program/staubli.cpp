@@ -34,7 +34,7 @@ std::string val3_project(const std::string& name) {
 }
 
 std::string val3_data(const io::RobotProgram& program) {
-    const ProgramRules& rules = rules_of(io::ProgramFormat::Staubli);
+    const ProgramRules& rules = staubli_program().rules;
     std::string text = fmt::format(
         "{}<Database {} xmlns=\"{}Data/2\">\n  <Datas>\n    <Data name=\"joints\" "
         "access=\"private\" xsi:type=\"array\" type=\"jointRx\" size=\"{}\">\n",
@@ -118,8 +118,6 @@ std::vector<double> val3_position(const TextLine& line, const Val3Positions& pos
     return found->second;
 }
 
-}  // namespace
-
 std::vector<FileContent> staubli_files(const std::string& path, const io::RobotProgram& program) {
     const std::string name = folder_name(path);
     std::string code = fmt::format("  // {}\n", comment_text(program.title));
@@ -143,10 +141,25 @@ std::vector<io::ProgramStop> read_staubli(const std::string& path, const Control
             if (line.begins_with(other)) throw line.error("is no joint move; must be movej(...)");
         }
         if (!line.begins_with("movej(")) continue;
-        stops.push_back(make_stop(line, rules_of(io::ProgramFormat::Staubli), joints,
+        stops.push_back(make_stop(line, staubli_program().rules, joints,
                                   val3_position(line, positions), comment));
     }
     return stops;
+}
+
+}  // namespace
+
+const ProgramKind& staubli_program() {
+    static const ProgramKind kind{
+        {.ending = "",
+         .decimals = 5,
+         .longest_name = 15,
+         .words = "start stop begin end if then else endif for to do while endwhile until "
+                  "switch case call return and or not true false flange world",
+         .has_io = false},
+        &staubli_files,
+        &read_staubli};
+    return kind;
 }
 
 }  // namespace posewise::detail

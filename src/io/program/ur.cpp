@@ -12,7 +12,7 @@ constexpr double joint_speed = to_radians(120);  // rad/s
 constexpr double acceleration = 0.5;             // rad/s^2
 
 std::string ur_stop(const io::RobotProgram& program, const io::ProgramStop& stop) {
-    const ProgramRules& rules = rules_of(io::ProgramFormat::Ur);
+    const ProgramRules& rules = ur_program().rules;
     std::string text =
         fmt::format("  # {}\n  movej([{}], a={}, v={:.4f}, r=0)\n", stop.label,
                     joints_text(rules, program.joints, stop.joints, ", "), acceleration,
@@ -51,8 +51,6 @@ bool is_blended(const TextLine& line) {
            line.text.find_first_of("123456789", at) != std::string_view::npos;
 }
 
-}  // namespace
-
 std::vector<FileContent> ur_files(const std::string& path, const io::RobotProgram& program) {
     const std::string name = io::legal_program_name(io::ProgramFormat::Ur, stem_of(path));
     std::string text = fmt::format("def {}():\n  # {}\n", name, comment_text(program.title));
@@ -72,10 +70,26 @@ std::vector<io::ProgramStop> read_ur(const std::string& path, const ControllerJo
         if (!line.begins_with("movej")) continue;
         const std::string_view numbers = ur_joints(line);
         if (is_blended(line)) throw line.error("does not stop at its position; must have r=0");
-        stops.push_back(make_stop(line, rules_of(io::ProgramFormat::Ur), joints,
-                                  read_numbers(line, numbers), comment));
+        stops.push_back(
+            make_stop(line, ur_program().rules, joints, read_numbers(line, numbers), comment));
     }
     return stops;
+}
+
+}  // namespace
+
+const ProgramKind& ur_program() {
+    static const ProgramKind kind{
+        {.ending = ".script",
+         .decimals = 6,
+         .is_in_radians = true,
+         .has_program_name = false,
+         .words = "and break continue def elif else end enter_critical exit_critical "
+                  "False global halt if join kill local not or pass return run sec thread "
+                  "True while xor movej sleep popup textmsg sync"},
+        &ur_files,
+        &read_ur};
+    return kind;
 }
 
 }  // namespace posewise::detail

@@ -57,7 +57,7 @@ io::ProgramStop pulse_stop(const TextLine& line, const ControllerJoints& joints,
     for (std::size_t i = 0; i < pulses.size() && std::ssize(degrees) < joints.count(); ++i) {
         degrees.push_back(to_degrees(pulses[i] / joints.pulses_per_unit()[static_cast<Index>(i)]));
     }
-    return make_stop(line, rules_of(io::ProgramFormat::Yaskawa), joints, degrees, comment);
+    return make_stop(line, yaskawa_program().rules, joints, degrees, comment);
 }
 
 /// Throws InputError unless the positions are in pulses of joints.
@@ -69,8 +69,6 @@ void check_kind(const TextLine& line) {
         if (line.begins_with(other)) throw line.error("is no joint move; must be MOVJ");
     }
 }
-
-}  // namespace
 
 std::vector<FileContent> yaskawa_files(const std::string& path, const io::RobotProgram& program) {
     if (program.stops.size() > most_positions) {
@@ -120,6 +118,16 @@ std::vector<io::ProgramStop> read_yaskawa(const std::string& path, const Control
         stops.push_back(pulse_stop(line, joints, found->second, comment));
     }
     return stops;
+}
+
+}  // namespace
+
+const ProgramKind& yaskawa_program() {
+    static const ProgramKind kind{
+        {.ending = ".jbi", .decimals = 0, .longest_name = 32, .is_upper = true},
+        &yaskawa_files,
+        &read_yaskawa};
+    return kind;
 }
 
 }  // namespace posewise::detail
