@@ -2,6 +2,7 @@
 
 #include "campaign_text.hpp"
 #include "posewise/io/campaign_file.hpp"
+#include "posewise/io/measurements_file.hpp"
 #include "support/temporary_folder.hpp"
 
 // What a campaign says of its controller's joints.
@@ -74,6 +75,34 @@ TEST(ControllerSection, ReadsPulses) {
     const ControllerJoints joints = read("{pulses_per_deg: [1341.38, 1, 2, 3, 4, 5]}");
     EXPECT_NEAR(joints.pulses_per_unit()[0] * degree, 1341.38, 1e-9);
     EXPECT_EQ(joints.names()[0], "q1");
+}
+
+TEST(ControllerSection, ReadsMeasurementsOfThePendant) {
+    const TemporaryFolder folder;
+    const std::string controller =
+        "controller: {joints: {A1: -q1, A2: q2 - 90 deg, A3: q3 + q2, A4: q4, A5: q5, A6: q6}}\n";
+    const std::string rows =
+        "a,10,-70,50,40,50,60,1,2,3,4,5,6,7,8,9\nb,11,-71,51,41,51,61,1,2,3,4,5,6,7,8,8\n";
+    const std::string targets =
+        ",p1_x_mm,p1_y_mm,p1_z_mm,p2_x_mm,p2_y_mm,p2_z_mm,p3_x_mm,p3_y_mm,"
+        "p3_z_mm\n";
+    const std::string path =
+        folder.write("m.csv", "config,A1_deg,A2_deg,A3_deg,A4_deg,A5_deg,A6_deg" + targets + rows);
+    const CampaignFile file =
+        parse_campaign(robot_text + controller + "measurements: {columns: controller}\n", "a.yaml");
+    const Measurements read = read_measurements(path, file);
+    VectorXd q(6);
+    q << -10, 20, 30, 40, 50, 60;
+    EXPECT_LT((read.configurations.row(0).transpose() / degree - q).norm(), 1e-10);
+    EXPECT_NE(input_error_of([&] {
+                  read_measurements(path, parse_campaign(robot_text + controller, "a.yaml"));
+              }).find("A1"),
+              std::string::npos);
+    EXPECT_NE(
+        input_error_of([&] {
+            parse_campaign(robot_text + "measurements: {columns: pendant}\n", "a.yaml");
+        }).find("a.yaml:7:25: measurements.columns is 'pendant'; must be controller or model"),
+        std::string::npos);
 }
 
 TEST(ControllerSection, SaysWhatIsWrongWhere) {

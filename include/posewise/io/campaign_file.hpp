@@ -58,6 +58,7 @@ struct CampaignFile : Campaign {
     std::vector<std::string> warnings;  ///< parts of it that were not understood, a sentence each
     MatMapping mat;
     ControllerJoints controller;  ///< joints of programs; the robot's own where nothing is stated
+    bool has_controller_columns = false;  ///< measurements hold the controller's joints, so named
 };
 
 /// Overrides whether the expected sizes are priors. A full model without priors is reduced to what

@@ -256,10 +256,16 @@ const YamlKeys spread{
          "`{Tx1: 2 mm, dq2: 20 mrad}`"},
     }};
 
-const YamlKeys measurements{"measurements",
-                            {
-                                {"mat", "", "what the variables are called", "required", ""},
-                            }};
+const YamlKeys measurements{
+    "measurements",
+    {
+        {"columns", "",
+         "`controller`: joint values are those of the controller, in columns of its joints' names "
+         "(`J3_deg`), as a pendant or a log shows them. Configurations and programs stay the "
+         "model's",
+         "`model`", "`controller`"},
+        {"mat", "", "what the variables are called", "required for MATLAB files", ""},
+    }};
 
 const YamlKeys mat{
     "mat",
