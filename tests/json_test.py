@@ -230,6 +230,17 @@ def check_plan():
     expect(found["limit"] == "kept" and "verified:    the limit is kept" in text, "plan: verified")
 
 
+def check_program():
+    document, text = both("program", "campaign.poses.json", "--for", "csv", "-o", "program.csv")
+    count = len(json.loads(pathlib.Path("campaign.poses.json").read_text())["poses"])
+    expect(document["measured"] == count and f"{count} poses in {document['moves']} moves" in text, "program: moves")
+    expect(close(document["rounding"]["sent"]["value"], float(re.search(r"planned, (\S+) as sent", text)[1]), 7),
+           "program: value")
+    content, text = both("program", "campaign.poses.json", "--for", "csv", "--read", "program.csv", "-o", "back.csv")
+    row, one = next(csv.DictReader(open("back.csv"))), content["configurations"][0]
+    expect(row["config"] == one["id"] and close(float(row["q1_deg"]), one["joints"]["q1_deg"], 11), "program: read")
+
+
 def check_verify():
     document, text = both("verify", "s.plan.json")
     values = {one["name"]: one for one in document["findings"]}
@@ -349,7 +360,7 @@ def check_writers():
     those of cases that are not met here, too."""
     sources = "".join(path.read_text() for path in sorted((ROOT / "src/io").rglob("*.cpp")) if path.stem in (
         "json", "json_reports", "plan_json", "plan_document", "estimate_file", "estimate_fields", "parameters_json", "doubts_json", "residual_look_json", "judgement_json",
-        "robot_statement", "weights_file", "page_file"))
+        "program_json", "robot_statement", "weights_file", "page_file"))
     sources = re.sub(r"#include.*", "", sources)
     manual = (ROOT / "designs/json.md").read_text() + PAGE_MANUAL
     for word in sorted(set(re.findall(r'"([a-z][A-Za-z0-9_]*)"', sources)) - OTHER_WORDS):
@@ -392,7 +403,7 @@ with tempfile.TemporaryDirectory() as folder:
     pathlib.Path("arm.urdf").write_text(URDF)
     pathlib.Path("arm.yaml").write_text(ARM)
     for check in (check_simulate, check_inspect, check_indices, check_select, check_relax, check_verify,
-                  check_calibrate, check_study, check_plan, check_correct, check_export, check_report, check_writers,
+                  check_calibrate, check_study, check_plan, check_program, check_correct, check_export, check_report, check_writers,
                   check_errors, check_threads):
         check()
     expect(PRINTED | {""} == set(MANUAL), f"sections {sorted(MANUAL)}, printed {sorted(PRINTED)}")

@@ -41,7 +41,8 @@ VALUES = {
     "--largest-change-mm": "1", "--splits": "3", "--holdout": "0.5", "--models": "geometric", "--trials": "3",
     "--precision": "30%", "--truth": "7", "--vary": "sensor.sigma_mm=0.01,0.05", "--points": "2", "--store": "out2.sqlite",
     "--shard": "1/2", "--merge": "part1.sqlite", "--directions": "2", "--campaign": "other.yaml", "--configurations": "poses.csv",
-    "--write-campaign": "out4.yaml", "--tip": "x"}
+    "--write-campaign": "out4.yaml", "--tip": "x",
+    "--for": "ros2", "--read": "program.csv", "--dwell": "3", "--speed": "30", "--handshake": "pause"}
 PLAN = ["-c", "d", "--pool", "40", "--starts", "1", "--workspace-poses", "10", "-o", "out.json"]
 CHOICE = ["-k", "6", "--starts", "1", "-o", "out.json"]
 STUDY = ["arm.yaml", "-m", "many.csv", "-k", "6", "--random", "4", "--starts", "1"]
@@ -70,6 +71,8 @@ WAYS = [
     ["calibrate", "arm.yaml", "-m", "many.csv", "--folds", "0", "--json"],
     ["export", "arm.yaml", "estimate.json", "--dh", "out.yaml"],
     ["correct", "arm.yaml", "estimate.json", "--poses", "poses.csv", "-o", "out.csv", "--force"],
+    ["program", "plan.json", "--for", "ros2", "-o", "out.yaml"],
+    ["program", "plan.json", "--for", "csv", "--read", "program.csv", "-o", "out.csv"],
     ["study", *STUDY, "--splits", "2"],
     ["study", *STUDY, "--splits", "0"],
     ["study", *STUDY, "--splits", "2", "--from", "estimate.json"],
@@ -84,7 +87,8 @@ WAYS = [
 # way, no sliding joint, few parameters, no error that depends on the configuration, one choice that all starts end at.
 KNOWN = {("calibrate", "--force"), ("export", "--force"), ("correct", "--force"), ("study", "--force"),
          ("correct", "--largest-change-mm"), ("calibrate", "--all-parameters"), ("export", "--geometry"),
-         ("export", "--workspace"), ("study", "--starts"), ("plan", "--strict"), ("select", "--force")}
+         ("export", "--workspace"), ("study", "--starts"), ("plan", "--strict"), ("select", "--force"),
+         ("program", "--campaign")}
 # What makes an option without a value quick.
 WITH = {"--verify": ["--verify-robots", "200"]}
 SHORT = {"-m": "--measurements", "-k": "--poses", "-o": "--out", "-c": "--criterion"}
@@ -114,6 +118,7 @@ def prepare():
     run_well("select", "arm.yaml", "-m", "many.csv", "-k", "6", "-o", "choice.json")
     run_well("plan", "arm.yaml", "-k", "6", *PLAN[:-1], "plan.json", "--csv", "poses.csv")
     run_well("plan", "arm.yaml", "-k", "25", *PLAN[:-1], "out.json", "--csv", "pool.csv")
+    run_well("program", "plan.json", "--for", "csv", "-o", "program.csv")
     for shard in ("1", "2"):
         run_well("study", *SIMULATED, "--store", f"part{shard}.sqlite", "--shard", f"{shard}/2")
 

@@ -9,6 +9,7 @@
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/io/result_files.hpp"
 #include "posewise/io/robot_files.hpp"
+#include "posewise/io/robot_programs.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/report/reports.hpp"
@@ -19,4 +20,5 @@
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"
 #include "posewise/task/scene.hpp"
+#include "posewise/task/sent_plan.hpp"
 #include "posewise/task/study.hpp"

@@ -22,6 +22,7 @@ void add_verify(CLI::App& program, const CommonOptions& common);
 void add_calibrate(CLI::App& program, const CommonOptions& common);
 void add_export(CLI::App& program, const CommonOptions& common);
 void add_correct(CLI::App& program, const CommonOptions& common);
+void add_program(CLI::App& program, const CommonOptions& common);
 void add_study(CLI::App& program, const CommonOptions& common);
 void add_simulate(CLI::App& program, const CommonOptions& common);
 void add_report(CLI::App& program, const CommonOptions& common);

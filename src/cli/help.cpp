@@ -32,7 +32,7 @@ enum Group : std::size_t { Input, Asked, Errors, Earlier, Search, Judged, Output
 
 /// The group of each option, by its long name; it means the same in every command. Rare ones are
 /// named only.
-constexpr std::array<std::pair<std::string_view, Group>, 87> group_of_option{
+constexpr std::array<std::pair<std::string_view, Group>, 92> group_of_option{
     {{"poses", Asked},
      {"criterion", Asked},
      {"criteria", Asked},
@@ -58,6 +58,11 @@ constexpr std::array<std::pair<std::string_view, Group>, 87> group_of_option{
      {"trials", Asked},
      {"precision", Asked},
      {"truth", Asked},
+     {"dwell", Asked},
+     {"speed", Asked},
+     {"handshake", Asked},
+     {"reverse", Asked},
+     {"dry-run", Asked},
      {"vary", Asked},
      {"points", Rare},
      {"refine", Asked},

@@ -40,6 +40,7 @@ Start with:
   posewise plan campaign.yaml --poses 24               which to measure, from nothing
   posewise verify measurements.plan.json                     whether a plan is as good as it says
   posewise calibrate campaign.yaml -m measurements.csv       what came out, how sure
+  posewise program measurements.plan.json --for fanuc -o CELL.LS    a program for the robot
   posewise export campaign.yaml estimate.json --urdf out.urdf    the calibrated robot
   posewise correct campaign.yaml estimate.json --poses p.csv     joint values that hit the poses
   posewise report plan.json estimate.json --out page.html        a page to look at
@@ -102,7 +103,7 @@ void add_commands(CLI::App& program, posewise::cli::CommonOptions& common) {
     program.formatter(make_brief_help());
     for (const auto add :
          {add_inspect, add_indices, add_select, add_plan, add_verify, add_calibrate, add_export,
-          add_correct, add_study, add_simulate, add_report}) {
+          add_correct, add_program, add_study, add_simulate, add_report}) {
         add(program, common);
     }
     for (CLI::App* command : program.get_subcommands(nullptr)) add_common_options(*command, common);

@@ -15,6 +15,7 @@ POSEWISE_MANUAL(campaign, "README.md")
 POSEWISE_MANUAL(studies, "studies.md")
 POSEWISE_MANUAL(json, "json.md")
 POSEWISE_MANUAL(page, "page.md")
+POSEWISE_MANUAL(programs, "programs.md")
 
 namespace posewise::cli {
 namespace {
@@ -52,6 +53,7 @@ std::vector<ManualSection> manual_sections() {
     add_sections(posewise_manual_studies, "studies", "", sections);
     add_sections(posewise_manual_json, "json", "json-", sections);
     add_sections(posewise_manual_page, "page", "page-", sections);
+    add_sections(posewise_manual_programs, "programs", "programs-", sections);
     return sections;
 }
 

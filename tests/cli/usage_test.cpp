@@ -8,8 +8,8 @@ namespace {
 
 class Usage : public Program {};
 
-const std::string commands[] = {"inspect",   "indices", "select",  "plan",  "verify",
-                                "calibrate", "export",  "correct", "study", "simulate"};
+const std::string commands[] = {"inspect", "indices", "select", "plan",     "verify", "calibrate",
+                                "export",  "correct", "study",  "simulate", "program"};
 
 TEST_F(Usage, VersionIsThatOfTheProject) {
     EXPECT_EQ(run_well("--version"), std::string("posewise ") + stated_version() + '\n');
@@ -118,6 +118,12 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
     {"verify", "PLAN is required"},
     {"export a.yaml b.json", "--urdf, --dh or --ur-kinematics is required"},
     {"export a.yaml b.json --dh c --geometry best", "--geometry: best not in {nearest,estimate}"},
+    {"program a.json", "--for is required"},
+    {"program a.json --for fanuc", "--out is required"},
+    {"program a.json --for robot -o a.ls", "--for: robot"},
+    {"program a.json --for fanuc -o a.ls --reverse", "--reverse: needs --repeats 2"},
+    {"program a.json --for fanuc --read a.ls --dwell 2", "--read excludes --dwell"},
+    {"program a.json --for fanuc -o a.ls --speed 101", "--speed"},
     {"correct a.yaml b.json", "--poses is required"},
     {"correct a.yaml b.json --poses c.csv --tool-mm 1 2", "--tool-mm: 3 required"},
     {"correct a.yaml b.json --poses c.csv --tool-mm 1,2", "--tool-mm: 3 required"},

@@ -12,6 +12,7 @@
 #include "posewise/io/robot_files.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/population.hpp"
+#include "posewise/model/controller.hpp"
 
 namespace posewise::io {
 
@@ -56,6 +57,8 @@ struct CampaignFile : Campaign {
     std::optional<UrdfSource> urdf;     ///< source of the robot, if it comes from a URDF
     std::vector<std::string> warnings;  ///< parts of it that were not understood, a sentence each
     MatMapping mat;
+    ControllerJoints controller;  ///< joints of programs; the robot's own where nothing is stated
+    bool has_controller_columns = false;  ///< measurements hold the controller's joints, so named
 };
 
 /// Overrides whether the expected sizes are priors. A full model without priors is reduced to what

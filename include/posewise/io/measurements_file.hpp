@@ -14,7 +14,8 @@ namespace posewise::io {
 /// or NaN (MATLAB). Refused: a sample that shows no target, missing or unknown columns, ragged
 /// rows, text or other non-finite numbers, readings half of which repeat others under another id,
 /// angles in rad over four turns beyond the limits (they look like degrees), a configuration whose
-/// samples differ in a joint by over 1e-6.
+/// samples differ in a joint by over 1e-6. With CampaignFile::has_controller_columns the file's
+/// joints are the controller's; those returned are always the model's.
 Measurements read_measurements(const std::string& path, const CampaignFile& file);
 
 /// Named configurations that need not have been measured.

@@ -136,8 +136,7 @@ double read_unit(const YamlMap& map, std::string_view key, Quantity quantity) {
     return unit->to_si(1);
 }
 
-MatMapping read_mat_mapping(const YamlValue& measurements, Index target_count) {
-    const YamlValue value = YamlMap(measurements, keys::measurements).require("mat");
+MatMapping read_mat_mapping(const YamlValue& value, Index target_count) {
     const YamlMap map(value, keys::mat);
     MatMapping mapping;
     mapping.joints = map.require("joints").text();
@@ -153,6 +152,22 @@ MatMapping read_mat_mapping(const YamlValue& measurements, Index target_count) {
     mapping.angle_unit = read_unit(map, "angle_unit", Quantity::Angle);
     mapping.length_unit = read_unit(map, "length_unit", Quantity::Length);
     return mapping;
+}
+
+/// Whether joints of measurements are the controller's.
+bool read_columns(const YamlValue& value) {
+    if (value.is_text("controller")) return true;
+    if (value.is_text("model")) return false;
+    throw value.error("is " + detail::quote(value.text()) + "; must be controller or model");
+}
+
+void read_measurements_section(const YamlValue& value, CampaignFile& file) {
+    const YamlMap map(value, keys::measurements);
+    const auto columns = map.find("columns");
+    file.has_controller_columns = columns && read_columns(*columns);
+    if (const auto mat = columns ? map.find("mat") : map.require("mat")) {
+        file.mat = read_mat_mapping(*mat, file.sensor->target_count());
+    }
 }
 
 Criterion read_criterion(const YamlValue& value) {
@@ -283,12 +298,15 @@ CampaignFile parse(const std::string& content, const std::string& path,
     if (const auto criterion = map.find("criterion")) file.criterion = read_criterion(*criterion);
     if (const auto seed = map.find("seed")) file.seed = seed->natural_number();
     if (const auto measurements = map.find("measurements")) {
-        file.mat = read_mat_mapping(*measurements, sensor.sensor->target_count());
+        read_measurements_section(*measurements, file);
     }
     if (const auto cell = map.find("cell")) {
         file.cell = read_cell(*cell, campaign.robot, *sensor.sensor);
     }
     if (file.cell.speed.size() == 0) file.cell.speed = robot.speed;
+    const auto controller = map.find("controller");
+    file.controller = controller ? detail::read_controller(*controller, campaign.robot)
+                                 : ControllerJoints(campaign.robot);
     return file;
 }
 

@@ -43,6 +43,9 @@ SensorSection read_sensor(const YamlValue& sensor);
 /// `robot` gives the joints' names and limits.
 Cell read_cell(const YamlValue& cell, const Chain& robot, const Sensor& sensor);
 
+/// How the controller's joints follow from those of `robot`.
+ControllerJoints read_controller(const YamlValue& controller, const Chain& robot);
+
 /// Position and `rpy` of a frame.
 Isometry3d read_frame(const YamlMap& map);
 

@@ -158,6 +158,28 @@ std::vector<JointTerm> ElementParser::parse_drive(std::string_view text, const F
     return std::move(element.joints);
 }
 
+Element ElementParser::parse_joint_sum(std::string_view text, const FileLocation& start,
+                                       Motion motion) const {
+    Cursor cursor(text, start);
+    cursor.skip_blanks();
+    const std::size_t first = cursor.position();
+    Sum sum{motion, motion == Motion::Rotation ? "the joint turns" : "the joint slides"};
+    parse_sum(cursor, sum);
+    if (cursor.peek() != '\0') {
+        throw cursor.error(cursor.position(), quote(cursor.character()) +
+                                                  " is not expected here; must be a sum of joints "
+                                                  "like 'q3 - q2 + 90 deg'");
+    }
+    if (sum.joints.empty()) {
+        throw cursor.error(first, quote(text) + " has no joint; must be a sum like 'q3 - q2'");
+    }
+    Element element;
+    element.motion = motion;
+    element.value = sum.value;
+    element.joints = std::move(sum.joints);
+    return element;
+}
+
 void ElementParser::note_driven(const Element& element) {
     for (const JointTerm& term : element.joints) {
         driven_[static_cast<std::size_t>(term.joint)] = element.motion;

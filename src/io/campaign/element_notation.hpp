@@ -26,6 +26,10 @@ class ElementParser {
     std::vector<JointTerm> parse_drive(std::string_view text, const FileLocation& start,
                                        Motion motion);
 
+    /// A sum of joints and amounts, `q3 - q2 + 90 deg`, of that motion. Throws InputError as
+    /// parse() does, and if there is no joint in it.
+    Element parse_joint_sum(std::string_view text, const FileLocation& start, Motion motion) const;
+
     /// What a joint drives in the elements so far; nothing if none.
     std::optional<Motion> joint_motion(Index joint) const {
         return driven_[static_cast<std::size_t>(joint)];

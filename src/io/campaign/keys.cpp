@@ -45,6 +45,8 @@ const YamlKeys file{
         {"measurements", "", "what the variables of a MATLAB file are called", "CSV needs none",
          "see below"},
         {"cell", "", "limits of the place", "none", "see below"},
+        {"controller", "", "how joints are called and counted where programs run",
+         "the robot's own joints", "`{maker: fanuc, j23_factor: 1}`"},
     }};
 
 const YamlKeys planning{
@@ -254,10 +256,16 @@ const YamlKeys spread{
          "`{Tx1: 2 mm, dq2: 20 mrad}`"},
     }};
 
-const YamlKeys measurements{"measurements",
-                            {
-                                {"mat", "", "what the variables are called", "required", ""},
-                            }};
+const YamlKeys measurements{
+    "measurements",
+    {
+        {"columns", "",
+         "`controller`: joint values are those of the controller, in columns of its joints' names "
+         "(`J3_deg`), as a pendant or a log shows them. Configurations and programs stay the "
+         "model's",
+         "`model`", "`controller`"},
+        {"mat", "", "what the variables are called", "required for MATLAB files", ""},
+    }};
 
 const YamlKeys mat{
     "mat",
@@ -355,11 +363,31 @@ const YamlKeys sight{
         {"at_least_visible", "reflectors", "targets a pose must show", "all", "`1`"},
     }};
 
+const YamlKeys controller{
+    "controller",
+    {
+        {"joints", "",
+         "each joint of the controller as a sum of the robot's joints, with sign, coupling and "
+         "zero: a list in the controller's order, or a map of names; a map may leave out some of "
+         "J1, J2, ... that are the robot's",
+         "the robot's joints", "`{J3: q3 - q2, J4: -q4, J6: q6 + 90 deg}`"},
+        {"maker", "", "instead of `joints`: `fanuc`, of a robot with six joints that turn",
+         "none is assumed", "`fanuc`"},
+        {"j23_factor", "",
+         "of `maker: fanuc`: -1, 0 or 1, as the pendant couples J3 with J2: J3 = q3 - factor q2",
+         "required with `maker`", "`1`"},
+        {"pulses_per_deg", "",
+         "encoder pulses of each of the controller's joints, per mm of one that slides, as in the "
+         "controller's own parameters; Yaskawa's programs are in pulses",
+         "unknown: no program for Yaskawa is written",
+         "`[1341.4, 1341.4, 1341.4, 1000, 1000, 622.2]`"},
+    }};
+
 const std::vector<const YamlKeys*>& all() {
     static const std::vector<const YamlKeys*> tables{
         &file,   &planning, &robot, &joint,  &dh,     &row,          &terms,
         &weight, &sensor,   &noise, &places, &spread, &measurements, &mat,
-        &cell,   &keep_out, &solid, &link,   &sight};
+        &cell,   &keep_out, &solid, &link,   &sight,  &controller};
     return tables;
 }
 

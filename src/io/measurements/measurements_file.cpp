@@ -18,11 +18,41 @@ Configurations read_matlab(const std::string& path, const CampaignFile& file) {
             {}};
 }
 
+Measurements read_as_stated(const std::string& path, const CampaignFile& file,
+                            const Campaign& campaign) {
+    return is_matlab(path) ? read_measurements_mat(path, campaign, file.mat)
+                           : read_measurements_csv(path, campaign);
+}
+
+/// The campaign with the controller's joints in place of the model's: their names, and limits as
+/// wide as those of the model allow.
+Campaign with_controller_joints(const CampaignFile& file) {
+    std::vector<Joint> joints = file.robot.joints();
+    const auto [lower, upper] = detail::limits_of(file.robot);
+    const VectorXd middle = file.controller.to_controller((lower + upper) / 2);
+    const VectorXd reach = file.controller.from_model().cwiseAbs() * (upper - lower) / 2;
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        const auto joint = static_cast<Index>(i);
+        joints[i].name = file.controller.names()[i];
+        joints[i].lower = middle[joint] - reach[joint];
+        joints[i].upper = middle[joint] + reach[joint];
+    }
+    Campaign campaign = file;
+    campaign.robot = Chain(joints, file.robot.elements(), file.robot.torques());
+    return campaign;
+}
+
 }  // namespace
 
 Measurements read_measurements(const std::string& path, const CampaignFile& file) {
-    return is_matlab(path) ? read_measurements_mat(path, file, file.mat)
-                           : read_measurements_csv(path, file);
+    if (!file.has_controller_columns) return read_as_stated(path, file, file);
+    Measurements read = read_as_stated(path, file, with_controller_joints(file));
+    const Index joints = file.robot.joint_count();
+    for (Index i = 0; i < read.configurations.rows(); ++i) {
+        const VectorXd c = read.configurations.row(i).head(joints).transpose();
+        read.configurations.row(i).head(joints) = file.controller.to_model(c).transpose();
+    }
+    return read;
 }
 
 Configurations read_configurations(const std::string& path, const CampaignFile& file) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "configurations_text.hpp"
 #include "io/format/atomic_file.hpp"
 #include "io/format/csv_reader.hpp"
 #include "io/measurements/measurement_columns.hpp"
@@ -51,19 +52,6 @@ std::string rows_of(const Campaign& campaign, const std::vector<PlannedPose>& po
     return text;
 }
 
-std::string configurations_text(const Campaign& campaign, const std::vector<PlannedPose>& poses,
-                                const std::vector<PlannedPose>& verification = {}) {
-    const bool has_clearance = have_clearance(poses) || have_clearance(verification);
-    std::string text =
-        fmt::format("config{},{},{},{}", detail::joint_header(campaign),
-                    detail::seen_header(campaign), detail::purpose_column, detail::way_column);
-    if (has_clearance) {
-        text += fmt::format(",{},{}", detail::clearance_column, detail::nearest_column);
-    }
-    return text + '\n' + rows_of(campaign, poses, detail::to_calibrate, has_clearance) +
-           rows_of(campaign, verification, detail::to_verify, has_clearance);
-}
-
 std::string plan_text(const Plan& plan, const std::string& path,
                       const std::vector<std::string>& warnings) {
     detail::Json document = detail::plan_to_json(plan, path);
@@ -72,6 +60,27 @@ std::string plan_text(const Plan& plan, const std::string& path,
 }
 
 }  // namespace
+}  // namespace posewise::io
+
+namespace posewise::detail {
+
+std::string configurations_text(const Campaign& campaign, const std::vector<PlannedPose>& poses,
+                                const std::vector<PlannedPose>& verification) {
+    const bool has_clearance = io::have_clearance(poses) || io::have_clearance(verification);
+    std::string text = fmt::format("config{},{},{},{}", joint_header(campaign),
+                                   seen_header(campaign), purpose_column, way_column);
+    if (has_clearance) {
+        text += fmt::format(",{},{}", clearance_column, nearest_column);
+    }
+    return text + '\n' + io::rows_of(campaign, poses, to_calibrate, has_clearance) +
+           io::rows_of(campaign, verification, to_verify, has_clearance);
+}
+
+}  // namespace posewise::detail
+
+namespace posewise::io {
+
+using detail::configurations_text;
 
 void write_plan(const std::string& path, const Plan& plan,
                 const std::vector<std::string>& warnings) {

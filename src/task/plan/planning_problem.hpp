@@ -64,6 +64,9 @@ RowMatrixXd configurations_of(const std::vector<PlannedPose>& poses, Index joint
 /// of measured poses; zero if there is none.
 MatrixXd held_information(const PlanningProblem& problem);
 
+/// Value of the request's criterion for poses with these blocks, those held included.
+double value_of(const PlanningProblem& problem, const Blocks& blocks);
+
 /// Expected standard deviation of every parameter by the information matrix, m or rad.
 std::vector<NamedNumber> standard_deviations(const Campaign& campaign, const MatrixXd& M);
 

@@ -108,17 +108,8 @@ void check_verification(const PlanningProblem& problem, const Plan& plan, Findin
 
 void check_value(const Plan& plan, const PlanningProblem& problem, const Blocks& blocks,
                  Findings& findings) {
-    SelectOptions options;
-    options.criterion = problem.search.criterion;
-    options.pose_count = blocks.count();
-    if (needs_test_poses(options.criterion)) options.test_poses = &problem.errors.by_parameters;
-    options.nuisance = problem.search.nuisance;
-    options.held_rows = problem.search.held.rows;
-    options.held_pose_count = problem.search.held_pose_count;
-    std::vector<Index> all(plan.poses.size());
-    std::iota(all.begin(), all.end(), Index{0});
-    const double value = detail::choice_value(blocks, options, all);
-    findings.compare_value(options.criterion, plan.value, value, rounding);
+    findings.compare_value(problem.search.criterion, plan.value, detail::value_of(problem, blocks),
+                           rounding);
 }
 
 /// Each parameter's, which the plan must state, and no other.
@@ -187,6 +178,19 @@ void check_bounds(const Plan& plan, const PlanningProblem& problem, Findings& fi
 }
 
 }  // namespace
+
+double detail::value_of(const PlanningProblem& problem, const Blocks& blocks) {
+    SelectOptions options;
+    options.criterion = problem.search.criterion;
+    options.pose_count = blocks.count();
+    if (needs_test_poses(options.criterion)) options.test_poses = &problem.errors.by_parameters;
+    options.nuisance = problem.search.nuisance;
+    options.held_rows = problem.search.held.rows;
+    options.held_pose_count = problem.search.held_pose_count;
+    std::vector<Index> all(static_cast<std::size_t>(blocks.count()));
+    std::iota(all.begin(), all.end(), Index{0});
+    return choice_value(blocks, options, all);
+}
 
 Verification verify(const Plan& plan, const Campaign& campaign, const PlanningOptions& options) {
     PlanningProblem problem = detail::state_planning(campaign, options);

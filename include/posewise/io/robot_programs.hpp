@@ -1,0 +1,126 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "posewise/io/campaign_file.hpp"
+#include "posewise/model/controller.hpp"
+#include "posewise/task/plan.hpp"
+#include "posewise/task/sent_plan.hpp"
+
+/// Programs of joint moves for robot controllers, written and read back; designs/programs.md has an
+/// example of each.
+namespace posewise::io {
+
+enum class ProgramFormat {
+    Fanuc,    ///< TP program as text, .ls: degrees, 3 decimals
+    Kuka,     ///< KRL, .src and .dat: degrees, 5 decimals
+    Abb,      ///< RAPID module, .mod: degrees, 4 decimals
+    Ur,       ///< URScript, .script: radians, 6 decimals
+    Yaskawa,  ///< INFORM job, .jbi: whole pulses
+    Staubli,  ///< VAL3 project, a folder: degrees, 5 decimals
+    Ros2,     ///< JointTrajectory goals and named states, .yaml: radians and metres, 9 decimals
+    Csv,      ///< .csv: degrees and millimetres, 6 decimals
+};
+
+/// "fanuc", "kuka", "abb", "ur", "yaskawa", "staubli", "ros2" or "csv".
+std::string_view program_format_name(ProgramFormat format);
+/// Throws InputError for any other.
+ProgramFormat parse_program_format(const std::string& name);
+std::vector<std::string> program_format_names();
+
+/// The smallest step of each controller joint in such a file, rad or m. Throws InputError if the
+/// format cannot have these joints, or for pulses that are not stated.
+VectorXd joint_steps(ProgramFormat format, const ControllerJoints& joints);
+
+/// What ends a stop at a measured pose, after the dwell.
+enum class Handshake {
+    None,
+    Pause,  ///< an operator continues
+    Io,     ///< digital output 1 says that it stands, input 1 that it was measured
+};
+
+/// One stop of a program; every move ends in one.
+struct ProgramStop {
+    /// The name of a measured pose; of another stop "home", "via" or, read back, nothing.
+    std::string label;
+    VectorXd joints;  ///< of the controller, rad or m
+    bool is_measured = false;
+    Index samples = 1;  ///< how often the dwell
+};
+
+/// A program of joint moves with an exact stop at the end of each.
+struct RobotProgram {
+    std::string title;  ///< for a comment
+    std::string date;   ///< "2026/01/31 12:00", for Yaskawa's
+    ControllerJoints joints;
+    std::vector<ProgramStop> stops;
+    Index speed_percent = 20;  ///< 1 to 100
+    double dwell = 2;          ///< s; 0: none
+    Handshake handshake = Handshake::None;
+    VectorXd joint_speed;  ///< the largest of each, rad/s or m/s, for ROS; empty: 1
+};
+
+/// Names for poses in programs, distinct whatever their case, in the order of the ids: the id where
+/// it is at most 16 letters, digits and underscores, else what is legal of it.
+std::vector<std::string> pose_labels(const std::vector<std::string>& ids);
+
+/// The name of a program that comes nearest to this text and is legal for the controller: letters,
+/// digits and underscores, none of its language's words, as long as it may be.
+std::string legal_program_name(ProgramFormat format, std::string_view text);
+
+/// The files that write_robot_program() writes. Throws InputError if `path` has another ending than
+/// the format's, or, where the file must have the program's name, one that is not legal.
+std::vector<std::string> program_files(const std::string& path, ProgramFormat format,
+                                       const RobotProgram& program);
+
+/// Writes the program and, unless its path is empty, the plan as it is sent as CSV of
+/// write_configurations_csv(), in model coordinates: all files or none. Throws InputError as
+/// joint_steps() and program_files(), for a handshake that the format has none of, and for more
+/// stops than the controller takes.
+void write_robot_program(const std::string& path, ProgramFormat format, const RobotProgram& program,
+                         const std::string& sent_path, const Campaign& campaign, const Plan& sent);
+
+/// Reads the stops of a program that write_robot_program() wrote, perhaps edited since: comments
+/// name the move that follows. Throws InputError with the place for what is not a joint move to
+/// numbers, or does not stop there.
+std::vector<ProgramStop> read_robot_program(const std::string& path, ProgramFormat format,
+                                            const ControllerJoints& joints);
+
+/// What a program that was read holds, in model coordinates.
+struct ProgramContent {
+    /// In the order of first visits; purposes as in write_configurations_csv().
+    std::vector<std::string> ids;
+    RowMatrixXd joints;  ///< stops x joints, rad or m
+    std::vector<std::string> purposes;
+    std::vector<std::string> dropped;  ///< poses of the plan that the program does not visit
+    std::vector<std::string> moved;    ///< poses elsewhere than sent, by over half a step
+    std::vector<std::string> added;    ///< names that the plan has none of
+};
+
+/// The stops as configurations, home and repeated visits left out. `sent` is empty where no plan is
+/// known. Throws InputError, beginning with `path`, if visits of one pose differ by more than half
+/// a step.
+ProgramContent program_content(const std::string& path, const std::vector<ProgramStop>& stops,
+                               const ControllerJoints& joints, const VectorXd& steps,
+                               const std::optional<Plan>& sent);
+
+/// What was written.
+struct ProgramReport {
+    ProgramFormat format = ProgramFormat::Csv;
+    std::vector<std::string> files;  ///< of the program
+    std::string sent;                ///< the plan as it is sent, CSV
+    Index stop_count = 0;            ///< moves
+    Index visit_count = 0;           ///< moves to poses that are measured
+    std::optional<RoundingLoss> loss = {};
+};
+std::string to_json(const ProgramReport& report, const Campaign& campaign);
+std::string to_json(const ProgramContent& content, const Campaign& campaign);
+
+/// Writes CSV: config, the joints in degrees or mm, purpose.
+void write_program_content(const std::string& path, const Campaign& campaign,
+                           const ProgramContent& content);
+
+}  // namespace posewise::io

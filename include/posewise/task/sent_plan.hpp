@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewise/model/controller.hpp"
+#include "posewise/task/choice.hpp"
+#include "posewise/task/planning.hpp"
+
+/// A plan as a robot's controller is sent it: joints in the digits of a program, and the way.
+namespace posewise {
+
+/// The plan with every configuration, also vias, at joint values that are whole multiples of
+/// `steps` (of each controller joint, rad or m): the nearest ones that keep the joint limits and
+/// the cell and show the targets that the pose states, among the two of each joint that are next to
+/// the planned value. Measured torques stay. Poses of a choice, which states no way, are put in the
+/// order of a short tour, with vias. Throws InputError for a plan of another campaign, a
+/// pose without free way, a pose that violates limits or the cell as it is planned or however it is
+/// rounded, and where sockets are to be touched, which no program can.
+Plan sent_plan(const Plan& plan, const Campaign& campaign, const ControllerJoints& controller,
+               const VectorXd& steps);
+
+/// What rounding costs.
+struct RoundingLoss {
+    Criterion criterion = Criterion::D;
+    double planned = 0;  ///< value of the criterion
+    double sent = 0;
+    double largest_turn = 0;   ///< by which rounding moved a joint, rad
+    double largest_slide = 0;  ///< likewise, m
+    /// Predicted RMS position error over the workspace, m; for continuous plans.
+    std::optional<double> planned_rms = {};
+    std::optional<double> sent_rms = {};
+};
+/// Of a continuous plan, with the inputs it was made with. Throws InputError as verify().
+RoundingLoss rounding_loss(const Plan& plan, const Plan& sent, const Campaign& campaign,
+                           const PlanningOptions& options);
+/// Of a choice from configurations that were not measured yet.
+RoundingLoss rounding_loss(const Plan& plan, const Plan& sent, const Campaign& campaign,
+                           Candidates candidates, const ChoiceOptions& options);
+
+/// How often a program visits the poses, and in which order.
+struct RouteOptions {
+    Index repeats = 1;         ///< passes over all poses
+    bool is_reversed = false;  ///< every second pass goes back along the way of the one before
+};
+
+/// One stop on the way.
+struct RouteStop {
+    enum class Kind { Home, Via, Pose };
+    Kind kind = Kind::Pose;
+    std::string id;  ///< of a pose
+    Index times = 1;
+    VectorXd configuration;
+};
+
+/// The way of a program through a sent plan: home, if the cell has one, then poses and verification
+/// poses in the plan's order with their vias, then home. Every move is checked against the cell
+/// again, and the way back, which no plan states, is found. Throws InputError for a move that is
+/// not free, and for a reversed pass without a home.
+std::vector<RouteStop> route_of(const Plan& sent, const Campaign& campaign,
+                                const ControllerJoints& controller, const VectorXd& steps,
+                                const RouteOptions& options = {});
+
+}  // namespace posewise

@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <iterator>
+#include <map>
+
+#include "core/text.hpp"
+#include "io/format/text.hpp"
+#include "program_text.hpp"
+
+/// FANUC TP programs as text (.LS).
+namespace posewise::detail {
+namespace {
+
+constexpr std::size_t most_fanuc_lines = 9999;
+
+class FanucBody {
+  public:
+    /// `text` in the column where a motion begins.
+    void add(std::string_view text) {
+        ++count_;
+        fmt::format_to(std::back_inserter(text_), "{:4}:{} ;\n", count_, text);
+    }
+    std::size_t count() const { return count_; }
+    const std::string& text() const { return text_; }
+
+  private:
+    std::size_t count_ = 0;
+    std::string text_;
+};
+
+void add_fanuc_stop(const io::RobotProgram& program, const io::ProgramStop& stop,
+                    std::size_t number, FanucBody& body) {
+    body.add(fmt::format("  !{}", stop.label));
+    body.add(fmt::format("J P[{}] {}% FINE   ", number, program.speed_percent));
+    if (!stop.is_measured) return;
+    if (const double dwell = dwell_of(program, stop); dwell > 0) {
+        body.add(fmt::format("  WAIT {:6.2f}(sec)", dwell));
+    }
+    if (program.handshake == io::Handshake::Pause) body.add("  PAUSE");
+    if (program.handshake == io::Handshake::Io) {
+        for (const char* const step :
+             {"  DO[1]=ON", "  WAIT DI[1]=ON", "  DO[1]=OFF", "  WAIT DI[1]=OFF"}) {
+            body.add(step);
+        }
+    }
+}
+
+std::string fanuc_position(const io::RobotProgram& program, const io::ProgramStop& stop,
+                           std::size_t number) {
+    const ProgramRules& rules = fanuc_program().rules;
+    std::string text = fmt::format("P[{}]{{\n   GP1:\n\tUF : 0, UT : 1,\n", number);
+    for (Index i = 0; i < stop.joints.size(); ++i) {
+        const bool ends_line = i % 3 == 2 || i + 1 == stop.joints.size();
+        fmt::format_to(std::back_inserter(text), "\tJ{}= {:>9} deg{}{}", i + 1,
+                       joint_text(rules, program.joints.motion(i), stop.joints[i]),
+                       i + 1 == stop.joints.size() ? "" : ",", ends_line ? "\n" : "");
+    }
+    return text + "};\n";
+}
+
+/// The number in the brackets that follow, as in "P[3:P003]".
+std::size_t read_fanuc_index(const TextLine& line, std::string_view text) {
+    const std::size_t end = text.find_first_of(":]");
+    const ParsedNumber number = parse_number(trim(text.substr(0, end)));
+    if (end == std::string_view::npos || !number.ok() ||
+        !(number.value >= 1 && number.value < 1e6)) {
+        throw line.error("names no position; must be like P[1]");
+    }
+    return static_cast<std::size_t>(number.value);
+}
+
+/// The first group's joints of each position; a Cartesian one has none.
+std::map<std::size_t, std::vector<double>> read_fanuc_positions(const std::vector<TextLine>& lines,
+                                                                std::size_t begin) {
+    std::map<std::size_t, std::vector<double>> positions;
+    std::vector<double>* joints = nullptr;
+    bool is_first_group = true;
+    for (std::size_t k = begin; k < lines.size(); ++k) {
+        const TextLine& line = lines[k];
+        if (line.begins_with("/END")) break;
+        if (line.begins_with("P[")) {
+            joints = &positions[read_fanuc_index(line, line.text.substr(2))];
+            if (!joints->empty()) throw line.error("states a position twice");
+            is_first_group = true;
+        } else if (line.begins_with("GP")) {
+            is_first_group = line.begins_with("GP1");
+        }
+        if (joints == nullptr || !is_first_group) continue;
+        std::string_view rest = line.text;
+        for (std::size_t at = rest.find('='); at != std::string_view::npos; at = rest.find('=')) {
+            const std::string_view name = trim(rest.substr(0, at));
+            rest.remove_prefix(at + 1);
+            const std::size_t end = std::min(rest.find("deg"), rest.size());
+            if (name.find('J') == std::string_view::npos || end == rest.size()) break;
+            joints->push_back(read_numbers(line, rest.substr(0, end)).front());
+            rest.remove_prefix(end);
+        }
+    }
+    return positions;
+}
+
+/// What stands behind a line's number, without the semicolon.
+TextLine fanuc_statement(TextLine line) {
+    const std::size_t colon = line.text.find(':');
+    if (colon == std::string_view::npos) return line;
+    std::string_view text = line.text.substr(colon + 1);
+    if (const std::size_t end = text.rfind(';'); end != std::string_view::npos) {
+        text = text.substr(0, end);
+    }
+    text = trim(text);
+    if (!text.empty()) line.place.column += text.data() - line.text.data();
+    line.text = text;
+    return line;
+}
+
+std::vector<FileContent> fanuc_files(const std::string& path, const io::RobotProgram& program) {
+    FanucBody body;
+    std::string positions;
+    body.add(fmt::format("  !{}", comment_text(program.title, 32)));
+    body.add("  UFRAME_NUM=0");
+    body.add("  UTOOL_NUM=1");
+    for (std::size_t k = 0; k < program.stops.size(); ++k) {
+        add_fanuc_stop(program, program.stops[k], k + 1, body);
+        positions += fanuc_position(program, program.stops[k], k + 1);
+    }
+    if (body.count() > most_fanuc_lines) {
+        throw InputError(
+            fmt::format("a program for fanuc of {} lines; must be at most {}: repeat "
+                        "it less often",
+                        body.count(), most_fanuc_lines));
+    }
+    return {{path, fmt::format("/PROG  {}\n/ATTR\nCOMMENT\t\t= \"posewise\";\nDEFAULT_GROUP\t= "
+                               "1,*,*,*,*;\n/MN\n{}/POS\n{}/END\n",
+                               io::legal_program_name(io::ProgramFormat::Fanuc, stem_of(path)),
+                               body.text(), positions)}};
+}
+
+std::vector<io::ProgramStop> read_fanuc(const std::string& path, const ControllerJoints& joints) {
+    const ProgramFile file(path);
+    const std::vector<TextLine>& lines = file.lines();
+    const auto section = [&](std::string_view name) {
+        std::size_t k = 0;
+        while (k < lines.size() && !lines[k].begins_with(name)) ++k;
+        if (k == lines.size()) {
+            throw input_error_at({path},
+                                 fmt::format("has no {}; must be a program for fanuc", name));
+        }
+        return k + 1;
+    };
+    const std::size_t end = section("/POS") - 1;
+    const auto positions = read_fanuc_positions(lines, end + 1);
+    std::vector<io::ProgramStop> stops;
+    std::string comment;
+    for (std::size_t k = section("/MN"); k < end; ++k) {
+        const TextLine line = fanuc_statement(lines[k]);
+        if (line.begins_with("!")) note_comment(line.text.substr(1), comment);
+        for (const char* const other : {"L P", "C P", "A P", "J PR"}) {
+            if (line.begins_with(other)) {
+                throw line.error("is no joint move to a position of the program; must be J P[...]");
+            }
+        }
+        if (!line.begins_with("J P[")) continue;
+        if (!line.has("FINE")) throw line.error("does not stop at its position; must end FINE");
+        const auto found = positions.find(read_fanuc_index(line, line.text.substr(4)));
+        if (found == positions.end() || found->second.empty()) {
+            throw line.error("moves to a position without joints; must be in degrees under /POS");
+        }
+        stops.push_back(make_stop(line, fanuc_program().rules, joints, found->second, comment));
+    }
+    return stops;
+}
+
+}  // namespace
+
+const ProgramKind& fanuc_program() {
+    static const ProgramKind kind{{.ending = ".ls",
+                                   .decimals = 3,
+                                   .longest_name = 32,
+                                   .is_upper = true,
+                                   .words = "CON PRN AUX NUL COM1 LPT1"},
+                                  &fanuc_files,
+                                  &read_fanuc};
+    return kind;
+}
+
+}  // namespace posewise::detail

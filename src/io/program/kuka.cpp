@@ -1,0 +1,177 @@
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "core/text.hpp"
+#include "io/format/text.hpp"
+#include "program_text.hpp"
+
+/// KUKA KRL (.src, .dat).
+namespace posewise::detail {
+namespace {
+
+constexpr std::size_t most_kuka_lines = 1400;
+
+constexpr std::string_view krl_header = "&ACCESS RVP\n&REL 1\n";
+
+/// Lines of one stop, each ended.
+std::string kuka_stop(const io::RobotProgram& program, const io::ProgramStop& stop) {
+    const ProgramRules& rules = kuka_program().rules;
+    std::string text = fmt::format("; {}\nPTP {{", stop.label);
+    for (Index i = 0; i < stop.joints.size(); ++i) {
+        fmt::format_to(std::back_inserter(text), "{}A{} {}", i == 0 ? "" : ",", i + 1,
+                       joint_text(rules, program.joints.motion(i), stop.joints[i]));
+    }
+    text += "}\n";
+    if (!stop.is_measured) return text;
+    if (const double dwell = dwell_of(program, stop); dwell > 0) {
+        text += fmt::format("WAIT SEC {}\n", seconds_text(dwell));
+    }
+    if (program.handshake == io::Handshake::Pause) text += "HALT\n";
+    if (program.handshake == io::Handshake::Io) {
+        text += "$OUT[1]=TRUE\nWAIT FOR $IN[1]\n$OUT[1]=FALSE\nWAIT FOR NOT $IN[1]\n";
+    }
+    return text;
+}
+
+/// What a program does first: the interpolation's data, and no jump at the first block.
+std::string begin_text(const io::RobotProgram& program) {
+    return fmt::format("BAS(#INITMOV,0)\nBAS(#VEL_PTP,{})\n$TOOL=$NULLFRAME\nPTP $AXIS_ACT\n",
+                       program.speed_percent);
+}
+
+void add_module(const std::string& path, const std::string& name, const std::string& body,
+                std::vector<FileContent>& files) {
+    files.push_back({sibling_of(path, name + ending_of(path)),
+                     fmt::format("{}DEF {}( )\n{}END\n", krl_header, name, body)});
+    files.push_back(
+        {sibling_of(path, name + ".dat"), fmt::format("{}DEFDAT {}\nENDDAT\n", krl_header, name)});
+}
+
+std::size_t line_count(const std::string& text) {
+    return static_cast<std::size_t>(std::ranges::count(text, '\n'));
+}
+
+/// The bodies of as many programs as are needed.
+std::vector<std::string> split_stops(const io::RobotProgram& program) {
+    std::vector<std::string> parts(1);
+    for (const io::ProgramStop& stop : program.stops) {
+        const std::string text = kuka_stop(program, stop);
+        constexpr std::size_t others = 20;  // lines of begin and end
+        if (line_count(parts.back()) + line_count(text) + others > most_kuka_lines)
+            parts.emplace_back();
+        parts.back() += text;
+    }
+    return parts;
+}
+
+/// The numbers of "{A1 10.00,A2 -90.0, ...}", in order.
+std::vector<double> read_axes(const TextLine& line) {
+    const std::size_t open = line.text.find('{');
+    const std::size_t close = line.text.find('}', std::min(open, line.text.size()));
+    if (close == std::string_view::npos) {
+        throw line.error("is no joint move to numbers; must be like PTP {A1 10.0,A2 -90.0,...}");
+    }
+    std::string_view rest = line.text.substr(open + 1, close - open - 1);
+    if (const std::size_t colon = rest.find(':'); colon != std::string_view::npos) {
+        rest.remove_prefix(colon + 1);  // {E6AXIS: A1 ...}
+    }
+    std::vector<double> numbers;
+    while (!rest.empty()) {
+        const std::size_t comma = std::min(rest.find(','), rest.size());
+        const std::string_view one = trim(rest.substr(0, comma));
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+        if (one.starts_with('E') || one.starts_with('e')) continue;  // external axes
+        const std::string name = fmt::format("A{}", numbers.size() + 1);
+        if (!one.starts_with(name)) {
+            throw line.error(fmt::format("has {} where {} must be", quote(one), name));
+        }
+        numbers.push_back(read_numbers(line, one.substr(name.size())).front());
+    }
+    return numbers;
+}
+
+void read_part(const std::string& path, const TextLine& call, const ControllerJoints& joints,
+               std::vector<io::ProgramStop>& stops);
+
+void read_module(const std::string& path, const ControllerJoints& joints, bool has_parts,
+                 std::vector<io::ProgramStop>& stops) {
+    const ProgramFile file(path);
+    const std::string part = stem_of(path) + "_";
+    std::string comment;
+    for (const TextLine& line : file.lines()) {
+        if (line.begins_with(";FOLD") || line.begins_with(";ENDFOLD")) continue;
+        if (line.begins_with(";")) note_comment(line.text.substr(1), comment);
+        if (has_parts && line.begins_with(part) && line.text.ends_with(')')) {
+            read_part(path, line, joints, stops);
+        }
+        for (const char* const other : {"LIN", "CIRC", "SPL", "SPTP", "SLIN", "PTP_REL"}) {
+            if (line.begins_with(other)) throw line.error("is no joint move; must be PTP {A1 ...}");
+        }
+        if (!line.begins_with("PTP") || line.has("$AXIS_ACT")) continue;
+        if (line.has("C_PTP") || line.has("C_DIS")) {
+            throw line.error("does not stop at its position; must have no C_PTP");
+        }
+        stops.push_back(make_stop(line, kuka_program().rules, joints, read_axes(line), comment));
+    }
+}
+
+/// The program in a file beside `path` that a line of it calls.
+void read_part(const std::string& path, const TextLine& call, const ControllerJoints& joints,
+               std::vector<io::ProgramStop>& stops) {
+    const std::string_view name = trim(call.text.substr(0, call.text.find('(')));
+    if (!is_identifier(name)) throw call.error("calls no program; must be like NAME_1( )");
+    const std::string part = sibling_of(path, std::string(name) + ending_of(path));
+    try {
+        read_module(part, joints, false, stops);
+    } catch (const InputError& problem) {
+        throw call.error(fmt::format("calls a program that cannot be used: {}", problem.what()));
+    }
+}
+
+std::vector<FileContent> kuka_files(const std::string& path, const io::RobotProgram& program) {
+    const std::string name = stem_of(path);
+    const std::vector<std::string> parts = split_stops(program);
+    const std::string title = fmt::format("; {}\n", comment_text(program.title));
+    std::vector<FileContent> files;
+    if (parts.size() == 1) {
+        add_module(path, name, title + begin_text(program) + parts[0], files);
+        return files;
+    }
+    std::string calls = title;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        const std::string part = fmt::format("{}_{}", name, k + 1);
+        calls += part + "( )\n";
+    }
+    add_module(path, name, calls, files);
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        add_module(path, fmt::format("{}_{}", name, k + 1), begin_text(program) + parts[k], files);
+    }
+    return files;
+}
+
+std::vector<io::ProgramStop> read_kuka(const std::string& path, const ControllerJoints& joints) {
+    std::vector<io::ProgramStop> stops;
+    read_module(path, joints, true, stops);
+    return stops;
+}
+
+}  // namespace
+
+const ProgramKind& kuka_program() {
+    static const ProgramKind kind{
+        {.ending = ".src",
+         .decimals = 5,
+         .longest_name = 20,
+         .words = "ANIN ANOUT BRAKE CASE CCLOSE CHAR CIRC CONST DECL DEF DEFAULT DEFDAT "
+                  "DEFFCT DO ELSE END ENDDAT ENDFCT ENDFOR ENDIF ENDLOOP ENDSWITCH "
+                  "ENDWHILE ENUM EXIT EXT EXTFCT FALSE FOR GLOBAL GOTO HALT IF IMPORT INT "
+                  "INTERRUPT IS LIN LOOP BAS BOOL CONTINUE PTP PULSE REAL REPEAT RETURN "
+                  "SIGNAL STRUC SWITCH THEN TO TRIGGER TRUE UNTIL WAIT WHILE AND OR NOT "
+                  "EXOR B_AND B_OR"},
+        &kuka_files,
+        &read_kuka};
+    return kind;
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,171 @@
+#include "program_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+#include "io/format/text.hpp"
+#include "io/format/units.hpp"
+
+namespace posewise::detail {
+namespace {
+
+char upper_case(char letter) {
+    return static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+}
+
+bool is_same_letter(char a, char b) { return upper_case(a) == upper_case(b); }
+
+bool is_word(std::string_view text, std::string_view words) {
+    while (!words.empty()) {
+        const std::size_t end = std::min(words.find(' '), words.size());
+        if (std::ranges::equal(text, words.substr(0, end), is_same_letter)) return true;
+        words.remove_prefix(std::min(end + 1, words.size()));
+    }
+    return false;
+}
+
+const Unit& unit_of(const ProgramRules& rules, Motion motion) {
+    const bool turns = motion == Motion::Rotation;
+    return *find_unit(rules.is_in_radians ? (turns ? "rad" : "m") : (turns ? "deg" : "mm"));
+}
+
+}  // namespace
+
+std::string legal_name(std::string_view text, std::size_t longest, bool is_upper,
+                       std::string_view words) {
+    std::string name;
+    for (const char letter : text) {
+        const bool is_legal = is_identifier('_' + std::string(1, letter));
+        name += is_legal ? (is_upper ? upper_case(letter) : letter) : '_';
+    }
+    name.erase(0, std::min(name.find_first_not_of('_'), name.size()));
+    const bool has_letter = !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) != 0;
+    if (!has_letter || is_word(name, words)) name.insert(0, is_upper ? "P_" : "p_");
+    return name.substr(0, longest);
+}
+
+std::string comment_text(std::string_view text, std::size_t longest) {
+    std::string comment;
+    for (const char letter : text) {
+        const bool is_plain =
+            letter >= ' ' && letter <= '~' &&
+            std::string_view("\"'\\[]{}<>;").find(letter) == std::string_view::npos;
+        comment += is_plain ? letter : '_';
+    }
+    return std::string(trim(comment.substr(0, longest)));
+}
+
+std::string stem_of(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+
+std::string ending_of(const std::string& path) {
+    return std::filesystem::path(path).extension().string();
+}
+
+std::string sibling_of(const std::string& path, const std::string& name) {
+    return (std::filesystem::path(path).parent_path() / name).string();
+}
+
+std::string joint_text(const ProgramRules& rules, Motion motion, double si) {
+    const Unit& unit = unit_of(rules, motion);
+    const std::string text =
+        fmt::format("{:.{}f}", si * unit.divisor / unit.factor, rules.decimals);
+    const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
+    return is_zero && text[0] == '-' ? text.substr(1) : text;
+}
+
+std::string joints_text(const ProgramRules& rules, const ControllerJoints& joints,
+                        const VectorXd& values, std::string_view separator) {
+    std::string text;
+    for (Index i = 0; i < values.size(); ++i) {
+        if (i > 0) text += separator;
+        text += joint_text(rules, joints.motion(i), values[i]);
+    }
+    return text;
+}
+
+std::string seconds_text(double seconds) {
+    const std::string text = fmt::format("{:g}", seconds);
+    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+double dwell_of(const io::RobotProgram& program, const io::ProgramStop& stop) {
+    return program.dwell * static_cast<double>(stop.samples);
+}
+
+bool TextLine::begins_with(std::string_view word) const {
+    return text.size() >= word.size() &&
+           std::ranges::equal(text.substr(0, word.size()), word, is_same_letter);
+}
+
+bool TextLine::has(std::string_view word) const {
+    return !std::ranges::search(text, word, is_same_letter).empty();
+}
+
+ProgramFile::ProgramFile(const std::string& path) {
+    constexpr std::size_t most_bytes = 1 << 26;
+    content_ = read_file(path, most_bytes);
+    const std::string_view whole = content_;
+    long number = 0;
+    for (std::size_t begin = 0; begin < whole.size();) {
+        const std::size_t end = std::min(whole.find('\n', begin), whole.size());
+        const std::string_view line = whole.substr(begin, end - begin);
+        const std::string_view text = trim(line);
+        ++number;
+        if (!text.empty()) {
+            lines_.push_back({text, {path, number, text.data() - line.data() + 1}});
+        }
+        begin = end + 1;
+    }
+}
+
+std::vector<double> read_numbers(const TextLine& line, std::string_view text) {
+    std::vector<double> numbers;
+    for (;;) {
+        const std::size_t comma = std::min(text.find(','), text.size());
+        const std::string_view field = trim(text.substr(0, comma));
+        const ParsedNumber number = parse_number(field);
+        if (!number.ok()) {
+            throw line.error(fmt::format("{} {}", quote(field), number.problem));
+        }
+        numbers.push_back(number.value);
+        if (comma == text.size()) return numbers;
+        text.remove_prefix(comma + 1);
+    }
+}
+
+void note_comment(std::string_view text, std::string& comment) {
+    const std::string_view word = trim(text);
+    if (!word.empty() && word.size() <= longest_label && is_identifier('_' + std::string(word))) {
+        comment = word;
+    }
+}
+
+io::ProgramStop make_stop(const TextLine& line, const ProgramRules& rules,
+                          const ControllerJoints& joints, const std::vector<double>& numbers,
+                          std::string& comment) {
+    if (std::ssize(numbers) != joints.count()) {
+        throw line.error(fmt::format("moves {} joints; must be {}, as the robot has",
+                                     numbers.size(), joints.count()));
+    }
+    io::ProgramStop stop;
+    stop.label = comment;
+    stop.joints.resize(joints.count());
+    for (Index i = 0; i < joints.count(); ++i) {
+        const double value = numbers[static_cast<std::size_t>(i)];
+        const double si = unit_of(rules, joints.motion(i)).to_si(value);
+        if (!is_plausible(si, quantity_of(joints.motion(i)))) {
+            throw line.error(
+                fmt::format("has {} for joint {}, which no robot reaches", value, i + 1));
+        }
+        stop.joints[i] = si;
+    }
+    stop.is_measured = !comment.empty() && comment != "home" && comment != "via";
+    comment.clear();
+    return stop;
+}
+
+}  // namespace posewise::detail

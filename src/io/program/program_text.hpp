@@ -1,0 +1,109 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/format/atomic_file.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/io/robot_programs.hpp"
+
+/// What writers and readers of programs share.
+namespace posewise::detail {
+
+/// What a format's files are like.
+struct ProgramRules {
+    std::string_view ending;  ///< ".ls"; empty: a folder
+    int decimals = 0;
+    bool is_in_radians = false;    ///< else degrees and mm
+    bool has_six_joints = true;    ///< that turn; else any
+    bool has_program_name = true;  ///< the file must be called as the program is
+    std::size_t longest_name = 32;
+    bool is_upper = false;
+    std::string_view words = "";  ///< that name no program, separated by blanks
+    bool has_pause = true;
+    bool has_io = true;
+};
+
+/// A format, which stands in a file of its own: its rules, its writer and its reader, both of the
+/// path as the user states it.
+struct ProgramKind {
+    ProgramRules rules;
+    std::vector<FileContent> (*write)(const std::string& path, const io::RobotProgram& program);
+    std::vector<io::ProgramStop> (*read)(const std::string& path, const ControllerJoints& joints);
+};
+
+inline constexpr std::size_t longest_label = 16;
+
+/// Letters, digits and underscores, the first a letter, none of the words (separated by blanks,
+/// whatever their case).
+std::string legal_name(std::string_view text, std::size_t longest, bool is_upper,
+                       std::string_view words);
+
+/// One line of printable ASCII without quotes, backslashes and brackets, for comments.
+std::string comment_text(std::string_view text, std::size_t longest = 60);
+
+/// The file's name without folder and ending.
+std::string stem_of(const std::string& path);
+/// ".src" as it is typed.
+std::string ending_of(const std::string& path);
+/// The same path with another name and ending in its folder.
+std::string sibling_of(const std::string& path, const std::string& name);
+
+/// A joint value in the file's unit, with its decimals; never "-0.000".
+std::string joint_text(const ProgramRules& rules, Motion motion, double si);
+/// All of a stop, separated.
+std::string joints_text(const ProgramRules& rules, const ControllerJoints& joints,
+                        const VectorXd& values, std::string_view separator);
+/// 2.5 as "2.5", 2 as "2.0".
+std::string seconds_text(double seconds);
+/// How long a measured stop lasts.
+double dwell_of(const io::RobotProgram& program, const io::ProgramStop& stop);
+
+/// Where a text is from, line by line.
+struct TextLine {
+    std::string_view text;  ///< without blanks around it and carriage return
+    FileLocation place;     ///< of its first character
+
+    InputError error(const std::string& problem) const { return input_error_at(place, problem); }
+    /// Whether the line begins with these letters, whatever their case.
+    bool begins_with(std::string_view word) const;
+    /// Whether it has them somewhere.
+    bool has(std::string_view word) const;
+};
+
+/// A program's file, which is not over 64 MiB.
+class ProgramFile {
+  public:
+    explicit ProgramFile(const std::string& path);
+    /// In the order of the file; empty ones are left out.
+    const std::vector<TextLine>& lines() const { return lines_; }
+
+  private:
+    std::string content_;
+    std::vector<TextLine> lines_;
+};
+
+/// The finite numbers of `text`, separated by commas. Throws InputError at the line.
+std::vector<double> read_numbers(const TextLine& line, std::string_view text);
+
+/// A comment of a program: it names the next move if it could be a pose's label, home or via; else
+/// it says something to people, and what stood before holds.
+void note_comment(std::string_view text, std::string& comment);
+
+/// Joints in the file's unit as a stop, named by the comment before it. Throws InputError at the
+/// line for another number of joints.
+io::ProgramStop make_stop(const TextLine& line, const ProgramRules& rules,
+                          const ControllerJoints& joints, const std::vector<double>& numbers,
+                          std::string& comment);
+
+const ProgramKind& fanuc_program();
+const ProgramKind& kuka_program();
+const ProgramKind& abb_program();
+const ProgramKind& ur_program();
+const ProgramKind& yaskawa_program();
+const ProgramKind& staubli_program();
+const ProgramKind& ros2_program();
+const ProgramKind& csv_program();
+
+}  // namespace posewise::detail

@@ -1,0 +1,165 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iterator>
+#include <map>
+
+#include "io/format/text.hpp"
+#include "io/format/xml_document.hpp"
+#include "program_text.hpp"
+
+/// Staubli VAL3 projects: a folder.
+namespace posewise::detail {
+namespace {
+
+constexpr std::string_view xml_begin = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n";
+constexpr std::string_view xml_instance = "xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\"";
+constexpr std::string_view val3_schemas = "http://www.staubli.com/robotics/VAL3/";
+
+std::string folder_name(const std::string& path) {
+    return std::filesystem::path(path).filename().string();
+}
+
+std::string file_in(const std::string& folder, const std::string& name) {
+    return (std::filesystem::path(folder) / name).string();
+}
+
+std::string val3_project(const std::string& name) {
+    return fmt::format(
+        "{}<Project xmlns=\"{}Project/3\">\n  <Parameters version=\"s7.10.2\" stackSize=\"5000\" "
+        "millimeterUnit=\"true\"/>\n  <Programs>\n    <Program file=\"start.pgx\"/>\n    <Program "
+        "file=\"stop.pgx\"/>\n  </Programs>\n  <Database>\n    <Data file=\"{}.dtx\"/>\n  "
+        "</Database>\n  <Libraries/>\n</Project>\n",
+        xml_begin, val3_schemas, name);
+}
+
+std::string val3_data(const io::RobotProgram& program) {
+    const ProgramRules& rules = staubli_program().rules;
+    std::string text = fmt::format(
+        "{}<Database {} xmlns=\"{}Data/2\">\n  <Datas>\n    <Data name=\"joints\" "
+        "access=\"private\" xsi:type=\"array\" type=\"jointRx\" size=\"{}\">\n",
+        xml_begin, xml_instance, val3_schemas, program.stops.size());
+    for (std::size_t k = 0; k < program.stops.size(); ++k) {
+        fmt::format_to(std::back_inserter(text), "      <Value key=\"{}\"", k);
+        const VectorXd& joints = program.stops[k].joints;
+        for (Index i = 0; i < joints.size(); ++i) {
+            fmt::format_to(std::back_inserter(text), " j{}=\"{}\"", i + 1,
+                           joint_text(rules, program.joints.motion(i), joints[i]));
+        }
+        text += "/>\n";
+    }
+    return text + fmt::format(
+                      "    </Data>\n    <Data name=\"slow\" access=\"private\" xsi:type=\"array\" "
+                      "type=\"mdesc\" size=\"1\">\n      <Value key=\"0\" accel=\"{0}\" "
+                      "vel=\"{0}\" decel=\"{0}\" tmax=\"99999\" rmax=\"99999\" blend=\"off\" "
+                      "leave=\"50\" reach=\"50\"/>\n    </Data>\n  </Datas>\n</Database>\n",
+                      program.speed_percent);
+}
+
+std::string val3_program(const std::string& name, const std::string& access,
+                         const std::string& code) {
+    return fmt::format(
+        "{}<Programs {} xmlns=\"{}Program/2\">\n  <Program name=\"{}\" access=\"{}\">\n    "
+        "<Code><![CDATA[\nbegin\n{}end\n]]></Code>\n  </Program>\n</Programs>\n",
+        xml_begin, xml_instance, val3_schemas, name, access, code);
+}
+
+std::string staubli_stop(const io::RobotProgram& program, const io::ProgramStop& stop,
+                         std::size_t number) {
+    std::string text = fmt::format("  // {}\n  movej(joints[{}],flange,slow)\n  waitEndMove()\n",
+                                   stop.label, number);
+    if (!stop.is_measured) return text;
+    if (const double dwell = dwell_of(program, stop); dwell > 0) {
+        text += fmt::format("  delay({})\n", seconds_text(dwell));
+    }
+    text += fmt::format("  putln(\"{}\")\n", stop.label);
+    if (program.handshake == io::Handshake::Pause) text += "  get()\n";
+    return text;
+}
+
+using Val3Positions = std::map<std::string, std::vector<double>>;
+
+/// Attributes j1, j2, ... of each value of `joints`, by key.
+Val3Positions read_val3_positions(const std::string& path) {
+    const XmlDocument document(path);
+    const pugi::xml_node joints =
+        document.root().child("Datas").find_child_by_attribute("Data", "name", "joints");
+    if (!joints) throw input_error_at({path}, "has no Data joints; must be of a program's project");
+    Val3Positions positions;
+    for (const pugi::xml_node value : joints.children("Value")) {
+        std::vector<double>& numbers = positions[value.attribute("key").value()];
+        if (!numbers.empty()) throw document.error(value, "states a key twice");
+        for (int i = 1;; ++i) {
+            const pugi::xml_attribute joint = value.attribute(fmt::format("j{}", i).c_str());
+            if (!joint) break;
+            const ParsedNumber number = parse_number(joint.value());
+            if (!number.ok()) {
+                throw document.error(value, fmt::format("j{} {}", i, number.problem));
+            }
+            numbers.push_back(number.value);
+        }
+    }
+    return positions;
+}
+
+std::vector<double> val3_position(const TextLine& line, const Val3Positions& positions) {
+    constexpr std::string_view array = "joints[";
+    const std::size_t open = line.text.find(array);
+    const std::size_t close = line.text.find(']', std::min(open, line.text.size()));
+    if (close == std::string_view::npos) {
+        throw line.error("moves to no position of joints; must be like movej(joints[0],...)");
+    }
+    const std::string_view key =
+        trim(line.text.substr(open + array.size(), close - open - array.size()));
+    const auto found = positions.find(std::string(key));
+    if (found == positions.end()) {
+        throw line.error("moves to a position that the project's data have none of");
+    }
+    return found->second;
+}
+
+std::vector<FileContent> staubli_files(const std::string& path, const io::RobotProgram& program) {
+    const std::string name = folder_name(path);
+    std::string code = fmt::format("  // {}\n", comment_text(program.title));
+    for (std::size_t k = 0; k < program.stops.size(); ++k) {
+        code += staubli_stop(program, program.stops[k], k);
+    }
+    return {{file_in(path, name + ".pjx"), val3_project(name)},
+            {file_in(path, name + ".dtx"), val3_data(program)},
+            {file_in(path, "start.pgx"), val3_program("start", "public", code)},
+            {file_in(path, "stop.pgx"), val3_program("stop", "public", "  resetMotion()\n")}};
+}
+
+std::vector<io::ProgramStop> read_staubli(const std::string& path, const ControllerJoints& joints) {
+    const Val3Positions positions = read_val3_positions(file_in(path, folder_name(path) + ".dtx"));
+    const ProgramFile file(file_in(path, "start.pgx"));
+    std::vector<io::ProgramStop> stops;
+    std::string comment;
+    for (const TextLine& line : file.lines()) {
+        if (line.begins_with("//")) note_comment(line.text.substr(2), comment);
+        for (const char* const other : {"movel(", "movec("}) {
+            if (line.begins_with(other)) throw line.error("is no joint move; must be movej(...)");
+        }
+        if (!line.begins_with("movej(")) continue;
+        stops.push_back(make_stop(line, staubli_program().rules, joints,
+                                  val3_position(line, positions), comment));
+    }
+    return stops;
+}
+
+}  // namespace
+
+const ProgramKind& staubli_program() {
+    static const ProgramKind kind{
+        {.ending = "",
+         .decimals = 5,
+         .longest_name = 15,
+         .words = "start stop begin end if then else endif for to do while endwhile until "
+                  "switch case call return and or not true false flange world",
+         .has_io = false},
+        &staubli_files,
+        &read_staubli};
+    return kind;
+}
+
+}  // namespace posewise::detail

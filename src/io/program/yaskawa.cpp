@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "io/format/text.hpp"
+#include "program_text.hpp"
+
+/// Yaskawa INFORM jobs (.jbi) in pulses, whose lines end in CR LF.
+namespace posewise::detail {
+namespace {
+
+constexpr std::size_t most_positions = 9999;
+constexpr double most_pulses = 2147483647;
+
+std::string pulses_text(const ControllerJoints& joints, const VectorXd& values) {
+    std::string text;
+    for (Index i = 0; i < values.size(); ++i) {
+        const double pulses = values[i] * joints.pulses_per_unit()[i];
+        if (!(std::abs(pulses) < most_pulses)) {
+            throw InputError(fmt::format(
+                "joint {} has {:.4g} pulses; must be fewer: look at controller.pulses_per_deg",
+                i + 1, pulses));
+        }
+        fmt::format_to(std::back_inserter(text), "{}{}", i == 0 ? "" : ",", std::llround(pulses));
+    }
+    return text;
+}
+
+std::string yaskawa_stop(const io::RobotProgram& program, const io::ProgramStop& stop,
+                         std::size_t number) {
+    std::string text = fmt::format("'{}\r\nMOVJ C{:05} VJ={:.2f} PL=0\r\n", stop.label, number,
+                                   static_cast<double>(program.speed_percent));
+    if (!stop.is_measured) return text;
+    if (const double dwell = dwell_of(program, stop); dwell > 0) {
+        text += fmt::format("TIMER T={:.2f}\r\n", dwell);
+    }
+    if (program.handshake == io::Handshake::Pause) text += "PAUSE\r\n";
+    if (program.handshake == io::Handshake::Io) {
+        text += "DOUT OT#(1) ON\r\nWAIT IN#(1)=ON\r\nDOUT OT#(1) OFF\r\nWAIT IN#(1)=OFF\r\n";
+    }
+    return text;
+}
+
+/// "C00000" of "C00000=..." or "MOVJ C00000 VJ=...".
+std::string position_name(const TextLine& line, std::size_t begin) {
+    const std::string_view rest = line.text.substr(begin);
+    const std::size_t end = std::min(rest.find_first_of(" =\t"), rest.size());
+    return std::string(rest.substr(0, end));
+}
+
+io::ProgramStop pulse_stop(const TextLine& line, const ControllerJoints& joints,
+                           const std::vector<double>& pulses, std::string& comment) {
+    std::vector<double> degrees;
+    for (std::size_t i = 0; i < pulses.size() && std::ssize(degrees) < joints.count(); ++i) {
+        degrees.push_back(to_degrees(pulses[i] / joints.pulses_per_unit()[static_cast<Index>(i)]));
+    }
+    return make_stop(line, yaskawa_program().rules, joints, degrees, comment);
+}
+
+/// Throws InputError unless the positions are in pulses of joints.
+void check_kind(const TextLine& line) {
+    if (line.begins_with("///POSTYPE") && !line.has("PULSE")) {
+        throw line.error("states positions that are no joints; must be ///POSTYPE PULSE");
+    }
+    for (const char* const other : {"MOVL", "MOVC", "MOVS", "IMOV"}) {
+        if (line.begins_with(other)) throw line.error("is no joint move; must be MOVJ");
+    }
+}
+
+std::vector<FileContent> yaskawa_files(const std::string& path, const io::RobotProgram& program) {
+    if (program.stops.size() > most_positions) {
+        throw InputError(
+            fmt::format("a program for yaskawa with {} moves; must be at most {}: "
+                        "repeat it less often",
+                        program.stops.size(), most_positions));
+    }
+    std::string text = fmt::format(
+        "/JOB\r\n//NAME {}\r\n//POS\r\n///NPOS {},0,0,0,0,0\r\n///TOOL 0\r\n///POSTYPE "
+        "PULSE\r\n///PULSE\r\n",
+        io::legal_program_name(io::ProgramFormat::Yaskawa, stem_of(path)), program.stops.size());
+    std::string body;
+    for (std::size_t k = 0; k < program.stops.size(); ++k) {
+        const io::ProgramStop& stop = program.stops[k];
+        text += fmt::format("C{:05}={}\r\n", k, pulses_text(program.joints, stop.joints));
+        body += yaskawa_stop(program, stop, k);
+    }
+    text += fmt::format("//INST\r\n///DATE {}\r\n///ATTR SC,RW\r\n///GROUP1 RB1\r\nNOP\r\n'{}\r\n",
+                        program.date, comment_text(program.title, 32));
+    return {{path, text + body + "END\r\n"}};
+}
+
+std::vector<io::ProgramStop> read_yaskawa(const std::string& path, const ControllerJoints& joints) {
+    const ProgramFile file(path);
+    std::map<std::string, std::vector<double>> positions;
+    std::vector<io::ProgramStop> stops;
+    std::string comment;
+    bool is_instruction = false;
+    for (const TextLine& line : file.lines()) {
+        check_kind(line);
+        if (line.begins_with("//INST")) is_instruction = true;
+        if (line.begins_with("'")) note_comment(line.text.substr(1), comment);
+        const std::size_t equals = line.text.find('=');
+        if (!is_instruction && line.begins_with("C") && equals != std::string_view::npos) {
+            positions[position_name(line, 0)] = read_numbers(line, line.text.substr(equals + 1));
+        }
+        if (!line.begins_with("MOVJ")) continue;
+        if (!line.has("PL=0")) throw line.error("does not stop at its position; must have PL=0");
+        const auto found =
+            positions.find(position_name(line, std::min<std::size_t>(5, line.text.size())));
+        if (found == positions.end()) {
+            throw line.error(
+                "moves to a position that the job does not state; must be like "
+                "MOVJ C00000");
+        }
+        stops.push_back(pulse_stop(line, joints, found->second, comment));
+    }
+    return stops;
+}
+
+}  // namespace
+
+const ProgramKind& yaskawa_program() {
+    static const ProgramKind kind{
+        {.ending = ".jbi", .decimals = 0, .longest_name = 32, .is_upper = true},
+        &yaskawa_files,
+        &read_yaskawa};
+    return kind;
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,353 @@
+#include "posewise/task/sent_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
+
+#include "core/text.hpp"
+#include "model/joint_limits.hpp"
+#include "planner/tour.hpp"
+#include "planning_problem.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/planner/prediction.hpp"
+#include "selection/bound.hpp"
+#include "task/choice/choice_problem.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::quote;
+
+/// Poses that a search moved to their bound are beyond it by rounding.
+constexpr double send_rounding = 1e-9;  // rad or m
+
+/// Configurations on the grid of a program's digits.
+class Grid {
+  public:
+    Grid(const ControllerJoints& controller, const VectorXd& steps)
+        : controller_(controller), steps_(steps) {
+        if (steps.size() != controller.count() || !(steps.array() > 0).all()) {
+            throw InputError("a step of the controller's joints is missing or not positive");
+        }
+    }
+
+    VectorXd nearest(const VectorXd& q) const {
+        return to_model(q, counts(q).array().round().matrix());
+    }
+
+    /// The nearest next to q that are as they must be; nothing: none is.
+    std::optional<VectorXd> nearest_of(const VectorXd& q,
+                                       const std::function<bool(const VectorXd&)>& is_right) const {
+        const VectorXd planned = counts(q);
+        const VectorXd lower = planned.array().floor();
+        const Index joints = std::min<Index>(planned.size(), most_varied);
+        std::vector<VectorXd> corners;
+        for (unsigned mask = 0; mask < 1U << joints; ++mask) {
+            VectorXd corner = planned.array().round();
+            for (Index j = 0; j < joints; ++j) corner[j] = lower[j] + ((mask >> j) & 1U);
+            corners.push_back(corner);
+        }
+        std::ranges::stable_sort(
+            corners, {}, [&](const VectorXd& corner) { return (corner - planned).squaredNorm(); });
+        for (const VectorXd& corner : corners) {
+            const VectorXd candidate = to_model(q, corner);
+            if (is_right(candidate)) return candidate;
+        }
+        return std::nullopt;
+    }
+
+  private:
+    static constexpr Index most_varied = 10;  // joints; 1024 corners
+
+    VectorXd counts(const VectorXd& q) const {
+        return controller_.to_controller(q.head(controller_.count())).cwiseQuotient(steps_);
+    }
+    VectorXd to_model(const VectorXd& q, const VectorXd& counts) const {
+        VectorXd sent = q;
+        sent.head(controller_.count()) = controller_.to_model(counts.cwiseProduct(steps_));
+        return sent;
+    }
+
+    const ControllerJoints& controller_;
+    const VectorXd& steps_;
+};
+
+/// Which constraint a configuration violates, or what it does not show; empty if it is right.
+/// Rounding moves fixed joints, too: by less than a step, which is no constraint's matter.
+std::string find_fault_of_pose(const Constraints& constraints, const VectorXd& q,
+                               const std::vector<Index>& targets) {
+    const ConstraintReport report = constraints.check(q);
+    for (std::size_t k = 0; k < constraint_count; ++k) {
+        const auto constraint = static_cast<Constraint>(k);
+        if (constraint == Constraint::FixedJoints || report.clearance[k] >= -send_rounding)
+            continue;
+        if (constraint == Constraint::JointLimits) {
+            const std::string words = detail::describe_limit_violation(constraints.robot(), q);
+            if (!words.empty()) return words;
+        }
+        return fmt::format("does not keep {}", constraint_name(constraint));
+    }
+    for (const Index target : targets) {
+        if (target >= std::ssize(report.is_seen) || !report.is_seen[target]) {
+            return fmt::format("does not show target {}", target + 1);
+        }
+    }
+    return "";
+}
+
+std::string find_fault_of_stop(const Constraints& constraints, const VectorXd& q) {
+    const std::string beyond = detail::describe_limit_violation(constraints.robot(), q);
+    if (!beyond.empty()) return beyond;
+    return constraints.collision_clearance(q) >= -send_rounding ? "" : "collides";
+}
+
+void check_sendable(const Plan& plan, const Campaign& campaign,
+                    const ControllerJoints& controller) {
+    const std::string mismatch = describe_mismatch(plan, campaign);
+    if (!mismatch.empty()) throw InputError(mismatch);
+    if (campaign.sensor->has_contacts()) {
+        throw InputError("the sensor touches sockets, which no program of joint moves can");
+    }
+    if (controller.count() != campaign.robot.joint_count()) {
+        throw InputError("the controller's joints are of another robot");
+    }
+    for (const auto* poses : {&plan.poses, &plan.verification}) {
+        for (const PlannedPose& pose : *poses) {
+            if (!pose.configuration.allFinite() || (pose.via && !pose.via->allFinite())) {
+                throw InputError("pose " + quote(pose.id) + " has a joint that is not finite");
+            }
+        }
+    }
+}
+
+void check_ways(const std::vector<PlannedPose>& poses) {
+    for (const PlannedPose& pose : poses) {
+        if (!pose.is_blocked) continue;
+        throw InputError("the way to pose " + quote(pose.id) +
+                         " is BLOCKED; plan again with more room, or without it: `dropped`");
+    }
+}
+
+/// The configuration on the grid. `find` says what is wrong with one.
+VectorXd send(const Grid& grid, const std::string& what, const VectorXd& q,
+              const std::function<std::string(const VectorXd&)>& find) {
+    const VectorXd nearest = grid.nearest(q);
+    const std::string fault = find(nearest);
+    if (fault.empty()) return nearest;
+    const std::string planned = find(q);
+    if (!planned.empty()) throw InputError(fmt::format("{} {}", what, planned));
+    const auto other = grid.nearest_of(q, [&](const VectorXd& one) { return find(one).empty(); });
+    if (other) return *other;
+    throw InputError(fmt::format(
+        "{} is right, but no joint values next to it are in the program's digits: rounded it {}; "
+        "must be off its limit, plan with margin_deg",
+        what, fault));
+}
+
+VectorXd send_via(const Grid& grid, const Constraints& constraints, const VectorXd& via,
+                  const std::string& id) {
+    return send(grid, "the via before pose " + quote(id), via,
+                [&](const VectorXd& q) { return find_fault_of_stop(constraints, q); });
+}
+
+void send_all(std::vector<PlannedPose>& poses, const Constraints& constraints, const Grid& grid) {
+    for (PlannedPose& pose : poses) {
+        pose.configuration = send(
+            grid, "pose " + quote(pose.id), pose.configuration,
+            [&](const VectorXd& q) { return find_fault_of_pose(constraints, q, pose.targets); });
+        if (pose.clearance) pose.clearance = constraints.nearest(pose.configuration);
+        if (pose.via) pose.via = send_via(grid, constraints, *pose.via, pose.id);
+    }
+}
+
+Constraints constraints_of(const Campaign& campaign) { return {campaign, campaign.cell, false}; }
+
+RoundingLoss compare_joints(const Plan& plan, const Plan& sent, const Campaign& campaign) {
+    RoundingLoss loss;
+    loss.criterion = plan.request.criterion;
+    for (const PlannedPose& pose : sent.poses) {
+        const auto planned = std::ranges::find(plan.poses, pose.id, &PlannedPose::id);
+        const VectorXd change = (pose.configuration - planned->configuration).cwiseAbs();
+        for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
+            double& largest = campaign.robot.joint(j).motion == Motion::Rotation
+                                  ? loss.largest_turn
+                                  : loss.largest_slide;
+            largest = std::max(largest, change[j]);
+        }
+    }
+    return loss;
+}
+
+/// A way that a program takes, one stop after another.
+class Route {
+  public:
+    Route(const Campaign& campaign, const Constraints& constraints, const Grid& grid)
+        : constraints_(constraints), grid_(grid), moving_(with_room(campaign)) {}
+
+    /// Throws InputError for a move to the stop that is not free.
+    void go(RouteStop stop) {
+        if (!stops_.empty()) {
+            const RouteStop& last = stops_.back();
+            if (!detail::is_move_free(moving_, last.configuration, stop.configuration)) {
+                throw InputError(
+                    fmt::format("the way from {} to {} is not free; plan again with plan",
+                                name_of(last), name_of(stop)));
+            }
+        }
+        stops_.push_back(std::move(stop));
+    }
+
+    /// By the shortest way that is found.
+    void go_around(const RouteStop& stop) {
+        detail::TourOptions options;
+        options.start = stops_.back().configuration;
+        RowMatrixXd to(1, stop.configuration.size());
+        to.row(0) = stop.configuration.transpose();
+        const Tour tour = detail::plan_tour(constraints_, to, options);
+        if (tour.visits[0].is_blocked) {
+            throw InputError(fmt::format("no free way was found from {} to {}; state another home",
+                                         name_of(stops_.back()), name_of(stop)));
+        }
+        if (tour.visits[0].via) {
+            const VectorXd via =
+                send(grid_, "the via back", *tour.visits[0].via,
+                     [&](const VectorXd& q) { return find_fault_of_stop(constraints_, q); });
+            go({RouteStop::Kind::Via, "", 1, via});
+        }
+        go(stop);
+    }
+
+    const std::vector<RouteStop>& stops() const { return stops_; }
+
+  private:
+    /// Rounding may cost the room of a move that is as near as allowed: far less than this.
+    static Constraints with_room(const Campaign& campaign) {
+        constexpr double room = 1e-4;  // m
+        Cell cell = campaign.cell;
+        cell.safety_distance = std::max(0.0, cell.safety_distance - room);
+        return {campaign, cell, false};
+    }
+
+    static std::string name_of(const RouteStop& stop) {
+        if (stop.kind == RouteStop::Kind::Pose) return "pose " + quote(stop.id);
+        return stop.kind == RouteStop::Kind::Home ? "home" : "a via";
+    }
+
+    const Constraints& constraints_;
+    const Grid& grid_;
+    Constraints moving_;
+    std::vector<RouteStop> stops_;
+};
+
+/// Choices are in no order that a robot could follow, and their ways were never looked at.
+void order_choice(Plan& sent, const Constraints& constraints, const Grid& grid) {
+    detail::TourOptions options;
+    options.order.seed = sent.request.seed.value_or(1);
+    const Tour tour = detail::plan_tour(
+        constraints, detail::configurations_of(sent.poses, sent.poses[0].configuration.size()),
+        options);
+    std::vector<PlannedPose> ordered;
+    for (const Visit& visit : tour.visits) {
+        PlannedPose& pose = ordered.emplace_back(sent.poses[static_cast<std::size_t>(visit.pose)]);
+        pose.is_blocked = visit.is_blocked;
+        if (visit.via) pose.via = send_via(grid, constraints, *visit.via, pose.id);
+    }
+    sent.poses = ordered;
+}
+
+}  // namespace
+
+Plan sent_plan(const Plan& plan, const Campaign& campaign, const ControllerJoints& controller,
+               const VectorXd& steps) {
+    check_sendable(plan, campaign, controller);
+    check_ways(plan.poses);
+    check_ways(plan.verification);
+    const Constraints constraints = constraints_of(campaign);
+    const Grid grid(controller, steps);
+    Plan sent = plan;
+    send_all(sent.poses, constraints, grid);
+    send_all(sent.verification, constraints, grid);
+    if (sent.is_continuous()) return sent;
+    order_choice(sent, constraints, grid);
+    check_ways(sent.poses);
+    return sent;
+}
+
+RoundingLoss rounding_loss(const Plan& plan, const Plan& sent, const Campaign& campaign,
+                           const PlanningOptions& options) {
+    detail::PlanningProblem problem = detail::state_planning(campaign, options);
+    detail::draw_workspace(problem, options);
+    RoundingLoss loss = compare_joints(plan, sent, problem.campaign);
+    const auto value_at = [&](const Plan& one, double& value, std::optional<double>& rms) {
+        const Blocks blocks = detail::blocks_of(problem, one.poses);
+        value = detail::value_of(problem, blocks);
+        rms = predict_accuracy(problem.errors.by_parameters,
+                               held_information(problem) + information(blocks))
+                  .rms;
+    };
+    value_at(plan, loss.planned, loss.planned_rms);
+    value_at(sent, loss.sent, loss.sent_rms);
+    return loss;
+}
+
+RoundingLoss rounding_loss(const Plan& plan, const Plan& sent, const Campaign& campaign,
+                           Candidates candidates, const ChoiceOptions& options) {
+    RoundingLoss loss = compare_joints(plan, sent, campaign);
+    const auto value_at = [&](const Plan& one) {
+        const detail::CandidateIndex index(candidates.ids, detail::ids_of(one.poses));
+        for (const PlannedPose& pose : one.poses) {
+            candidates.configurations.row(index.find(pose.id, "poses:")) =
+                pose.configuration.transpose();
+        }
+        const detail::ChoiceProblem problem = detail::state_choice(campaign, candidates, options);
+        return detail::choice_value(problem.blocks, problem.options,
+                                    detail::candidates_of(problem, one.poses));
+    };
+    loss.planned = value_at(plan);
+    loss.sent = value_at(sent);
+    return loss;
+}
+
+std::vector<RouteStop> route_of(const Plan& sent, const Campaign& campaign,
+                                const ControllerJoints& controller, const VectorXd& steps,
+                                const RouteOptions& options) {
+    using Kind = RouteStop::Kind;
+    const Constraints constraints = constraints_of(campaign);
+    const Grid grid(controller, steps);
+    const bool has_home = campaign.cell.home.size() != 0;
+    if (options.is_reversed && !has_home) {
+        throw InputError(
+            "cell.home_deg is not stated; must be, since a reversed pass begins there");
+    }
+    Route pass(campaign, constraints, grid);
+    if (has_home) pass.go({Kind::Home, "", 1, grid.nearest(campaign.cell.home)});
+    for (const auto* poses : {&sent.poses, &sent.verification}) {
+        for (const PlannedPose& pose : *poses) {
+            if (pose.via) pass.go({Kind::Via, "", 1, *pose.via});
+            pass.go({Kind::Pose, pose.id, pose.times, pose.configuration});
+        }
+    }
+    const RouteStop first = pass.stops().front();
+    if (has_home || options.repeats > 1) pass.go_around(first);
+    const std::vector<RouteStop>& stops = pass.stops();
+    std::vector<RouteStop> route;
+    for (Index k = 0; k < options.repeats; ++k) {
+        // A pass ends where the next begins.
+        const auto begin = static_cast<std::ptrdiff_t>(k == 0 ? 0 : 1);
+        if (options.is_reversed && k % 2 == 1) {
+            route.insert(route.end(), stops.rbegin() + begin, stops.rend());
+        } else {
+            route.insert(route.end(), stops.begin() + begin, stops.end());
+        }
+    }
+    if (!has_home && options.repeats > 1) {  // not back to the first pose once more
+        route.pop_back();
+        while (route.back().kind == Kind::Via) route.pop_back();
+    }
+    return route;
+}
+
+}  // namespace posewise

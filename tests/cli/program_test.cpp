@@ -1,0 +1,168 @@
+#include "program.hpp"
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+/// `program`: from a plan to a controller, and back.
+namespace posewise::testing {
+namespace {
+
+class ProgramCommand : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        write_cell("cell.yaml", "{maker: fanuc, j23_factor: 1}");
+        run_well(
+            "plan cell.yaml -k 10 --verification 2 --pool 600 --starts 1 --workspace-poses 30 "
+            "-o p.json --csv p.csv");
+    }
+
+    /// The demonstration cell with this controller.
+    void write_cell(const std::string& name, const std::string& controller) const {
+        write_text(name, read_text(source_folder() + "/designs/cell_demo/campaign.yaml") +
+                             "\ncontroller: " + controller + '\n');
+    }
+
+    std::vector<std::vector<std::string>> rows_of(const std::string& name) const {
+        std::vector<std::vector<std::string>> rows;
+        std::istringstream lines(text_of(name));
+        for (std::string line; std::getline(lines, line);) {
+            std::vector<std::string>& row = rows.emplace_back();
+            std::istringstream fields(line);
+            for (std::string field; std::getline(fields, field, ',');) row.push_back(field);
+        }
+        return rows;
+    }
+
+    /// Two CSV files have the same configurations, ids and joints to 1e-9 deg.
+    void expect_same_joints(const std::string& a, const std::string& b) const {
+        const auto first = rows_of(a);
+        const auto second = rows_of(b);
+        ASSERT_EQ(first.size(), second.size());
+        for (std::size_t i = 1; i < first.size(); ++i) {
+            EXPECT_EQ(first[i][0], second[i][0]);
+            for (std::size_t j = 1; j <= 6; ++j) {
+                EXPECT_NEAR(std::stod(first[i][j]), std::stod(second[i][j]), 1e-9) << first[i][0];
+            }
+        }
+    }
+};
+
+TEST_F(ProgramCommand, WritesWhatIsReadBackForEveryController) {
+    write_cell("other.yaml",
+               "{joints: [-q1, q2 - 90 deg, 90 deg - q3 + q2, -q4, q5, -q6], pulses_per_deg: "
+               "[1341.38, 1907.67, 1592.89, 1022.86, 980.24, 454.75]}");
+    const std::pair<const char*, const char*> programs[] = {
+        {"fanuc", "CELL.LS"},   {"kuka", "cell.src"},    {"abb", "cell.mod"},
+        {"ur", "cell.script"},  {"yaskawa", "CELL.JBI"}, {"staubli", "cell"},
+        {"ros2", "goals.yaml"}, {"csv", "cell.csv"}};
+    for (const auto& [controller, file] : programs) {
+        const std::string command =
+            std::string("program p.json --campaign other.yaml --for ") + controller + ' ';
+        const std::string text = run_well(command + "-o " + file);
+        EXPECT_NE(text.find("12 poses in "), std::string::npos) << text;
+        EXPECT_NE(text.find("predicted RMS/mm: "), std::string::npos) << text;
+        const std::string read = run_well(command + "--read " + file + " -o back.csv");
+        EXPECT_EQ(read.find("dropped"), std::string::npos) << read;
+        EXPECT_EQ(read.find("moved"), std::string::npos) << read;
+        expect_same_joints("back.csv", "p.as_sent.csv");
+        // Again, over what is there.
+        run_well(command + "-o " + file);
+    }
+}
+
+TEST_F(ProgramCommand, WritesThePlanAsItIsSent) {
+    run_well("program p.json --for fanuc -o CELL.LS");
+    const auto planned = rows_of("p.csv");
+    const auto sent = rows_of("p.as_sent.csv");
+    ASSERT_EQ(planned.size(), sent.size());
+    EXPECT_EQ(planned[0], sent[0]);
+    for (std::size_t i = 1; i < sent.size(); ++i) {
+        const double q2 = std::stod(sent[i][2]);
+        const double q3 = std::stod(sent[i][3]);
+        for (const double joint : {q2, q3 - q2, std::stod(sent[i][6])}) {
+            EXPECT_NEAR(1e3 * joint, std::round(1e3 * joint), 1e-6) << sent[i][0];
+        }
+        for (std::size_t j = 1; j <= 6; ++j) {
+            EXPECT_NEAR(std::stod(sent[i][j]), std::stod(planned[i][j]), 2.1e-3);
+        }
+    }
+    // The measurements are made there, and belong to the plan.
+    run_well("simulate cell.yaml --configurations p.as_sent.csv -o m.csv");
+    run_well("calibrate cell.yaml -m m.csv --plan p.json --folds 0 --prior");
+    run_well("select cell.yaml --candidates p.as_sent.csv -k 6 --prior -o s.json");
+    EXPECT_NE(run_well("program s.json --for csv -o s.csv").find("as sent"), std::string::npos);
+}
+
+TEST_F(ProgramCommand, WaitsAsItIsTold) {
+    const auto program = [&](const std::string& options) {
+        run_well("program p.json --for fanuc -o A.ls " + options);
+        return text_of("A.ls");
+    };
+    EXPECT_NE(program("").find("WAIT   2.00(sec)"), std::string::npos);
+    const std::string io = program("--handshake io --dwell 3.5 --speed 45");
+    EXPECT_NE(io.find("WAIT   3.50(sec)"), std::string::npos);
+    EXPECT_NE(io.find("45% FINE"), std::string::npos);
+    EXPECT_NE(io.find("DO[1]=ON ;"), std::string::npos);
+    EXPECT_EQ(io.find("CNT"), std::string::npos);
+    const std::string dry = program("--handshake pause --dry-run");
+    EXPECT_EQ(dry.find("WAIT"), std::string::npos);
+    EXPECT_EQ(dry.find("PAUSE"), std::string::npos);
+    EXPECT_NE(dry.find("10% FINE"), std::string::npos);
+    const std::string text = run_well("program p.json --for fanuc -o A.ls --repeats 2 --reverse");
+    EXPECT_NE(text.find("24 poses in "), std::string::npos) << text;
+    run_well("program p.json --for fanuc --read A.ls -o back.csv");
+    expect_same_joints("back.csv", "p.as_sent.csv");
+}
+
+TEST_F(ProgramCommand, SaysWhichPosesAnEditedProgramHasNot) {
+    run_well("program p.json --for csv -o a.csv");
+    std::string text = text_of("a.csv");
+    const std::size_t at = text.find("\np3,");
+    text.erase(at, text.find('\n', at + 1) - at);
+    write_text("edited.csv", text);
+    const std::string said = run_well("program p.json --for csv --read edited.csv -o back.csv");
+    EXPECT_NE(said.find("dropped: p3\n"), std::string::npos) << said;
+    EXPECT_NE(said.find("--plan p.json --drop p3\n"), std::string::npos) << said;
+    EXPECT_EQ(run_well("program cell.yaml --for csv --read edited.csv").find("dropped"),
+              std::string::npos);
+    const auto document =
+        nlohmann::json::parse(run_well("program p.json --for csv --read edited.csv --json"));
+    EXPECT_EQ(document.at("dropped"), std::vector<std::string>{"p3"});
+}
+
+TEST_F(ProgramCommand, RefusesWhatNoRobotShouldDo) {
+    expect_input_error("program p.json --for yaskawa -o A.jbi",
+                       "cell.yaml: controller.pulses_per_deg is not stated");
+    expect_input_error("program p.json --for fanuc -o 'my cell.ls'", "must be like MY_CELL.ls");
+    expect_input_error("program p.json --for ros2 -o a.yaml --handshake pause",
+                       "no handshake pause");
+    expect_input_error("program p.json --for staubli -o none/cell", "none");
+    expect_input_error("program p.json --for csv -o p.as_sent.csv", "p.as_sent.csv");
+    expect_input_error("program p.json --for fanuc -o A.ls --campaign " + fanuc_design,
+                       "p.json: campaign: is 'FANUC R-2000iC/165F in a cell'");
+    expect_input_error("program p.json --for fanuc --read p.csv", "has no /POS");
+    expect_input_error("program p.json --for csv --read cell.yaml", "cell.yaml");
+
+    // Limits that were narrowed since.
+    std::string cell = text_of("cell.yaml");
+    const std::string limits = "q1: {limits_deg: [-90, 90]}";
+    cell.replace(cell.find(limits), limits.size(), "q1: {limits_deg: [-12, 12]}");
+    write_text("narrow.yaml", cell);
+    expect_input_error("program p.json --for fanuc -o A.ls --campaign narrow.yaml", "must be from");
+
+    std::string plan = text_of("p.json");
+    const std::string free = "\"way_is_blocked\": false";
+    ASSERT_NE(plan.find(free), std::string::npos) << plan.substr(0, 3000);
+    plan.replace(plan.find(free), free.size(), "\"way_is_blocked\": true");
+    write_text("blocked.json", plan);
+    expect_input_error("program blocked.json --for fanuc -o A.ls",
+                       "is BLOCKED; plan again with more room, or without it: --drop");
+
+    write_cell("singular.yaml", "{joints: {J3: q2}}");
+    expect_input_error("program p.json --for fanuc -o A.ls --campaign singular.yaml",
+                       "their matrix is singular");
+}
+
+}  // namespace
+}  // namespace posewise::testing

@@ -1,0 +1,140 @@
+#include <gtest/gtest.h>
+
+#include "campaign_text.hpp"
+#include "posewise/io/campaign_file.hpp"
+#include "posewise/io/measurements_file.hpp"
+#include "support/temporary_folder.hpp"
+
+// What a campaign says of its controller's joints.
+
+namespace posewise::io {
+namespace {
+
+using namespace testing;
+
+constexpr double degree = std::numbers::pi / 180;
+
+/// Six joints; the controller's section is line 7.
+const std::string robot_text = R"(name: arm
+robot:
+  joints: {q1: {limits_deg: [-90, 90]}, q2: {limits_deg: [-90, 90]}, q3: {limits_deg: [-90, 90]}, q4: {limits_deg: [-90, 90]}, q5: {limits_deg: [-90, 90]}, q6: {limits_deg: [-90, 90]}}
+  elements: [Rz q1, Tx 300 mm, Ry q2, Tz 1 m, Ry -q3, Tx 1 m, Rx -q4, Ry -q5, Rx -q6]
+sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}
+
+)";
+
+ControllerJoints read(const std::string& section) {
+    return parse_campaign(robot_text + "controller: " + section + '\n', "arm.yaml").controller;
+}
+
+std::string error_of(const std::string& section) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("arm.yaml", robot_text + "controller: " + section + '\n');
+    return input_error_of([&] { read_campaign(path); });
+}
+
+VectorXd some_joints() { return VectorXd::LinSpaced(6, 10, 60) * degree; }
+
+TEST(ControllerSection, IsTheRobotsOwnWhereItIsMissing) {
+    const CampaignFile file = parse_campaign(robot_text, "arm.yaml");
+    EXPECT_TRUE(file.controller.is_identity());
+    EXPECT_EQ(file.controller.names()[3], "q4");
+    EXPECT_EQ(file.controller.pulses_per_unit().size(), 0);
+}
+
+TEST(ControllerSection, ReadsSomeJointsByNumber) {
+    const ControllerJoints joints = read("{joints: {J3: q3 - q2, J6: -q6 + 90 deg}}");
+    const VectorXd c = joints.to_controller(some_joints()) / degree;
+    EXPECT_EQ(joints.names()[0], "J1");
+    EXPECT_NEAR(c[0], 10, 1e-12);
+    EXPECT_NEAR(c[2], 10, 1e-12);
+    EXPECT_NEAR(c[5], 30, 1e-12);
+}
+
+TEST(ControllerSection, ReadsAllJointsByNameOrInAList) {
+    const ControllerJoints named =
+        read("{joints: {a: -q1, b: q2, c: q3 + 0.5*q2, d: 100 mrad + q4, e: q5, f: q6}}");
+    EXPECT_EQ(named.names()[5], "f");
+    VectorXd expected(6);
+    expected << -10, 20, 40, 40 + 0.1 / degree, 50, 60;
+    EXPECT_LT((named.to_controller(some_joints()) / degree - expected).norm(), 1e-10);
+    const ControllerJoints listed = read("{joints: [-q1, q2, q3 + 0.5*q2, q4 + 100 mrad, q5, q6]}");
+    EXPECT_EQ(listed.names()[5], "J6");
+    EXPECT_LT((listed.from_model() - named.from_model()).norm(), 1e-15);
+    EXPECT_LT((listed.offset() - named.offset()).norm(), 1e-15);
+}
+
+TEST(ControllerSection, KnowsFanuc) {
+    const ControllerJoints joints = read("{maker: fanuc, j23_factor: 1}");
+    EXPECT_NEAR(joints.to_controller(some_joints())[2], 10 * degree, 1e-12);
+    EXPECT_NEAR(read("{maker: fanuc, j23_factor: -1}").to_controller(some_joints())[2], 50 * degree,
+                1e-12);
+}
+
+TEST(ControllerSection, ReadsPulses) {
+    const ControllerJoints joints = read("{pulses_per_deg: [1341.38, 1, 2, 3, 4, 5]}");
+    EXPECT_NEAR(joints.pulses_per_unit()[0] * degree, 1341.38, 1e-9);
+    EXPECT_EQ(joints.names()[0], "q1");
+}
+
+TEST(ControllerSection, ReadsMeasurementsOfThePendant) {
+    const TemporaryFolder folder;
+    const std::string controller =
+        "controller: {joints: {A1: -q1, A2: q2 - 90 deg, A3: q3 + q2, A4: q4, A5: q5, A6: q6}}\n";
+    const std::string rows =
+        "a,10,-70,50,40,50,60,1,2,3,4,5,6,7,8,9\nb,11,-71,51,41,51,61,1,2,3,4,5,6,7,8,8\n";
+    const std::string targets =
+        ",p1_x_mm,p1_y_mm,p1_z_mm,p2_x_mm,p2_y_mm,p2_z_mm,p3_x_mm,p3_y_mm,"
+        "p3_z_mm\n";
+    const std::string path =
+        folder.write("m.csv", "config,A1_deg,A2_deg,A3_deg,A4_deg,A5_deg,A6_deg" + targets + rows);
+    const CampaignFile file =
+        parse_campaign(robot_text + controller + "measurements: {columns: controller}\n", "a.yaml");
+    const Measurements read = read_measurements(path, file);
+    VectorXd q(6);
+    q << -10, 20, 30, 40, 50, 60;
+    EXPECT_LT((read.configurations.row(0).transpose() / degree - q).norm(), 1e-10);
+    EXPECT_NE(input_error_of([&] {
+                  read_measurements(path, parse_campaign(robot_text + controller, "a.yaml"));
+              }).find("A1"),
+              std::string::npos);
+    EXPECT_NE(
+        input_error_of([&] {
+            parse_campaign(robot_text + "measurements: {columns: pendant}\n", "a.yaml");
+        }).find("a.yaml:7:25: measurements.columns is 'pendant'; must be controller or model"),
+        std::string::npos);
+}
+
+TEST(ControllerSection, SaysWhatIsWrongWhere) {
+    const std::pair<const char*, const char*> slips[] = {
+        {"{maker: kuka}", "arm.yaml:7:21: controller.maker is 'kuka'; must be fanuc"},
+        {"{maker: fanuc}", "arm.yaml:7:13: controller has no key j23_factor"},
+        {"{maker: fanuc, j23_factor: 2}",
+         "arm.yaml:7:40: controller.j23_factor is '2'; must be -1"},
+        {"{j23_factor: 1}", "arm.yaml:7:26: controller.j23_factor is stated without maker: fanuc"},
+        {"{maker: fanuc, j23_factor: 1, joints: {J1: q1}}", "is stated beside controller.maker"},
+        {"{joints: {J7: q1}}", "arm.yaml:7:23: 'J7' is no joint of the controller"},
+        {"{joints: {J3: q3 - q7}}", "arm.yaml:7:32: 'q7' is no joint of the robot"},
+        {"{joints: {J3: q3 + 5}}", "arm.yaml:7:32: a number without unit"},
+        {"{joints: {J3: q3 + 5 mm}}", "the joint turns, its amount cannot be in 'mm'"},
+        {"{joints: {J3: 5 deg}}", "'5 deg' has no joint"},
+        {"{joints: {J3: q3 q2}}", "'q' is not expected here"},
+        {"{joints: {J3: q2}}",
+         "arm.yaml:7:22: controller.joints cannot be: the controller's joints do not tell"},
+        {"{joints: [q1, q2]}", "arm.yaml:7:22: controller.joints lists 2 joints; must list 6"},
+        {"{joints: q1}", "must be a list of sums"},
+        {"{pulses_per_deg: [1, 2]}", "controller.pulses_per_deg"},
+        {"{pulses_per_deg: [1, 2, 3, 4, 5, 0]}", "has 0 for joint 6"},
+        {"{pulses_per_deg: [1, 2, 3, 4, 5, .nan]}", "controller.pulses_per_deg"},
+        {"{pulses_per_mm: [1, 2, 3, 4, 5, 6]}", "unknown key 'pulses_per_mm'"},
+        {"{factor: 1}", "unknown key 'factor' in controller; must be joints, maker"},
+    };
+    for (const auto& [section, words] : slips) {
+        const std::string message = error_of(section);
+        EXPECT_NE(message.find(words), std::string::npos) << section << "\n" << message;
+        EXPECT_EQ(message.rfind("arm.yaml:7:", 0), 0U) << section << "\n" << message;
+    }
+}
+
+}  // namespace
+}  // namespace posewise::io
