@@ -32,7 +32,7 @@ enum Group : std::size_t { Input, Asked, Errors, Earlier, Search, Judged, Output
 
 /// The group of each option, by its long name; it means the same in every command. Rare ones are
 /// named only.
-constexpr std::array<std::pair<std::string_view, Group>, 92> group_of_option{
+constexpr std::array<std::pair<std::string_view, Group>, 93> group_of_option{
     {{"poses", Asked},
      {"criterion", Asked},
      {"criteria", Asked},
@@ -45,6 +45,7 @@ constexpr std::array<std::pair<std::string_view, Group>, 92> group_of_option{
      {"robust-to", Asked},
      {"drop", Asked},
      {"verification", Asked},
+     {"random-order", Asked},
      {"repeats", Asked},
      {"random", Asked},
      {"splits", Asked},

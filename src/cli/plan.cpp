@@ -213,6 +213,12 @@ void add_plan_problem(CLI::App& command, PlanArguments& problem) {
                     "Poses to add that judge the calibration and are not calibrated with: random "
                     "and feasible, 5 deg or more from all others (with --plan: all together)")
         ->check(whole_number(1, 10000));
+    command
+        .add_option("--random-order", request.random_order,
+                    "Visit the poses in a random order whose moves take at most so many times as "
+                    "long as the shortest, such as 2: a drift is then not taken for a matter of "
+                    "place")
+        ->check(real_number(1, 1e6));
     command.add_option("--repeats", request.repeats, "Samples of each configuration")
         ->check(real_number(1, 1e9))
         ->default_val(1.0);

@@ -84,8 +84,28 @@ void check_fixed(const Cell& cell, const Chain& robot) {
     }
 }
 
+void check_sums(const Cell& cell, const Chain& robot) {
+    for (const JointSum& sum : cell.joint_sums) {
+        require(sum.coefficients.size() == robot.joint_count() && sum.coefficients.allFinite() &&
+                    !sum.coefficients.isZero(0),
+                "joint sum '" + sum.name + "' must have one finite coefficient a joint, not all 0");
+        const Motion motion = motion_of(sum, robot);
+        for (Index j = 0; j < robot.joint_count(); ++j) {
+            require(sum.coefficients[j] == 0 || robot.joint(j).motion == motion,
+                    "joint sum '" + sum.name + "' adds a joint that turns to one that slides");
+        }
+        const Interval limits = within_margin(sum, cell, robot);
+        require(limits.lower < limits.upper, "the limits of joint sum '" + sum.name +
+                                                 "' must be in order, and wider than the margin");
+    }
+}
+
 void check_motion(const Cell& cell, const Chain& robot) {
     const Index joints = robot.joint_count();
+    require(cell.acceleration.size() == 0 ||
+                (cell.acceleration.size() == joints && cell.acceleration.allFinite() &&
+                 (cell.acceleration.array() > 0).all()),
+            "acceleration must have one positive value a joint");
     require(cell.home.size() == 0 || (cell.home.size() == joints && cell.home.allFinite()),
             "home must have one finite value a joint");
     require(cell.speed.size() == 0 || (cell.speed.size() == joints && cell.speed.allFinite() &&
@@ -128,6 +148,18 @@ std::size_t elements_before(const Chain& robot, Index frame) {
 
 }  // namespace
 
+Motion motion_of(const JointSum& sum, const Chain& robot) {
+    Index joint = 0;
+    sum.coefficients.cwiseAbs().maxCoeff(&joint);
+    return robot.joint(joint).motion;
+}
+
+Interval within_margin(const JointSum& sum, const Cell& cell, const Chain& robot) {
+    const JointMargin& margin = cell.limit_margin;
+    const double kept = motion_of(sum, robot) == Motion::Rotation ? margin.angle : margin.length;
+    return {sum.limits.lower + kept, sum.limits.upper - kept};
+}
+
 std::vector<Vector3d> nominal_targets(const Campaign& campaign, const Cell& cell) {
     if (cell.sight || !cell.target_boxes.empty()) {
         require(campaign.has_nominal_targets,
@@ -155,6 +187,7 @@ void check_cell(const Cell& cell, const Chain& robot, const std::vector<Vector3d
             fmt::format("least_joint_distance is {:g} rad or m, must be finite and not negative",
                         cell.least_joint_distance));
     if (cell.sight) check_sight(*cell.sight, targets.size());
+    check_sums(cell, robot);
     check_fixed(cell, robot);
     check_motion(cell, robot);
 }

@@ -10,6 +10,12 @@
 /// What Constraints finds out once, when it is made.
 namespace posewise::detail {
 
+/// Whether the joints of a sum turn or slide.
+Motion motion_of(const JointSum& sum, const Chain& robot);
+
+/// The limits of a sum less the cell's margin.
+Interval within_margin(const JointSum& sum, const Cell& cell, const Chain& robot);
+
 /// Nominal targets in the flange frame; none if the sensor has no targets. Throws InputError if
 /// the cell needs them, or the tracker, and the campaign does not state them.
 std::vector<Vector3d> nominal_targets(const Campaign& campaign, const Cell& cell);

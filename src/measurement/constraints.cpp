@@ -59,6 +59,7 @@ struct Constraints::Pair {
 const char* constraint_name(Constraint constraint) {
     static constexpr std::array<const char*, constraint_count> names{
         "joint limits",
+        "joint_sums",
         "fixed",
         "target_boxes",
         "keep_out",
@@ -97,8 +98,8 @@ Constraints::Constraints(const Campaign& campaign, Cell cell, bool needs_contact
 
 bool Constraints::restricts_places() const {
     const bool has_obstacles = !bodies_.empty() && !cell_.keep_outs.empty();
-    return contact_ || cell_.sight || !cell_.target_boxes.empty() || has_obstacles ||
-           !pairs_.empty();
+    return contact_ || cell_.sight || !cell_.joint_sums.empty() || !cell_.target_boxes.empty() ||
+           has_obstacles || !pairs_.empty();
 }
 
 Constraints::Posture Constraints::pose_bodies(const VectorXd& q) const {
@@ -117,6 +118,16 @@ double Constraints::limit_clearance(const VectorXd& q) const {
         if (cell_.fixed_joints.count(j) != 0) continue;
         const Joint& joint = robot_.joints()[static_cast<std::size_t>(j)];
         least = std::min(least, interval_clearance({joint.lower, joint.upper}, q[j]));
+    }
+    return least;
+}
+
+double Constraints::sum_clearance(const VectorXd& q) const {
+    double least = infinity;
+    for (const JointSum& sum : cell_.joint_sums) {
+        const double amount = sum.coefficients.dot(q.head(robot_.joint_count()));
+        const Interval limits = detail::within_margin(sum, cell_, robot_);
+        least = std::min(least, interval_clearance(limits, amount));
     }
     return least;
 }
@@ -242,6 +253,7 @@ ConstraintReport Constraints::check(const VectorXd& q) const {
         report.clearance[static_cast<std::size_t>(constraint)] = value;
     };
     set(Constraint::JointLimits, limit_clearance(q));
+    set(Constraint::JointSums, sum_clearance(q));
     set(Constraint::FixedJoints, fixed_clearance(q));
     set(Constraint::TargetBoxes, box_clearance(posture));
     set(Constraint::KeepOuts, nearest_keep_out(posture).distance - cell_.safety_distance);
@@ -279,6 +291,24 @@ std::string describe_clearance(const Clearance& nearest, double safety_distance)
         "{} {} {} mm {} {}, must be {} mm away", nearest.body, is_apart ? "is" : "reaches",
         detail::format_fixed(1e3 * std::abs(nearest.distance), 2), is_apart ? "from" : "into",
         nearest.other, detail::format_short(1e3 * safety_distance));
+}
+
+std::string describe_sum_violation(const Constraints& constraints, const VectorXd& q,
+                                   double rounding) {
+    double least = -rounding;
+    std::string text;
+    for (const JointSum& sum : constraints.cell().joint_sums) {
+        const double amount = sum.coefficients.dot(q.head(sum.coefficients.size()));
+        const Interval limits = detail::within_margin(sum, constraints.cell(), constraints.robot());
+        if (!(interval_clearance(limits, amount) < least)) continue;
+        least = interval_clearance(limits, amount);
+        const bool slides = detail::motion_of(sum, constraints.robot()) == Motion::Translation;
+        const double unit = slides ? mm_per_m : to_degrees(1);
+        text =
+            fmt::format("{} is {:.9g} {}, must be from {:.9g} to {:.9g}", sum.name, unit * amount,
+                        slides ? "mm" : "deg", unit * limits.lower, unit * limits.upper);
+    }
+    return text;
 }
 
 std::string describe_unchecked_bodies(const Campaign& campaign) {

@@ -186,4 +186,31 @@ VisitingOrder shortest_order(const MatrixXd& times, const OrderOptions& options)
     return to_order(times, best);
 }
 
+VisitingOrder random_order(const MatrixXd& times, double factor, const OrderOptions& options) {
+    VisitingOrder shortest = shortest_order(times, options);
+    const MatrixXd finite = penalise(times);
+    const Index count = times.rows();
+    // Streams of kicks have small numbers.
+    RandomStream stream(options.seed, std::uint64_t{1} << 32);
+    Path path(static_cast<std::size_t>(count));
+    std::iota(path.begin(), path.end(), Index{0});
+    for (auto last = path.end() - 1; last > path.begin() + 1; --last) {
+        std::iter_swap(last, path.begin() + 1 + stream.index(last - path.begin()));
+    }
+    const double most = factor * shortest.time;
+    double time = path_time(finite, path);
+    for (Index left = 100 * count * count; time > most && left > 0; --left) {
+        if (options.is_over && options.is_over()) return shortest;
+        const Index a = stream.index(count - 1) + 1;
+        const Index b = stream.index(count - 1) + 1;
+        Path reversed = path;
+        std::reverse(reversed.begin() + std::min(a, b), reversed.begin() + std::max(a, b) + 1);
+        const double shorter = path_time(finite, reversed);
+        if (shorter >= time) continue;
+        path = std::move(reversed);
+        time = shorter;
+    }
+    return time > most ? shortest : to_order(times, path);
+}
+
 }  // namespace posewise::detail

@@ -16,9 +16,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-VectorXd speed_of(const Constraints& constraints) {
-    const VectorXd& speed = constraints.cell().speed;
-    return speed.size() > 0 ? speed : VectorXd::Ones(constraints.robot().joint_count());
+Pace pace_of(const Constraints& constraints) {
+    const Cell& cell = constraints.cell();
+    return {cell.speed.size() > 0 ? cell.speed : VectorXd::Ones(constraints.robot().joint_count()),
+            cell.acceleration};
 }
 
 /// Where the tour begins (the first, if it is not empty) and poses.
@@ -49,13 +50,13 @@ class Respite {
 };
 
 /// Of straight moves between all nodes; 0 from a home that there is not.
-MatrixXd times_between(const VectorXd& speed, const std::vector<VectorXd>& nodes,
+MatrixXd times_between(const Pace& pace, const std::vector<VectorXd>& nodes,
                        const Respite& respite) {
     const auto count = static_cast<Index>(nodes.size());
     MatrixXd times = MatrixXd::Zero(count, count);
     for (Index i = 1; i < count && !respite.is_over(); ++i) {
         for (Index j = nodes[0].size() != 0 ? 0 : 1; j < i; ++j) {
-            times(i, j) = times(j, i) = move_time(speed, nodes[static_cast<std::size_t>(i)],
+            times(i, j) = times(j, i) = move_time(pace, nodes[static_cast<std::size_t>(i)],
                                                   nodes[static_cast<std::size_t>(j)]);
         }
     }
@@ -69,7 +70,7 @@ class Roadmap {
         : constraints_(constraints),
           options_(options),
           respite_(options.stop),
-          speed_(speed_of(constraints)) {
+          pace_(pace_of(constraints)) {
         const bool is_from_home = options.start.size() == 0;
         nodes_ = nodes_of(is_from_home ? constraints.cell().home : options.start, poses);
         for (const VectorXd& node : nodes_) {
@@ -77,7 +78,10 @@ class Roadmap {
                 constraints.robot().check_configuration(node);
             }
         }
-        if (has_home() && is_from_home && constraints.collision_clearance(nodes_[0]) < 0) {
+        if (!has_home() || !is_from_home) return;
+        const std::string beyond = describe_sum_violation(constraints, nodes_[0]);
+        if (!beyond.empty()) throw InputError("cell: home is beyond joint_sums: " + beyond);
+        if (constraints.collision_clearance(nodes_[0]) < 0) {
             throw InputError("cell: home is not free: " +
                              describe_clearance(constraints.nearest(nodes_[0]),
                                                 constraints.cell().safety_distance));
@@ -87,12 +91,12 @@ class Roadmap {
     bool is_over() const { return respite_.is_over(); }
     const MatrixXd& straight_times() const { return straight_times_; }
     double straight_time(Index from, Index to) const {
-        return has_home() || from != 0 ? move_time(speed_, node(from), node(to)) : 0;
+        return has_home() || from != 0 ? move_time(pace_, node(from), node(to)) : 0;
     }
 
     /// All straight times, and which moves are free; false if there was no time for it.
     bool measure() {
-        straight_times_ = times_between(speed_, nodes_, respite_);
+        straight_times_ = times_between(pace_, nodes_, respite_);
         is_measured_ = !is_over() && find_free_moves();
         return is_measured_;
     }
@@ -100,13 +104,13 @@ class Roadmap {
     /// On to the nearest each, without looking at what is in the way.
     std::vector<Index> to_the_nearest() const {
         const auto count = std::ssize(nodes_) - 1;
-        RowMatrixXd left(count, speed_.size());  // poses in s, those not yet visited first
+        RowMatrixXd left(count, pace_.speed.size());  // poses in s, those not yet visited first
         std::vector<Index> order(static_cast<std::size_t>(count));
         for (Index i = 0; i < count; ++i) {
-            left.row(i) = node(i + 1).cwiseQuotient(speed_);
+            left.row(i) = node(i + 1).cwiseQuotient(pace_.speed);
             order[static_cast<std::size_t>(i)] = i;
         }
-        VectorXd here = has_home() ? VectorXd(nodes_[0].cwiseQuotient(speed_)) : VectorXd();
+        VectorXd here = has_home() ? VectorXd(nodes_[0].cwiseQuotient(pace_.speed)) : VectorXd();
         for (Index k = 0; k < count; ++k) {
             Index nearest = 0;
             if (here.size() > 0) {
@@ -198,8 +202,9 @@ class Roadmap {
     Detour find_detour(Index i, Index j) const {
         Detour best;
         const auto consider = [&](const VectorXd& via) {
-            const double time = move_time(speed_, node(i), via) + move_time(speed_, via, node(j));
-            if (time >= best.time || constraints_.collision_clearance(via) < 0) return;
+            const double time = move_time(pace_, node(i), via) + move_time(pace_, via, node(j));
+            if (time >= best.time || constraints_.sum_clearance(via) < 0) return;
+            if (constraints_.collision_clearance(via) < 0) return;
             if (!is_move_free(constraints_, node(i), via, options_.resolution)) return;
             if (!is_move_free(constraints_, via, node(j), options_.resolution)) return;
             best = {time, via};
@@ -229,7 +234,7 @@ class Roadmap {
     const Constraints& constraints_;
     const TourOptions& options_;
     Respite respite_;
-    VectorXd speed_;
+    Pace pace_;
     std::vector<VectorXd> nodes_;
     MatrixXd straight_times_;
     Eigen::Matrix<char, Eigen::Dynamic, Eigen::Dynamic> is_free_;  // lower triangle
@@ -248,11 +253,14 @@ bool examine_moves(Roadmap& roadmap, const std::vector<Index>& poses) {
     return is_new;
 }
 
-std::vector<Index> order_by_known_times(Roadmap& roadmap, OrderOptions options) {
+std::vector<Index> order_by_known_times(Roadmap& roadmap, const TourOptions& asked) {
+    OrderOptions options = asked.order;
     options.is_over = [&roadmap] { return roadmap.is_over(); };
     VisitingOrder order;
     do {
-        order = shortest_order(roadmap.known_times(), options);
+        order = asked.random_order > 0
+                    ? random_order(roadmap.known_times(), asked.random_order, options)
+                    : shortest_order(roadmap.known_times(), options);
     } while (examine_moves(roadmap, order.poses));
     return order.poses;
 }
@@ -270,8 +278,18 @@ double straight_time_of(const Roadmap& roadmap, const std::vector<Index>& order)
 
 }  // namespace
 
-double move_time(const VectorXd& speed, const VectorXd& a, const VectorXd& b) {
-    return (b - a).cwiseAbs().cwiseQuotient(speed).maxCoeff();
+double move_time(const Pace& pace, const VectorXd& a, const VectorXd& b) {
+    const VectorXd ways = (b - a).cwiseAbs();
+    if (pace.acceleration.size() == 0) return ways.cwiseQuotient(pace.speed).maxCoeff();
+    double longest = 0;
+    for (Index j = 0; j < ways.size(); ++j) {
+        const double rise = pace.speed[j] / pace.acceleration[j];  // s, to the full speed
+        const bool is_short = ways[j] < pace.speed[j] * rise;
+        const double time = is_short ? 2 * std::sqrt(ways[j] / pace.acceleration[j])
+                                     : ways[j] / pace.speed[j] + rise;
+        longest = std::max(longest, time);
+    }
+    return longest;
 }
 
 bool is_move_free(const Constraints& constraints, const VectorXd& a, const VectorXd& b,
@@ -292,7 +310,7 @@ double straight_tour_time(const Constraints& constraints, const RowMatrixXd& pos
     OrderOptions options;
     options.kicks = 0;
     const StopSignal never;
-    return shortest_order(times_between(speed_of(constraints),
+    return shortest_order(times_between(pace_of(constraints),
                                         nodes_of(constraints.cell().home, poses), Respite(never)),
                           options)
         .time;
@@ -305,8 +323,7 @@ Tour plan_tour(const Constraints& constraints, const RowMatrixXd& poses,
     const std::vector<Index> nearest = is_measured
                                            ? nearest_neighbour_order(roadmap.straight_times()).poses
                                            : roadmap.to_the_nearest();
-    const std::vector<Index> order =
-        is_measured ? order_by_known_times(roadmap, options.order) : nearest;
+    const std::vector<Index> order = is_measured ? order_by_known_times(roadmap, options) : nearest;
     std::vector<Index> given(order.size());
     std::iota(given.begin(), given.end(), Index{0});
 

@@ -6,9 +6,16 @@
 
 namespace posewise::detail {
 
+/// How fast joints move: largest speeds (rad/s or m/s) and accelerations (empty: infinite).
+struct Pace {
+    VectorXd speed;
+    VectorXd acceleration{};
+};
+
 /// Time of a straight joint move in which every joint starts and stops together, the slowest at
-/// its largest speed (Chebyshev): max_j |b_j - a_j| / speed_j.
-double move_time(const VectorXd& speed, const VectorXd& a, const VectorXd& b);
+/// its largest speed (Chebyshev). For one joint by d: d / v + v / a or, where d is less than
+/// v^2 / a, too short to reach the speed v, 2 sqrt(d / a).
+double move_time(const Pace& pace, const VectorXd& a, const VectorXd& b);
 
 /// Whether the straight joint move from a to b keeps the links off keep-outs and each other. It is
 /// followed in steps that the clearance at hand allows (conservative advancement), but no shorter
@@ -25,6 +32,7 @@ struct TourOptions {
     Index via_attempts = 200;
     double resolution = 1e-3;  ///< of is_move_free(), m
     StopSignal stop{};         ///< from then on it takes half a second, and what it has then
+    double random_order = 0;   ///< see PlanRequest
     VectorXd start{};          ///< where the robot is, instead of the cell's home; empty: home
 };
 

@@ -107,13 +107,16 @@ std::string describe_searched_bound(const Plan& plan) {
                        detail::format_fixed(plan.searched_efficiency, 4));
 }
 
-std::string describe_order(const Tour& tour) {
+std::string describe_order(const Tour& tour, double random_order) {
+    const std::string time = detail::format_fixed(tour.time, 1);
+    const std::string nearest = detail::format_fixed(tour.nearest_neighbour_time, 1);
     std::string text =
-        fmt::format("{} s, {} % shorter than as planned ({} s); to the nearest pose each: {} s",
-                    detail::format_fixed(tour.time, 1),
-                    detail::format_fixed(100 * (1 - tour.time / tour.planning_order_time), 0),
-                    detail::format_fixed(tour.planning_order_time, 1),
-                    detail::format_fixed(tour.nearest_neighbour_time, 1));
+        random_order > 0
+            ? fmt::format("{} s, at random; to the nearest pose each: {} s", time, nearest)
+            : fmt::format(
+                  "{} s, {} % shorter than as planned ({} s); to the nearest pose each: {} s", time,
+                  detail::format_fixed(100 * (1 - tour.time / tour.planning_order_time), 0),
+                  detail::format_fixed(tour.planning_order_time, 1), nearest);
     if (tour.blocked_count > 0) {
         text += fmt::format("\n{} {} blocked: find a way by hand",
                             detail::count_of(tour.blocked_count, "move"),
@@ -342,7 +345,7 @@ std::string format_planning(const Planning& planning) {
     if (!looseness.empty()) text += "note:        " + looseness + '\n';
     text += fmt::format("searched:    {}\nstarts:      {}\norder:       {}\n",
                         describe_searched_bound(plan), describe_starts(plan, "at the best"),
-                        describe_order(planning.tour));
+                        describe_order(planning.tour, planning.plan.request.random_order));
     text += describe_cell_doubts(plan);
     text += detail::describe_duration(planning) + detail::describe_drop_outs(planning);
     text += describe_verification(plan);

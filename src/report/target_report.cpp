@@ -144,7 +144,8 @@ const char* name_of(ErrorQuantity quantity) {
 }
 
 std::string describe_duration(const Planning& planning) {
-    if (planning.campaign.cell.dwell == 0) return "";
+    const Cell& cell = planning.campaign.cell;
+    if (cell.dwell == 0 && cell.settle == 0) return "";
     return fmt::format("time:        {} min with {} s for each sample\n",
                        minutes(planning.duration), format_short(planning.campaign.cell.dwell));
 }

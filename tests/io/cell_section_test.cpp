@@ -99,6 +99,30 @@ TEST(ReadCell, TakesEveryPartInMetresAndRadians) {
     EXPECT_DOUBLE_EQ(cell.speed[0], 90 * degree);
 }
 
+TEST(ReadCell, TakesSumsOfJointsAndHowTheRobotMoves) {
+    const Cell cell =
+        read(replaced(cell_text, "  home_deg",
+                      "  joint_sums: {q2 - q1 + 10 deg: {limits_deg: [-80, 90]}}\n"
+                      "  acceleration_deg_per_s2: [180, 360]\n  settle_s: 0.5\n  home_deg"))
+            .cell;
+    ASSERT_EQ(cell.joint_sums.size(), 1U);
+    EXPECT_EQ(cell.joint_sums[0].name, "q2 - q1 + 10 deg");
+    EXPECT_EQ(cell.joint_sums[0].coefficients, Eigen::Vector2d(-1, 1));
+    EXPECT_NEAR(cell.joint_sums[0].limits.lower, -90 * degree, 1e-12);
+    EXPECT_NEAR(cell.joint_sums[0].limits.upper, 80 * degree, 1e-12);
+    EXPECT_DOUBLE_EQ(cell.acceleration[1], 360 * degree);
+    EXPECT_EQ(cell.settle, 0.5);
+    const auto expect = [](const std::string& sums, const std::string& column,
+                           const std::string& words) {
+        expect_error("  home_deg", "  joint_sums: " + sums + "\n  home_deg", "29:" + column, words);
+    };
+    expect("{q2 - q3: {limits_deg: [0, 1]}}", "21", "'q3' is no joint");
+    expect("{q2 - q1: {limits_mm: [0, 1]}}", "27", "must be in deg or rad");
+    expect("{q2 - q1: {limits_deg: [1, 0]}}", "39", "lower end must come first");
+    expect_error("  home_deg", "  acceleration_deg_per_s2: [1, 0]\n  home_deg", "29:28",
+                 "must be positive");
+}
+
 TEST(ReadCell, IsEmptyIfTheFileHasNone) {
     const Cell cell = read(testing::campaign_text).cell;
     EXPECT_TRUE(cell.links.empty());

@@ -61,6 +61,32 @@ TEST(Constraints, MeasureLimitsFromTheMarginAndHoldFixedJoints) {
     EXPECT_NEAR(check(cell, angles(30, 160))[Constraint::JointLimits], 5 * degree, 1e-12);
 }
 
+TEST(Constraints, KeepSumsOfJointsWithinTheirLimits) {
+    Cell cell;
+    cell.joint_sums = {{"q2 - q1", Eigen::Vector2d(-1, 1), {-40 * degree, 30 * degree}}};
+    EXPECT_NEAR(check(cell, angles(10, 20))[Constraint::JointSums], 20 * degree, 1e-12);
+    EXPECT_NEAR(check(cell, angles(60, 10))[Constraint::JointSums], -10 * degree, 1e-12);
+    cell.limit_margin.angle = 5 * degree;
+    EXPECT_NEAR(check(cell, angles(10, 20))[Constraint::JointSums], 15 * degree, 1e-12);
+    const Constraints constraints(arm_campaign(), cell);
+    EXPECT_TRUE(constraints.restricts_places());
+    EXPECT_EQ(describe_sum_violation(constraints, angles(10, 20)), "");
+    EXPECT_EQ(describe_sum_violation(constraints, angles(10, 50)),
+              "q2 - q1 is 40 deg, must be from -35 to 25");
+    const Pool pool = make_pool(constraints, 500, 1);
+    for (const auto& q : pool.configurations.rowwise()) {
+        EXPECT_LE(q[1] - q[0], 25 * degree);
+        EXPECT_GE(q[1] - q[0], -35 * degree);
+    }
+    const auto refuse = [&](const JointSum& sum) {
+        cell.joint_sums = {sum};
+        return testing::input_error_of([&] { Constraints(arm_campaign(), cell); });
+    };
+    EXPECT_NE(refuse({"none", VectorXd::Zero(2), {0, 1}}).find("not all 0"), std::string::npos);
+    EXPECT_NE(refuse({"q1", Eigen::Vector2d(1, 0), {0, 9 * degree}}).find("wider than the margin"),
+              std::string::npos);
+}
+
 TEST(Constraints, KeepEveryTargetInOneOfTheBoxes) {
     Cell cell;
     const Box right{Vector3d(1, -1, -1), Vector3d(2.5, 1, 1)};

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "posewise/core/errors.hpp"
 #include "support/sweep.hpp"
@@ -147,6 +148,45 @@ TEST(ShortestOrder, RejectsTimesThatAreNone) {
     EXPECT_THROW(shortest_order(times), InputError);
     EXPECT_THROW(shortest_order(-MatrixXd::Ones(2, 2)), InputError);
     EXPECT_THROW(nearest_neighbour_order(MatrixXd::Constant(2, 2, std::nan(""))), InputError);
+}
+
+TEST(RandomOrder, TakesAtMostSoManyTimesAsLongAsTheShortest) {
+    RandomStream stream(17);
+    for (const Index count : {0, 1, 2, 12, 40}) {
+        const MatrixXd times = random_times(stream, count);
+        const double shortest = shortest_order(times).time;
+        EXPECT_EQ(random_order(times, 1).poses, shortest_order(times).poses);
+        std::set<std::vector<Index>> orders;
+        for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+            const OrderOptions options{.kicks = 20, .seed = seed};
+            const VisitingOrder order = random_order(times, 1.5, options);
+            EXPECT_TRUE(is_permutation(order.poses, count));
+            EXPECT_LE(order.time, 1.5 * shortest_order(times, options).time);
+            EXPECT_NEAR(order.time, order_time(times, order.poses), 1e-12);
+            orders.insert(order.poses);
+            if (count == 40) EXPECT_GT(order.time, 1.2 * shortest);
+        }
+        if (count >= 12) EXPECT_EQ(orders.size(), 8U);
+    }
+}
+
+TEST(RandomOrder, DoesNotBeginWhereTheShortestDoes) {
+    // Poses in a row, from the start on: the shortest order is their place.
+    MatrixXd times(31, 31);
+    for (Index i = 0; i < 31; ++i) {
+        for (Index j = 0; j < 31; ++j) times(i, j) = static_cast<double>(std::abs(i - j));
+    }
+    double correlation = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        const std::vector<Index> poses = random_order(times, 3, {.seed = seed}).poses;
+        VectorXd places(30);
+        for (Index k = 0; k < 30; ++k)
+            places[k] = static_cast<double>(poses[static_cast<std::size_t>(k)]);
+        const VectorXd centred = places.array() - places.mean();
+        const VectorXd rank = VectorXd::LinSpaced(30, -14.5, 14.5);
+        correlation += centred.dot(rank) / (centred.norm() * rank.norm()) / 40;
+    }
+    EXPECT_LT(std::abs(correlation), 0.5);
 }
 
 }  // namespace

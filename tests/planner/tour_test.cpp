@@ -86,8 +86,40 @@ TEST(Constraints, BoundTheRateOfTheClearance) {
 
 TEST(MoveTime, IsThatOfTheSlowestJoint) {
     const Eigen::Vector2d speed(1, 4);
-    EXPECT_DOUBLE_EQ(move_time(speed, Eigen::Vector2d(0, 0), Eigen::Vector2d(-1, 2)), 1);
-    EXPECT_DOUBLE_EQ(move_time(speed, Eigen::Vector2d(0, 0), Eigen::Vector2d(-1, 8)), 2);
+    EXPECT_DOUBLE_EQ(move_time({speed}, Eigen::Vector2d(0, 0), Eigen::Vector2d(-1, 2)), 1);
+    EXPECT_DOUBLE_EQ(move_time({speed}, Eigen::Vector2d(0, 0), Eigen::Vector2d(-1, 8)), 2);
+}
+
+TEST(MoveTime, KnowsThatJointsSpeedUpAndSlowDown) {
+    const VectorXd zero = VectorXd::Zero(1);
+    const Pace pace{VectorXd::Constant(1, 2), VectorXd::Constant(1, 4)};
+    // 0.5 s and 0.5 m up to 2 m/s and as much down: 1 m in 1 s, and 3 m more in 1.5 s.
+    EXPECT_DOUBLE_EQ(move_time(pace, zero, VectorXd::Constant(1, 4)), 2.5);
+    EXPECT_DOUBLE_EQ(move_time(pace, zero, VectorXd::Constant(1, -1)), 1);
+    EXPECT_DOUBLE_EQ(move_time(pace, zero, VectorXd::Constant(1, 0.25)), 0.5);
+    EXPECT_DOUBLE_EQ(move_time(pace, zero, zero), 0);
+}
+
+TEST(PlanTour, KeepsSumsOfJointsAtHomeAndOnTheWay) {
+    Cell cell = demo_cell();
+    VectorXd coefficients = VectorXd::Zero(6);
+    coefficients << 0, -1, 1, 0, 0, 0;
+    cell.joint_sums = {{"q3 - q2", coefficients, {-50 * degree, 45 * degree}}};
+    const Constraints constraints(cell_campaign(), cell);
+    const Pool pool = make_pool(constraints, 3000, 5);
+    const Tour tour = plan_tour(constraints, pool.configurations.topRows(12));
+    for (const Visit& visit : tour.visits) {
+        const VectorXd pose = pool.configurations.row(visit.pose).transpose();
+        for (const VectorXd& q : {visit.via.value_or(pose), pose}) {
+            EXPECT_LE(q[2] - q[1], 43 * degree);  // less the margin
+            EXPECT_GE(q[2] - q[1], -48 * degree);
+        }
+    }
+    cell.joint_sums[0].limits = {-50 * degree, 20 * degree};  // home: 30 deg
+    const std::string error = testing::input_error_of(
+        [&] { plan_tour(Constraints(cell_campaign(), cell), pool.configurations.topRows(1)); });
+    EXPECT_NE(error.find("home is beyond joint_sums: q3 - q2 is 30 deg"), std::string::npos)
+        << error;
 }
 
 TEST(PlanTour, IsAtLeastAQuarterShorterThanThePlanningOrder) {
@@ -106,7 +138,7 @@ TEST(PlanTour, IsAtLeastAQuarterShorterThanThePlanningOrder) {
         const VectorXd next = poses.row(visit.pose).transpose();
         for (const VectorXd& stop : {visit.via.value_or(next), next}) {
             EXPECT_GT(sampled_clearance(constraints, here, stop), -1e-3);
-            time += move_time(constraints.cell().speed, here, stop);
+            time += move_time({constraints.cell().speed}, here, stop);
             here = stop;
         }
     }
@@ -204,7 +236,7 @@ TEST(PlanTour, OfManyPosesIsCutShortByAStopAndMarksWhatIsInTheWay) {
         is_visited[static_cast<std::size_t>(visit.pose)] = true;
         EXPECT_EQ(visit.is_blocked, !is_move_free(constraints, here, next));
         blocked += visit.is_blocked ? 1 : 0;
-        time += move_time(constraints.cell().speed, here, next);
+        time += move_time({constraints.cell().speed}, here, next);
         here = next;
     }
     EXPECT_EQ(tour.blocked_count, blocked);

@@ -56,6 +56,27 @@ TEST_F(MakePlan, IsVerifiedWithoutAnyFile) {
     EXPECT_EQ(verify(edited, campaign_, options_).wrong(), std::vector<std::string>{"poses"});
 }
 
+TEST_F(MakePlan, KeepsSumsOfJointsAtEveryPoseAndOnTheWay) {
+    const double degree = testing::degree;
+    VectorXd coefficients = VectorXd::Zero(6);
+    coefficients << 0, -1, 1, 0, 0, 0;
+    const double free = make_plan(campaign_, options_).plan.value;
+    campaign_.cell.joint_sums = {{"q3 - q2", coefficients, {-50 * degree, 35 * degree}}};
+    const Planning planning = make_plan(campaign_, options_);
+    EXPECT_LT(planning.plan.value, 1.05 * free);
+    for (const PlannedPose& pose : planning.plan.poses) {
+        for (const VectorXd& q : {pose.via.value_or(pose.configuration), pose.configuration}) {
+            EXPECT_LE(q[2] - q[1], 33 * degree + 1e-9);  // less the margin
+            EXPECT_GE(q[2] - q[1], -48 * degree - 1e-9);
+        }
+    }
+    EXPECT_TRUE(verify(planning.plan, campaign_, options_).is_right());
+    Plan edited = planning.plan;
+    edited.poses[1].configuration[2] = edited.poses[1].configuration[1] + 40 * degree;
+    const auto wrong = verify(edited, campaign_, options_).wrong();
+    EXPECT_NE(std::find(wrong.begin(), wrong.end(), "poses"), wrong.end());
+}
+
 TEST_F(MakePlan, IsJudgedAgainFromWhatItsFileHolds) {
     campaign_.cell.dwell = 2;
     const Planning made = make_plan(campaign_, options_);

@@ -18,6 +18,7 @@ namespace posewise {
 
 enum class Constraint {
     JointLimits,  ///< including their margin
+    JointSums,    ///< sums of joints within their limits, less the margin
     FixedJoints,  ///< at their value to 1e-9 rad or m
     TargetBoxes,  ///< every target lies in one of them
     KeepOuts,     ///< moving links and balls at targets against keep-outs
@@ -33,7 +34,7 @@ enum class Constraint {
     LineOfSight,
     VisibleTargets,  ///< all five at once for as many targets as must be visible
 };
-inline constexpr std::size_t constraint_count = 12;
+inline constexpr std::size_t constraint_count = 13;
 
 /// Name for messages, like that in campaign files: "tracker.elevation".
 const char* constraint_name(Constraint constraint);
@@ -96,6 +97,8 @@ class Constraints {
     SeenTargets seen(const VectorXd& q) const;
     /// The smaller of the KeepOuts and SelfCollision clearances.
     double collision_clearance(const VectorXd& q) const;
+    /// That of JointSums: at least 0 on a straight move where it is at both ends.
+    double sum_clearance(const VectorXd& q) const;
     /// The two bodies nearest to each other; their distance is collision_clearance() plus the
     /// cell's safety distance.
     Clearance nearest(const VectorXd& q) const;
@@ -127,6 +130,11 @@ class Constraints {
     std::vector<std::size_t> screens_;                        // keep-outs that hide
     VectorXd clearance_rates_;
 };
+
+/// "q3 - q2 is 95 deg, must be from -80 to 88 deg": of the sum farthest beyond its limits, less the
+/// margin; empty if none is, by more than `rounding` (rad or m).
+std::string describe_sum_violation(const Constraints& constraints, const VectorXd& q,
+                                   double rounding = 0);
 
 /// Largest joint difference between two configurations, rad or m.
 double joint_distance(const VectorXd& a, const VectorXd& b);

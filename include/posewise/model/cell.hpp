@@ -131,8 +131,17 @@ struct JointMargin {
     double length = 0;  ///< for a prismatic joint (m)
 };
 
+/// A sum of joints that all turn or all slide, and where it must lie: joints that one drive
+/// couples, such as a forearm that its rod keeps off the upper arm.
+struct JointSum {
+    std::string name;       ///< as it was stated: "q3 - q2"
+    VectorXd coefficients;  ///< of each joint of the robot
+    Interval limits;        ///< rad or m
+};
+
 struct Cell {
     JointMargin limit_margin;
+    std::vector<JointSum> joint_sums;
     std::map<Index, double> fixed_joints;  ///< joint index (from 0) to its value, rad or m
     /// Smallest distance between two poses of a plan, see joint_distance(); rad or m.
     double least_joint_distance = 0;
@@ -143,9 +152,11 @@ struct Cell {
     /// Distance that links and the balls at the targets keep from keep-outs and each other, m.
     double safety_distance = 0;
     std::optional<Sight> sight;
-    VectorXd home;     ///< where the tour starts, rad or m; empty: anywhere
-    VectorXd speed;    ///< largest speed of each joint, rad/s or m/s; empty: 1
-    double dwell = 0;  ///< standstill for each sample, s
+    VectorXd home;          ///< where the tour starts, rad or m; empty: anywhere
+    VectorXd speed;         ///< largest speed of each joint, rad/s or m/s; empty: 1
+    VectorXd acceleration;  ///< of each joint, rad/s^2 or m/s^2; empty: infinite
+    double dwell = 0;       ///< standstill for each sample, s
+    double settle = 0;      ///< standstill before the first sample of a pose, s
 };
 
 }  // namespace posewise

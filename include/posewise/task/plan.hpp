@@ -80,6 +80,10 @@ struct PlanRequest {
     Index pool_count = 20000;    ///< candidates drawn
     /// Verification poses to draw, see Plan::verification. 0: as many as a repaired plan has.
     Index verification_count = 0;
+    /// Poses are visited in a random order whose moves take at most this many times as long as the
+    /// shortest order's, so that what drifts is not taken for a matter of place; 0: in the
+    /// shortest.
+    double random_order = 0;
     double time_limit = 0;  ///< s, as stated; 0: none
 };
 

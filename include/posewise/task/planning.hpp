@@ -43,7 +43,7 @@ struct Planning {
     ErrorBudget budget;
     std::vector<DropOut> without_each;  ///< with each pose of the plan missing, in its order
     std::vector<DropOut> drop_outs;     ///< the poses that hurt most, missing one after another
-    double duration = 0;                ///< s: all moves, and the cell's dwell for each sample
+    double duration = 0;                ///< s: all moves and standstills
 };
 
 /// Proposes configurations to measure in the campaign's cell: draws a pool, chooses from it,

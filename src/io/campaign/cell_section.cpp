@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "campaign_sections.hpp"
+#include "element_notation.hpp"
 #include "io/format/text.hpp"
 #include "keys.hpp"
 #include "model/halton.hpp"
@@ -201,6 +202,59 @@ void read_fixed(const YamlValue& value, const Chain& robot, Cell& cell) {
     }
 }
 
+/// Of joints that all turn, in degrees or mm: "q3 - q2: {limits_deg: [-80, 90]}".
+JointSum read_joint_sum(const YamlEntry& entry, const Chain& robot) {
+    const YamlMap map(entry.value, keys::joint_sum);
+    const YamlMeasure limits = map.require_measure("limits");
+    const bool turns = limits.unit->quantity == Quantity::Angle;
+    const Element parsed = ElementParser(names_of_joints(robot))
+                               .parse_joint_sum(entry.key, entry.key_location,
+                                                turns ? Motion::Rotation : Motion::Translation);
+    JointSum sum{entry.key, VectorXd::Zero(robot.joint_count()), read_interval(limits)};
+    for (const JointTerm& term : parsed.joints) {
+        sum.coefficients[term.joint] = term.coefficient;
+        if (robot.joint(term.joint).motion != parsed.motion) {
+            throw limits.value.error(
+                fmt::format("is in '{}', but joint '{}' {}", limits.unit->name,
+                            robot.joints()[static_cast<std::size_t>(term.joint)].name,
+                            turns ? "slides; must be in mm or m" : "turns; must be in deg or rad"));
+        }
+    }
+    sum.limits.lower -= parsed.value;
+    sum.limits.upper -= parsed.value;
+    return sum;
+}
+
+/// Rates of all joints, such as speed_deg_per_s; of joints that all turn.
+VectorXd read_rates(const YamlMap& map, const std::string& name, const std::string& per,
+                    const Chain& robot) {
+    VectorXd rates;
+    for (const char* const unit : {"deg", "rad"}) {
+        const auto stated = map.find(fmt::format("{}_{}_per_{}", name, unit, per));
+        if (!stated) continue;
+        if (rates.size() != 0) throw stated->error("is stated in two units; keep one");
+        rates = read_joint_angles({*stated, find_unit(unit)}, robot);
+        if (!(rates.array() > 0).all()) throw stated->error("must be positive for every joint");
+        constexpr double fastest = 35;  // rad/s, 2000 deg/s; in rad/s^2 in 1 s
+        if (per == "s" && rates.maxCoeff() > fastest) {
+            throw stated->error("is beyond 2000 deg/s, which no joint has; is it in deg/s?");
+        }
+    }
+    return rates;
+}
+
+/// s, from 0 to a day.
+double read_standstill(const YamlMap& map, const char* key) {
+    const auto stated = map.find(key);
+    if (!stated) return 0;
+    constexpr double day = 86400;
+    const double seconds = stated->number();
+    if (!(seconds >= 0 && seconds <= day)) {
+        throw stated->error("is " + stated->text() + "; must be from 0 to 86400");
+    }
+    return seconds;
+}
+
 void read_motion(const YamlMap& map, const Chain& robot, Cell& cell) {
     if (const auto home = map.find_measure("home")) {
         cell.home = read_joint_angles(*home, robot);
@@ -209,26 +263,10 @@ void read_motion(const YamlMap& map, const Chain& robot, Cell& cell) {
             throw home->value.error("is beyond the joint limits: " + violation);
         }
     }
-    for (const char* const unit : {"deg", "rad"}) {
-        const std::string key = std::string("speed_") + unit + "_per_s";
-        const auto speed = map.find(key);
-        if (!speed) continue;
-        if (cell.speed.size() != 0) throw speed->error("is stated in two units; keep one");
-        cell.speed = read_joint_angles({*speed, find_unit(unit)}, robot);
-        if (!(cell.speed.array() > 0).all()) throw speed->error("must be positive for every joint");
-        constexpr double fastest = 35;  // rad/s, 2000 deg/s
-        for (Index j = 0; j < robot.joint_count(); ++j) {
-            if (robot.joint(j).motion != Motion::Rotation || cell.speed[j] <= fastest) continue;
-            throw speed->error("is beyond 2000 deg/s, which no joint has; is it in deg/s?");
-        }
-    }
-    if (const auto dwell = map.find("dwell_s")) {
-        cell.dwell = dwell->number();
-        constexpr double day = 86400;
-        if (cell.dwell < 0 || cell.dwell > day) {
-            throw dwell->error("is " + dwell->text() + "; must be from 0 to 86400");
-        }
-    }
+    cell.speed = read_rates(map, "speed", "s", robot);
+    cell.acceleration = read_rates(map, "acceleration", "s2", robot);
+    cell.dwell = read_standstill(map, "dwell_s");
+    cell.settle = read_standstill(map, "settle_s");
 }
 
 void read_solids(const YamlMap& map, const Chain& robot, Cell& cell) {
@@ -277,6 +315,11 @@ Cell read_cell(const YamlValue& value, const Chain& robot, const Sensor& sensor)
     const YamlMap map(value, keys::cell);
     Cell cell;
     read_margin(map, robot, cell);
+    if (const auto sums = map.find("joint_sums")) {
+        for (const YamlEntry& entry : sums->entries()) {
+            cell.joint_sums.push_back(read_joint_sum(entry, robot));
+        }
+    }
     if (const auto fixed = map.find("fixed")) read_fixed(*fixed, robot, cell);
     if (const auto least = map.find_measure("least_joint_distance")) {
         cell.least_joint_distance = read_positive(*least, true);

@@ -282,6 +282,8 @@ const YamlKeys cell{
     {
         {"margin_deg", "", "kept from the limits of joints that turn", "0", "`2`"},
         {"slide_margin_mm", "", "kept from the limits of joints that slide", "0", "`10`"},
+        {"joint_sums", "", "sums of joints that have limits of their own", "none",
+         "`{q3 - q2: {limits_deg: [-80, 90]}}`"},
         {"fixed", "", "joints that stay", "none", "`{q6: 0 deg}`"},
         {"least_joint_distance_deg", "", "two poses of a plan differ by so much in some joint", "0",
          "`5`"},
@@ -302,8 +304,20 @@ const YamlKeys cell{
         {"speed_deg_per_s", "", "of each joint, for the time of a tour", "1 rad/s (URDF: its own)",
          "`[130, 115, 125, 180, 180, 260]`"},
         {"speed_rad_per_s", "", "the same in rad/s", "", "`[2.3, 2, 2.2, 3.1, 3.1, 4.5]`"},
+        {"acceleration_deg_per_s2", "", "of each joint, likewise", "infinite",
+         "`[250, 200, 250, 400, 400, 600]`"},
+        {"acceleration_rad_per_s2", "", "the same in rad/s^2", "", "`[4, 4, 4, 7, 7, 10]`"},
+        {"settle_s", "", "how long the robot swings at each pose before the first sample", "0",
+         "`0.5`"},
         {"dwell_s", "",
          "how long the robot stands still for each sample, for the time a plan takes", "0", "`4`"},
+    }};
+
+const YamlKeys joint_sum{
+    "joint_sum",
+    {
+        {"limits_deg", "", "least and largest sum of joints that turn", "", "`[-80, 90]`"},
+        {"limits_mm", "", "that of joints that slide", "", "`[0, 900]`"},
     }};
 
 const YamlKeys keep_out{
@@ -385,9 +399,9 @@ const YamlKeys controller{
 
 const std::vector<const YamlKeys*>& all() {
     static const std::vector<const YamlKeys*> tables{
-        &file,   &planning, &robot, &joint,  &dh,     &row,          &terms,
-        &weight, &sensor,   &noise, &places, &spread, &measurements, &mat,
-        &cell,   &keep_out, &solid, &link,   &sight,  &controller};
+        &file,   &planning,  &robot,    &joint,  &dh,     &row,          &terms,
+        &weight, &sensor,    &noise,    &places, &spread, &measurements, &mat,
+        &cell,   &joint_sum, &keep_out, &solid,  &link,   &sight,        &controller};
     return tables;
 }
 

@@ -258,6 +258,8 @@ void problem_fields(const Fields& file, Plan& plan, const FilePath& path) {
         file("workspace_target", request.workspace_target, Count{0, most_target_number});
         file.optional("verification_count", true, request.verification_count,
                       Count{0, most_continuous_poses});
+        file.optional("random_order", request.random_order > 0, request.random_order,
+                      Number{.least = 1});
         file("time_limit_s", request.time_limit, Number{.least = 0});
     } else {
         file("test_poses", sources.test_poses, path);

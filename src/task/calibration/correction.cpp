@@ -35,6 +35,7 @@ std::string describe_collisions(const Campaign& campaign, const RowMatrixXd& con
     Campaign working = campaign;
     working.has_nominal_targets = false;
     Cell cell;
+    cell.joint_sums = campaign.cell.joint_sums;
     cell.links = campaign.cell.links;
     cell.keep_outs = campaign.cell.keep_outs;
     cell.safety_distance = campaign.cell.safety_distance;

@@ -89,8 +89,11 @@ void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out
         make_budget(problem.errors, campaign, planning.information, planning.by_noise);
     planning.without_each = drop_each(prediction, blocks, planning.information);
     planning.drop_outs = drop_worst(prediction, blocks, drop_out_count, left);
-    planning.duration =
-        campaign.cell.dwell * repeats * static_cast<double>(poses.size()) + planning.tour.time;
+    planning.duration = planning.tour.time + standstill(campaign.cell, std::ssize(poses), repeats);
+}
+
+double standstill(const Cell& cell, Index poses, double repeats) {
+    return static_cast<double>(poses) * (cell.settle + cell.dwell * repeats);
 }
 
 std::optional<double> value_rms_of(const PlanningProblem& problem, double value) {
@@ -181,6 +184,7 @@ Ending PlanMaker::ending_of(const PlannedPoses& planned) const {
 Planning PlanMaker::finish(PlanOptions search, const PlannedPoses& planned) const {
     TourOptions tour_options;
     tour_options.order.seed = problem_.request.seed.value();
+    tour_options.random_order = problem_.request.random_order;
     tour_options.stop = options_.stop;
     Tour tour =
         plan_tour(problem_.constraints, all_poses(problem_, planned.configurations), tour_options);

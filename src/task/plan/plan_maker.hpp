@@ -12,6 +12,9 @@ namespace posewise::detail {
 /// poses, how long it takes.
 void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out_count);
 
+/// How long the robot stands still at all poses together, s.
+double standstill(const Cell& cell, Index poses, double repeats);
+
 /// Plan::value_rms of that value.
 std::optional<double> value_rms_of(const PlanningProblem& problem, double value);
 

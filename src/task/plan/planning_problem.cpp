@@ -256,6 +256,9 @@ std::string describe_violation(const PlanningProblem& problem, const PlannedPose
         const auto constraint = static_cast<Constraint>(k);
         if (report[constraint] >= -rounding || constraint == Constraint::JointLimits) continue;
         std::string text = std::string("does not meet ") + constraint_name(constraint);
+        if (constraint == Constraint::JointSums) {
+            text += ": " + describe_sum_violation(constraints, q);
+        }
         if (constraint == Constraint::KeepOuts || constraint == Constraint::SelfCollision) {
             text += ": " +
                     describe_clearance(constraints.nearest(q), constraints.cell().safety_distance);

@@ -27,6 +27,8 @@ constexpr double rounding = 1e-6;
 std::string find_fault_of_way(const Constraints& constraints, const VectorXd& via) {
     const std::string beyond = detail::describe_limit_violation(constraints.robot(), via);
     if (!beyond.empty()) return "has a via beyond the joint limits: " + beyond;
+    const std::string sum = describe_sum_violation(constraints, via, rounding);
+    if (!sum.empty()) return "has a via beyond joint_sums: " + sum;
     if (constraints.collision_clearance(via) >= -rounding) return "";
     return "has a via that collides: " +
            describe_clearance(constraints.nearest(via), constraints.cell().safety_distance);

@@ -88,6 +88,7 @@ std::string find_fault_of_pose(const Constraints& constraints, const VectorXd& q
             const std::string words = detail::describe_limit_violation(constraints.robot(), q);
             if (!words.empty()) return words;
         }
+        if (constraint == Constraint::JointSums) return describe_sum_violation(constraints, q);
         return fmt::format("does not keep {}", constraint_name(constraint));
     }
     for (const Index target : targets) {
@@ -101,6 +102,8 @@ std::string find_fault_of_pose(const Constraints& constraints, const VectorXd& q
 std::string find_fault_of_stop(const Constraints& constraints, const VectorXd& q) {
     const std::string beyond = detail::describe_limit_violation(constraints.robot(), q);
     if (!beyond.empty()) return beyond;
+    const std::string sum = describe_sum_violation(constraints, q, send_rounding);
+    if (!sum.empty()) return sum;
     return constraints.collision_clearance(q) >= -send_rounding ? "" : "collides";
 }
 

@@ -154,11 +154,10 @@ class Search {
         if (!chosen || options_.stop.is_set()) return prediction;
         prediction.error = judge(choices_.information(*chosen), choices_.blocks(*chosen),
                                  choices_.by_noise(*chosen));
-        const double samples = problem_.request.repeats * static_cast<double>(count);
         prediction.duration =
             detail::straight_tour_time(problem_.constraints,
                                        maker_.pool().configurations(*chosen, Eigen::all)) +
-            problem_.campaign.cell.dwell * samples;
+            detail::standstill(problem_.campaign.cell, count, problem_.request.repeats);
         return prediction;
     }
 

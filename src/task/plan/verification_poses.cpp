@@ -76,6 +76,7 @@ void add_verification(const PlanningProblem& problem, const Pool& pool,
         draw(problem, candidates(problem, pool, options), count, others_of(problem, plan));
     TourOptions tour_options;
     tour_options.order.seed = problem.request.seed.value();
+    tour_options.random_order = problem.request.random_order;
     tour_options.start = plan.poses.back().configuration;
     const Tour tour =
         plan_tour(problem.constraints,
