@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "joint_limits.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise {
@@ -93,6 +94,26 @@ ControllerJoints::ControllerJoints(const Chain& robot, std::vector<std::string> 
     check_motions(robot, from_model_);
     to_model_ = inverse_of(from_model_);
     for (const Joint& joint : robot.joints()) motions_.push_back(joint.motion);
+}
+
+VectorXd ControllerJoints::to_controller(const VectorXd& q) const {
+    return from_model_ * q + offset_;
+}
+
+VectorXd ControllerJoints::to_model(const VectorXd& c) const { return to_model_ * (c - offset_); }
+
+std::vector<Joint> ControllerJoints::limited(const Chain& robot) const {
+    const auto [lower, upper] = detail::limits_of(robot);
+    const VectorXd middle = to_controller((lower + upper) / 2);
+    const VectorXd reach = from_model_.cwiseAbs() * (upper - lower) / 2;
+    std::vector<Joint> joints = robot.joints();
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        const auto joint = static_cast<Index>(i);
+        joints[i].name = names_[i];
+        joints[i].lower = middle[joint] - reach[joint];
+        joints[i].upper = middle[joint] + reach[joint];
+    }
+    return joints;
 }
 
 ControllerJoints fanuc_joints(const Chain& robot, int j23_factor) {

@@ -132,12 +132,15 @@ TEST_F(ProgramCommand, SaysWhichPosesAnEditedProgramHasNot) {
 }
 
 TEST_F(ProgramCommand, RefusesWhatNoRobotShouldDo) {
-    expect_input_error("program p.json --for yaskawa -o A.jbi",
-                       "cell.yaml: controller.pulses_per_deg is not stated");
+    write_cell("plain.yaml", "{}");
+    expect_input_error("program p.json --campaign plain.yaml --for yaskawa -o A.jbi",
+                       "plain.yaml: controller.pulses_per_deg is not stated");
+    expect_input_error("program p.json --for ros2 -o a.yaml",
+                       "cell.yaml: controller.maker is fanuc, the program is for ros2");
     expect_input_error("program p.json --for fanuc -o 'my cell.ls'", "must be like MY_CELL.ls");
-    expect_input_error("program p.json --for ros2 -o a.yaml --handshake pause",
-                       "no handshake pause");
-    expect_input_error("program p.json --for staubli -o none/cell", "none");
+    expect_input_error("program p.json --for csv -o a.csv --handshake pause", "no handshake pause");
+    expect_input_error("program p.json --campaign plain.yaml --for staubli -o none/cell",
+                       "none/cell");
     expect_input_error("program p.json --for csv -o p.as_sent.csv", "p.as_sent.csv");
     expect_input_error("program p.json --for fanuc -o A.ls --campaign " + fanuc_design,
                        "p.json: campaign: is 'FANUC R-2000iC/165F in a cell'");

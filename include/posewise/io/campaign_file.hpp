@@ -57,7 +57,8 @@ struct CampaignFile : Campaign {
     std::optional<UrdfSource> urdf;     ///< source of the robot, if it comes from a URDF
     std::vector<std::string> warnings;  ///< parts of it that were not understood, a sentence each
     MatMapping mat;
-    ControllerJoints controller;  ///< joints of programs; the robot's own where nothing is stated
+    ControllerJoints controller;   ///< joints of programs; the robot's own where nothing is stated
+    std::string controller_maker;  ///< the family that `controller` is of; empty: none is stated
     bool has_controller_columns = false;  ///< measurements hold the controller's joints, so named
 };
 

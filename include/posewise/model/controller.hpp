@@ -34,8 +34,11 @@ class ControllerJoints {
     bool is_identity() const { return from_model_.isIdentity(0) && offset_.isZero(0); }
 
     /// Both in rad and m. Sizes must be count().
-    VectorXd to_controller(const VectorXd& q) const { return from_model_ * q + offset_; }
-    VectorXd to_model(const VectorXd& c) const { return to_model_ * (c - offset_); }
+    VectorXd to_controller(const VectorXd& q) const;
+    VectorXd to_model(const VectorXd& c) const;
+
+    /// The controller's joints with limits as wide as those of `robot` allow for each.
+    std::vector<Joint> limited(const Chain& robot) const;
 
   private:
     std::vector<std::string> names_;

@@ -304,9 +304,12 @@ CampaignFile parse(const std::string& content, const std::string& path,
         file.cell = read_cell(*cell, campaign.robot, *sensor.sensor);
     }
     if (file.cell.speed.size() == 0) file.cell.speed = robot.speed;
-    const auto controller = map.find("controller");
-    file.controller = controller ? detail::read_controller(*controller, campaign.robot)
-                                 : ControllerJoints(campaign.robot);
+    file.controller = ControllerJoints(campaign.robot);
+    if (const auto section = map.find("controller")) {
+        const auto [joints, maker] = detail::read_controller(*section, campaign.robot);
+        file.controller = joints;
+        file.controller_maker = maker;
+    }
     return file;
 }
 

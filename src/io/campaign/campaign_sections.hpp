@@ -44,7 +44,11 @@ SensorSection read_sensor(const YamlValue& sensor);
 Cell read_cell(const YamlValue& cell, const Chain& robot, const Sensor& sensor);
 
 /// How the controller's joints follow from those of `robot`.
-ControllerJoints read_controller(const YamlValue& controller, const Chain& robot);
+struct ControllerSection {
+    ControllerJoints joints;
+    std::string maker = "";  ///< empty: not stated
+};
+ControllerSection read_controller(const YamlValue& controller, const Chain& robot);
 
 /// Position and `rpy` of a frame.
 Isometry3d read_frame(const YamlMap& map);

@@ -139,7 +139,7 @@ ControllerJoints read_family(const YamlMap& map, const YamlValue& maker, const C
 
 }  // namespace
 
-ControllerJoints read_controller(const YamlValue& value, const Chain& robot) {
+ControllerSection read_controller(const YamlValue& value, const Chain& robot) {
     const YamlMap map(value, keys::controller);
     const auto maker = map.find("maker");
     const auto joints = map.find("joints");
@@ -153,12 +153,12 @@ ControllerJoints read_controller(const YamlValue& value, const Chain& robot) {
     const auto with_pulses = [&](const ControllerJoints& one) {
         return ControllerJoints(robot, one.names(), one.from_model(), one.offset(), pulses);
     };
-    if (maker) return with_pulses(read_family(map, *maker, robot));
-    if (!joints) return with_pulses(ControllerJoints(robot));
+    if (maker) return {with_pulses(read_family(map, *maker, robot)), maker->text()};
+    if (!joints) return {with_pulses(ControllerJoints(robot))};
     const Sums sums = read_sums(*joints, robot);
-    return make_at(*joints, [&] {
+    return {make_at(*joints, [&] {
         return ControllerJoints(robot, sums.names, sums.from_model, sums.offset, pulses);
-    });
+    })};
 }
 
 }  // namespace posewise::detail

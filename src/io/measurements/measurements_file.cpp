@@ -27,18 +27,9 @@ Measurements read_as_stated(const std::string& path, const CampaignFile& file,
 /// The campaign with the controller's joints in place of the model's: their names, and limits as
 /// wide as those of the model allow.
 Campaign with_controller_joints(const CampaignFile& file) {
-    std::vector<Joint> joints = file.robot.joints();
-    const auto [lower, upper] = detail::limits_of(file.robot);
-    const VectorXd middle = file.controller.to_controller((lower + upper) / 2);
-    const VectorXd reach = file.controller.from_model().cwiseAbs() * (upper - lower) / 2;
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-        const auto joint = static_cast<Index>(i);
-        joints[i].name = file.controller.names()[i];
-        joints[i].lower = middle[joint] - reach[joint];
-        joints[i].upper = middle[joint] + reach[joint];
-    }
     Campaign campaign = file;
-    campaign.robot = Chain(joints, file.robot.elements(), file.robot.torques());
+    campaign.robot =
+        Chain(file.controller.limited(file.robot), file.robot.elements(), file.robot.torques());
     return campaign;
 }
 

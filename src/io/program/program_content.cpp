@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "core/text.hpp"
 #include "io/format/csv_reader.hpp"
 #include "io/measurements/measurement_columns.hpp"
 #include "program_text.hpp"

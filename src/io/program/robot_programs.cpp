@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
 
 #include "core/names.hpp"
 #include "core/text.hpp"
+#include "io/format/text.hpp"
 #include "io/result/configurations_text.hpp"
 #include "program_text.hpp"
 

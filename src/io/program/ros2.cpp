@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 
+#include "core/text.hpp"
 #include "io/format/yaml_reader.hpp"
 #include "program_text.hpp"
 

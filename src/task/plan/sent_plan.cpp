@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <functional>
 
@@ -99,9 +98,14 @@ std::string find_fault_of_pose(const Constraints& constraints, const VectorXd& q
     return "";
 }
 
-std::string find_fault_of_stop(const Constraints& constraints, const VectorXd& q) {
-    const std::string beyond = detail::describe_limit_violation(constraints.robot(), q);
-    if (!beyond.empty()) return beyond;
+/// Of a stop where nothing is measured, within the limits of this robot.
+std::string find_fault_of_stop(const Constraints& constraints, const Chain& robot,
+                               const VectorXd& q) {
+    const auto [lower, upper] = detail::limits_of(robot);
+    const VectorXd joints = q.head(robot.joint_count());
+    const bool is_within = (joints.array() >= lower.array() - send_rounding).all() &&
+                           (joints.array() <= upper.array() + send_rounding).all();
+    if (!is_within) return "is beyond the joint limits";
     const std::string sum = describe_sum_violation(constraints, q, send_rounding);
     if (!sum.empty()) return sum;
     return constraints.collision_clearance(q) >= -send_rounding ? "" : "collides";
@@ -152,8 +156,9 @@ VectorXd send(const Grid& grid, const std::string& what, const VectorXd& q,
 
 VectorXd send_via(const Grid& grid, const Constraints& constraints, const VectorXd& via,
                   const std::string& id) {
-    return send(grid, "the via before pose " + quote(id), via,
-                [&](const VectorXd& q) { return find_fault_of_stop(constraints, q); });
+    return send(grid, "the via before pose " + quote(id), via, [&](const VectorXd& q) {
+        return find_fault_of_stop(constraints, constraints.robot(), q);
+    });
 }
 
 void send_all(std::vector<PlannedPose>& poses, const Constraints& constraints, const Grid& grid) {
@@ -216,8 +221,9 @@ class Route {
         }
         if (tour.visits[0].via) {
             const VectorXd via =
-                send(grid_, "the via back", *tour.visits[0].via,
-                     [&](const VectorXd& q) { return find_fault_of_stop(constraints_, q); });
+                send(grid_, "the via back", *tour.visits[0].via, [&](const VectorXd& q) {
+                    return find_fault_of_stop(constraints_, constraints_.robot(), q);
+                });
             go({RouteStop::Kind::Via, "", 1, via});
         }
         go(stop);
@@ -326,7 +332,12 @@ std::vector<RouteStop> route_of(const Plan& sent, const Campaign& campaign,
             "cell.home_deg is not stated; must be, since a reversed pass begins there");
     }
     Route pass(campaign, constraints, grid);
-    if (has_home) pass.go({Kind::Home, "", 1, grid.nearest(campaign.cell.home)});
+    if (has_home) {
+        const VectorXd home = send(grid, "home", campaign.cell.home, [&](const VectorXd& q) {
+            return find_fault_of_stop(constraints, campaign.robot, q);
+        });
+        pass.go({Kind::Home, "", 1, home});
+    }
     for (const auto* poses : {&sent.poses, &sent.verification}) {
         for (const PlannedPose& pose : *poses) {
             if (pose.via) pass.go({Kind::Via, "", 1, *pose.via});
