@@ -7,7 +7,7 @@
 namespace posewise::cli {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 14> flags{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 16> flags{
     {{"count", "--random"},
      {"dropped", "--drop"},
      {"earlier", "--from"},
@@ -18,6 +18,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 14> flags{
      {"is_focused_on_robot", "--focus robot"},
      {"least_distance", "--least-distance-deg"},
      {"measured", "--measurements"},
+     {"plan", "--plan"},
+     {"points_unit", "--points-unit"},
      {"pool_count", "--pool"},
      {"pose_count", "--poses"},
      {"spread.is_prior", "--prior"},

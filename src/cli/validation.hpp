@@ -22,8 +22,8 @@ void warn_of_no_validation(const CalibrateArguments& arguments, const Validation
                            const io::Provenance& made_from);
 
 /// Calibrates with a plan's poses only (--plan), and judges on those that it has to verify.
-void use_plan(const std::string& path, const Campaign& campaign, const Measurements& measured,
-              CalibrationOptions& options);
+void use_plan(const std::string& path, const Plan& plan, const Campaign& campaign,
+              const io::MeasurementsFile& measured, CalibrationOptions& options);
 
 /// Throws InputError for a limit where nothing is judged, or that is no length.
 void check_limit(const CalibrateArguments& arguments, const Campaign& campaign,

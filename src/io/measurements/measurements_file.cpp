@@ -1,7 +1,10 @@
 #include "posewise/io/measurements_file.hpp"
 
 #include "core/text.hpp"
+#include "io/format/atomic_file.hpp"
 #include "model/joint_limits.hpp"
+#include "planned_points.hpp"
+#include "points_list.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::io {
@@ -20,9 +23,16 @@ Configurations read_matlab(const std::string& path, const CampaignFile& file) {
 
 }  // namespace
 
-Measurements read_measurements(const std::string& path, const CampaignFile& file) {
-    return is_matlab(path) ? read_measurements_mat(path, file, file.mat)
-                           : read_measurements_csv(path, file);
+MeasurementsFile read_measurements(const std::string& path, const CampaignFile& file,
+                                   const PointsSource& points) {
+    if (is_matlab(path)) return {read_measurements_mat(path, file, file.mat)};
+    std::string content = detail::read_file(path);
+    std::vector<std::string> joints;
+    for (const Joint& joint : file.robot.joints()) joints.push_back(joint.name);
+    if (detail::is_points_list(path, content, joints, points.plan != nullptr)) {
+        return detail::read_planned_points(path, std::move(content), file, points);
+    }
+    return detail::read_measurements_table(path, std::move(content), file);
 }
 
 Configurations read_configurations(const std::string& path, const CampaignFile& file) {
