@@ -185,14 +185,14 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     const InputPaths& paths = arguments.paths;
     const EarlierArguments& earlier = arguments.earlier;
     const io::CampaignFile file = read_calibrated(arguments);
-    const Validation validation = read_validation(arguments, file);
+    const std::optional<Plan> plan = read_measured_plan(paths, file);
+    const Validation validation = read_validation(arguments, file, points_of(paths, plan));
     check_outputs(
         {&file, validation.campaign ? &*validation.campaign : nullptr},
         {paths.measurements, paths.plan, arguments.validate, arguments.predict, earlier.from},
         {arguments.out, arguments.predict_out, arguments.csv, arguments.page, arguments.plot},
         common);
     CalibrationOptions options = make_options(arguments, file.seed);
-    const std::optional<Plan> plan = read_measured_plan(paths, file);
     const io::MeasurementsFile measured =
         read_measured_without(options.excluded, paths, file, earlier, plan);
     io::Provenance made_from = provenance_of(command, file, paths.measurements, measured);

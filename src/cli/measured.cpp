@@ -1,6 +1,7 @@
 #include "measured.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common.hpp"
 #include "core/text.hpp"
@@ -32,8 +33,9 @@ io::MeasurementsFile read_with_notes(const std::string& path, const io::Campaign
         for (const std::string& name : measured.unused_columns) {
             names.push_back(detail::quote(name));
         }
-        print_warning(fmt::format("{}: {} not used: {}", path,
-                                  names.size() > 1 ? "columns" : "a column", join_some(names)));
+        const bool is_one = names.size() == 1;
+        print_warning(fmt::format("{}: column{} {} {} not used", path, is_one ? "" : "s",
+                                  fmt::join(names, ", "), is_one ? "is" : "are"));
     }
     if (!measured.joined.empty()) print_warning(path + ": " + measured.joined);
     return measured;

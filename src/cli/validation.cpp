@@ -11,7 +11,8 @@
 
 namespace posewise::cli {
 
-Validation read_validation(const CalibrateArguments& arguments, const io::CampaignFile& file) {
+Validation read_validation(const CalibrateArguments& arguments, const io::CampaignFile& file,
+                           const io::PointsSource& points) {
     Validation validation;
     if (!arguments.validation_campaign.empty()) {
         validation.campaign = read_with_prior(arguments.validation_campaign, arguments.prior);
@@ -19,8 +20,8 @@ Validation read_validation(const CalibrateArguments& arguments, const io::Campai
                                     file.robot);
     }
     if (arguments.validate.empty()) return validation;
-    validation.measured =
-        read_measured(arguments.validate, validation.campaign ? *validation.campaign : file);
+    validation.measured = read_measured(arguments.validate,
+                                        validation.campaign ? *validation.campaign : file, points);
     return validation;
 }
 

@@ -14,8 +14,9 @@ struct Validation {
     std::optional<io::CampaignFile> campaign;
     std::optional<Measurements> measured;
 };
-/// `file`: the campaign to calibrate with.
-Validation read_validation(const CalibrateArguments& arguments, const io::CampaignFile& file);
+/// `file`: the campaign to calibrate with; `points`: for a list of points.
+Validation read_validation(const CalibrateArguments& arguments, const io::CampaignFile& file,
+                           const io::PointsSource& points);
 
 /// Warns of measurements that went into the estimate, or into the one that it builds on.
 void warn_of_no_validation(const CalibrateArguments& arguments, const Validation& validation,

@@ -162,13 +162,12 @@ class RowReader {
         const double si = unit.to_si(number.value);
         constexpr double farthest = 100;  // m, of a pose
         if (columns_[field].is_ros && std::abs(si) > farthest) {
+            const auto axis = static_cast<std::size_t>(columns_[field].index);
             throw input_error_at(
                 csv_.locate(field),
-                fmt::format("{} is over {:g} m, the unit of {} where none is stated; call it "
-                            "{}_mm if it is in mm",
-                            detail::quote(text), farthest,
-                            detail::ros_position[static_cast<std::size_t>(columns_[field].index)],
-                            detail::ros_position[static_cast<std::size_t>(columns_[field].index)]));
+                fmt::format("{0} is over {1:g} m, the unit of {2} where none is stated; call it "
+                            "{2}_mm if it is in mm",
+                            detail::quote(text), farthest, detail::ros_position[axis]));
         }
         if (!is_plausible(si, unit.quantity)) {
             throw input_error_at(csv_.locate(field),

@@ -84,17 +84,13 @@ class Join {
         return found == place_of_.end() ? nothing : found->second;
     }
 
-    std::string names_of_plan() const {
-        return fmt::format("{} to {}", name(0), name(measured_.size() - 1));
-    }
-
     void put(const NamedPoint& point) {
         const std::size_t place = find(point.name);
         if (place == nothing) {
             throw input_error_at(point.place,
-                                 fmt::format("{} is no point of the plan; must be one of {}, or be "
-                                             "left out",
-                                             quote(point.name), names_of_plan()));
+                                 fmt::format("{} is no point of the plan; must be one, such as {}, "
+                                             "or be left out",
+                                             quote(point.name), name(0)));
         }
         if (measured_[place] != nullptr) {
             throw input_error_at(
@@ -125,11 +121,10 @@ class Join {
             const std::string& first = list_.points.front().name;
             throw input_error_at(
                 list_.points.front().place,
-                fmt::format("no name{} is one of the plan's, {}, and {} cannot be the plan's {} in "
-                            "order; name them as the plan does, or leave none out",
-                            first.empty() ? "" : " (the first is " + quote(first) + ")",
-                            names_of_plan(), count_of(static_cast<Index>(count), "point"),
-                            places.size()));
+                fmt::format("no name{} is one of the plan's, such as {}, and in order {} cannot be "
+                            "the plan's {}; name them as the plan does, or leave none out",
+                            first.empty() ? "" : " (the first is " + quote(first) + ")", name(0),
+                            count_of(static_cast<Index>(count), "point"), places.size()));
         }
         for (std::size_t k = 0; k < count; ++k) measured_[places[k]] = &list_.points[k];
     }
@@ -194,41 +189,33 @@ class Join {
         return samples.finish(path_);
     }
 
-    /// "18 of the plan's 20 poses, without p4, p9; 3 points missing: P001_T2, ..."; empty if all
-    /// are there.
+    /// "18 of 20 poses, without p4, p9, 3 points missing: P001_T2, ..."; empty if all are there.
     std::string describe(bool is_by_name) const {
         std::vector<std::string> poses;
         std::vector<std::string> points;
-        std::size_t count = poses_.size();
-        std::vector<std::string> here;
         for (std::size_t i = 0; i < poses_.size(); ++i) {
-            here.clear();
+            std::vector<std::string> missing;
+            bool is_measured = false;
             for (std::size_t place = i * targets_; place < (i + 1) * targets_; ++place) {
-                if (is_planned(place) && measured_[place] == nullptr) here.push_back(name(place));
+                is_measured = is_measured || measured_[place] != nullptr;
+                if (is_planned(place) && measured_[place] == nullptr)
+                    missing.push_back(name(place));
             }
-            const bool is_measured =
-                std::any_of(measured_.begin() + static_cast<long>(i * targets_),
-                            measured_.begin() + static_cast<long>((i + 1) * targets_),
-                            [](const NamedPoint* point) { return point != nullptr; });
             if (is_measured) {
-                points.insert(points.end(), here.begin(), here.end());
+                points.insert(points.end(), missing.begin(), missing.end());
             } else {
                 poses.push_back(quote(poses_[i]->id));
             }
         }
         if (is_by_name && poses.empty() && points.empty()) return "";
-        count -= poses.size();
+        const auto count = static_cast<Index>(poses_.size());
         std::string text =
-            fmt::format("{}{} of {}",
-                        is_by_name ? ""
-                                   : "no name is one of the plan's, so that the points are "
-                                     "taken in the plan's order: ",
-                        count, count_of(static_cast<Index>(poses_.size()), "pose"));
-        if (!poses.empty()) text += fmt::format(", without {}", some_of(poses));
-        if (is_by_name) {
-            text +=
-                fmt::format(", {} missing", count_of(static_cast<Index>(points.size()), "point"));
-            if (!points.empty()) text += ": " + some_of(points);
+            is_by_name ? "" : "no name is one of the plan's, so they are taken in its order: ";
+        text += fmt::format("{} of {}", count - std::ssize(poses), count_of(count, "pose"));
+        if (!poses.empty()) text += ", without " + some_of(poses);
+        if (!points.empty()) {
+            text += fmt::format(", {} missing: {}", count_of(std::ssize(points), "point"),
+                                some_of(points));
         }
         return text;
     }

@@ -38,6 +38,12 @@ struct Title {
     std::string unit;  ///< empty: none
 };
 
+/// Of those that are not read, the usual ones, so that they can be named.
+bool is_unit(const std::string& text) {
+    return find_unit(text) != nullptr || text == "in" || text == "inch" || text == "ft" ||
+           text == "cm";
+}
+
 Title read_title(std::string_view field) {
     Title title{lower(field), ""};
     const std::size_t opening = title.words.find_first_of("[(");
@@ -46,7 +52,7 @@ Title read_title(std::string_view field) {
         title.unit = trim(std::string_view(title.words).substr(opening + 1, closing - opening - 1));
         title.words.erase(opening);
     } else if (const std::size_t at = title.words.find_last_of("_ ");
-               at != std::string::npos && find_unit(title.words.substr(at + 1)) != nullptr) {
+               at != std::string::npos && is_unit(title.words.substr(at + 1))) {
         title.unit = title.words.substr(at + 1);
         title.words.erase(at);
     }
@@ -159,7 +165,7 @@ class ListReader {
 
     void read_units(const std::array<std::string, 3>& units) {
         if (units[1] != units[0] || units[2] != units[0]) {
-            throw error(0, "the header states another unit for x, y and z each; must be one");
+            throw error(0, "the header states different units for x, y and z; must be one for all");
         }
         if (units[0].empty()) return;
         const Unit* const stated = find_unit(units[0]);
@@ -187,12 +193,11 @@ class ListReader {
                              is_coordinate(count - 2) && is_coordinate(count - 3) &&
                              (count < 5 || !is_coordinate(count - 4));
         if (!is_list) {
-            throw error(
-                0, fmt::format("{} {}, neither a header with x, y and z nor a point; must be name "
-                               "x y z, or group or collection and group before it, and nothing "
-                               "after; a decimal point, no comma",
-                               count == 1 ? "is" : "are",
-                               count_of(static_cast<Index>(count), "field")));
+            throw error(0,
+                        fmt::format("the first row has {}, and is neither a header with x, y and "
+                                    "z nor a point; must be x y z, name x y z, group name x y "
+                                    "z or collection group name x y z, with decimal points",
+                                    count_of(static_cast<Index>(count), "field")));
         }
         if (count > 3) layout_.name = count - 4;
         for (std::size_t k = 0; k < 3; ++k) layout_.coordinates[k] = count - 3 + k;
