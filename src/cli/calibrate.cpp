@@ -185,20 +185,21 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     const InputPaths& paths = arguments.paths;
     const EarlierArguments& earlier = arguments.earlier;
     const io::CampaignFile file = read_calibrated(arguments);
-    const Validation validation = read_validation(arguments, file);
+    const std::optional<Plan> plan = read_measured_plan(paths, file);
+    const Validation validation = read_validation(arguments, file, points_of(paths, plan));
     check_outputs(
         {&file, validation.campaign ? &*validation.campaign : nullptr},
-        {paths.measurements, arguments.plan, arguments.validate, arguments.predict, earlier.from},
+        {paths.measurements, paths.plan, arguments.validate, arguments.predict, earlier.from},
         {arguments.out, arguments.predict_out, arguments.csv, arguments.page, arguments.plot},
         common);
     CalibrationOptions options = make_options(arguments, file.seed);
-    const Measurements measured =
-        read_measured_without(options.excluded, paths.measurements, file, earlier);
+    const io::MeasurementsFile measured =
+        read_measured_without(options.excluded, paths, file, earlier, plan);
     io::Provenance made_from = provenance_of(command, file, paths.measurements, measured);
     if (!earlier.from.empty()) {
         options.earlier = read_usable_earlier(earlier.from, file, earlier.use(), earlier.is_forced);
     }
-    if (!arguments.plan.empty()) use_plan(arguments.plan, file, measured, options);
+    if (plan) use_plan(paths.plan, *plan, file, measured, options);
     warn_of_no_validation(arguments, validation, made_from);
     options.validation = validation.measured ? &*validation.measured : nullptr;
     options.validation_campaign = validation.campaign ? &*validation.campaign : nullptr;
@@ -218,7 +219,8 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     if (!result.faults.empty()) check_faults(arguments, common, result, printed);
     io::PagePart part;
     if (!arguments.page.empty()) {
-        const Measurements used = options.used.empty() ? measured : take(measured, options.used);
+        const Measurements& all = measured;
+        const Measurements used = options.used.empty() ? all : take(all, options.used);
         part = show_estimate(result.campaign, result.estimate, &used);
     }
     made_from.warnings = given_warnings();

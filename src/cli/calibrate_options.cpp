@@ -11,11 +11,9 @@ namespace posewise::cli {
 
 void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     CalibrationOptions& options = arguments.options;
-    command
-        .add_option("--plan", arguments.plan,
-                    "Use only the configurations of this plan file, judge on "
-                    "those it has to verify and on the others")
-        ->check(file_name());
+    add_points_options(command, arguments.paths,
+                       "Use only the configurations of this plan, judge on those it has to verify "
+                       "and on the others");
     add_exclude_option(command, options.excluded);
     command.add_option("--method", arguments.method, "lm, two-step or global")
         ->check(CLI::IsMember(detail::words_of(detail::method_names)))

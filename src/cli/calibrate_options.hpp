@@ -14,7 +14,6 @@ namespace posewise::cli {
 /// The command line of calibrate.
 struct CalibrateArguments {
     InputPaths paths;
-    std::string plan;
     std::string validate;
     std::optional<double> limit_mm;
     std::string predict;

@@ -43,7 +43,8 @@ CLI::Option* add_campaign_argument(CLI::App& command, InputPaths& paths) {
 CLI::Option* add_measurements_option(CLI::App& command, InputPaths& paths) {
     return command
         .add_option("-m,--measurements", paths.measurements,
-                    "Measured configurations (CSV, or MATLAB .mat)")
+                    "Measured configurations (CSV, or MATLAB .mat), or with --plan the points "
+                    "measured at its poses, as the instrument's program lists them")
         ->required()
         ->check(file_name());
 }
@@ -83,16 +84,16 @@ CLI::Validator criterion_check() {
 }
 
 std::vector<std::string> leave_out_missing(const std::string& plan_path, const Plan& plan,
-                                           const Measurements& measured,
+                                           const io::MeasurementsFile& measured,
                                            const std::vector<std::string>& excluded) {
     std::vector<std::string> left_out = excluded;
     std::vector<std::string> missing;
     for (const PlannedPose& pose : plan.poses) {
         if (std::ranges::find(measured.ids, pose.id) != measured.ids.end()) continue;
         left_out.push_back(pose.id);
-        if (excluded.empty()) missing.push_back(detail::quote(pose.id));
+        if (excluded.empty() && !measured.is_joined) missing.push_back(detail::quote(pose.id));
     }
-    if (missing.size() == plan.poses.size()) {
+    if (left_out.size() - excluded.size() == plan.poses.size()) {
         throw input_error_at({plan_path}, "none of its poses is among the measured ones");
     }
     if (!missing.empty()) {
@@ -103,10 +104,9 @@ std::vector<std::string> leave_out_missing(const std::string& plan_path, const P
     return left_out;
 }
 
-std::vector<Index> find_planned(const Campaign& campaign, const Measurements& measured,
-                                const std::string& plan_path,
+std::vector<Index> find_planned(const std::string& plan_path, const Plan& plan,
+                                const Campaign& campaign, const io::MeasurementsFile& measured,
                                 const std::vector<std::string>& excluded) {
-    const Plan plan = io::read_plan(plan_path);
     const auto left_out = leave_out_missing(plan_path, plan, measured, excluded);
     return compute_from(plan_path,
                         [&] { return posewise::find_planned(plan, campaign, measured, left_out); });

@@ -19,6 +19,8 @@ namespace posewise::cli {
 struct InputPaths {
     std::string campaign;
     std::string measurements;
+    std::string plan{};         ///< whose poses were measured
+    std::string points_unit{};  ///< of a list of points
 };
 CLI::Option* add_campaign_argument(CLI::App& command, InputPaths& paths);
 CLI::Option* add_measurements_option(CLI::App& command, InputPaths& paths);
@@ -30,14 +32,14 @@ CLI::Validator criterion_check();
 void add_digits_option(CLI::App& command, int& digits);
 
 /// `excluded`, and ids of a plan that are not among the measured ones: warns of these where nothing
-/// is excluded. Throws InputError if that are all of them.
+/// is excluded and it is not said already. Throws InputError if that are all of them.
 std::vector<std::string> leave_out_missing(const std::string& plan_path, const Plan& plan,
-                                           const Measurements& measured,
+                                           const io::MeasurementsFile& measured,
                                            const std::vector<std::string>& excluded);
 
-/// find_planned() of a plan file, less what is missing.
-std::vector<Index> find_planned(const Campaign& campaign, const Measurements& measured,
-                                const std::string& plan_path,
+/// find_planned() of a plan in that file, less what is missing.
+std::vector<Index> find_planned(const std::string& plan_path, const Plan& plan,
+                                const Campaign& campaign, const io::MeasurementsFile& measured,
                                 const std::vector<std::string>& excluded);
 
 /// Everything is printed to standard output through these two.

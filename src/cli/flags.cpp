@@ -7,7 +7,7 @@
 namespace posewise::cli {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 15> flags{
+constexpr auto flags = std::to_array<std::pair<std::string_view, std::string_view>>(
     {{"count", "--random"},
      {"dropped", "--drop"},
      {"earlier", "--from"},
@@ -18,11 +18,13 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 15> flags{
      {"is_focused_on_robot", "--focus robot"},
      {"least_distance", "--least-distance-deg"},
      {"measured", "--measurements"},
+     {"plan", "--plan"},
+     {"points_unit", "--points-unit"},
      {"pool_count", "--pool"},
      {"pose_count", "--poses"},
      {"spread.is_prior", "--prior"},
      {"starts", "--starts"},
-     {"time", "--time"}}};
+     {"time", "--time"}});
 
 }  // namespace
 

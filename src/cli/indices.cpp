@@ -28,7 +28,6 @@ robot is as an earlier calibration found it, with --as-prior what that knew coun
 
 struct IndicesArguments {
     InputPaths paths;
-    std::string plan;
     std::vector<std::string> excluded;
     std::optional<bool> prior;
     EarlierArguments earlier;
@@ -38,10 +37,11 @@ struct IndicesArguments {
 
 Measurements read_input(const IndicesArguments& arguments, const io::CampaignFile& file) {
     const auto& excluded = arguments.excluded;
+    const std::optional<Plan> plan = read_measured_plan(arguments.paths, file);
     const auto all =
-        read_measured_without(excluded, arguments.paths.measurements, file, arguments.earlier);
-    return arguments.plan.empty() ? all
-                                  : take(all, find_planned(file, all, arguments.plan, excluded));
+        read_measured_without(excluded, arguments.paths, file, arguments.earlier, plan);
+    if (!plan) return all;
+    return take(all, find_planned(arguments.paths.plan, *plan, file, all, excluded));
 }
 
 void print_indices(const IndicesArguments& arguments, const CommonOptions& common) {
@@ -64,8 +64,7 @@ void add_indices(CLI::App& program, const CommonOptions& common) {
         program.add_subcommand("indices", "Rate measured configurations by every index");
     add_campaign_argument(*command, arguments->paths);
     add_measurements_option(*command, arguments->paths);
-    command->add_option("--plan", arguments->plan, "Only the configurations of this plan file")
-        ->check(file_name());
+    add_points_options(*command, arguments->paths, "Only the configurations of this plan");
     add_exclude_option(*command, arguments->excluded);
     add_prior_option(*command, arguments->prior, ": told beside what is measured");
     command->add_option("--directions", arguments->directions, "How many weak directions to name")

@@ -49,11 +49,10 @@ makes a file to begin with, which says what is left to fill in. Its cell.links a
 URDF's collision shapes (boxes, cylinders, spheres, capsules); a warning names the links of meshes.)";
 
 struct InspectArguments {
-    std::string file;  ///< campaign or URDF
+    InputPaths paths;  ///< the campaign may be a URDF
     std::string base_link;
     std::string tip_link;
     std::string written;
-    std::string measurements;
     EarlierArguments earlier;
 };
 
@@ -94,13 +93,13 @@ void print_campaign(const io::CampaignFile& file, const ReadingSearch& readings,
 
 bool is_urdf(const InspectArguments& arguments) {
     return !arguments.base_link.empty() || !arguments.tip_link.empty() ||
-           !arguments.written.empty() || arguments.file.ends_with(".urdf");
+           !arguments.written.empty() || arguments.paths.campaign.ends_with(".urdf");
 }
 
 /// The campaign that --write-campaign would write.
 void inspect_urdf(const InspectArguments& arguments, const CommonOptions& common) {
-    const std::string& urdf = arguments.file;
-    if (!arguments.measurements.empty() || !arguments.earlier.from.empty()) {
+    const std::string& urdf = arguments.paths.campaign;
+    if (!arguments.paths.measurements.empty() || !arguments.earlier.from.empty()) {
         throw input_error_at({urdf},
                              "is a robot alone; --measurements and --from need a campaign file");
     }
@@ -136,19 +135,23 @@ void warn_of_places(const std::string& path, const io::CampaignFile& file,
 
 void inspect(const InspectArguments& arguments, const CommonOptions& common) {
     if (is_urdf(arguments)) return inspect_urdf(arguments, common);
-    io::CampaignFile file = io::read_campaign(arguments.file);
+    io::CampaignFile file = io::read_campaign(arguments.paths.campaign);
     std::ranges::for_each(file.warnings, print_warning);
     warn_of_limits(file);
     expect_earlier(file, arguments.earlier);
     ReadingSearch readings;
-    if (!arguments.measurements.empty()) {
-        const Measurements measurements = io::read_measurements(arguments.measurements, file);
-        readings = compute_from(arguments.measurements, [&] {
+    const InputPaths& paths = arguments.paths;
+    if (!paths.measurements.empty()) {
+        const std::optional<Plan> plan = read_measured_plan(paths, file);
+        const auto measurements = read_measured(paths.measurements, file, points_of(paths, plan));
+        check_needs_unit(paths, measurements);
+        check_needs_plan(paths, measurements);
+        readings = compute_from(paths.measurements, [&] {
             ReadingSearch search = search_readings(file, measurements);
             if (!search.undetermined.empty()) throw InputError(search.undetermined);
             return search;
         });
-        warn_of_places(arguments.measurements, file, measurements);
+        warn_of_places(paths.measurements, file, measurements);
     }
     print_campaign(file, readings, common);
 }
@@ -160,7 +163,8 @@ void add_inspect(CLI::App& program, const CommonOptions& common) {
     CLI::App* command =
         program.add_subcommand("inspect", "Show the robot, and which of its errors can be found");
     command
-        ->add_option("CAMPAIGN", arguments->file, "Campaign file (YAML), or a robot alone (URDF)")
+        ->add_option("CAMPAIGN", arguments->paths.campaign,
+                     "Campaign file (YAML), or a robot alone (URDF)")
         ->required()
         ->check(file_name());
     command
@@ -176,9 +180,15 @@ void add_inspect(CLI::App& program, const CommonOptions& common) {
                      "URDF: write a campaign file to begin with")
         ->check(file_name());
     command
-        ->add_option("-m,--measurements", arguments->measurements,
-                     "Measured configurations (CSV, or MATLAB .mat): check how they are meant")
+        ->add_option("-m,--measurements", arguments->paths.measurements,
+                     "Measured configurations (CSV, or MATLAB .mat), or with --plan a list of "
+                     "points: check how they are meant")
         ->check(file_name());
+    add_points_options(*command, arguments->paths,
+                       "Plan whose poses a list of points was measured at");
+    for (const char* const option : {"--plan", "--points-unit"}) {
+        command->get_option(option)->needs("--measurements");
+    }
     add_from_option(*command, arguments->earlier);
     command->footer(inspect_footer);
     command->callback([arguments, &common] { inspect(*arguments, common); });

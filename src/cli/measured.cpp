@@ -1,10 +1,15 @@
 #include "measured.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common.hpp"
+#include "core/text.hpp"
 #include "files.hpp"
+#include "io/format/units.hpp"
 #include "options.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/io/result_files.hpp"
 #include "posewise/measurement/constraints.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/report/reports.hpp"
@@ -17,6 +22,23 @@ void warn_beyond_limits(const std::string& path, const io::CampaignFile& file,
     if (const auto beyond = find_beyond_limits(file, configurations)) {
         print_warning(path + ": " + describe(*beyond, ids));
     }
+}
+
+/// Warns of what of the file is not used, and of points that are missing.
+io::MeasurementsFile read_with_notes(const std::string& path, const io::CampaignFile& file,
+                                     const io::PointsSource& points) {
+    io::MeasurementsFile measured = io::read_measurements(path, file, points);
+    if (!measured.unused_columns.empty()) {
+        std::vector<std::string> names;
+        for (const std::string& name : measured.unused_columns) {
+            names.push_back(detail::quote(name));
+        }
+        const bool is_one = names.size() == 1;
+        print_warning(fmt::format("{}: column{} {} {} not used", path, is_one ? "" : "s",
+                                  fmt::join(names, ", "), is_one ? "is" : "are"));
+    }
+    if (!measured.joined.empty()) print_warning(path + ": " + measured.joined);
+    return measured;
 }
 
 }  // namespace
@@ -44,18 +66,54 @@ std::string describe_unused_planning(const io::CampaignFile& campaign) {
                        io::error_model_name(*campaign.planned_model));
 }
 
-Measurements read_measured(const std::string& path, const io::CampaignFile& file) {
-    Measurements measured = io::read_measurements(path, file);
+void add_points_options(CLI::App& command, InputPaths& paths, const std::string& plan_help) {
+    command
+        .add_option("--plan", paths.plan, plan_help + " (its JSON, or its configurations as CSV)")
+        ->check(file_name());
+    command
+        .add_option("--points-unit", paths.points_unit,
+                    "mm, m or um: unit of a list of points that does not state it")
+        ->check(CLI::IsMember(detail::unit_names(detail::Quantity::Length)));
+}
+
+std::optional<Plan> read_measured_plan(const InputPaths& paths, const io::CampaignFile& file) {
+    if (paths.plan.empty()) return std::nullopt;
+    return io::read_plan(paths.plan, file);
+}
+
+io::PointsSource points_of(const InputPaths& paths, const std::optional<Plan>& plan) {
+    return {plan ? &*plan : nullptr, paths.plan, paths.points_unit};
+}
+
+void check_needs_unit(const InputPaths& paths, const io::MeasurementsFile& measured) {
+    if (measured.is_joined || paths.points_unit.empty()) return;
+    throw input_error_at({paths.measurements},
+                         "has units of its own; --points-unit must be left out");
+}
+
+void check_needs_plan(const InputPaths& paths, const io::MeasurementsFile& measured) {
+    if (measured.is_joined || paths.plan.empty()) return;
+    throw input_error_at({paths.measurements},
+                         "has joint values of its own; --plan must be left out");
+}
+
+io::MeasurementsFile read_measured(const std::string& path, const io::CampaignFile& file,
+                                   const io::PointsSource& points) {
+    io::MeasurementsFile measured = read_with_notes(path, file, points);
     warn_beyond_limits(path, file, measured.configurations, measured.ids);
     return measured;
 }
 
-Measurements read_measured_without(const std::vector<std::string>& excluded,
-                                   const std::string& path, const io::CampaignFile& file,
-                                   const EarlierArguments& earlier) {
-    const Measurements all = io::read_measurements(path, file);
-    warn_of_counting_twice(earlier.from, earlier.is_prior, path, all);
-    Measurements measured = compute_from(path, [&] { return leave_out(all, excluded); });
+io::MeasurementsFile read_measured_without(const std::vector<std::string>& excluded,
+                                           const InputPaths& paths, const io::CampaignFile& file,
+                                           const EarlierArguments& earlier,
+                                           const std::optional<Plan>& plan) {
+    const std::string& path = paths.measurements;
+    io::MeasurementsFile measured = read_with_notes(path, file, points_of(paths, plan));
+    check_needs_unit(paths, measured);
+    warn_of_counting_twice(earlier.from, earlier.is_prior, path, measured);
+    static_cast<Measurements&>(measured) =
+        compute_from(path, [&] { return leave_out(measured, excluded); });
     warn_beyond_limits(path, file, measured.configurations, measured.ids);
     const std::vector<Index> still = find_still_joints(file, measured.configurations);
     if (!still.empty()) print_warning(path + ": " + describe_still_joints(file, still));

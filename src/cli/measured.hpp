@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common.hpp"
 #include "estimates.hpp"
 #include "posewise/io/measurements_file.hpp"
 
@@ -20,15 +21,30 @@ std::string describe_planned(const io::CampaignFile& campaign, double repeats);
 /// A line that says so of a file that states errors to plan with, where they are not used.
 std::string describe_unused_planning(const io::CampaignFile& campaign);
 
-/// io::read_measurements(). Configurations beyond the joint limits are taken, since they were
-/// measured; a warning on standard error says so.
-Measurements read_measured(const std::string& path, const io::CampaignFile& file);
+/// --plan, whose help begins with what else it is for, and --points-unit.
+void add_points_options(CLI::App& command, InputPaths& paths, const std::string& plan_help);
+
+/// The plan that the paths name, if they do: as plan writes it, JSON or CSV.
+std::optional<Plan> read_measured_plan(const InputPaths& paths, const io::CampaignFile& file);
+io::PointsSource points_of(const InputPaths& paths, const std::optional<Plan>& plan);
+
+/// io::read_measurements(). Warns of columns that are not used, of points that are missing, and of
+/// configurations beyond the joint limits, which are taken, since they were measured.
+io::MeasurementsFile read_measured(const std::string& path, const io::CampaignFile& file,
+                                   const io::PointsSource& points = {});
 
 /// The same less what was excluded by hand, leave_out(). Warns of joints that never move, and of
-/// what an earlier estimate would count twice.
-Measurements read_measured_without(const std::vector<std::string>& excluded,
-                                   const std::string& path, const io::CampaignFile& file,
-                                   const EarlierArguments& earlier);
+/// what an earlier estimate would count twice. Throws InputError for --points-unit without points.
+io::MeasurementsFile read_measured_without(const std::vector<std::string>& excluded,
+                                           const InputPaths& paths, const io::CampaignFile& file,
+                                           const EarlierArguments& earlier,
+                                           const std::optional<Plan>& plan = {});
+
+/// Throws InputError for options of points beside measurements that have joint values and units
+/// of their own: --points-unit and, where it is for nothing else, --plan.
+void check_needs_unit(const InputPaths& paths, const io::MeasurementsFile& measured);
+void check_needs_plan(const InputPaths& paths, const io::MeasurementsFile& measured);
+
 /// --exclude, as leave_out() takes it.
 void add_exclude_option(CLI::App& command, std::vector<std::string>& excluded);
 

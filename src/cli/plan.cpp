@@ -12,6 +12,7 @@
 #include "common.hpp"
 #include "files.hpp"
 #include "interrupt.hpp"
+#include "io/result/targets_text.hpp"
 #include "measured.hpp"
 #include "options.hpp"
 #include "plan_inputs.hpp"
@@ -33,7 +34,7 @@ namespace {
 constexpr const char* plan_footer = R"(
 Example:
   posewise plan campaign.yaml --poses 24 --out plan.json --csv poses.csv --report plan.html
-  posewise plan campaign.yaml --poses 24 --verification 15 --out plan.json --csv poses.csv
+  posewise plan campaign.yaml --poses 24 --verification 15 --out plan.json --targets targets.csv
   posewise plan campaign.yaml --target-mm 0.2 --assurance 0.95 --verify
   posewise plan campaign.yaml --poses 12 --augment measured.csv --criterion d
   posewise plan campaign.yaml --plan plan.json --drop p7,p12 --out repaired.json
@@ -69,6 +70,12 @@ after the others, so that these stay as they are without it. --minutes is withou
 into the same file: calibrate --plan calibrates without them and judges on them; 29 of them and no
 error above X say that 90 % of the workspace is below X with 95 % confidence, 59 that 95 % are.
 
+--targets writes for the instrument, in visiting order, where each target is expected at each pose in the
+instrument's frame: name (P001_T1: target 1 at pose p1), x_mm, y_mm, z_mm, range_mm, azimuth_deg,
+elevation_deg, incidence_deg (to the target's normal, if the cell states it), visible. What is measured
+under these names calibrate --plan takes as the instrument's program writes it. Sensors of points only;
+posewise verify writes it for a plan that is there already.
+
 --verify checks what is predicted, before anything is measured: robots are drawn, measured at the poses, calibrated and judged at
 other places, block by block, until what it finds is sure; a limit that is not kept then is said.
 
@@ -87,6 +94,7 @@ struct PlanArguments : RequestArguments {
     TargetArguments target;
     VerificationArguments verification;
     std::string csv;
+    std::string targets;
     bool is_strict = false;
     std::string page;
     std::string plot;
@@ -161,7 +169,8 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     const io::CampaignFile campaign = read_planned(arguments, stop);
     check_outputs({&campaign},
                   {arguments.earlier.from, sources.augment, sources.repaired, sources.workspace},
-                  {out, arguments.csv, arguments.page, arguments.plot}, common);
+                  {out, arguments.csv, arguments.targets, arguments.page, arguments.plot}, common);
+    if (!arguments.targets.empty()) detail::check_has_targets(arguments.targets, campaign);
     const PlanRequest request = make_request(arguments);
     for (const OnAxis& one : find_on_axis(campaign)) print_warning(describe(one));
     PlanningOptions options = read_planning_inputs(request, campaign);
@@ -173,8 +182,8 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     if (!arguments.verification.is_wanted) note_overtime(request.time_limit, stop, read, "plan");
     warn_of_few(made.planning->plan);
     warn_of_cell(made.planning->plan, arguments.is_strict);
-    io::write_plan(out, made.planning->plan, arguments.csv, made.planning->campaign,
-                   given_warnings());
+    io::write_plan(out, made.planning->plan, {arguments.csv, arguments.targets},
+                   made.planning->campaign, given_warnings());
     const auto simulated = verify_made(arguments.verification, made, options, arguments.progress);
     if (simulated) note_overtime(request.time_limit, stop, read, "plan and verify");
     interrupted.reset();
@@ -240,6 +249,10 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
     command
         .add_option("--csv", arguments.csv,
                     "Write the configurations as CSV, too, with the points to pass on the way")
+        ->check(file_name());
+    command
+        .add_option("--targets", arguments.targets,
+                    "Write where an instrument finds each target (CSV): P001_T1, x, y, z, ...")
         ->check(file_name());
     command.add_flag("--strict", arguments.is_strict,
                      "Refuse a plan with a move for which no free way was found (exit code 1)");

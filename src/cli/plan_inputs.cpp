@@ -28,7 +28,7 @@ std::optional<Measurements> read_held(const PlanRequest& request,
 Candidates read_candidates(const std::string& path, CandidateKind kind,
                            const io::CampaignFile& campaign) {
     if (kind == CandidateKind::Measurements) {
-        return measured_candidates(read_measured_without({}, path, campaign, {}));
+        return measured_candidates(read_measured_without({}, {"", path}, campaign, {}));
     }
     io::Configurations read = io::read_configurations(path, campaign);
     return {kind, std::move(read.ids), std::move(read.joints), read.is_seen.cast<double>(),

@@ -126,17 +126,20 @@ io::CampaignFile read_calibrated(const io::EstimateRecord& record, const std::st
 /// The measurements that it was made with, if they are still the same. Throws InputError otherwise.
 Measurements read_calibrated_with(const io::EstimateRecord& record, const std::string& measurements,
                                   const std::string& estimate, const io::CampaignFile& file) {
-    const Measurements all = io::read_measurements(measurements, file);
+    InputPaths paths{"", measurements};
+    for (const auto& [name, values] : record.made_from.options) {
+        if (values.empty()) continue;
+        if (name == "--plan") paths.plan = find_file(values.front(), estimate);
+        if (name == "--points-unit") paths.points_unit = values.front();
+    }
+    const std::optional<Plan> plan = read_measured_plan(paths, file);
+    io::MeasurementsFile all = io::read_measurements(measurements, file, points_of(paths, plan));
     if (!io::are_of_checksum(record.made_from.measurements_checksum, all, record.excluded)) {
         throw input_error_at({measurements}, "is not what it was made from any more");
     }
-    const Measurements used = leave_out(all, record.excluded);
-    for (const auto& [name, values] : record.made_from.options) {
-        if (name != "--plan" || values.empty()) continue;
-        const std::string plan = find_file(values.front(), estimate);
-        return take(used, find_planned(file, used, plan, record.excluded));
-    }
-    return used;
+    static_cast<Measurements&>(all) = leave_out(all, record.excluded);
+    if (!plan) return all;
+    return take(all, find_planned(paths.plan, *plan, file, all, record.excluded));
 }
 
 ShownFile show_estimate_file(const std::string& path) {

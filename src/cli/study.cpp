@@ -134,7 +134,8 @@ void check_study_usage(const CLI::App& command, const StudyArguments& arguments,
     if (!has_splits && command.count("--holdout") > 0) {
         throw CLI::ValidationError("--holdout", "is of splits, and --splits 0 makes none");
     }
-    for (const char* option : {"--exclude", "--splits", "--holdout", "--models"}) {
+    for (const char* option :
+         {"--exclude", "--splits", "--holdout", "--models", "--plan", "--points-unit"}) {
         if (!arguments.is_simulated || command.count(option) == 0) continue;
         throw CLI::ValidationError(option,
                                    "is of measured configurations; leave it out, or --simulate");

@@ -137,9 +137,12 @@ std::vector<Study> study_measured(const StudyArguments& arguments, const CommonO
     const InputPaths& paths = arguments.paths;
     const std::vector<io::CampaignFile> files = read_files(arguments);
     const io::CampaignFile& file = files.front();
-    check_study_outputs(arguments, {&file}, {paths.measurements, arguments.earlier.from}, common);
+    check_study_outputs(arguments, {&file},
+                        {paths.measurements, paths.plan, arguments.earlier.from}, common);
+    const std::optional<Plan> plan = read_measured_plan(paths, file);
     const auto measurements =
-        read_measured_without(arguments.excluded, paths.measurements, file, arguments.earlier);
+        read_measured_without(arguments.excluded, paths, file, arguments.earlier, plan);
+    check_needs_plan(paths, measurements);
     StudyOptions options = arguments.options;
     options.random_subsets = arguments.random_subsets.value_or(StudyOptions().random_subsets);
     complete_options(options, arguments, stop);

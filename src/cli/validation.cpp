@@ -11,7 +11,8 @@
 
 namespace posewise::cli {
 
-Validation read_validation(const CalibrateArguments& arguments, const io::CampaignFile& file) {
+Validation read_validation(const CalibrateArguments& arguments, const io::CampaignFile& file,
+                           const io::PointsSource& points) {
     Validation validation;
     if (!arguments.validation_campaign.empty()) {
         validation.campaign = read_with_prior(arguments.validation_campaign, arguments.prior);
@@ -19,8 +20,8 @@ Validation read_validation(const CalibrateArguments& arguments, const io::Campai
                                     file.robot);
     }
     if (arguments.validate.empty()) return validation;
-    validation.measured =
-        read_measured(arguments.validate, validation.campaign ? *validation.campaign : file);
+    validation.measured = read_measured(arguments.validate,
+                                        validation.campaign ? *validation.campaign : file, points);
     return validation;
 }
 
@@ -39,12 +40,11 @@ void warn_of_no_validation(const CalibrateArguments& arguments, const Validation
                               is_of_earlier ? earlier.from + " was made" : "it is calibrated"));
 }
 
-void use_plan(const std::string& path, const Campaign& campaign, const Measurements& measured,
-              CalibrationOptions& options) {
-    const Plan plan = io::read_plan(path);
+void use_plan(const std::string& path, const Plan& plan, const Campaign& campaign,
+              const io::MeasurementsFile& measured, CalibrationOptions& options) {
     const auto left_out = leave_out_missing(path, plan, measured, options.excluded);
     compute_from(path, [&] {
-        options.used = find_planned(plan, campaign, measured, left_out);
+        options.used = posewise::find_planned(plan, campaign, measured, left_out);
         options.verification = find_verification(plan, campaign, measured, options.excluded);
     });
 }

@@ -8,6 +8,8 @@
 #include "common.hpp"
 #include "core/text.hpp"
 #include "estimates.hpp"
+#include "files.hpp"
+#include "io/result/targets_text.hpp"
 #include "options.hpp"
 #include "plan_inputs.hpp"
 #include "posewise/core/errors.hpp"
@@ -21,6 +23,7 @@ namespace {
 constexpr const char* verify_footer = R"(
 Example:
   posewise verify measurements.plan.json
+  posewise verify plan.json --targets targets.csv
 
 Computes a plan's value, bound and efficiency again, from the files the plan names and its
 certificate, whatever made the plan. Says of each whether it is as stated:
@@ -43,6 +46,7 @@ struct VerifyArguments {
     std::string augment;
     std::string groups;
     std::string test_poses;
+    std::string targets;
 };
 
 void redirect(PlanSources& sources, const VerifyArguments& arguments) {
@@ -66,9 +70,9 @@ void check_verify_usage(const VerifyArguments& arguments, CandidateKind kind, bo
     if (kind == CandidateKind::Pool && !(arguments.candidates + others).empty()) {
         throw CLI::ValidationError("PLAN", "is a pose plan, which takes --campaign and --augment");
     }
-    if (kind == CandidateKind::Blocks && !arguments.campaign.empty()) {
-        throw CLI::ValidationError("PLAN",
-                                   "is a choice from plain blocks, which takes no --campaign");
+    if (kind == CandidateKind::Blocks && !(arguments.campaign + arguments.targets).empty()) {
+        throw CLI::ValidationError(
+            "PLAN", "is a choice from plain blocks, which takes no --campaign and no --targets");
     }
     if (kind == CandidateKind::Random && !arguments.candidates.empty()) {
         throw CLI::ValidationError(
@@ -89,19 +93,15 @@ io::CampaignFile read_planned_again(const PlanRequest& request) {
     return read_planned(request.sources, request.earlier, request.has_prior, true);
 }
 
-Verification verify_choice(const Plan& plan) {
-    std::optional<io::CampaignFile> campaign;
-    if (plan.kind != CandidateKind::Blocks) {
-        campaign = read_planned_again(plan.request);
-    }
+Verification verify_choice(const Plan& plan, std::optional<io::CampaignFile> campaign) {
     const ChoiceInputs inputs =
         read_choice_inputs(plan.request, plan.kind, plan.candidate_count, std::move(campaign));
     return inputs.campaign ? verify(plan, *inputs.campaign, inputs.candidates, inputs.options)
                            : verify(plan, inputs.blocks, inputs.options);
 }
 
-Verification verify_continuous(const Plan& plan, const std::string& path) {
-    const io::CampaignFile campaign = read_planned_again(plan.request);
+Verification verify_continuous(const Plan& plan, const std::string& path,
+                               const io::CampaignFile& campaign) {
     const PlanningOptions options = read_planning_inputs(plan.request, campaign);
     const std::string mismatch = describe_mismatch(plan, campaign);
     if (!mismatch.empty()) throw input_error_at({path}, mismatch);
@@ -122,8 +122,20 @@ void verify_file(const VerifyArguments& arguments, const CommonOptions& common) 
     Plan plan = io::read_plan(arguments.plan);
     check_verify_usage(arguments, plan.kind, !plan.request.sources.estimate.empty());
     redirect(plan.request.sources, arguments);
-    const Verification verification =
-        plan.is_continuous() ? verify_continuous(plan, arguments.plan) : verify_choice(plan);
+    std::optional<io::CampaignFile> campaign;
+    if (plan.kind != CandidateKind::Blocks) campaign = read_planned_again(plan.request);
+    const std::string& targets = arguments.targets;
+    const PlanSources& sources = plan.request.sources;
+    if (!targets.empty()) {
+        check_outputs({&*campaign},
+                      {arguments.plan, sources.estimate, sources.candidates, sources.augment,
+                       sources.groups, sources.test_poses, sources.workspace},
+                      {targets}, common);
+        detail::check_has_targets(targets, *campaign);
+    }
+    const Verification verification = plan.is_continuous()
+                                          ? verify_continuous(plan, arguments.plan, *campaign)
+                                          : verify_choice(plan, campaign);
     if (common.json) {
         print_document(io::to_json(verification, plan, arguments.plan));
     } else {
@@ -132,6 +144,7 @@ void verify_file(const VerifyArguments& arguments, const CommonOptions& common) 
                           format_findings(verification.findings)));
     }
     conclude(arguments.plan, verification);
+    if (!targets.empty()) io::write_targets_csv(targets, *campaign, plan);
 }
 
 }  // namespace
@@ -151,6 +164,11 @@ void add_verify(CLI::App& program, const CommonOptions& common) {
     command->add_option("--groups", arguments->groups, "As of select, if it is elsewhere now");
     command->add_option("--test-poses", arguments->test_poses,
                         "As of select, if it is elsewhere now");
+    command
+        ->add_option("--targets", arguments->targets,
+                     "If all is as stated, write where an instrument finds each target (CSV), as "
+                     "plan --targets does")
+        ->check(file_name());
     command->footer(verify_footer);
     command->callback([arguments, &common] { verify_file(*arguments, common); });
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <sstream>
 
 #include "../../src/io/format/atomic_file.hpp"
 #include "campaign_text.hpp"
@@ -232,6 +233,43 @@ TEST(BadMeasurementsCsv, Headers) {
         {"p2_x_m", "p2_x", "1:57: column 'p2_x' has no unit; must be like p2_x_mm"},
         {"lift_m", "lift_deg",
          "1:29: column 'lift_deg' has the wrong kind of unit; must be like lift_mm"},
+    });
+}
+
+TEST(ReadMeasurementsCsv, PassesOverColumnsThatNobodyAskedFor) {
+    std::string text;
+    std::istringstream lines(good);
+    for (std::string line; std::getline(lines, line);) {
+        text +=
+            text.empty() ? "time," + line + ",operator,p1_rms_mm,\n" : "12:00," + line + ",me,x,\n";
+    }
+    const TemporaryFolder folder;
+    const MeasurementsFile file = read_measurements_csv(folder.write("m.csv", text), crane());
+    EXPECT_EQ(file.unused_columns, (std::vector<std::string>{"time", "operator", "p1_rms_mm", ""}));
+    expect_equal(file, read(good));
+    EXPECT_TRUE(read_measurements_csv(folder.write("m.csv", good), crane()).unused_columns.empty());
+}
+
+/// Nor is one passed over that was meant for something else.
+TEST(BadMeasurementsCsv, Misspelt) {
+    expect_messages_of({
+        {"sample", "sampel", "1:8: column 'sampel' is unknown; did you mean 'sample'?"},
+        {"config", "pose",
+         "1:75: missing column config; the header must have [...]p2_z_mm, and does "
+         "not "
+         "need 'pose'"},
+        {"config,sample", "confg,time", "1:1: column 'confg' is unknown; did you mean 'config'?"},
+        {"sample,q1_rad", "time,elbow",
+         "1:74: missing column q1_rad; the header must have [...]p2_z_mm, and does not need 'time' "
+         "or 'elbow'"},
+        {"sample", "q4_rad",
+         "1:8: column 'q4_rad' is unknown, the campaign's robot has 3 joints; [...]"},
+        {"sample", "p3_x_m",
+         "1:8: column 'p3_x_m' is unknown, the campaign states 2 targets; [...]"},
+        {"sample", "visible_target",
+         "1:8: column 'visible_target' is unknown; did you mean "
+         "'visible_targets'?"},
+        {"sample", "purposes", "1:8: column 'purposes' is unknown; did you mean 'purpose'?"},
     });
 }
 

@@ -156,7 +156,7 @@ TEST_F(PlanFileTest, KeepsPosesToVerifyApart) {
               std::string::npos)
         << error;
     const CampaignFile campaign = read_campaign(folder_.path("c.yaml"));
-    write_plan(path_, plan_, folder_.path("p.csv"), campaign);
+    write_plan(path_, plan_, {folder_.path("p.csv")}, campaign);
     const std::string csv = read_file(folder_.path("p.csv"));
     EXPECT_NE(csv.find(",visible_targets,purpose,way\n"), std::string::npos) << csv;
     EXPECT_NE(csv.find(",calibrate,straight\nv1.via,"), std::string::npos) << csv;

@@ -246,6 +246,28 @@ TEST(ReadMeasurementsCsv, TakesOrientationsInEveryForm) {
     EXPECT_TRUE(columns("qw,qx,qy,qz", '-' + root + ",0,0,-" + root).isApprox(expected, 1e-14));
 }
 
+/// ROS has metres where nothing is said.
+TEST(ReadMeasurementsCsv, TakesPosesUnderTheNamesOfRos) {
+    const auto rows = [&](const std::string& header, const std::string& cells) {
+        return read_csv(poses, "config,q1_deg,q2_deg,qx,qy,qz,qw," + header + "\na,10,20,0,0,0,1," +
+                                   cells + "\n")
+            .observations;
+    };
+    const RowMatrixXd expected = rows("x_mm,y_mm,z_mm", "1,-2,3500");
+    EXPECT_EQ(rows("tx,ty,tz", "0.001,-0.002,3.5"), expected);
+    EXPECT_EQ(rows("tx_mm,ty_mm,tz_mm", "1,-2,3500"), expected);
+    EXPECT_EQ(
+        input_error_of([&] { rows("tx,ty,tz", "1,-2,3500"); }),
+        "m.csv:2:22: '3500' is over 100 m, the unit of tz where none is stated; call it tz_mm "
+        "if it is in mm");
+    EXPECT_EQ(input_error_of([&] { rows("tx,ty,z_deg", "1,-2,3500"); }),
+              "m.csv:1:40: column 'z_deg' has the wrong kind of unit; must be like z_mm");
+    EXPECT_EQ(input_error_of([&] { rows("tx,ty,tz_rad", "1,-2,3500"); }),
+              "m.csv:1:40: column 'tz_rad' has the wrong kind of unit; must be like tz_mm");
+    EXPECT_EQ(input_error_of([&] { rows("tx,ty,x_mm", "1,-2,3500"); }),
+              "m.csv:1:40: column 'x_mm' occurs twice; keep one");
+}
+
 TEST(ReadMeasurementsCsv, RefusesHalfAnOrientation) {
     const auto error = [](const std::string& text) {
         return input_error_of([&] { read_csv(poses, text); });

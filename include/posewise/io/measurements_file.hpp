@@ -7,16 +7,44 @@
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/measurement/measurements.hpp"
 
+namespace posewise {
+struct Plan;
+}
+
 namespace posewise::io {
+
+/// Measurements as a file has them.
+struct MeasurementsFile : Measurements {
+    std::vector<std::string> unused_columns = {};  ///< names of columns that nothing is known about
+    bool is_joined = false;                        ///< from points and a plan
+    std::string joined = {};  ///< if so: which points are missing, in words; empty: none
+};
+
+/// What an instrument's list of points needs to be measurements.
+struct PointsSource {
+    const Plan* plan = nullptr;  ///< the poses that they were measured at; nullptr: not stated
+    std::string plan_path = {};  ///< for messages
+    std::string unit = {};       ///< "mm", "m" or "um", where the list has none; empty: not stated
+};
 
 /// Reads measurements, by the file's ending: `.mat`, else CSV. Throws InputError with
 /// path:line:column. If a sample does not show a target, all of its cells are empty or "nan" (CSV)
-/// or NaN (MATLAB). Refused: a sample that shows no target, missing or unknown columns, ragged
-/// rows, text or other non-finite numbers, readings half of which repeat others under another id,
-/// angles in rad over four turns beyond the limits (they look like degrees), a configuration whose
-/// samples differ in a joint by over 1e-6. With CampaignFile::has_controller_columns the file's
-/// joints are the controller's; those returned are always the model's.
-Measurements read_measurements(const std::string& path, const CampaignFile& file);
+/// or NaN (MATLAB). Columns that are not known are passed over, unless they are nearly one that is.
+/// Refused: a sample that shows no target, missing columns, ragged rows, text or other non-finite
+/// numbers, readings half of which repeat others under another id, angles in rad over four turns
+/// beyond the limits (they look like degrees), a configuration whose samples differ in a joint by
+/// over 1e-6. With CampaignFile::has_controller_columns the file's joints are the controller's;
+/// those returned are always the model's.
+///
+/// A file without the column `config` may be a list of points, as SpatialAnalyzer or PolyWorks
+/// write it: `name x y z`, separated by commas, semicolons, tabs or blanks, with names of
+/// collection and group before it (`Collection::Group::Target`), or under a header with x, y and z.
+/// They get their configurations from the plan's poses by their names, P001_T1 for the first target
+/// at pose p1, in any order; some may be missing. Where no name is one of the plan's and there are
+/// as many points as it has, they are taken in its order. Refused: other names beside the plan's, a
+/// point twice, points without a unit, another number of fields.
+MeasurementsFile read_measurements(const std::string& path, const CampaignFile& file,
+                                   const PointsSource& points = {});
 
 /// Named configurations that need not have been measured.
 struct Configurations {
@@ -44,10 +72,11 @@ Configurations read_program_csv(const std::string& path, const Campaign& campaig
 
 /// CSV with units in the header: config, <joint>_rad or _deg (_m or _mm for a prismatic joint), the
 /// sensor's columns with _m or _mm (orientations: rx, ry, rz or roll, pitch, yaw with _rad or _deg,
-/// or qw, qx, qy, qz of length 1 within 0.001), and optionally sample and visible_targets (need not
-/// agree with the targets measured); in any order. Separators are commas, semicolons or tabs; lines
-/// after # are comments. Rows of one config may stand anywhere.
-Measurements read_measurements_csv(const std::string& path, const Campaign& campaign);
+/// or qw, qx, qy, qz of length 1 within 0.001; positions also tx, ty, tz, in m without a unit), and
+/// optionally sample and visible_targets (need not agree with the targets measured); in any order.
+/// Separators are commas, semicolons or tabs; lines after # are comments. Rows of one config may
+/// stand anywhere.
+MeasurementsFile read_measurements_csv(const std::string& path, const Campaign& campaign);
 
 /// MATLAB file (5 to 7.3) with real double matrices. Rows with equal joint values are samples of
 /// one configuration; NaN in all three columns of a target: not seen. Configurations are named 0,

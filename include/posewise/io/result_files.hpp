@@ -21,15 +21,22 @@ namespace posewise::io {
 /// each.
 void write_plan(const std::string& path, const Plan& plan,
                 const std::vector<std::string>& warnings = {});
-/// As above, together with the CSV file of write_configurations_csv(), unless `csv_path` is empty:
-/// both files or none.
-void write_plan(const std::string& path, const Plan& plan, const std::string& csv_path,
+/// Paths of CSV files; empty: not written.
+struct PlanTables {
+    std::string configurations{};  ///< write_configurations_csv()
+    std::string targets{};         ///< write_targets_csv()
+};
+/// As above, together with these: all files or none.
+void write_plan(const std::string& path, const Plan& plan, const PlanTables& tables,
                 const Campaign& campaign, const std::vector<std::string>& warnings = {});
 
 /// Reads a plan of format 2 or 1 (which had two kinds: "posewise plan" and "posewise pose plan"),
 /// reading the file once. Relative paths lead from the plan's folder or else from the current one.
 /// Throws InputError with the place for whatever is missing, of another type or out of range.
 Plan read_plan(const std::string& path);
+/// As above; or, of a file that ends in .csv, its configurations as the poses of a plan: those with
+/// the purpose verify to verify, via points left out.
+Plan read_plan(const std::string& path, const Campaign& campaign);
 
 /// Writes the poses as CSV, in visiting order: config, then each joint in degrees or mm with enough
 /// digits to read the numbers back exactly, then visible_targets ("1 3"), purpose, way and, if the
@@ -39,6 +46,14 @@ Plan read_plan(const std::string& path);
 /// points, read_program() reads all.
 void write_configurations_csv(const std::string& path, const Campaign& campaign,
                               const std::vector<PlannedPose>& poses);
+
+/// Writes where an instrument finds each target at each pose, in visiting order, as CSV: name
+/// (P001_T1 for the first target at pose p1), x_mm, y_mm, z_mm in the instrument's frame for the
+/// nominal robot, range_mm, azimuth_deg, elevation_deg, incidence_deg (empty where the cell does
+/// not state the targets' normals) and visible (yes or no). read_measurements() joins what was
+/// measured by these names. Throws InputError unless the sensor measures points and the campaign
+/// states where they are.
+void write_targets_csv(const std::string& path, const Campaign& campaign, const Plan& plan);
 
 /// The inputs of an estimate: paths, and checksums where they are known.
 struct Provenance {

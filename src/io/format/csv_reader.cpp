@@ -9,17 +9,6 @@
 namespace posewise::detail {
 namespace {
 
-char find_separator(std::string_view header) {
-    char separator = ',';
-    for (const char candidate : {';', '\t'}) {
-        if (std::count(header.begin(), header.end(), candidate) >
-            std::count(header.begin(), header.end(), separator)) {
-            separator = candidate;
-        }
-    }
-    return separator;
-}
-
 /// Without blanks other than tabs, which may separate.
 std::string_view trim_row(std::string_view row) {
     while (!row.empty() && row.back() == '\r') row.remove_suffix(1);
@@ -28,16 +17,33 @@ std::string_view trim_row(std::string_view row) {
 
 }  // namespace
 
-CsvReader::CsvReader(const std::string& path) : path_(path), content_(read_file(path)) {
+CsvReader::CsvReader(const std::string& path) : CsvReader(path, read_file(path), CsvStyle::Table) {}
+
+CsvReader::CsvReader(std::string path, std::string content, CsvStyle style)
+    : path_(std::move(path)), content_(std::move(content)), style_(style) {
     if (content_.starts_with("\xEF\xBB\xBF")) content_.erase(0, 3);
-    check_file_kind(content_, path, FileKind::Table, "a table (CSV)");
+    check_file_kind(content_, path_, FileKind::Table, "a table (CSV)");
     if (content_.starts_with("\xFF\xFE") || content_.starts_with("\xFE\xFF")) {
-        throw input_error_at({path}, "is UTF-16; must be UTF-8 (or plain ASCII)");
+        throw input_error_at({path_}, "is UTF-16; must be UTF-8 (or plain ASCII)");
     }
     const bool has_returns = content_.find('\r') < content_.find_last_not_of('\r');
     if (has_returns && content_.find('\n') == std::string::npos) {
-        throw input_error_at({path}, "has line ends of CR only; must be of LF or CR LF");
+        throw input_error_at({path_}, "has line ends of CR only; must be of LF or CR LF");
     }
+}
+
+bool CsvReader::is_comment(std::string_view text) const {
+    if (style_ == CsvStyle::Table) return separator_ == '\0' && text.starts_with('#');
+    return text.starts_with('#') || text.starts_with("//");
+}
+
+char CsvReader::find_separator() const {
+    const auto count = [this](char c) { return std::count(row_.begin(), row_.end(), c); };
+    char separator = ',';
+    for (const char candidate : {';', '\t'}) {
+        if (count(candidate) > count(separator)) separator = candidate;
+    }
+    return style_ == CsvStyle::List && count(separator) == 0 ? ' ' : separator;
 }
 
 bool CsvReader::next_row() {
@@ -47,11 +53,14 @@ bool CsvReader::next_row() {
         next_ = end + 1;
         ++line_;
         const std::string_view text = trim(row_);
-        const bool is_first = separator_ == '\0';
-        if (text.empty() || (is_first && text.starts_with('#'))) continue;
+        if (text.empty() || is_comment(text)) continue;
         check_row();
-        if (separator_ == '\0') separator_ = find_separator(row_);
-        split();
+        if (separator_ == '\0') separator_ = find_separator();
+        if (separator_ == ' ') {
+            split_at_blanks();
+        } else {
+            split();
+        }
         return true;
     }
     return false;
@@ -122,6 +131,20 @@ void CsvReader::split() {
         }
         fields_.push_back(field);
         begin = end + 1;
+    }
+}
+
+/// What stands in quotes is one field, blanks and all.
+void CsvReader::split_at_blanks() {
+    constexpr const char* blanks = " \t";
+    fields_.clear();
+    for (std::size_t begin = row_.find_first_not_of(blanks); begin != std::string_view::npos;) {
+        const bool is_quoted = row_[begin] == '"';
+        const std::size_t from = is_quoted ? closing_quote(begin) + 1 : begin;
+        const std::size_t end = std::min(row_.find_first_of(blanks, from), row_.size());
+        const std::string_view field = row_.substr(begin, end - begin);
+        fields_.push_back(is_quoted && end == from ? unquote(field) : field);
+        begin = row_.find_first_not_of(blanks, end);
     }
 }
 

@@ -8,6 +8,14 @@
 
 namespace posewise::detail {
 
+/// How lines are taken apart.
+enum class CsvStyle {
+    Table,  ///< with commas, semicolons or tabs
+    /// As programs list points: blanks separate where none of these does, any number of them as
+    /// one; lines that begin with `//` or `#` are comments wherever they stand.
+    List,
+};
+
 /// Rows of separated fields, one line each. The separator (comma, semicolon or tab) is taken from
 /// the first row; blank lines are skipped, and before the first row lines that begin with `#`; a
 /// byte order mark and carriage returns at the end of lines do not matter; fields may stand in
@@ -15,6 +23,8 @@ namespace posewise::detail {
 class CsvReader {
   public:
     explicit CsvReader(const std::string& path);
+    /// Of what was read from that file already.
+    CsvReader(std::string path, std::string content, CsvStyle style);
 
     /// Moves to the next row; false at the end.
     bool next_row();
@@ -27,13 +37,17 @@ class CsvReader {
 
   private:
     void check_row() const;
+    bool is_comment(std::string_view text) const;
+    char find_separator() const;
     void split();
+    void split_at_blanks();
     std::size_t closing_quote(std::size_t opening) const;
     std::size_t field_end(std::size_t begin) const;
     std::string_view unquote(std::string_view field);
 
     std::string path_;
     std::string content_;
+    CsvStyle style_;
     std::size_t next_ = 0;  // where the next line begins
     long line_ = 0;
     char separator_ = '\0';  // not known before the first row

@@ -43,7 +43,8 @@ enum class Role {
     Joint,  ///< or a measured torque: a number of the configuration
     Observation,
     Orientation,
-    Unused,  ///< torque that the campaign makes no use of, or what plan and correct write beside
+    Unused,  ///< torque that the campaign makes no use of, what plan and correct write beside, or
+             ///< of measurements whatever else there is
 };
 
 /// Other columns for an orientation than its rotation vector: a quaternion without units, or turns
@@ -56,6 +57,9 @@ struct OrientationForm {
 inline const std::array<OrientationForm, 2> orientation_forms{
     {{{"qw", "qx", "qy", "qz"}, false, OrientationNotation::Quaternion},
      {{"roll", "pitch", "yaw"}, true, OrientationNotation::RollPitchYaw}}};
+
+/// Names of a pose's position as ROS has them (in m, REP 103), for x, y and z.
+inline constexpr std::array<std::string_view, 3> ros_position{"tx", "ty", "tz"};
 
 /// A column with a unit that a campaign's measurements must have.
 struct WantedColumn {

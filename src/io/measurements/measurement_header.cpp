@@ -31,10 +31,21 @@ class HeaderReader {
         if (has_contact_) examples_.emplace_back(contact);
     }
 
-    std::vector<Column> read() const {
-        std::vector<Column> columns;
+    Header read() const {
+        Header header;
+        std::vector<Column>& columns = header.columns;
+        std::vector<std::size_t> unknown;
         for (std::size_t field = 0; field < csv_.fields().size(); ++field) {
-            columns.push_back(read_column(field));
+            const std::optional<Column> column = read_column(field);
+            if (!column) {
+                if (content_ != Content::JointsAndObservations) throw unknown_error(field);
+                unknown.push_back(field);
+                // Each is one by itself, whatever its name.
+                const Index beyond = std::ssize(joints_) + written_count;
+                columns.push_back({Role::Unused, beyond + static_cast<Index>(field)});
+                continue;
+            }
+            columns.push_back(*column);
             const auto is_same = [&columns](const Column& other) {
                 return other.role == columns.back().role && other.index == columns.back().index &&
                        other.form == columns.back().form;
@@ -43,8 +54,10 @@ class HeaderReader {
                 throw error(field, "occurs twice; keep one");
             }
         }
-        check_complete(columns);
-        return columns;
+        check_complete(columns, unknown);
+        check_unknown(columns, unknown);
+        for (const std::size_t field : unknown) header.unused.emplace_back(csv_.fields()[field]);
+        return header;
     }
 
   private:
@@ -59,7 +72,10 @@ class HeaderReader {
                (role == Role::Sample || role == Role::Observation);
     }
 
-    InputError unknown(std::size_t field) const {
+    static constexpr std::array by_plan{way_column, clearance_column, nearest_column};
+    static constexpr Index written_count = std::ssize(by_plan) + std::ssize(correction_columns);
+
+    InputError unknown_error(std::size_t field) const {
         std::vector<std::string> known = examples_;
         if (is_optional(Role::Sample)) known.emplace_back("sample");
         if (!has_contact_) known.emplace_back(visible_targets);
@@ -84,25 +100,27 @@ class HeaderReader {
                          : ", the campaign's robot has " + count_of(count, "joint");
     }
 
-    Column read_column(std::size_t field) const {
+    /// Nothing: it is unknown.
+    std::optional<Column> read_column(std::size_t field) const {
         const std::string_view name = csv_.fields()[field];
-        if (name == "config") return {Role::Configuration, 0, nullptr};
-        if (name == "sample") return {Role::Sample, 0, nullptr};
-        if (name == visible_targets && !has_contact_) return {Role::VisibleTargets, 0, nullptr};
-        if (name == purpose_column) return {Role::Purpose, 0, nullptr};
-        if (name == contact && has_contact_) return {Role::Contact, 0, nullptr};
+        if (name == "config") return Column{Role::Configuration};
+        if (name == "sample") return Column{Role::Sample};
+        if (name == visible_targets && !has_contact_) return Column{Role::VisibleTargets};
+        if (name == purpose_column) return Column{Role::Purpose};
+        if (name == contact && has_contact_) return Column{Role::Contact};
         const NameWithUnit with_unit = split_unit(name);
         const auto found = std::find_if(wanted_.begin(), wanted_.end(), [&](const auto& column) {
             return column.stem == name || column.stem == with_unit.stem;
         });
         if (found == wanted_.end() && has_orientation_) {
-            if (const auto column = find_orientation(field, with_unit)) return *column;
+            if (const auto column = find_orientation(field, with_unit)) return column;
+            if (const auto column = find_ros_position(field, with_unit)) return column;
         }
         if (found == wanted_.end()) {
             auto unused = find_unused_torque(with_unit);
             if (!unused) unused = find_written(name);
-            if (!unused) throw unknown(field);
-            return {Role::Unused, *unused, with_unit.unit};
+            if (!unused) return std::nullopt;
+            return Column{Role::Unused, *unused, with_unit.unit};
         }
         if (with_unit.unit == nullptr || found->stem == name) {
             throw error(field, "has no unit; must be like " + found->example());
@@ -110,7 +128,20 @@ class HeaderReader {
         if (with_unit.unit->quantity != found->quantity) {
             throw error(field, "has the wrong kind of unit; must be like " + found->example());
         }
-        return {found->role, found->index, with_unit.unit};
+        return Column{found->role, found->index, with_unit.unit};
+    }
+
+    /// A pose's x, y or z under its other name.
+    std::optional<Column> find_ros_position(std::size_t field, const NameWithUnit& name) const {
+        const auto found = std::ranges::find(ros_position, name.stem);
+        if (found == ros_position.end()) return std::nullopt;
+        const Unit* const unit = name.unit != nullptr ? name.unit : find_unit("m");
+        if (unit->quantity != Quantity::Length) {
+            throw error(field,
+                        fmt::format("has the wrong kind of unit; must be like {}_mm", *found));
+        }
+        return Column{Role::Observation, found - ros_position.begin(), unit, 0,
+                      name.unit == nullptr};
     }
 
     /// The joint of a torque that the campaign does not ask for.
@@ -124,7 +155,6 @@ class HeaderReader {
 
     /// The number of what plan or correct writes beside the joints, counted behind these.
     std::optional<Index> find_written(std::string_view name) const {
-        constexpr std::array by_plan{way_column, clearance_column, nearest_column};
         const auto planned = std::find(by_plan.begin(), by_plan.end(), name);
         Index number = std::ssize(joints_) + (planned - by_plan.begin());
         if (planned != by_plan.end()) return number;
@@ -171,7 +201,8 @@ class HeaderReader {
                                 fmt::join(stems, ", ")));
     }
 
-    void check_complete(const std::vector<Column>& columns) const {
+    void check_complete(const std::vector<Column>& columns,
+                        const std::vector<std::size_t>& unknown) const {
         const bool is_replaced = has_form(columns);
         const auto has = [&columns](Role role, Index index) {
             return std::any_of(columns.begin(), columns.end(), [&](const Column& column) {
@@ -189,10 +220,41 @@ class HeaderReader {
             missing.emplace_back(contact);
         }
         if (missing.empty()) return;
-        throw input_error_at(csv_.locate(csv_.fields().size()),
-                             fmt::format("missing column{} {}; the header must have {}",
-                                         missing.size() > 1 ? "s" : "", fmt::join(missing, ", "),
-                                         fmt::join(examples_, ",")));
+        for (const std::size_t field : unknown) {
+            if (is_near(field, missing)) throw unknown_error(field);
+        }
+        std::vector<std::string> others;
+        for (const std::size_t field : unknown) others.push_back(quote(csv_.fields()[field]));
+        throw input_error_at(
+            csv_.locate(csv_.fields().size()),
+            fmt::format("missing column{} {}; the header must have {}{}{}",
+                        missing.size() > 1 ? "s" : "", fmt::join(missing, ", "),
+                        fmt::join(examples_, ","), others.empty() ? "" : ", and does not need ",
+                        list_words(others)));
+    }
+
+    bool is_near(std::size_t field, const std::vector<std::string>& names) const {
+        return suggest(csv_.fields()[field], names).starts_with("did you mean");
+    }
+
+    /// Of another campaign, or nearly a column that need not be there and is not.
+    void check_unknown(const std::vector<Column>& columns,
+                       const std::vector<std::size_t>& unknown) const {
+        std::vector<std::string> absent;
+        const auto add = [&](Role role, std::string_view name) {
+            if (std::ranges::find(columns, role, &Column::role) == columns.end()) {
+                absent.emplace_back(name);
+            }
+        };
+        add(Role::Sample, "sample");
+        add(Role::Purpose, purpose_column);
+        if (!has_contact_) add(Role::VisibleTargets, visible_targets);
+        for (const std::size_t field : unknown) {
+            if (!count_known(field).empty()) throw unknown_error(field);
+            if (is_near(field, absent)) {
+                throw error(field, "is unknown; " + suggest(csv_.fields()[field], absent));
+            }
+        }
     }
 
     const CsvReader& csv_;
@@ -207,7 +269,7 @@ class HeaderReader {
 
 }  // namespace
 
-std::vector<Column> read_header(const CsvReader& csv, const Campaign& campaign, Content content) {
+Header read_header(const CsvReader& csv, const Campaign& campaign, Content content) {
     return HeaderReader(csv, campaign, content).read();
 }
 

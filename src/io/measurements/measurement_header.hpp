@@ -14,6 +14,12 @@ struct Column {
     Index index = 0;             ///< of the joint, of the number in an observation or in its form
     const Unit* unit = nullptr;  ///< of joints and observations
     std::size_t form = 0;        ///< of orientation_forms
+    bool is_ros = false;         ///< of a pose, named as by ROS without a unit, which is m there
+};
+
+struct Header {
+    std::vector<Column> columns;
+    std::vector<std::string> unused;  ///< names of columns that nothing is known about
 };
 
 /// What of a row is read: observations, or without them (their columns may be missing or hold
@@ -22,7 +28,9 @@ struct Column {
 enum class Content { JointsAndObservations, JointsAndVisibleTargets, Program };
 
 /// The columns of the row that `csv` has just read. `q1_rad` is looked up by its stem and its unit
-/// checked. Throws InputError with the place for columns that are unknown, missing or there twice.
-std::vector<Column> read_header(const CsvReader& csv, const Campaign& campaign, Content content);
+/// checked. Throws InputError with the place for columns that are missing or there twice; for
+/// unknown ones, too, unless observations are read and it is neither nearly the name of a column
+/// that is not there nor that of a joint or target which the campaign does not have.
+Header read_header(const CsvReader& csv, const Campaign& campaign, Content content);
 
 }  // namespace posewise::detail

@@ -11,6 +11,7 @@
 #include "io/format/units.hpp"
 #include "measurement_columns.hpp"
 #include "measurement_header.hpp"
+#include "planned_points.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/model/chain.hpp"
 #include "sample_collector.hpp"
@@ -159,6 +160,15 @@ class RowReader {
         if (columns_[field].unit == nullptr) return number.value;
         const detail::Unit& unit = *columns_[field].unit;
         const double si = unit.to_si(number.value);
+        constexpr double farthest = 100;  // m, of a pose
+        if (columns_[field].is_ros && std::abs(si) > farthest) {
+            const auto axis = static_cast<std::size_t>(columns_[field].index);
+            throw input_error_at(
+                csv_.locate(field),
+                fmt::format("{0} is over {1:g} m, the unit of {2} where none is stated; call it "
+                            "{2}_mm if it is in mm",
+                            detail::quote(text), farthest, detail::ros_position[axis]));
+        }
         if (!is_plausible(si, unit.quantity)) {
             throw input_error_at(csv_.locate(field),
                                  fmt::format("{} is out of any cell; must be {}",
@@ -320,22 +330,23 @@ class RowReader {
 };
 
 struct ReadFile {
-    Measurements samples;
+    MeasurementsFile samples;
     std::vector<std::string> purposes;
 };
 
-ReadFile read_csv(const std::string& path, const Campaign& campaign, Content content) {
-    detail::CsvReader csv(path);
+ReadFile read_csv(detail::CsvReader csv, const std::string& path, const Campaign& campaign,
+                  Content content) {
     if (!csv.next_row()) {
         throw input_error_at({path}, std::string("is empty; must begin with a header like ") +
                                          (content == Content::JointsAndObservations
                                               ? "config,sample,q1_rad,...,p1_x_mm,..."
                                               : "config,q1_rad,..."));
     }
-    RowReader row(csv, campaign, content, read_header(csv, campaign, content));
+    detail::Header header = read_header(csv, campaign, content);
+    RowReader row(csv, campaign, content, std::move(header.columns));
     detail::SampleCollector samples(campaign);
     while (csv.next_row()) row.add_to(samples);
-    Measurements measurements = samples.finish(path);
+    MeasurementsFile measurements{samples.finish(path), std::move(header.unused)};
     measurements.notation = row.notation();
     if (measurements.notation == OrientationNotation::RollPitchYaw &&
         measurements.observations.cols() > 0) {
@@ -346,7 +357,7 @@ ReadFile read_csv(const std::string& path, const Campaign& campaign, Content con
 }
 
 Configurations read_unmeasured(const std::string& path, const Campaign& campaign, Content content) {
-    auto [read, purposes] = read_csv(path, campaign, content);
+    auto [read, purposes] = read_csv(detail::CsvReader(path), path, campaign, content);
     const RowMatrixXd visible = times_seen(read);
     return {std::move(read.ids), std::move(read.configurations), visible.array() > 0,
             std::move(purposes)};
@@ -354,8 +365,9 @@ Configurations read_unmeasured(const std::string& path, const Campaign& campaign
 
 }  // namespace
 
-Measurements read_measurements_csv(const std::string& path, const Campaign& campaign) {
-    return read_csv(path, campaign, Content::JointsAndObservations).samples;
+MeasurementsFile read_measurements_csv(const std::string& path, const Campaign& campaign) {
+    return read_csv(detail::CsvReader(path), path, campaign, Content::JointsAndObservations)
+        .samples;
 }
 
 Configurations read_configurations_csv(const std::string& path, const Campaign& campaign) {
@@ -367,3 +379,14 @@ Configurations read_program_csv(const std::string& path, const Campaign& campaig
 }
 
 }  // namespace posewise::io
+
+namespace posewise::detail {
+
+io::MeasurementsFile read_measurements_table(const std::string& path, std::string content,
+                                             const Campaign& campaign) {
+    return io::read_csv(CsvReader(path, std::move(content), CsvStyle::Table), path, campaign,
+                        Content::JointsAndObservations)
+        .samples;
+}
+
+}  // namespace posewise::detail

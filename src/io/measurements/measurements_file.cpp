@@ -1,7 +1,10 @@
 #include "posewise/io/measurements_file.hpp"
 
 #include "core/text.hpp"
+#include "io/format/atomic_file.hpp"
 #include "model/joint_limits.hpp"
+#include "planned_points.hpp"
+#include "points_list.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::io {
@@ -18,10 +21,17 @@ Configurations read_matlab(const std::string& path, const CampaignFile& file) {
             {}};
 }
 
-Measurements read_as_stated(const std::string& path, const CampaignFile& file,
-                            const Campaign& campaign) {
-    return is_matlab(path) ? read_measurements_mat(path, campaign, file.mat)
-                           : read_measurements_csv(path, campaign);
+/// `table`: the campaign whose joints a table has.
+MeasurementsFile read_as_stated(const std::string& path, const CampaignFile& file,
+                                const Campaign& table, const PointsSource& points) {
+    if (is_matlab(path)) return {read_measurements_mat(path, table, file.mat)};
+    std::string content = detail::read_file(path);
+    std::vector<std::string> joints;
+    for (const Joint& joint : file.robot.joints()) joints.push_back(joint.name);
+    if (detail::is_points_list(path, content, joints, points.plan != nullptr)) {
+        return detail::read_planned_points(path, std::move(content), file, points);
+    }
+    return detail::read_measurements_table(path, std::move(content), table);
 }
 
 /// The campaign with the controller's joints in place of the model's: their names, and limits as
@@ -35,9 +45,11 @@ Campaign with_controller_joints(const CampaignFile& file) {
 
 }  // namespace
 
-Measurements read_measurements(const std::string& path, const CampaignFile& file) {
-    if (!file.has_controller_columns) return read_as_stated(path, file, file);
-    Measurements read = read_as_stated(path, file, with_controller_joints(file));
+MeasurementsFile read_measurements(const std::string& path, const CampaignFile& file,
+                                   const PointsSource& points) {
+    if (!file.has_controller_columns) return read_as_stated(path, file, file, points);
+    MeasurementsFile read = read_as_stated(path, file, with_controller_joints(file), points);
+    if (read.is_joined) return read;  // with the plan's joints
     const Index joints = file.robot.joint_count();
     for (Index i = 0; i < read.configurations.rows(); ++i) {
         const VectorXd c = read.configurations.row(i).head(joints).transpose();

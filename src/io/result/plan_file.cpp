@@ -11,6 +11,7 @@
 #include "posewise/core/types.hpp"
 #include "posewise/io/result_files.hpp"
 #include "posewise/measurement/sensor.hpp"
+#include "targets_text.hpp"
 
 namespace posewise::io {
 namespace {
@@ -87,11 +88,16 @@ void write_plan(const std::string& path, const Plan& plan,
     detail::write_file(path, plan_text(plan, path, warnings));
 }
 
-void write_plan(const std::string& path, const Plan& plan, const std::string& csv_path,
+void write_plan(const std::string& path, const Plan& plan, const PlanTables& tables,
                 const Campaign& campaign, const std::vector<std::string>& warnings) {
     std::vector<detail::FileContent> files{{path, plan_text(plan, path, warnings)}};
-    if (!csv_path.empty())
-        files.push_back({csv_path, configurations_text(campaign, plan.poses, plan.verification)});
+    if (!tables.configurations.empty()) {
+        files.push_back(
+            {tables.configurations, configurations_text(campaign, plan.poses, plan.verification)});
+    }
+    if (!tables.targets.empty()) {
+        files.push_back({tables.targets, detail::targets_text(tables.targets, campaign, plan)});
+    }
     detail::write_files(files);
 }
 

@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "io/format/atomic_file.hpp"
+#include "io/measurements/target_names.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/io/result_files.hpp"
+#include "targets_text.hpp"
+
+namespace posewise::detail {
+namespace {
+
+/// The angle between a reflector's normal and the direction to the instrument, in degrees; nothing
+/// where the cell does not state the normals.
+std::string incidence_cell(const Campaign& campaign, const Isometry3d& flange, Index target,
+                           const Vector3d& point) {
+    if (!campaign.cell.sight || campaign.cell.sight->normals.empty()) return "";
+    const Vector3d normal =
+        flange.linear() * campaign.cell.sight->normals[static_cast<std::size_t>(target)];
+    const double angle = std::atan2(normal.cross(-point).norm(), normal.dot(-point));
+    return fmt::format("{:.3f}", to_degrees(angle));
+}
+
+void append_rows(std::string& text, const Campaign& campaign, const PlannedPose& pose) {
+    const Isometry3d flange = world_from_flange(campaign, campaign.nominal, pose.configuration);
+    for (Index target = 0; target < campaign.sensor->target_count(); ++target) {
+        const Vector3d point =
+            flange * campaign.sensor->target_position(target, campaign.nominal.sensor);
+        const double azimuth = std::atan2(point.y(), point.x());
+        const double elevation = std::atan2(point.z(), point.head<2>().norm());
+        const bool is_visible =
+            pose.targets.empty() || std::ranges::find(pose.targets, target) != pose.targets.end();
+        const Vector3d mm = mm_per_m * point;
+        fmt::format_to(std::back_inserter(text),
+                       "{},{:.4f},{:.4f},{:.4f},{:.3f},{:.4f},{:.4f},{},{}\n",
+                       target_name(pose.id, target), mm.x(), mm.y(), mm.z(), mm.norm(),
+                       to_degrees(azimuth), to_degrees(elevation),
+                       incidence_cell(campaign, flange, target, point), is_visible ? "yes" : "no");
+    }
+}
+
+}  // namespace
+
+void check_has_targets(const std::string& path, const Campaign& campaign) {
+    if (!campaign.sensor->observes_targets()) {
+        throw input_error_at({path},
+                             "is not written: there is a list of targets only where the "
+                             "sensor measures points, as a laser tracker does (kind: "
+                             "points)");
+    }
+    if (!campaign.has_nominal_base || !campaign.has_nominal_targets) {
+        throw input_error_at({path}, "is not written: the campaign must state base and " +
+                                         campaign.sensor->words().key);
+    }
+}
+
+std::string targets_text(const std::string& path, const Campaign& campaign, const Plan& plan) {
+    check_has_targets(path, campaign);
+    std::string text =
+        "name,x_mm,y_mm,z_mm,range_mm,azimuth_deg,elevation_deg,incidence_deg,visible\n";
+    for (const auto* poses : {&plan.poses, &plan.verification}) {
+        for (const PlannedPose& pose : *poses) append_rows(text, campaign, pose);
+    }
+    return text;
+}
+
+}  // namespace posewise::detail
+
+namespace posewise::io {
+
+void write_targets_csv(const std::string& path, const Campaign& campaign, const Plan& plan) {
+    detail::write_file(path, detail::targets_text(path, campaign, plan));
+}
+
+}  // namespace posewise::io

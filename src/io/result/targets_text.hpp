@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "posewise/task/plan.hpp"
+
+namespace posewise::detail {
+
+/// Throws InputError about the file at `path` unless the sensor measures points and the campaign
+/// states where they are.
+void check_has_targets(const std::string& path, const Campaign& campaign);
+
+/// The text of io::write_targets_csv().
+std::string targets_text(const std::string& path, const Campaign& campaign, const Plan& plan);
+
+}  // namespace posewise::detail

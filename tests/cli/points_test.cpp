@@ -1,0 +1,248 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "program.hpp"
+
+/// From the instrument to measurements: its list of targets, and points that it measured, joined
+/// with the plan.
+namespace posewise::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::string arm = "name: arm\nrobot:\n  errors: geometric\n" + six_joints;
+const std::string tracker =
+    R"(base: {position_mm: [1500, 200, -300], rpy_deg: [0, 0, 90]}
+sensor: {kind: points, sigma_mm: 0.05, targets: {position_mm: [[90, 0, 60], [90, 80, -30], [150, -70, 20]]}}
+)";
+const std::string quick = " -c d --pool 300 --starts 1 --workspace-poses 20 ";
+
+struct Point {
+    std::string name;
+    std::string x, y, z;
+};
+
+class Points : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        write_text("c.yaml", arm + tracker);
+        run_well("plan c.yaml -k 18" + quick +
+                 "--verification 3 -o plan.json --csv poses.csv --targets targets.csv");
+        run_well("simulate c.yaml --configurations poses.csv -o m.csv");
+        std::istringstream lines(text_of("m.csv"));
+        std::vector<std::string> header;
+        for (std::string line; std::getline(lines, line);) {
+            if (line[0] == '#') continue;
+            std::vector<std::string> cells;
+            std::istringstream row(line);
+            for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+            if (header.empty()) {
+                header = cells;
+                continue;
+            }
+            for (std::size_t target = 0; target < 3; ++target) {
+                const std::size_t at = 8 + 3 * target;
+                points_.push_back({cells[0] + "_t" + std::to_string(target + 1), cells[at],
+                                   cells[at + 1], cells[at + 2]});
+            }
+        }
+        shuffled_ = points_;
+        std::shuffle(shuffled_.begin(), shuffled_.end(), std::mt19937(7));
+    }
+
+    /// P001_T1 for p1_t1.
+    static std::string usual(const std::string& name) {
+        const auto bar = name.find('_');
+        const std::string number = name.substr(1, bar - 1);
+        return std::string(1, static_cast<char>(std::toupper(name[0]))) +
+               std::string(3 - number.size(), '0') + number + "_T" + name.substr(bar + 2);
+    }
+    void write_list(const std::string& name, const std::vector<Point>& points,
+                    const std::function<std::string(const Point&)>& row,
+                    const std::string& head = "") const {
+        std::string text = head;
+        for (const Point& point : points) text += row(point) + '\n';
+        write_text(name, text);
+    }
+    /// The result but for what names the file.
+    Json result_of(const std::string& arguments) const {
+        const Outcome outcome = run("calibrate c.yaml -m " + arguments + " --json");
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        Json document = Json::parse(outcome.out);
+        for (const char* const key : {"made_from", "measurements", "warnings"}) document.erase(key);
+        return document;
+    }
+
+    std::vector<Point> points_;
+    std::vector<Point> shuffled_;
+};
+
+TEST_F(Points, OfEachFormatGiveTheEstimateOfATable) {
+    const auto blanks = [](const Point& p) { return p.name + ' ' + p.x + "  " + p.y + ' ' + p.z; };
+    write_list("plain.txt", shuffled_, blanks);
+    write_list(
+        "analyzer.txt", shuffled_,
+        [](const Point& p) {
+            return "Cell::Main::" + usual(p.name) + ", " + p.x + ", " + p.y + ", " + p.z;
+        },
+        "// SA\n// X, Y, Z\n");
+    write_list("groups.txt", shuffled_, [](const Point& p) {
+        return "Cell\tMain group\t" + usual(p.name) + '\t' + p.x + '\t' + p.y + '\t' + p.z;
+    });
+    write_list(
+        "works.csv", shuffled_,
+        [](const Point& p) { return usual(p.name) + ",0.1," + p.x + ',' + p.y + ',' + p.z; },
+        "Name,Dev,X [mm],Y [mm],Z [mm]\n");
+    write_list("order.txt", points_, [](const Point& p) { return p.x + ';' + p.y + ';' + p.z; });
+    const Json expected = result_of("m.csv --plan poses.csv");
+    for (const std::string list :
+         {"plain.txt --points-unit mm", "analyzer.txt --points-unit mm",
+          "groups.txt --points-unit mm", "works.csv", "order.txt --points-unit mm"}) {
+        EXPECT_EQ(result_of(list + " --plan poses.csv"), expected) << list;
+    }
+    // The table has the joints of poses.csv, which are those of the plan to twelve digits.
+    const Json planned = result_of("plain.txt --plan plan.json --points-unit mm");
+    const char* const rms = "/accuracy/fit/distance_rms_mm";
+    EXPECT_NEAR(planned.at(Json::json_pointer(rms)).get<double>(),
+                expected.at(Json::json_pointer(rms)).get<double>(), 1e-9);
+    EXPECT_EQ(run("calibrate c.yaml -m works.csv --plan plan.json").err,
+              "posewise: warning: works.csv: column 'Dev' is not used\n");
+    EXPECT_EQ(
+        run("calibrate c.yaml -m order.txt --points-unit mm --plan plan.json").err,
+        "posewise: warning: order.txt: no name is one of the plan's, so they are taken in its "
+        "order: 21 of 21 poses\n");
+}
+
+TEST_F(Points, MayBeMissing) {
+    const auto is_missing = [](const std::string& name) {
+        return name.starts_with("p4_") || name.starts_with("p9_") || name == "p5_t2" ||
+               name == "v1_t3";
+    };
+    std::vector<Point> left = shuffled_;
+    std::erase_if(left, [&](const Point& p) { return is_missing(p.name); });
+    write_list("some.txt", left,
+               [](const Point& p) { return p.name + ',' + p.x + ',' + p.y + ',' + p.z; });
+    // The same of the table.
+    std::string text;
+    std::istringstream lines(text_of("m.csv"));
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("p4,") || line.starts_with("p9,")) continue;
+        for (const auto& [id, target] : {std::pair("p5,", 2), std::pair("v1,", 3)}) {
+            if (!line.starts_with(id)) continue;
+            std::vector<std::string> cells;
+            std::istringstream row(line);
+            for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+            line.clear();
+            const std::size_t first = 8 + 3 * (static_cast<std::size_t>(target) - 1);
+            for (std::size_t k = 0; k < cells.size(); ++k) {
+                line += (k > 0 ? "," : "") + (k >= first && k < first + 3 ? "" : cells[k]);
+            }
+        }
+        text += line + '\n';
+    }
+    write_text("some.csv", text);
+    EXPECT_EQ(result_of("some.txt --points-unit mm --plan poses.csv"),
+              result_of("some.csv --plan poses.csv"));
+    EXPECT_EQ(run("calibrate c.yaml -m some.txt --points-unit mm --plan plan.json").err,
+              "posewise: warning: some.txt: 19 of 21 poses, without 'p4', 'p9', 2 points missing: "
+              "P005_T2, V001_T3\n");
+}
+
+TEST_F(Points, ServeEveryCommandThatTakesMeasurements) {
+    write_list(
+        "p.csv", shuffled_,
+        [](const Point& p) { return p.name + ',' + p.x + ',' + p.y + ',' + p.z; },
+        "name,x_mm,y_mm,z_mm\n");
+    EXPECT_EQ(run_well("inspect c.yaml -m p.csv --plan poses.csv"),
+              run_well("inspect c.yaml -m m.csv"));
+    EXPECT_EQ(run_well("indices c.yaml -m p.csv --plan poses.csv"),
+              run_well("indices c.yaml -m m.csv --plan poses.csv"));
+    const std::string study = " --splits 2 --random 2 --starts 1 -k 8 -c d --prior";
+    EXPECT_EQ(run("study c.yaml -m p.csv --plan poses.csv" + study).out,
+              run("study c.yaml -m m.csv" + study).out);
+    run_well("calibrate c.yaml -m p.csv --plan plan.json -o e.json");
+    EXPECT_NE(run_well("report e.json -o e.html").find("residuals"), std::string::npos);
+    run_well("calibrate c.yaml -m m.csv --validate p.csv --plan plan.json -o e.json");
+}
+
+TEST_F(Points, WhatIsWrongIsSaidAndNothingWritten) {
+    const auto row = [](const Point& p) { return p.name + ' ' + p.x + ' ' + p.y + ' ' + p.z; };
+    write_list("p.txt", shuffled_, row);
+    const std::string out = " -o e.json";
+    expect_input_error(
+        "calibrate c.yaml -m p.txt" + out,
+        "p.txt: is a list of points without joint values; state the plan whose poses "
+        "they were measured at, --plan\n");
+    expect_input_error(
+        "calibrate c.yaml -m p.txt --plan plan.json" + out,
+        "p.txt: does not state the unit of its points; state --points-unit, or x_mm, "
+        "y_mm, z_mm in a header; they are as far apart as planned if it is mm\n");
+    expect_input_error("calibrate c.yaml -m m.csv --points-unit mm" + out,
+                       "m.csv: has units of its own; --points-unit must be left out\n");
+    expect_input_error("inspect c.yaml -m m.csv --plan plan.json",
+                       "m.csv: has joint values of its own; --plan must be left out\n");
+    write_list("more.txt", points_, row, "nest1 1 2 3\n");
+    expect_input_error("calibrate c.yaml -m more.txt --points-unit mm --plan plan.json" + out,
+                       "more.txt:1:1: 'nest1' is no point of the plan; must be one, such as "
+                       "P001_T1, or be left out\n");
+    write_list(
+        "order.txt", points_, [](const Point& p) { return p.x + ' ' + p.y + ' ' + p.z; },
+        "1 2 3\n");
+    expect_input_error("calibrate c.yaml -m order.txt --points-unit mm --plan plan.json" + out,
+                       "order.txt:1:1: no name is one of the plan's, such as P001_T1, and in order "
+                       "64 points cannot be the plan's 63; name them as the plan does, or leave "
+                       "none out\n");
+    write_text("other.yaml", "name: other\n" + (arm + tracker).substr(arm.find('\n') + 1));
+    expect_input_error("calibrate other.yaml -m p.txt --points-unit mm --plan plan.json" + out,
+                       "plan.json: campaign: is 'arm'; must be a plan of 'other'\n");
+    EXPECT_EQ(run("calibrate c.yaml -m p.txt --plan plan.json --points-unit inch").code, 2);
+    EXPECT_EQ(run("inspect c.yaml --plan plan.json").code, 2);
+}
+
+TEST_F(Points, TargetsOfAPlanThatIsThereAlready) {
+    run_well("verify plan.json --targets again.csv");
+    EXPECT_EQ(text_of("again.csv"), text_of("targets.csv"));
+    EXPECT_EQ(std::ranges::count(text_of("targets.csv"), '\n'), 1 + 21 * 3);
+    EXPECT_TRUE(text_of("targets.csv").starts_with("name,x_mm,y_mm,z_mm,range_mm,"));
+    EXPECT_NE(text_of("targets.csv").find("\nV003_T3,"), std::string::npos);
+    std::filesystem::remove(folder_ / "again.csv");
+    expect_input_error("verify plan.json --targets plan.json",
+                       "plan.json: is read and shall be written; must be another file");
+    Json plan = Json::parse(text_of("plan.json"));
+    plan["value"] = plan["value"].get<double>() + 1;
+    write_text("changed.json", plan.dump());
+    const Outcome changed = run("verify changed.json --targets again.csv");
+    EXPECT_EQ(changed.code, 1);
+    EXPECT_FALSE(has_file("again.csv")) << "of a plan that is not as stated";
+}
+
+TEST_F(Points, AreForSensorsOfPointsOnly) {
+    write_text("poses.yaml", arm + measured_poses);
+    expect_input_error("plan poses.yaml -k 12" + quick + "--targets t.csv -o p.json",
+                       "t.csv: is not written: there is a list of targets only where the sensor "
+                       "measures points, as a laser tracker does (kind: points)\n");
+    write_text("p.txt", "P001_T1 1 2 3\n");
+    expect_input_error("calibrate poses.yaml -m p.txt",
+                       "p.txt: is a list of points, which is read where the sensor measures points "
+                       "and no torques are measured; must be a table with the column config\n");
+}
+
+TEST_F(Points, ATableMayHaveMoreColumns) {
+    std::string text;
+    std::istringstream lines(text_of("m.csv"));
+    for (std::string line; std::getline(lines, line);) {
+        if (line[0] != '#') text += line + (text.empty() ? ",time,temperature_C\n" : ",12:00,21\n");
+    }
+    write_text("more.csv", text);
+    EXPECT_EQ(run("calibrate c.yaml -m more.csv").err,
+              "posewise: warning: more.csv: columns 'time', 'temperature_C' are not used\n");
+    EXPECT_EQ(result_of("more.csv"), result_of("m.csv"));
+}
+
+}  // namespace
+}  // namespace posewise::testing
