@@ -32,7 +32,7 @@ enum Group : std::size_t { Input, Asked, Errors, Earlier, Search, Judged, Output
 
 /// The group of each option, by its long name; it means the same in every command. Rare ones are
 /// named only.
-constexpr std::array<std::pair<std::string_view, Group>, 87> group_of_option{
+constexpr std::array<std::pair<std::string_view, Group>, 89> group_of_option{
     {{"poses", Asked},
      {"criterion", Asked},
      {"criteria", Asked},
@@ -48,7 +48,7 @@ constexpr std::array<std::pair<std::string_view, Group>, 87> group_of_option{
      {"repeats", Asked},
      {"random", Asked},
      {"splits", Asked},
-     {"holdout", Asked},
+     {"holdout", Rare},
      {"models", Asked},
      {"per-group", Asked},
      {"repeat-limit", Asked},
@@ -60,6 +60,7 @@ constexpr std::array<std::pair<std::string_view, Group>, 87> group_of_option{
      {"truth", Asked},
      {"vary", Asked},
      {"points", Rare},
+     {"points-unit", Rare},
      {"refine", Asked},
      {"geometry", Asked},
      {"largest-change-deg", Rare},
@@ -70,7 +71,7 @@ constexpr std::array<std::pair<std::string_view, Group>, 87> group_of_option{
      {"workspace-box-mm", Input},
      {"workspace-target", Rare},
      {"prior", Errors},
-     {"no-prior", Errors},
+     {"no-prior", Rare},
      {"sizes", Errors},
      {"free", Errors},
      {"method", Errors},
@@ -113,6 +114,7 @@ constexpr std::array<std::pair<std::string_view, Group>, 87> group_of_option{
      {"predict-out", Rare},
      {"out", Output},
      {"csv", Output},
+     {"targets", Output},
      {"report", Output},
      {"plot", Output},
      {"strict", Rare},
