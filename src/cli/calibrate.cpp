@@ -25,6 +25,7 @@ namespace {
 constexpr const char* calibrate_footer = R"(
 Example:
   posewise calibrate campaign.yaml -m measurements.csv --out estimate.json --report page.html
+  posewise calibrate campaign.yaml -m points.txt --points-unit mm --plan plan.json --out estimate.json
 
 Finds base and targets (or tool; of sockets ball and sockets: they need a column socket instead of
 readings) from nothing, then identifies all parameters together, and prints
@@ -45,6 +46,9 @@ With a prior the calibration learns how large the errors of each class are. It s
 expected sizes; few poses move them a little, many freely. It prints both; --sizes stated keeps the
 expected ones.
 With --exclude it leaves out configurations by their ids and samples (7:2), and the estimate records it.
+-m takes an instrument's list of points, too (name x y z, as SpatialAnalyzer or PolyWorks write it): with
+--plan they get the joint values of the plan's poses by their names (P001_T1: target 1 at pose p1), in
+any order; some may be missing. posewise help measurements says what is read.
 With --plan the calibration sees only the plan's configurations. It is judged on those that the plan
 has to verify (plan --verification), as far as they were measured, and on the others, each by itself.
 Where it is judged, and on those of --validate, poses are told apart: new ones, ones beyond the joint

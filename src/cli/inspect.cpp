@@ -143,7 +143,7 @@ void inspect(const InspectArguments& arguments, const CommonOptions& common) {
     const InputPaths& paths = arguments.paths;
     if (!paths.measurements.empty()) {
         const std::optional<Plan> plan = read_measured_plan(paths, file);
-        const auto measurements = read_measured(paths.measurements, file, points_of(paths, plan));
+        const auto measurements = read_as_stated(paths.measurements, file, points_of(paths, plan));
         check_needs_unit(paths, measurements);
         check_needs_plan(paths, measurements);
         readings = compute_from(paths.measurements, [&] {

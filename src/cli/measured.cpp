@@ -24,23 +24,6 @@ void warn_beyond_limits(const std::string& path, const io::CampaignFile& file,
     }
 }
 
-/// Warns of what of the file is not used, and of points that are missing.
-io::MeasurementsFile read_with_notes(const std::string& path, const io::CampaignFile& file,
-                                     const io::PointsSource& points) {
-    io::MeasurementsFile measured = io::read_measurements(path, file, points);
-    if (!measured.unused_columns.empty()) {
-        std::vector<std::string> names;
-        for (const std::string& name : measured.unused_columns) {
-            names.push_back(detail::quote(name));
-        }
-        const bool is_one = names.size() == 1;
-        print_warning(fmt::format("{}: column{} {} {} not used", path, is_one ? "" : "s",
-                                  fmt::join(names, ", "), is_one ? "is" : "are"));
-    }
-    if (!measured.joined.empty()) print_warning(path + ": " + measured.joined);
-    return measured;
-}
-
 }  // namespace
 
 io::CampaignFile read_with_prior(const std::string& path, std::optional<bool> prior,
@@ -72,7 +55,7 @@ void add_points_options(CLI::App& command, InputPaths& paths, const std::string&
         ->check(file_name());
     command
         .add_option("--points-unit", paths.points_unit,
-                    "mm, m or um: unit of a list of points that does not state it")
+                    "Unit of a list of points that does not state it: mm, m or um")
         ->check(CLI::IsMember(detail::unit_names(detail::Quantity::Length)));
 }
 
@@ -97,9 +80,25 @@ void check_needs_plan(const InputPaths& paths, const io::MeasurementsFile& measu
                          "has joint values of its own; --plan must be left out");
 }
 
+io::MeasurementsFile read_as_stated(const std::string& path, const io::CampaignFile& file,
+                                    const io::PointsSource& points) {
+    io::MeasurementsFile measured = io::read_measurements(path, file, points);
+    if (!measured.unused_columns.empty()) {
+        std::vector<std::string> names;
+        for (const std::string& name : measured.unused_columns) {
+            names.push_back(detail::quote(name));
+        }
+        const bool is_one = names.size() == 1;
+        print_warning(fmt::format("{}: column{} {} {} not used", path, is_one ? "" : "s",
+                                  fmt::join(names, ", "), is_one ? "is" : "are"));
+    }
+    if (!measured.joined.empty()) print_warning(path + ": " + measured.joined);
+    return measured;
+}
+
 io::MeasurementsFile read_measured(const std::string& path, const io::CampaignFile& file,
                                    const io::PointsSource& points) {
-    io::MeasurementsFile measured = read_with_notes(path, file, points);
+    io::MeasurementsFile measured = read_as_stated(path, file, points);
     warn_beyond_limits(path, file, measured.configurations, measured.ids);
     return measured;
 }
@@ -109,7 +108,7 @@ io::MeasurementsFile read_measured_without(const std::vector<std::string>& exclu
                                            const EarlierArguments& earlier,
                                            const std::optional<Plan>& plan) {
     const std::string& path = paths.measurements;
-    io::MeasurementsFile measured = read_with_notes(path, file, points_of(paths, plan));
+    io::MeasurementsFile measured = read_as_stated(path, file, points_of(paths, plan));
     check_needs_unit(paths, measured);
     warn_of_counting_twice(earlier.from, earlier.is_prior, path, measured);
     static_cast<Measurements&>(measured) =

@@ -33,8 +33,13 @@ io::PointsSource points_of(const InputPaths& paths, const std::optional<Plan>& p
 io::MeasurementsFile read_measured(const std::string& path, const io::CampaignFile& file,
                                    const io::PointsSource& points = {});
 
-/// The same less what was excluded by hand, leave_out(). Warns of joints that never move, and of
-/// what an earlier estimate would count twice. Throws InputError for --points-unit without points.
+/// The same without regard to joint limits, where it is in question how the joints are meant.
+io::MeasurementsFile read_as_stated(const std::string& path, const io::CampaignFile& file,
+                                    const io::PointsSource& points);
+
+/// read_measured() less what was excluded by hand, leave_out(). Warns of joints that never move,
+/// and of what an earlier estimate would count twice. Throws InputError for --points-unit without
+/// points.
 io::MeasurementsFile read_measured_without(const std::vector<std::string>& excluded,
                                            const InputPaths& paths, const io::CampaignFile& file,
                                            const EarlierArguments& earlier,

@@ -33,7 +33,6 @@ namespace {
 
 constexpr const char* plan_footer = R"(
 Example:
-  posewise plan campaign.yaml --poses 24 --out plan.json --csv poses.csv --report plan.html
   posewise plan campaign.yaml --poses 24 --verification 15 --out plan.json --targets targets.csv
   posewise plan campaign.yaml --target-mm 0.2 --assurance 0.95 --verify
   posewise plan campaign.yaml --poses 12 --augment measured.csv --criterion d
@@ -70,11 +69,11 @@ after the others, so that these stay as they are without it. --minutes is withou
 into the same file: calibrate --plan calibrates without them and judges on them; 29 of them and no
 error above X say that 90 % of the workspace is below X with 95 % confidence, 59 that 95 % are.
 
---targets writes for the instrument, in visiting order, where each target is expected at each pose in the
+--targets writes where the instrument finds each target at each pose, in visiting order and in the
 instrument's frame: name (P001_T1: target 1 at pose p1), x_mm, y_mm, z_mm, range_mm, azimuth_deg,
-elevation_deg, incidence_deg (to the target's normal, if the cell states it), visible. What is measured
-under these names calibrate --plan takes as the instrument's program writes it. Sensors of points only;
-posewise verify writes it for a plan that is there already.
+elevation_deg, incidence_deg (to the target's normal, if the cell states it), visible. Points measured
+under these names are read by calibrate -m points.txt --plan plan.json (posewise help measurements).
+There is such a list for sensors of points only; posewise verify writes it for a plan that exists.
 
 --verify checks what is predicted, before anything is measured: robots are drawn, measured at the poses, calibrated and judged at
 other places, block by block, until what it finds is sure; a limit that is not kept then is said.
@@ -251,8 +250,9 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
                     "Write the configurations as CSV, too, with the points to pass on the way")
         ->check(file_name());
     command
-        .add_option("--targets", arguments.targets,
-                    "Write where an instrument finds each target (CSV): P001_T1, x, y, z, ...")
+        .add_option(
+            "--targets", arguments.targets,
+            "Write where an instrument finds each target (CSV): name, x, y, z, visible, ...")
         ->check(file_name());
     command.add_flag("--strict", arguments.is_strict,
                      "Refuse a plan with a move for which no free way was found (exit code 1)");

@@ -217,7 +217,7 @@ TEST_F(Commands, RefuseWhatCannotBeDone) {
     expect_input_error("select " + input_ + "-k 8 -o s.csv", "must be another file");
     expect_input_error("calibrate " + input_ + "--folds 17", "--folds");
     expect_input_error("calibrate " + input_ + "--folds 1", "--folds");
-    expect_input_error("calibrate " + input_ + "--plan s.csv", "s.csv");
+    expect_input_error("calibrate " + input_ + "--plan absent.csv", "absent.csv");
     expect_input_error("calibrate " + seed_design + " -m s.csv -o e.json", "Tx2");
     expect_input_error("study " + input_ + "--poses 17", "17");
     expect_input_error("study " + input_ + "--plot p.pdf", ".svg or .png");

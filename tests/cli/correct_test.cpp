@@ -69,7 +69,7 @@ TEST_F(Correct, WritesWhatIsReadAsConfigurations) {
     run_well(correct_ + "c.csv");
     // Measurements have no such columns; nor is one there twice.
     expect_input_error("calibrate " + fanuc_design + " -m c.csv",
-                       "column 'residual_mm' is unknown");
+                       "missing columns p1_x_mm, p1_y_mm,");
     std::string twice = text_of("c.csv");
     write_text("twice.csv", twice.replace(twice.find("residual_mrad"), 13, "residual_mm"));
     expect_input_error("simulate " + fanuc_design + " --configurations twice.csv -o s2.csv",

@@ -57,7 +57,7 @@ TEST_F(Usage, CompletionIsAScriptThatKnowsTheOptions) {
     }
     write_text(
         "try.sh",
-        "set -e\nsource completion.sh 2>/dev/null || true\nCOMP_WORDS=(posewise plan --targ)\n"
+        "set -e\nsource completion.sh 2>/dev/null || true\nCOMP_WORDS=(posewise plan --target-)\n"
         "COMP_CWORD=2\n_posewise\necho \"${COMPREPLY[*]}\"\n");
     write_text("completion.sh", run_well("completion bash"));
     EXPECT_EQ(run_line("bash try.sh > .out 2> .err").out, "--target-mm\n");
