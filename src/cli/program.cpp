@@ -138,12 +138,13 @@ io::RobotProgram make_program(const ProgramArguments& arguments, const io::Campa
     program.stops = stops;
     program.joint_speed = campaign.cell.speed;
     program.speed_percent = arguments.speed_percent.value_or(usual_percent);
+    program.settle = campaign.cell.settle;
     program.dwell =
         arguments.dwell.value_or(campaign.cell.dwell > 0 ? campaign.cell.dwell : usual_dwell);
     program.handshake = parse_handshake(arguments.handshake);
     if (arguments.is_dry_run) {
         program.speed_percent = std::min(program.speed_percent, dry_run_percent);
-        program.dwell = 0;
+        program.settle = program.dwell = 0;
         program.handshake = io::Handshake::None;
     }
     return program;

@@ -117,8 +117,8 @@ TEST(ReadCell, TakesSumsOfJointsAndHowTheRobotMoves) {
         expect_error("  home_deg", "  joint_sums: " + sums + "\n  home_deg", "29:" + column, words);
     };
     expect("{q2 - q3: {limits_deg: [0, 1]}}", "21", "'q3' is no joint");
-    expect("{q2 - q1: {limits_mm: [0, 1]}}", "27", "must be in deg or rad");
-    expect("{q2 - q1: {limits_deg: [1, 0]}}", "39", "lower end must come first");
+    expect("{q2 - q1: {limits_mm: [0, 1]}}", "37", "must be in deg or rad");
+    expect("{q2 - q1: {limits_deg: [1, 0]}}", "38", "lower end must come first");
     expect_error("  home_deg", "  acceleration_deg_per_s2: [1, 0]\n  home_deg", "29:28",
                  "must be positive");
 }

@@ -463,10 +463,11 @@ TEST(RobotPrograms, NeedSixJointsButForRosAndCsv) {
     program.joints = crane.controller;
     VectorXd q(2);
     q << 0.5, 0.2;
-    program.stops = {{"p1", crane.controller.to_controller(q), true, 1}};
+    program.settle = 0.5;
+    program.stops = {{"p1", crane.controller.to_controller(q), true, 3}};
     write_robot_program(folder.path("a.csv"), ProgramFormat::Csv, program, "", crane, {});
     EXPECT_EQ(detail::read_file(folder.path("a.csv")),
-              "name,yaw_deg,z_mm,dwell_s\np1,-28.647890,300.000000,2.0\n");
+              "name,yaw_deg,z_mm,dwell_s\np1,-28.647890,300.000000,6.5\n");
     for (const ProgramFormat format : {ProgramFormat::Csv, ProgramFormat::Ros2}) {
         const std::string path = folder.path(file_of(format));
         write_robot_program(path, format, program, "", crane, {});

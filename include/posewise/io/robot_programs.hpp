@@ -58,6 +58,7 @@ struct RobotProgram {
     ControllerJoints joints;
     std::vector<ProgramStop> stops;
     Index speed_percent = 20;  ///< 1 to 100
+    double settle = 0;         ///< standstill before the first sample, s
     double dwell = 2;          ///< s; 0: none
     Handshake handshake = Handshake::None;
     VectorXd joint_speed;  ///< the largest of each, rad/s or m/s, for ROS; empty: 1

@@ -93,7 +93,7 @@ std::string seconds_text(double seconds) {
 }
 
 double dwell_of(const io::RobotProgram& program, const io::ProgramStop& stop) {
-    return program.dwell * static_cast<double>(stop.samples);
+    return program.settle + program.dwell * static_cast<double>(stop.samples);
 }
 
 bool TextLine::begins_with(std::string_view word) const {
