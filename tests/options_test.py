@@ -41,7 +41,7 @@ VALUES = {
     "--largest-change-mm": "1", "--splits": "3", "--holdout": "0.5", "--models": "geometric", "--trials": "3",
     "--precision": "30%", "--truth": "7", "--vary": "sensor.sigma_mm=0.01,0.05", "--points": "2", "--store": "out2.sqlite",
     "--shard": "1/2", "--merge": "part1.sqlite", "--directions": "2", "--campaign": "other.yaml", "--configurations": "poses.csv",
-    "--write-campaign": "out4.yaml", "--tip": "x",
+    "--write-campaign": "out4.yaml", "--tip": "x", "--targets": "out5.csv", "--points-unit": "m", "--random-order": "2",
     "--for": "ros2", "--read": "program.csv", "--dwell": "3", "--speed": "30", "--handshake": "pause"}
 PLAN = ["-c", "d", "--pool", "40", "--starts", "1", "--workspace-poses", "10", "-o", "out.json"]
 CHOICE = ["-k", "6", "--starts", "1", "-o", "out.json"]
@@ -50,6 +50,7 @@ SIMULATED = ["arm.yaml", "--simulate", "-k", "6", "--trials", "2", "--pool", "40
 MEASURED = ["arm.yaml", "-m", "many.csv", "--folds", "0", "-o", "out.json"]
 WAYS = [
     ["inspect", "arm.yaml", "-m", "many.csv"],
+    ["inspect", "arm.yaml", "-m", "points.csv", "--plan", "plan.json"],
     ["indices", "arm.yaml", "-m", "many.csv"],
     ["select", "arm.yaml", "-m", "many.csv", *CHOICE],
     ["select", "arm.yaml", "--random", "40", *CHOICE],
@@ -64,6 +65,7 @@ WAYS = [
     ["verify", "choice.json"],
     ["verify", "plan.json"],
     ["calibrate", *MEASURED],
+    ["calibrate", "arm.yaml", "-m", "points.csv", "--plan", "plan.json", "--folds", "0", "-o", "out.json"],
     ["calibrate", *MEASURED, "--method", "two-step"],
     ["calibrate", *MEASURED, "--method", "global", "--starts", "1"],
     ["calibrate", *MEASURED, "--from", "estimate.json"],
@@ -117,6 +119,10 @@ def prepare():
     run_well("calibrate", "arm.yaml", "-m", "many.csv", "--folds", "0", "-o", "estimate.json")
     run_well("select", "arm.yaml", "-m", "many.csv", "-k", "6", "-o", "choice.json")
     run_well("plan", "arm.yaml", "-k", "6", *PLAN[:-1], "plan.json", "--csv", "poses.csv")
+    run_well("simulate", "arm.yaml", "--truth", "11", "--seed", "6", "--configurations", "poses.csv", "-o", "planned.csv")
+    rows = [line.split(",") for line in pathlib.Path("planned.csv").read_text().splitlines() if line.startswith("p")]
+    pathlib.Path("points.csv").write_text("name,x_mm,y_mm,z_mm\n" + "".join(
+        ",".join([f"{row[0]}_t{k + 1}", *row[5 + 3 * k:8 + 3 * k]]) + "\n" for row in rows for k in range(3)))
     run_well("plan", "arm.yaml", "-k", "25", *PLAN[:-1], "out.json", "--csv", "pool.csv")
     run_well("program", "plan.json", "--for", "csv", "-o", "program.csv")
     for shard in ("1", "2"):

@@ -25,7 +25,7 @@ namespace {
 constexpr const char* calibrate_footer = R"(
 Example:
   posewise calibrate campaign.yaml -m measurements.csv --out estimate.json --report page.html
-  posewise calibrate campaign.yaml -m points.txt --points-unit mm --plan plan.json --out estimate.json
+  posewise calibrate campaign.yaml -m points.txt --points-unit mm --plan plan.json
 
 Finds base and targets (or tool; of sockets ball and sockets: they need a column socket instead of
 readings) from nothing, then identifies all parameters together, and prints
