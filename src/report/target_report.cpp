@@ -146,8 +146,10 @@ const char* name_of(ErrorQuantity quantity) {
 std::string describe_duration(const Planning& planning) {
     const Cell& cell = planning.campaign.cell;
     if (cell.dwell == 0 && cell.settle == 0) return "";
-    return fmt::format("time:        {} min with {} s for each sample\n",
-                       minutes(planning.duration), format_short(planning.campaign.cell.dwell));
+    const std::string settle =
+        cell.settle > 0 ? format_short(cell.settle) + " s at each pose and " : "";
+    return fmt::format("time:        {} min with {}{} s for each sample\n",
+                       minutes(planning.duration), settle, format_short(cell.dwell));
 }
 
 std::string describe_drop_outs(const Planning& planning) {
