@@ -230,7 +230,7 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     made_from.warnings = given_warnings();
     if (!arguments.out.empty()) io::write_estimate(arguments.out, result, made_from);
     if (!arguments.csv.empty()) {
-        io::write_offsets_csv(arguments.csv, result.campaign, result.estimate);
+        io::write_offsets_csv(arguments.csv, result.campaign, result.estimate, file.controller);
     }
     if (!arguments.predict_out.empty()) {
         io::write_predictions_csv(arguments.predict_out, predicted.ids, result.predicted);

@@ -112,8 +112,9 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     command.add_option("-o,--out", arguments.out, "Write everything as JSON to this file")
         ->check(file_name());
     command
-        .add_option("--csv", arguments.csv,
-                    "Write the offset of each joint (deg; mm where it slides), as for mastering")
+        .add_option(
+            "--csv", arguments.csv,
+            "Write the offset of each joint of the controller (deg, mm, pulses), as for mastering")
         ->check(file_name());
     add_report_option(command, arguments.page);
     add_plot_option(command, arguments.plot, "Draw what is left of each reading");

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include "program.hpp"
@@ -214,6 +217,28 @@ TEST_F(Calibrate, FindsOnlyTheErrorsThatAreAskedFor) {
     EXPECT_NE(unknown.err.find("--free: 'dq22' is no error of the robot; did you mean 'dq2'"),
               std::string::npos)
         << unknown.err;
+}
+
+TEST_F(Calibrate, WritesTheOffsetsOfThePendantsJoints) {
+    write_text("pendant.yaml",
+               read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml") +
+                   "controller: {maker: fanuc, j23_factor: 1, pulses_per_deg: [1e6, 1e6, 1e6, 1e6, "
+                   "1e6, 1e6]}\n");
+    run_well("calibrate pendant.yaml -m s.csv --folds 0 --csv o.csv -o f.json");
+    const Json robot = Json::parse(text_of("f.json")).at("robot");
+    const double q2 = robot.at("dq2").at("value_rad");
+    const double q3 = robot.at("dq3").at("value_rad");
+    std::istringstream rows(text_of("o.csv"));
+    std::string row;
+    std::getline(rows, row);
+    EXPECT_EQ(row, "joint,offset,deviation,unit,pulses");
+    std::getline(rows, row);
+    EXPECT_TRUE(row.starts_with("J2,")) << row;  // where the base is found, J1 is not
+    std::getline(rows, row);
+    ASSERT_TRUE(row.starts_with("J3,")) << row;
+    EXPECT_NEAR(std::stod(row.substr(3)), (q3 - q2) * 180 / std::numbers::pi, 1e-8);
+    const double pulses = std::stod(row.substr(row.rfind(',') + 1));
+    EXPECT_NEAR(pulses, 1e6 * (q3 - q2) * 180 / std::numbers::pi, 0.5);
 }
 
 TEST_F(Calibrate, HasOnlyTheErrorsThatItsCampaignLists) {

@@ -6,6 +6,7 @@
 
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/measurement/campaign.hpp"
+#include "posewise/model/controller.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/plan.hpp"
@@ -77,9 +78,11 @@ std::string checksum_of(const Measurements& measurements);
 void write_estimate(const std::string& path, const Calibration& calibration,
                     const Provenance& made_from);
 
-/// Writes CSV, one row per joint whose offset was found: joint, offset, deviation, unit (deg or
-/// mm). The joint stands at its commanded value plus the offset.
-void write_offsets_csv(const std::string& path, const Campaign& campaign, const Estimate& estimate);
+/// Writes CSV, one row per joint of the controller whose offset was found: joint, offset, deviation,
+/// unit (deg or mm) and, if they are stated, pulses. The joint stands at its commanded value plus
+/// the offset. `controller`: ControllerJoints(campaign.robot) for the model's own joints.
+void write_offsets_csv(const std::string& path, const Campaign& campaign, const Estimate& estimate,
+                       const ControllerJoints& controller);
 
 /// Writes CSV, one row per configuration: config, then parameters, left_over, noise, total (RMS)
 /// and p95 (95 % of points are off by less), each with _mm, or _mrad for orientations. `ids` are

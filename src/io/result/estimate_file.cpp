@@ -310,6 +310,24 @@ Json estimate_to_json(const Calibration& calibration, Provenance made_from) {
     return document;
 }
 
+/// The error that is a joint's offset; the joint stands at its value plus `factor` times it.
+struct JointOffset {
+    Index parameter = -1;  ///< none was found
+    double factor = 0;
+};
+
+std::vector<JointOffset> joint_offsets(const Chain& robot) {
+    std::vector<JointOffset> offsets(static_cast<std::size_t>(robot.joint_count()));
+    for (Index k = 0; k < robot.parameter_count(); ++k) {
+        const Index joint = parameter_owner(robot, k);
+        if (robot.parameter_term(k) != nullptr || joint < 0) continue;
+        const Element& element = robot.parameter_element(k);
+        const auto own = std::ranges::find(element.joints, joint, &JointTerm::joint);
+        offsets[static_cast<std::size_t>(joint)] = {k, 1 / own->coefficient};
+    }
+    return offsets;
+}
+
 }  // namespace
 
 std::string checksum_of(const Measurements& measurements) {
@@ -330,24 +348,39 @@ void write_estimate(const std::string& path, const Calibration& calibration,
     detail::write_json(path, estimate_to_json(calibration, made_from));
 }
 
-void write_offsets_csv(const std::string& path, const Campaign& campaign,
-                       const Estimate& estimate) {
+void write_offsets_csv(const std::string& path, const Campaign& campaign, const Estimate& estimate,
+                       const ControllerJoints& controller) {
     const Chain& robot = campaign.robot;
-    const Index begin = base_parameter_count(campaign);
-    std::string text = "joint,offset,deviation,unit\n";
-    for (Index k = 0; k < robot.parameter_count(); ++k) {
-        const Element& element = robot.parameter_element(k);
-        const Index joint = parameter_owner(robot, k);
-        if (robot.parameter_term(k) != nullptr || joint < 0) continue;
-        const auto own = std::ranges::find(element.joints, joint, &JointTerm::joint);
-        const bool turns = element.motion == Motion::Rotation;
+    const Index robot_begin = base_parameter_count(campaign);
+    const std::vector<JointOffset> offsets = joint_offsets(robot);
+    const bool has_pulses = controller.pulses_per_unit().size() > 0;
+    std::string text =
+        std::string("joint,offset,deviation,unit") + (has_pulses ? ",pulses\n" : "\n");
+    for (Index i = 0; i < controller.count(); ++i) {
+        const VectorXd coefficients = controller.from_model().row(i).transpose();
+        VectorXd effect = VectorXd::Zero(robot.parameter_count());  // of each error on this joint
+        bool is_found = true;
+        for (Index j = 0; j < coefficients.size(); ++j) {
+            if (coefficients[j] == 0) continue;
+            const JointOffset& offset = offsets[static_cast<std::size_t>(j)];
+            is_found = is_found && offset.parameter >= 0;
+            if (is_found) effect[offset.parameter] = coefficients[j] * offset.factor;
+        }
+        if (!is_found) continue;
+        const auto covariance =
+            estimate.covariance.block(robot_begin, robot_begin, effect.size(), effect.size());
+        const double found = effect.dot(estimate.parameters.robot);
+        const bool turns = controller.motion(i) == Motion::Rotation;
         const double unit = turns ? to_degrees(1) : mm_per_m;
-        fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.3g},{}\n",
-                       detail::csv_field(robot.joint(joint).name),
-                       unit * estimate.parameters.robot[k] / own->coefficient,
-                       unit * std::sqrt(estimate.covariance(begin + k, begin + k)) /
-                           std::abs(own->coefficient),
+        fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.3g},{}",
+                       detail::csv_field(controller.names()[static_cast<std::size_t>(i)]),
+                       unit * found, unit * std::sqrt(effect.dot(covariance * effect)),
                        turns ? "deg" : "mm");
+        if (has_pulses) {
+            fmt::format_to(std::back_inserter(text), ",{:.0f}",
+                           controller.pulses_per_unit()[i] * found);
+        }
+        text += '\n';
     }
     detail::write_file(path, text);
 }
