@@ -73,7 +73,8 @@ error above X say that 90 % of the workspace is below X with 95 % confidence, 59
 instrument's frame: name (P001_T1: target 1 at pose p1), x_mm, y_mm, z_mm, range_mm, azimuth_deg,
 elevation_deg, incidence_deg (to the target's normal, if the cell states it), visible. Points measured
 under these names are read by calibrate -m points.txt --plan plan.json (posewise help measurements).
-There is such a list for sensors of points only; posewise verify writes it for a plan that exists.
+A file that ends in .txt has only what is visible, and name, x, y, z, for programs that import no more.
+There are targets of sensors of points only; posewise verify writes those of a plan that exists.
 
 --verify checks what is predicted, before anything is measured: robots are drawn, measured at the poses, calibrated and judged at
 other places, block by block, until what it finds is sure; a limit that is not kept then is said.
@@ -252,7 +253,8 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
     command
         .add_option(
             "--targets", arguments.targets,
-            "Write where an instrument finds each target (CSV): name, x, y, z, visible, ...")
+            "Write where an instrument finds each target (CSV: name, x, y, z, visible, ...; "
+            ".txt: name, x, y, z)")
         ->check(file_name());
     command.add_flag("--strict", arguments.is_strict,
                      "Refuse a plan with a move for which no free way was found (exit code 1)");

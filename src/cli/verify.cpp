@@ -144,7 +144,7 @@ void verify_file(const VerifyArguments& arguments, const CommonOptions& common) 
                           format_findings(verification.findings)));
     }
     conclude(arguments.plan, verification);
-    if (!targets.empty()) io::write_targets_csv(targets, *campaign, plan);
+    if (!targets.empty()) io::write_targets(targets, *campaign, plan);
 }
 
 }  // namespace

@@ -174,10 +174,10 @@ TEST_F(Points, WhatIsWrongIsSaidAndNothingWritten) {
     const auto row = [](const Point& p) { return p.name + ' ' + p.x + ' ' + p.y + ' ' + p.z; };
     write_list("p.txt", shuffled_, row);
     const std::string out = " -o e.json";
-    expect_input_error(
-        "calibrate c.yaml -m p.txt" + out,
-        "p.txt: is a list of points without joint values; state the plan whose poses "
-        "they were measured at, --plan\n");
+    expect_input_error("calibrate c.yaml -m p.txt" + out,
+                       "p.txt: is a list of points without joint values; must come with the plan "
+                       "whose poses were measured (--plan of calibrate, indices, inspect and "
+                       "study), or be a table with the column config\n");
     expect_input_error(
         "calibrate c.yaml -m p.txt --plan plan.json" + out,
         "p.txt: does not state the unit of its points; state --points-unit, or x_mm, "

@@ -335,8 +335,9 @@ TEST(BadPoints, ThoseOfAnotherRobotOrWithoutAPlan) {
     const std::string path = folder.write("p.txt", "P001_T1 1 2 3\n");
     EXPECT_EQ(
         input_error_of([&] { read_measurements(path, crane()); }),
-        "p.txt: is a list of points without joint values; state the plan whose poses they were "
-        "measured at, `plan`");
+        "p.txt: is a list of points without joint values; must come with the plan whose poses "
+        "were measured (`plan` of calibrate, indices, inspect and study), or be a table with "
+        "the column config");
     Plan other = planned();
     other.campaign = "another";
     EXPECT_EQ(input_error_of([&] { read("P001_T1 1 2 3\n", "mm", other); }),
@@ -371,7 +372,7 @@ TEST(TargetsFile, IsWhereTheNominalRobotHoldsEachTarget) {
     const TemporaryFolder folder;
     const std::string path = folder.path("t.csv");
     const Plan plan = planned();
-    write_targets_csv(path, crane(), plan);
+    write_targets(path, crane(), plan);
     const MeasurementsFile read_back = read_measurements(path, crane(), {&plan, "plan.json"});
     EXPECT_EQ(read_back.unused_columns, std::vector<std::string>());
     EXPECT_EQ(read_back.ids, (std::vector<std::string>{"p1", "p2", "p3", "v1"}));
@@ -385,6 +386,21 @@ TEST(TargetsFile, IsWhereTheNominalRobotHoldsEachTarget) {
     }
 }
 
+TEST(TargetsFile, IsAListOfWhatIsVisibleWhereItEndsInTxt) {
+    const TemporaryFolder folder;
+    const Plan plan = planned();
+    const std::string path = folder.path("t.txt");
+    write_targets(path, crane(), plan);
+    const std::string text = detail::read_file(path);
+    EXPECT_TRUE(text.starts_with("// name, x, y, z in mm\nP001_T1,")) << text;
+    EXPECT_EQ(text.find("P002_T1"), std::string::npos) << text;
+    const MeasurementsFile read_back = read(text);
+    EXPECT_EQ(read_back.joined, "");
+    write_targets(folder.path("t.csv"), crane(), plan);
+    const MeasurementsFile table = read(detail::read_file(folder.path("t.csv")));
+    EXPECT_EQ(read_back.observations.row(0), table.observations.row(0));
+}
+
 TEST(TargetsFile, TellsRangeAnglesAndSight) {
     const TemporaryFolder folder;
     CampaignFile file = crane();
@@ -394,7 +410,7 @@ TEST(TargetsFile, TellsRangeAnglesAndSight) {
     plan.poses.resize(2);
     plan.verification.clear();
     const std::string path = folder.path("t.csv");
-    write_targets_csv(path, file, plan);
+    write_targets(path, file, plan);
     std::istringstream lines(detail::read_file(path));
     std::string line;
     std::getline(lines, line);

@@ -22,10 +22,10 @@ namespace posewise::io {
 /// each.
 void write_plan(const std::string& path, const Plan& plan,
                 const std::vector<std::string>& warnings = {});
-/// Paths of CSV files; empty: not written.
+/// Paths of files beside the plan; empty: not written.
 struct PlanTables {
     std::string configurations{};  ///< write_configurations_csv()
-    std::string targets{};         ///< write_targets_csv()
+    std::string targets{};         ///< write_targets()
 };
 /// As above, together with these: all files or none.
 void write_plan(const std::string& path, const Plan& plan, const PlanTables& tables,
@@ -51,10 +51,11 @@ void write_configurations_csv(const std::string& path, const Campaign& campaign,
 /// Writes where an instrument finds each target at each pose, in visiting order, as CSV: name
 /// (P001_T1 for the first target at pose p1), x_mm, y_mm, z_mm in the instrument's frame for the
 /// nominal robot, range_mm, azimuth_deg, elevation_deg, incidence_deg (empty where the cell does
-/// not state the targets' normals) and visible (yes or no). read_measurements() joins what was
-/// measured by these names. Throws InputError unless the sensor measures points and the campaign
-/// states where they are.
-void write_targets_csv(const std::string& path, const Campaign& campaign, const Plan& plan);
+/// not state the targets' normals) and visible (yes or no). A file that ends in .txt has the
+/// visible ones only, as a list of name, x, y and z in mm without a header, which instruments'
+/// programs import. read_measurements() joins what was measured by these names. Throws InputError
+/// unless the sensor measures points and the campaign states where they are.
+void write_targets(const std::string& path, const Campaign& campaign, const Plan& plan);
 
 /// The inputs of an estimate: paths, and checksums where they are known.
 struct Provenance {

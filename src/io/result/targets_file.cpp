@@ -25,22 +25,27 @@ std::string incidence_cell(const Campaign& campaign, const Isometry3d& flange, I
     return fmt::format("{:.3f}", to_degrees(angle));
 }
 
-void append_rows(std::string& text, const Campaign& campaign, const PlannedPose& pose) {
-    const Isometry3d flange = world_from_flange(campaign, campaign.nominal, pose.configuration);
-    for (Index target = 0; target < campaign.sensor->target_count(); ++target) {
-        const Vector3d point =
-            flange * campaign.sensor->target_position(target, campaign.nominal.sensor);
+/// A row of the table; of a list, which a program imports to measure all of it, only what is
+/// visible.
+void append_row(std::string& text, const Campaign& campaign, const PlannedPose& pose,
+                const Isometry3d& flange, Index target, bool is_list) {
+    const bool is_visible =
+        pose.targets.empty() || std::ranges::find(pose.targets, target) != pose.targets.end();
+    if (is_list && !is_visible) return;
+    const Vector3d point =
+        flange * campaign.sensor->target_position(target, campaign.nominal.sensor);
+    const Vector3d mm = mm_per_m * point;
+    const auto out = std::back_inserter(text);
+    fmt::format_to(out, "{},{:.4f},{:.4f},{:.4f}", target_name(pose.id, target), mm.x(), mm.y(),
+                   mm.z());
+    if (!is_list) {
         const double azimuth = std::atan2(point.y(), point.x());
         const double elevation = std::atan2(point.z(), point.head<2>().norm());
-        const bool is_visible =
-            pose.targets.empty() || std::ranges::find(pose.targets, target) != pose.targets.end();
-        const Vector3d mm = mm_per_m * point;
-        fmt::format_to(std::back_inserter(text),
-                       "{},{:.4f},{:.4f},{:.4f},{:.3f},{:.4f},{:.4f},{},{}\n",
-                       target_name(pose.id, target), mm.x(), mm.y(), mm.z(), mm.norm(),
-                       to_degrees(azimuth), to_degrees(elevation),
-                       incidence_cell(campaign, flange, target, point), is_visible ? "yes" : "no");
+        fmt::format_to(out, ",{:.3f},{:.4f},{:.4f},{},{}", mm.norm(), to_degrees(azimuth),
+                       to_degrees(elevation), incidence_cell(campaign, flange, target, point),
+                       is_visible ? "yes" : "no");
     }
+    text += '\n';
 }
 
 }  // namespace
@@ -60,10 +65,18 @@ void check_has_targets(const std::string& path, const Campaign& campaign) {
 
 std::string targets_text(const std::string& path, const Campaign& campaign, const Plan& plan) {
     check_has_targets(path, campaign);
-    std::string text =
-        "name,x_mm,y_mm,z_mm,range_mm,azimuth_deg,elevation_deg,incidence_deg,visible\n";
+    const bool is_list = path.ends_with(".txt");
+    std::string text = is_list ? "// name, x, y, z in mm\n"
+                               : "name,x_mm,y_mm,z_mm,range_mm,azimuth_deg,elevation_deg,"
+                                 "incidence_deg,visible\n";
     for (const auto* poses : {&plan.poses, &plan.verification}) {
-        for (const PlannedPose& pose : *poses) append_rows(text, campaign, pose);
+        for (const PlannedPose& pose : *poses) {
+            const Isometry3d flange =
+                world_from_flange(campaign, campaign.nominal, pose.configuration);
+            for (Index target = 0; target < campaign.sensor->target_count(); ++target) {
+                append_row(text, campaign, pose, flange, target, is_list);
+            }
+        }
     }
     return text;
 }
@@ -72,7 +85,7 @@ std::string targets_text(const std::string& path, const Campaign& campaign, cons
 
 namespace posewise::io {
 
-void write_targets_csv(const std::string& path, const Campaign& campaign, const Plan& plan) {
+void write_targets(const std::string& path, const Campaign& campaign, const Plan& plan) {
     detail::write_file(path, detail::targets_text(path, campaign, plan));
 }
 

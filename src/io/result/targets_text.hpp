@@ -10,7 +10,7 @@ namespace posewise::detail {
 /// states where they are.
 void check_has_targets(const std::string& path, const Campaign& campaign);
 
-/// The text of io::write_targets_csv().
+/// The text of io::write_targets().
 std::string targets_text(const std::string& path, const Campaign& campaign, const Plan& plan);
 
 }  // namespace posewise::detail
