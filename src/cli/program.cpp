@@ -200,6 +200,21 @@ std::string describe(const RoundingLoss& loss) {
     return text + '\n';
 }
 
+/// More than any controller's digits do.
+void warn_of_rounding(const io::ProgramReport& report) {
+    constexpr double usual_turn = to_radians(0.05);
+    constexpr double usual_slide = 1e-4;  // m
+    const auto& loss = report.loss;
+    if (!loss || (loss->largest_turn <= usual_turn && loss->largest_slide <= usual_slide)) return;
+    print_warning(fmt::format(
+        "the digits of a program for {} move joints by {}: are the sums and pulses under "
+        "controller right?",
+        io::program_format_name(report.format),
+        loss->largest_turn > usual_turn
+            ? detail::format_short(to_degrees(loss->largest_turn), 2) + " deg"
+            : detail::format_short(mm_per_m * loss->largest_slide, 2) + " mm"));
+}
+
 std::string describe(const io::ProgramReport& report) {
     std::string text = fmt::format(
         "{}: {} in {} for {}\n", detail::escape_controls(report.files.front()),
@@ -239,6 +254,7 @@ void write_program(const ProgramArguments& arguments, const CommonOptions& commo
     outputs.push_back(report.sent);
     check_outputs({&both.campaign}, {arguments.plan}, outputs, common);
     report.loss = compute_from(arguments.plan, [&] { return find_loss(both, sent); });
+    warn_of_rounding(report);
     io::write_robot_program(arguments.out, format, program, report.sent, both.campaign, sent);
     if (common.json) return print_document(io::to_json(report, both.campaign));
     print(describe(report));

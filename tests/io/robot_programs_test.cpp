@@ -333,6 +333,8 @@ TEST(EditedPrograms, AreRefusedWhereTheyDoNotStop) {
     const auto expect = [](const Edited& edited, const std::string& words) {
         EXPECT_NE(edited.error().find(words), std::string::npos) << edited.error();
     };
+    expect(Edited(ProgramFormat::Fanuc).replace("J P[2] 20% FINE", "J P[2] 20% FINE Offset,PR[1]"),
+           "must have none but ACC");
     expect(Edited(ProgramFormat::Fanuc).replace("J P[2] 20% FINE", "J P[2] 20% CNT50"),
            "CELL.LS:12:6: does not stop");
     expect(Edited(ProgramFormat::Fanuc).replace("J P[2]", "L P[2]"), "is no joint move");

@@ -8,6 +8,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/constraints.hpp"
 #include "support/cells.hpp"
+#include "support/sweep.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise {

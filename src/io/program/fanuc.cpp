@@ -162,6 +162,12 @@ std::vector<io::ProgramStop> read_fanuc(const std::string& path, const Controlle
         }
         if (!line.begins_with("J P[")) continue;
         if (!line.has("FINE")) throw line.error("does not stop at its position; must end FINE");
+        const std::string_view options = trim(line.text.substr(line.text.find("FINE") + 4));
+        if (!options.empty() && !options.starts_with("ACC")) {
+            throw line.error(
+                fmt::format("has {} behind FINE, which may lead elsewhere; must have none but ACC",
+                            quote(options)));
+        }
         const auto found = positions.find(read_fanuc_index(line, line.text.substr(4)));
         if (found == positions.end() || found->second.empty()) {
             throw line.error("moves to a position without joints; must be in degrees under /POS");

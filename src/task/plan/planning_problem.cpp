@@ -78,6 +78,9 @@ void check_repaired(const PlanningProblem& problem, const Plan& repaired) {
     }
     if (!fault.empty()) throw input_error_at({name}, fault);
     for (const std::string& id : problem.request.dropped) {
+        if (std::ranges::count(problem.request.dropped, id) > 1) {
+            throw InputError(fmt::format("`dropped` {}: is given twice; keep one", id));
+        }
         if (std::ranges::count(repaired.verification, id, &PlannedPose::id) > 0) {
             throw InputError(
                 fmt::format("`dropped` {}: is a pose to verify, which need not be replaced; leave "

@@ -338,10 +338,11 @@ std::vector<RouteStop> route_of(const Plan& sent, const Campaign& campaign,
         });
         pass.go({Kind::Home, "", 1, home});
     }
+    const Index repeats = std::max<Index>(1, std::lround(sent.request.repeats));
     for (const auto* poses : {&sent.poses, &sent.verification}) {
         for (const PlannedPose& pose : *poses) {
             if (pose.via) pass.go({Kind::Via, "", 1, *pose.via});
-            pass.go({Kind::Pose, pose.id, pose.times, pose.configuration});
+            pass.go({Kind::Pose, pose.id, repeats * pose.times, pose.configuration});
         }
     }
     const RouteStop first = pass.stops().front();
