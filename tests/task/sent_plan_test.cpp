@@ -177,6 +177,13 @@ TEST(Route, BeginsAndEndsAtHome) {
     };
     using Names = std::vector<std::string>;
     EXPECT_EQ(names({}), (Names{"p1", "via", "p2", "v1"}));
+    Plan repeated = plan;
+    repeated.request.repeats = 3;
+    repeated.poses[0].times = 2;
+    const std::vector<RouteStop> stops = route_of(repeated, campaign, joints, thousandth);
+    EXPECT_EQ(stops[0].times, 6);
+    EXPECT_EQ(stops[1].times, 1);
+    EXPECT_EQ(stops[2].times, 3);
     EXPECT_EQ(names({2, false}), (Names{"p1", "via", "p2", "v1", "p1", "via", "p2", "v1"}));
     EXPECT_NE(message_of([&] { names({2, true}); }).find("cell.home_deg"), std::string::npos);
     campaign.cell.home = at(0, -30, 0, 0, 0, 0);

@@ -79,9 +79,10 @@ std::string checksum_of(const Measurements& measurements);
 void write_estimate(const std::string& path, const Calibration& calibration,
                     const Provenance& made_from);
 
-/// Writes CSV, one row per joint of the controller whose offset was found: joint, offset, deviation,
-/// unit (deg or mm) and, if they are stated, pulses. The joint stands at its commanded value plus
-/// the offset. `controller`: ControllerJoints(campaign.robot) for the model's own joints.
+/// Writes CSV, one row per joint of the controller whose offset was found: joint, offset,
+/// deviation, unit (deg or mm) and, if they are stated, pulses. The joint stands at its commanded
+/// value plus the offset. `controller`: ControllerJoints(campaign.robot) for the model's own
+/// joints.
 void write_offsets_csv(const std::string& path, const Campaign& campaign, const Estimate& estimate,
                        const ControllerJoints& controller);
 
