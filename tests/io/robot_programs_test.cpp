@@ -333,6 +333,9 @@ TEST(EditedPrograms, AreRefusedWhereTheyDoNotStop) {
     const auto expect = [](const Edited& edited, const std::string& words) {
         EXPECT_NE(edited.error().find(words), std::string::npos) << edited.error();
     };
+    expect(Edited(ProgramFormat::Kuka).replace("\nEND\n", "\n"), "has no END; must be the whole");
+    expect(Edited(ProgramFormat::Abb).replace("ENDMODULE", ""), "has no ENDMODULE");
+    expect(Edited(ProgramFormat::Yaskawa).replace("\nEND", "\n"), "has no END");
     expect(Edited(ProgramFormat::Fanuc).replace("J P[2] 20% FINE", "J P[2] 20% FINE Offset,PR[1]"),
            "must have none but ACC");
     expect(Edited(ProgramFormat::Fanuc).replace("J P[2] 20% FINE", "J P[2] 20% CNT50"),

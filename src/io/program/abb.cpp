@@ -62,7 +62,7 @@ std::vector<FileContent> abb_files(const std::string& path, const io::RobotProgr
 }
 
 std::vector<io::ProgramStop> read_abb(const std::string& path, const ControllerJoints& joints) {
-    const ProgramFile file(path);
+    const ProgramFile file(path, "ENDMODULE");
     std::vector<io::ProgramStop> stops;
     std::string comment;
     for (const TextLine& line : file.lines()) {

@@ -97,7 +97,7 @@ void read_part(const std::string& path, const TextLine& call, const ControllerJo
 
 void read_module(const std::string& path, const ControllerJoints& joints, bool has_parts,
                  std::vector<io::ProgramStop>& stops) {
-    const ProgramFile file(path);
+    const ProgramFile file(path, "END");
     const std::string part = stem_of(path) + "_";
     std::string comment;
     for (const TextLine& line : file.lines()) {

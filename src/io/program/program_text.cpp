@@ -122,6 +122,12 @@ ProgramFile::ProgramFile(const std::string& path) {
     }
 }
 
+ProgramFile::ProgramFile(const std::string& path, std::string_view end) : ProgramFile(path) {
+    const auto ends = [&](const TextLine& line) { return line.begins_with(end); };
+    if (std::ranges::any_of(lines_, ends)) return;
+    throw input_error_at({path}, fmt::format("has no {}; must be the whole program", end));
+}
+
 std::vector<double> read_numbers(const TextLine& line, std::string_view text) {
     std::vector<double> numbers;
     for (;;) {

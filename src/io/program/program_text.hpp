@@ -76,6 +76,8 @@ struct TextLine {
 class ProgramFile {
   public:
     explicit ProgramFile(const std::string& path);
+    /// Throws InputError where no line begins with `end`: a part of the file was not copied.
+    ProgramFile(const std::string& path, std::string_view end);
     /// In the order of the file; empty ones are left out.
     const std::vector<TextLine>& lines() const { return lines_; }
 

@@ -94,7 +94,7 @@ std::vector<FileContent> yaskawa_files(const std::string& path, const io::RobotP
 }
 
 std::vector<io::ProgramStop> read_yaskawa(const std::string& path, const ControllerJoints& joints) {
-    const ProgramFile file(path);
+    const ProgramFile file(path, "END");
     std::map<std::string, std::vector<double>> positions;
     std::vector<io::ProgramStop> stops;
     std::string comment;
