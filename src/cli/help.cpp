@@ -45,7 +45,7 @@ constexpr auto group_of_option =
                                                        {"robust-to", Asked},
                                                        {"drop", Asked},
                                                        {"verification", Asked},
-                                                       {"random-order", Asked},
+                                                       {"random-order", Rare},
                                                        {"repeats", Asked},
                                                        {"random", Asked},
                                                        {"splits", Asked},

