@@ -103,7 +103,7 @@ constexpr auto group_of_option =
                                                        {"proof", Search},
                                                        {"seed", Search},
                                                        {"time", Search},
-                                                       {"threads", Search},
+                                                       {"threads", Rare},
                                                        {"store", Search},
                                                        {"shard", Search},
                                                        {"merge", Search},
