@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/elementary.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::detail {
@@ -147,6 +148,14 @@ std::size_t elements_before(const Chain& robot, Index frame) {
 }
 
 }  // namespace
+
+double angle_between(const Vector3d& a, const Vector3d& b) {
+    return arc_tangent(a.cross(b).norm(), a.dot(b));
+}
+
+Sighting sighting_of(const Vector3d& point) {
+    return {arc_tangent(point.y(), point.x()), arc_tangent(point.z(), point.head<2>().norm())};
+}
 
 Motion motion_of(const JointSum& sum, const Chain& robot) {
     Index joint = 0;

@@ -16,6 +16,16 @@ Motion motion_of(const JointSum& sum, const Chain& robot);
 /// The limits of a sum less the cell's margin.
 Interval within_margin(const JointSum& sum, const Cell& cell, const Chain& robot);
 
+/// Angle between two vectors, exact also where it is small; 0 if one has no length.
+double angle_between(const Vector3d& a, const Vector3d& b);
+
+/// Where an instrument finds a point of its frame, rad.
+struct Sighting {
+    double azimuth = 0;
+    double elevation = 0;  ///< above its xy plane
+};
+Sighting sighting_of(const Vector3d& point);
+
 /// Nominal targets in the flange frame; none if the sensor has no targets. Throws InputError if
 /// the cell needs them, or the tracker, and the campaign does not state them.
 std::vector<Vector3d> nominal_targets(const Campaign& campaign, const Cell& cell);

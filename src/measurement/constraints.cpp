@@ -8,7 +8,6 @@
 
 #include "cell_check.hpp"
 #include "contact.hpp"
-#include "core/elementary.hpp"
 #include "core/format.hpp"
 #include "model/halton.hpp"
 
@@ -21,6 +20,19 @@ double interval_clearance(const Interval& interval, double value) {
     return std::min(value - interval.lower, interval.upper - value);
 }
 
+/// The amount of a sum of joints, and its clearance to the limits less the margin.
+struct SumAt {
+    double amount;
+    Interval limits;
+    double clearance;
+};
+
+SumAt sum_at(const JointSum& sum, const Constraints& constraints, const VectorXd& q) {
+    const double amount = sum.coefficients.dot(q.head(sum.coefficients.size()));
+    const Interval limits = detail::within_margin(sum, constraints.cell(), constraints.robot());
+    return {amount, limits, interval_clearance(limits, amount)};
+}
+
 /// Clearance of an azimuth to an interval that may lie across +-pi.
 double azimuth_clearance(const Interval& interval, double azimuth) {
     if (!std::isfinite(interval.lower) || !std::isfinite(interval.upper)) {
@@ -29,11 +41,6 @@ double azimuth_clearance(const Interval& interval, double azimuth) {
     const double center = (interval.lower + interval.upper) / 2;
     const double offset = std::remainder(azimuth - center, 2 * std::numbers::pi);
     return (interval.upper - interval.lower) / 2 - std::abs(offset);
-}
-
-/// Angle between two vectors, exact also where it is small; 0 if one has no length.
-double angle_between(const Vector3d& a, const Vector3d& b) {
-    return detail::arc_tangent(a.cross(b).norm(), a.dot(b));
 }
 
 }  // namespace
@@ -125,9 +132,7 @@ double Constraints::limit_clearance(const VectorXd& q) const {
 double Constraints::sum_clearance(const VectorXd& q) const {
     double least = infinity;
     for (const JointSum& sum : cell_.joint_sums) {
-        const double amount = sum.coefficients.dot(q.head(robot_.joint_count()));
-        const Interval limits = detail::within_margin(sum, cell_, robot_);
-        least = std::min(least, interval_clearance(limits, amount));
+        least = std::min(least, sum_at(sum, *this, q).clearance);
     }
     return least;
 }
@@ -218,11 +223,11 @@ void Constraints::check_sight(const Posture& posture, ConstraintReport& report) 
     for (std::size_t j = 0; j < count; ++j) {
         const Vector3d point = tracker_from_base_ * posture.targets[j];
         const double incidence =
-            sight.normals.empty() ? infinity
-                                  : sight.acceptance_half_angle -
-                                        angle_between(tracker_R_flange * sight.normals[j], -point);
-        const double azimuth = detail::arc_tangent(point.y(), point.x());
-        const double elevation = detail::arc_tangent(point.z(), point.head<2>().norm());
+            sight.normals.empty()
+                ? infinity
+                : sight.acceptance_half_angle -
+                      detail::angle_between(tracker_R_flange * sight.normals[j], -point);
+        const auto [azimuth, elevation] = detail::sighting_of(point);
         std::array<double, kinds> of_target{interval_clearance(sight.range, point.norm()),
                                             azimuth_clearance(sight.azimuth, azimuth),
                                             interval_clearance(sight.elevation, elevation),
@@ -298,10 +303,9 @@ std::string describe_sum_violation(const Constraints& constraints, const VectorX
     double least = -rounding;
     std::string text;
     for (const JointSum& sum : constraints.cell().joint_sums) {
-        const double amount = sum.coefficients.dot(q.head(sum.coefficients.size()));
-        const Interval limits = detail::within_margin(sum, constraints.cell(), constraints.robot());
-        if (!(interval_clearance(limits, amount) < least)) continue;
-        least = interval_clearance(limits, amount);
+        const auto [amount, limits, clearance] = sum_at(sum, constraints, q);
+        if (!(clearance < least)) continue;
+        least = clearance;
         const bool slides = detail::motion_of(sum, constraints.robot()) == Motion::Translation;
         const double unit = slides ? mm_per_m : to_degrees(1);
         text =

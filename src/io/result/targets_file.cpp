@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 #include "io/format/atomic_file.hpp"
 #include "io/measurements/target_names.hpp"
+#include "measurement/cell_check.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/io/result_files.hpp"
@@ -21,8 +21,7 @@ std::string incidence_cell(const Campaign& campaign, const Isometry3d& flange, I
     if (!campaign.cell.sight || campaign.cell.sight->normals.empty()) return "";
     const Vector3d normal =
         flange.linear() * campaign.cell.sight->normals[static_cast<std::size_t>(target)];
-    const double angle = std::atan2(normal.cross(-point).norm(), normal.dot(-point));
-    return fmt::format("{:.3f}", to_degrees(angle));
+    return fmt::format("{:.3f}", to_degrees(angle_between(normal, -point)));
 }
 
 /// A row of the table; of a list, which a program imports to measure all of it, only what is
@@ -39,8 +38,7 @@ void append_row(std::string& text, const Campaign& campaign, const PlannedPose& 
     fmt::format_to(out, "{},{:.4f},{:.4f},{:.4f}", target_name(pose.id, target), mm.x(), mm.y(),
                    mm.z());
     if (!is_list) {
-        const double azimuth = std::atan2(point.y(), point.x());
-        const double elevation = std::atan2(point.z(), point.head<2>().norm());
+        const auto [azimuth, elevation] = sighting_of(point);
         fmt::format_to(out, ",{:.3f},{:.4f},{:.4f},{},{}", mm.norm(), to_degrees(azimuth),
                        to_degrees(elevation), incidence_cell(campaign, flange, target, point),
                        is_visible ? "yes" : "no");
