@@ -78,25 +78,33 @@ double elsewhere(double within, double of_any) {
     return std::min(std::exp(std::hypot(std::log(within), std::log(factor))), of_any);
 }
 
-/// The campaign with the model error that its estimate has found. Without priors none is found, and
-/// beyond the largest none is looked for: there the residuals show one, if they are clearly larger
-/// than stated.
+/// Whether residuals show a model error that the estimate does not have: without priors none is
+/// found, and beyond the largest none is looked for.
+bool shows_model_error(const Campaign& campaign, const Estimate& estimate, bool is_angle) {
+    const double found = is_angle ? estimate.model_error_orientation : estimate.model_error;
+    const double stated = is_angle ? campaign.model_error_orientation : campaign.model_error;
+    if (detail::is_model_error_open(campaign) && found < detail::most_model_errors * stated) {
+        return false;
+    }
+    const auto ratio = detail::clear_ratio(estimate.variance_of(is_angle), estimate.loss.kind);
+    return ratio && *ratio > 1;
+}
+
+/// The campaign with the model error that its estimate has found or that its residuals show.
 Campaign with_shown_model_error(const Campaign& campaign, const Estimate& estimate) {
     constexpr Index configurations = 64;
     Campaign shown = with_model_error(campaign, estimate);
     shown.known_within.model_error = estimate.model_error_within;
+    if (!shows_model_error(campaign, estimate, false) &&
+        !shows_model_error(campaign, estimate, true)) {
+        return shown;
+    }
     const auto predictions = predict_errors(
         shown, estimate,
         detail::random_configurations(campaign.robot, configurations, campaign.seed));
     for (const ErrorPrediction& prediction : predictions) {
         const bool is_angle = prediction.is_angle;
-        const double found = is_angle ? estimate.model_error_orientation : estimate.model_error;
-        const double stated = is_angle ? campaign.model_error_orientation : campaign.model_error;
-        if (detail::is_model_error_open(campaign) && found < detail::most_model_errors * stated) {
-            continue;
-        }
-        const auto ratio = detail::clear_ratio(estimate.variance_of(is_angle), estimate.loss.kind);
-        if (!ratio || *ratio < 1) continue;
+        if (!shows_model_error(campaign, estimate, is_angle)) continue;
         (is_angle ? shown.model_error_orientation : shown.model_error) =
             detail::fitting_model_error(campaign, estimate, prediction.overall, is_angle);
         if (is_angle) continue;
