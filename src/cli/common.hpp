@@ -20,7 +20,7 @@ struct InputPaths {
     std::string campaign;
     std::string measurements;
     std::string plan{};         ///< whose poses were measured
-    std::string points_unit{};  ///< of a list of points
+    std::string points_unit{};  ///< unit of a list of points
 };
 CLI::Option* add_campaign_argument(CLI::App& command, InputPaths& paths);
 CLI::Option* add_measurements_option(CLI::App& command, InputPaths& paths);

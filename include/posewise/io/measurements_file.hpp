@@ -41,8 +41,9 @@ struct PointsSource {
 /// collection and group before it (`Collection::Group::Target`), or under a header with x, y and z.
 /// They get their configurations from the plan's poses by their names, P001_T1 for the first target
 /// at pose p1, in any order; some may be missing. Where no name is one of the plan's and there are
-/// as many points as it has, they are taken in its order. Refused: other names beside the plan's, a
-/// point twice, points without a unit, another number of fields.
+/// as many points as it has, they are taken in its order. A list is refused if only some of its
+/// names are the plan's, if it names a point twice, lacks a unit, or has a row with another number
+/// of fields.
 MeasurementsFile read_measurements(const std::string& path, const CampaignFile& file,
                                    const PointsSource& points = {});
 

@@ -22,7 +22,7 @@ namespace posewise::io {
 /// each.
 void write_plan(const std::string& path, const Plan& plan,
                 const std::vector<std::string>& warnings = {});
-/// Paths of files beside the plan; empty: not written.
+/// Tables to write together with a plan; a table without a path is not written.
 struct PlanTables {
     std::string configurations{};  ///< write_configurations_csv()
     std::string targets{};         ///< write_targets()

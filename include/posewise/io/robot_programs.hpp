@@ -46,7 +46,7 @@ enum class Handshake {
 struct ProgramStop {
     /// The name of a measured pose; of another stop "home", "via" or, read back, nothing.
     std::string label;
-    VectorXd joints;  ///< of the controller, rad or m
+    VectorXd joints;  ///< controller joints, rad or m
     bool is_measured = false;
     Index samples = 1;  ///< how often the dwell
 };

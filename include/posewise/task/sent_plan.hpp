@@ -32,10 +32,11 @@ struct RoundingLoss {
     std::optional<double> planned_rms = {};
     std::optional<double> sent_rms = {};
 };
-/// Of a continuous plan, with the inputs it was made with. Throws InputError as verify().
+/// Compares a continuous plan, made with these options, before and after rounding. Throws
+/// InputError as verify().
 RoundingLoss rounding_loss(const Plan& plan, const Plan& sent, const Campaign& campaign,
                            const PlanningOptions& options);
-/// Of a choice from configurations that were not measured yet.
+/// Compares a choice from configurations that were not measured yet.
 RoundingLoss rounding_loss(const Plan& plan, const Plan& sent, const Campaign& campaign,
                            Candidates candidates, const ChoiceOptions& options);
 
@@ -49,7 +50,7 @@ struct RouteOptions {
 struct RouteStop {
     enum class Kind { Home, Via, Pose };
     Kind kind = Kind::Pose;
-    std::string id;  ///< of a pose
+    std::string id;  ///< the pose's; empty for home and vias
     Index times = 1;
     VectorXd configuration;
 };
