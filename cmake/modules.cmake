@@ -8,6 +8,10 @@ set(posewise_definitions EIGEN_DONT_PARALLELIZE)
 # Multiplication and addition are not fused: the same digits on CPUs that can and those that cannot.
 # Nobody reads errno after a square root, which keeps them from being taken several at once.
 set(posewise_options -ffp-contract=off -fno-math-errno)
+# Code for a shared library is inlined as for a program: nobody replaces single functions of it.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND posewise_options -fno-semantic-interposition)
+endif()
 
 # posewise_module(<name> <modules it may use>...)
 # An object library of all of src/<name>. Modules compile against the whole include tree; that they
@@ -25,10 +29,8 @@ function(posewise_module name)
   target_compile_definitions(posewise_${name} PRIVATE ${posewise_definitions})
   target_compile_options(posewise_${name} PRIVATE ${posewise_options})
   set_target_properties(posewise_${name} PROPERTIES
-    UNITY_BUILD ${POSEWISE_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 6)
-  if(BUILD_SHARED_LIBS)
-    set_target_properties(posewise_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  endif()
+    UNITY_BUILD ${POSEWISE_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 6
+    POSITION_INDEPENDENT_CODE ON)  # the Python module is a shared library
   # What takes a compiler longest to read, precompiled once for all modules, and once more with the
   # formats of files. That files include what they need is seen by the check of the headers.
   if(name STREQUAL "core")
