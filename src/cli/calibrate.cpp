@@ -95,26 +95,6 @@ CalibrationOptions make_options(const CalibrateArguments& arguments, std::uint64
     return options;
 }
 
-/// The campaign with a richer error model than it has, to try.
-std::vector<OtherCampaign> richer_campaigns(const io::CampaignFile& file,
-                                            const std::optional<bool>& prior) {
-    std::vector<OtherCampaign> campaigns;
-    const auto add = [&](io::ErrorModel model) {
-        if (model <= file.error_model) return;
-        try {
-            io::CampaignFile other = io::read_campaign(file.path, {model}).front();
-            io::set_prior(other, prior.value_or(other.spread.is_prior));
-            campaigns.push_back(
-                {"errors: " + std::string(io::error_model_name(model)), std::move(other)});
-        } catch (const InputError&) {  // not of this robot
-        }
-    };
-    if (file.error_model == io::ErrorModel::Stated) add(io::ErrorModel::Complete);
-    // Without a prior it has more errors than most poses tell apart.
-    if (prior.value_or(true)) add(io::ErrorModel::Full);
-    return campaigns;
-}
-
 /// Options of one method beside another would have no effect.
 void check_calibrate_usage(const CLI::App& command, const CalibrateArguments& arguments) {
     const auto require = [](bool is_right, const char* option, const std::string& rule) {
@@ -208,7 +188,7 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     options.validation = validation.measured ? &*validation.measured : nullptr;
     options.validation_campaign = validation.campaign ? &*validation.campaign : nullptr;
     check_limit(arguments, file, measured, options);
-    options.richer = [&] { return richer_campaigns(file, arguments.prior); };
+    options.richer = [&] { return io::richer_campaigns(file, arguments.prior); };
     io::Configurations predicted;
     if (!arguments.predict.empty()) predicted = read_unlimited(arguments.predict, file);
     options.predicted = predicted.joints;

@@ -38,12 +38,7 @@ void check_usable(const std::string& path, const Campaign& campaign, const io::E
         if (warning.starts_with(no_calibration)) continue;  // its faults say so
         print_warning(path + ": was warned of when it was made: " + warning);
     }
-    Campaign judged = campaign;
-    if (earlier.estimate.spread) judged.spread = *earlier.estimate.spread;
-    std::vector<std::string> faults = find_faults(judged, earlier.estimate);
-    for (const std::string& stated : earlier.faults) {
-        if (!contains(faults, stated.c_str())) faults.push_back(stated);
-    }
+    const std::vector<std::string> faults = io::find_faults(campaign, earlier);
     if (faults.empty()) return;
     const std::string words = "is no calibration to use: " + join_some(faults);
     if (!is_forced) throw input_error_at({path}, words + "; --force takes it all the same");
@@ -186,7 +181,9 @@ void expect_earlier(io::CampaignFile& file, const EarlierArguments& arguments) {
 
 io::CampaignFile read_planned(const PlanSources& sources, const EarlierUse& use,
                               std::optional<bool> prior, bool is_forced, const StopSignal& stop) {
-    if (sources.estimate.empty()) return io::read_planned_campaign(sources.campaign, prior, stop);
+    if (sources.estimate.empty()) {
+        return io::planned_campaign(io::read_campaign(sources.campaign, stop), prior, stop);
+    }
     io::CampaignFile file = read_with_prior(sources.campaign, prior, stop);
     if (file.planned_model) {
         print_warning(fmt::format("{}: planning.errors, {}, is not used: {} is of robot.errors",

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include "common.hpp"
-#include "core/text.hpp"
 #include "files.hpp"
 #include "io/format/units.hpp"
 #include "options.hpp"
@@ -83,16 +82,9 @@ void check_needs_plan(const InputPaths& paths, const io::MeasurementsFile& measu
 io::MeasurementsFile read_as_stated(const std::string& path, const io::CampaignFile& file,
                                     const io::PointsSource& points) {
     io::MeasurementsFile measured = io::read_measurements(path, file, points);
-    if (!measured.unused_columns.empty()) {
-        std::vector<std::string> names;
-        for (const std::string& name : measured.unused_columns) {
-            names.push_back(detail::quote(name));
-        }
-        const bool is_one = names.size() == 1;
-        print_warning(fmt::format("{}: column{} {} {} not used", path, is_one ? "" : "s",
-                                  fmt::join(names, ", "), is_one ? "is" : "are"));
+    for (const std::string& sentence : io::describe_passed_over(measured)) {
+        print_warning(path + ": " + sentence);
     }
-    if (!measured.joined.empty()) print_warning(path + ": " + measured.joined);
     return measured;
 }
 

@@ -331,15 +331,15 @@ sensor: {kind: points, sigma_mm: 0.1, targets: {count: 3}}
                             [](const auto& n) { return n.starts_with("q1.torque("); }));
 }
 
-TEST(ReadPlannedCampaign, HasTheErrorsToPlanWithWhichAreNoFewer) {
+TEST(PlannedCampaign, HasTheErrorsToPlanWithWhichAreNoFewer) {
     const TemporaryFolder folder;
     const auto path =
         folder.write("c.yaml", std::string(campaign_text) + "\nplanning: {errors: full}\n");
     EXPECT_EQ(read_campaign(path).error_model, ErrorModel::Stated);
-    const CampaignFile planned = read_planned_campaign(path);
+    const CampaignFile planned = planned_campaign(read_campaign(path));
     EXPECT_EQ(planned.error_model, ErrorModel::Full);
     EXPECT_TRUE(planned.spread.is_prior);
-    EXPECT_EQ(read_planned_campaign(folder.write("d.yaml", campaign_text)).error_model,
+    EXPECT_EQ(planned_campaign(read_campaign(folder.write("d.yaml", campaign_text))).error_model,
               ErrorModel::Stated);
     const std::string poorer =
         replaced(campaign_text, "robot:\n", "planning: {errors: stated}\nrobot:\n  errors: full\n");

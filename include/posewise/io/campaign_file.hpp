@@ -13,6 +13,7 @@
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/population.hpp"
 #include "posewise/model/controller.hpp"
+#include "posewise/task/judgement.hpp"
 
 namespace posewise::io {
 
@@ -42,7 +43,8 @@ ErrorModel parse_error_model(const std::string& name);
 /// A campaign, the rest of its file, and defaults for the command line.
 struct CampaignFile : Campaign {
     std::string path;
-    std::string checksum;  ///< checksum of the file's text
+    std::string content;   ///< the file's text
+    std::string checksum;  ///< checksum of that
     /// The robot as the file's elements state it. `robot` is the irreducible form of its complete
     /// model with ErrorModel::Complete, that of its joint zeros with ErrorModel::Offsets, its full
     /// model with ErrorModel::Full, else the same.
@@ -75,11 +77,16 @@ CampaignFile read_campaign(const std::string& path, const StopSignal& stop = {})
 CampaignFile parse_campaign(const std::string& content, const std::string& path,
                             const StopSignal& stop = {});
 
-/// Reads a campaign for planning poses: with the error model that the file states under `planning`,
-/// if any, and then with the Campaign::fitted_pose_count of the model under `robot`. The expected
+/// The campaign for planning poses: with the error model that its file states under `planning`, if
+/// any, and then with the Campaign::fitted_pose_count of the model under `robot`. The expected
 /// sizes are priors as asked, else as the file states.
-CampaignFile read_planned_campaign(const std::string& path, std::optional<bool> prior = {},
-                                   const StopSignal& stop = {});
+CampaignFile planned_campaign(const CampaignFile& campaign, std::optional<bool> prior = {},
+                              const StopSignal& stop = {});
+
+/// The campaign with each richer error model that its robot can have, to try where a calibration is
+/// doubtful (CalibrationOptions::richer). The expected sizes are priors as asked.
+std::vector<OtherCampaign> richer_campaigns(const CampaignFile& campaign,
+                                            std::optional<bool> prior = {});
 
 /// Reads a campaign with each of these error models in turn, whatever the file states under
 /// `errors`. Expected sizes of single parameters that a model does not have are ignored.

@@ -20,6 +20,9 @@ struct MeasurementsFile : Measurements {
     std::string joined = {};  ///< if so: which points are missing, in words; empty: none
 };
 
+/// What the reader passed over, a sentence each: columns that it does not know, missing points.
+std::vector<std::string> describe_passed_over(const MeasurementsFile& measured);
+
 /// What an instrument's list of points needs to be measurements.
 struct PointsSource {
     const Plan* plan = nullptr;  ///< the poses that they were measured at; nullptr: not stated

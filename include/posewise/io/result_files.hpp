@@ -109,6 +109,8 @@ struct EarlierFile : Earlier {
     std::vector<std::string> faults;
 };
 EarlierFile read_earlier(const std::string& path, const Campaign& campaign, const EarlierUse& use);
+/// Why it must not be used, in words: what its file says, and find_faults() under the campaign.
+std::vector<std::string> find_faults(const Campaign& campaign, const EarlierFile& earlier);
 
 /// Whether the checksum is that of these measurements, with or without those excluded.
 bool are_of_checksum(const std::string& checksum, const Measurements& measurements,

@@ -233,6 +233,7 @@ CampaignFile parse(const std::string& content, const std::string& path,
     const YamlMap map(detail::parse_yaml(content, path), keys::file);
     CampaignFile file;
     file.path = path;
+    file.content = content;
     file.checksum = detail::checksum_of(content);
     Campaign& campaign = file;
     campaign.name = read_name(map.require("name"));
@@ -351,16 +352,34 @@ std::vector<CampaignFile> read_campaign(const std::string& path,
     return files;
 }
 
-CampaignFile read_planned_campaign(const std::string& path, std::optional<bool> prior,
-                                   const StopSignal& stop) {
-    const std::string content = detail::read_file(path, most_bytes);
-    CampaignFile file = parse_campaign(content, path, stop);
+CampaignFile planned_campaign(const CampaignFile& campaign, std::optional<bool> prior,
+                              const StopSignal& stop) {
+    CampaignFile file = campaign;
     set_prior(file, prior.value_or(file.spread.is_prior), stop);
     if (!file.planned_model) return file;
-    CampaignFile planned = parse(content, path, file.planned_model, stop);
+    CampaignFile planned = parse(file.content, file.path, file.planned_model, stop);
     set_prior(planned, prior.value_or(planned.spread.is_prior), stop);
     planned.fitted_pose_count = least_calibration_count(file, stop);
     return planned;
+}
+
+std::vector<OtherCampaign> richer_campaigns(const CampaignFile& campaign,
+                                            std::optional<bool> prior) {
+    std::vector<OtherCampaign> campaigns;
+    const auto add = [&](ErrorModel model) {
+        if (model <= campaign.error_model) return;
+        try {
+            CampaignFile other = parse(campaign.content, campaign.path, model, {});
+            set_prior(other, prior.value_or(other.spread.is_prior));
+            campaigns.push_back(
+                {"errors: " + std::string(error_model_name(model)), std::move(other)});
+        } catch (const InputError&) {  // not of this robot
+        }
+    };
+    if (campaign.error_model == ErrorModel::Stated) add(ErrorModel::Complete);
+    // Without a prior it has more errors than most poses tell apart.
+    if (prior.value_or(true)) add(ErrorModel::Full);
+    return campaigns;
 }
 
 CampaignFile parse_campaign(const std::string& content, const std::string& path,

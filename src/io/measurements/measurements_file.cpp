@@ -1,5 +1,8 @@
 #include "posewise/io/measurements_file.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "core/text.hpp"
 #include "io/format/atomic_file.hpp"
 #include "model/joint_limits.hpp"
@@ -44,6 +47,21 @@ Campaign with_controller_joints(const CampaignFile& file) {
 }
 
 }  // namespace
+
+std::vector<std::string> describe_passed_over(const MeasurementsFile& measured) {
+    std::vector<std::string> sentences;
+    if (!measured.unused_columns.empty()) {
+        std::vector<std::string> names;
+        for (const std::string& name : measured.unused_columns) {
+            names.push_back(detail::quote(name));
+        }
+        const bool is_one = names.size() == 1;
+        sentences.push_back(fmt::format("column{} {} {} not used", is_one ? "" : "s",
+                                        fmt::join(names, ", "), is_one ? "is" : "are"));
+    }
+    if (!measured.joined.empty()) sentences.push_back(measured.joined);
+    return sentences;
+}
 
 MeasurementsFile read_measurements(const std::string& path, const CampaignFile& file,
                                    const PointsSource& points) {

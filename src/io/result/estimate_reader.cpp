@@ -201,6 +201,16 @@ EarlierFile read_earlier(const std::string& path, const Campaign& campaign, cons
     return earlier;
 }
 
+std::vector<std::string> find_faults(const Campaign& campaign, const EarlierFile& earlier) {
+    Campaign judged = campaign;
+    if (earlier.estimate.spread) judged.spread = *earlier.estimate.spread;
+    std::vector<std::string> faults = posewise::find_faults(judged, earlier.estimate);
+    for (const std::string& stated : earlier.faults) {
+        if (std::ranges::find(faults, stated) == faults.end()) faults.push_back(stated);
+    }
+    return faults;
+}
+
 bool are_of_checksum(const std::string& checksum, const Measurements& measurements,
                      const std::vector<std::string>& excluded) {
     if (checksum == checksum_of(measurements)) return true;

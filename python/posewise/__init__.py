@@ -1,0 +1,34 @@
+"""Which poses to measure when a robot is calibrated.
+
+>>> import numpy as np, posewise as pw
+>>> J = np.random.default_rng(0).normal(size=(200, 3, 10))     # anybody's Jacobians
+>>> choice = pw.select(J, k=12, criterion="d")
+>>> len(choice), choice.efficiency > 0.9
+(12, True)
+"""
+
+from . import _posewise
+from ._calls import Doubt, InputError
+from .calibration import Estimate, calibrate
+from .campaign import Campaign
+from .choice import Choice, design, indices, select
+from .planning import Plan, plan
+from .studies import Study, study
+
+__version__ = _posewise.version
+
+__all__ = [
+    "Campaign",
+    "Choice",
+    "Doubt",
+    "Estimate",
+    "InputError",
+    "Plan",
+    "Study",
+    "calibrate",
+    "design",
+    "indices",
+    "plan",
+    "select",
+    "study",
+]

@@ -1,0 +1,256 @@
+"""Calibrations: the robot's errors from measurements, and what to expect of it then."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from . import _posewise
+from ._calls import Files, InputError, Progress, Table, answers_html, as_json, call_options
+from .campaign import Campaign, Configurations
+
+if TYPE_CHECKING:
+    from .planning import Plan
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What a calibration found. Data only: it can be pickled."""
+
+    campaign: Campaign
+    json: str = field(repr=False)  #: the estimate file, as ``posewise calibrate --out`` writes it
+    text: str = ""  #: what the command prints
+    doubts: list[str] = field(default_factory=list)  #: what should be looked at first
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str], campaign: Campaign) -> Estimate:
+        """An estimate from its file."""
+        try:
+            text = Path(path).read_text(encoding="utf-8")
+            document = json.loads(text)
+            if document.get("kind") != "posewise estimate":
+                raise ValueError
+        except OSError as error:
+            raise InputError(f"{os.fspath(path)}: cannot be read: {error.strerror}") from None
+        except (ValueError, AttributeError):
+            raise InputError(f"{os.fspath(path)}: is no estimate of posewise") from None
+        return cls(campaign, text, "", list(document.get("warnings", [])))
+
+    @cached_property
+    def document(self) -> dict[str, Any]:
+        """The estimate file as a dict; posewise help json explains its keys."""
+        found: dict[str, Any] = json.loads(self.json)
+        return found
+
+    @cached_property
+    def covariance(self) -> pd.DataFrame:
+        """Covariance of all parameters, m and rad."""
+        stated = self.document["covariance"]
+        names = pd.Index(stated["parameters"], name="parameter")
+        matrix = np.zeros((len(names), len(names)))
+        for i, row in enumerate(stated["rows_si"]):
+            matrix[i, : len(row)] = row
+            matrix[: len(row), i] = row
+        return pd.DataFrame(matrix, index=names, columns=names)
+
+    @cached_property
+    def parameters(self) -> pd.DataFrame:
+        """Value and standard deviation (sigma) of each parameter, with its unit, m or rad.
+
+        base.x to base.rz are the base's position and rotation vector in the instrument's frame;
+        their deviations are those of a small step about it.
+        """
+        names = self.covariance.index
+        values = _values(self.document)
+        sigma = pd.Series(np.sqrt(np.diag(self.covariance)), index=names)
+        units = {name: unit for name, (_, unit) in values.items()}
+        return pd.DataFrame(
+            {
+                "value": [values.get(name, (np.nan, ""))[0] for name in names],
+                "sigma": sigma.to_numpy(),
+                "unit": [units.get(name, "") for name in names],
+            },
+            index=names,
+        )
+
+    @property
+    def values(self) -> pd.Series:
+        """Value of each parameter, m or rad."""
+        return self.parameters["value"]
+
+    @property
+    def accuracy(self) -> pd.DataFrame:
+        """Errors in mm (mrad): nominal (base and targets fitted), fit, fit_means and held_out."""
+        stated = dict(self.document["accuracy"])
+        rows = {
+            name: stated[name] for name in ("nominal", "fit", "fit_means") if stated.get(name)
+        }
+        if stated.get("held_out"):
+            rows["held_out"] = stated["held_out"]["samples"]
+            rows["held_out_means"] = stated["held_out"]["means"]
+        plain = {
+            name: {key: number for key, number in row.items() if not isinstance(number, dict)}
+            for name, row in rows.items()
+        }
+        return pd.DataFrame(plain).T
+
+    @property
+    def held_out(self) -> pd.Series | None:
+        """Errors of means at poses held out; None if none were."""
+        accuracy = self.accuracy
+        return accuracy.loc["held_out_means"] if "held_out_means" in accuracy.index else None
+
+    def predict(self, q: Configurations) -> pd.DataFrame:
+        """Error to expect of one reading at each configuration, as ``calibrate --predict-out``.
+
+        RMS by the parameters, left over by the model and noise of the instrument, their total, and
+        what 95 % keep; over all of them in ``.attrs``.
+        """
+        with Files() as files:
+            tables = _posewise.predict(
+                self.campaign._core, files.text(self.json, "estimate"), self.campaign.configurations(q)
+            )
+        index = q.index if isinstance(q, pd.DataFrame) else None
+        frames, overall = [], {}
+        for is_angle, table in tables:
+            unit = "mrad" if is_angle else "mm"
+            columns = [f"{part}_{unit}" for part in ("parameters", "left_over", "noise", "total", "p95")]
+            frames.append(pd.DataFrame(1000 * table[:-1], index=index, columns=columns))
+            overall.update(zip(columns, (1000 * table[-1]).tolist()))
+        frame = pd.concat(frames, axis=1)
+        frame.attrs.update(overall)
+        return frame
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Writes the estimate file, all or nothing."""
+        target = Path(path)
+        part = target.with_name(target.name + ".part")
+        part.write_text(self.json, encoding="utf-8")
+        part.replace(target)
+
+    def __str__(self) -> str:
+        return self.text
+
+    def _repr_html_(self) -> str:
+        return answers_html(self.document)
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws nominal and calibrated error of held-out poses; needs matplotlib."""
+        from .drawing import axes
+
+        ax = axes(ax)
+        accuracy = self.accuracy["distance_rms_mm"]
+        accuracy.plot.bar(ax=ax, rot=30)
+        ax.set_ylabel("RMS distance / mm")
+        ax.set_yscale("log")
+        return ax
+
+
+def _values(document: dict[str, Any]) -> dict[str, tuple[float, str]]:
+    """Value and unit of every parameter that the file states."""
+    values: dict[str, tuple[float, str]] = {}
+    base = document.get("base")
+    if base:
+        for axis, number in zip("xyz", base["position_m"]):
+            values[f"base.{axis}"] = (number, "m")
+        for axis, number in zip("xyz", _rotation_vector(base["quaternion_wxyz"])):
+            values[f"base.r{axis}"] = (number, "rad")
+    for name, one in document.get("robot", {}).items():
+        for unit in ("m", "rad"):
+            if f"value_{unit}" in one:
+                values[name] = (one[f"value_{unit}"], unit)
+    for section in document.values():
+        if not isinstance(section, dict):
+            continue
+        for name, one in section.items():
+            if isinstance(one, dict) and "position_m" in one:
+                for axis, number in zip("xyz", one["position_m"]):
+                    values[f"{name}.{axis}"] = (number, "m")
+                if "quaternion_wxyz" in one:
+                    for axis, number in zip("xyz", _rotation_vector(one["quaternion_wxyz"])):
+                        values[f"{name}.r{axis}"] = (number, "rad")
+    return values
+
+
+def _rotation_vector(quaternion: Sequence[float]) -> np.ndarray[Any, Any]:
+    w, *xyz = quaternion
+    vector = np.array(xyz)
+    norm = float(np.linalg.norm(vector))
+    if norm == 0:
+        return np.zeros(3)
+    return vector * (2 * np.arctan2(norm, abs(w)) * np.sign(w or 1.0) / norm)
+
+
+def calibrate(
+    campaign: Campaign,
+    measurements: Table,
+    *,
+    plan: Plan | None = None,
+    points_unit: str | None = None,
+    validate: Table | None = None,
+    refit: Sequence[str] | None = None,
+    limit_mm: float | None = None,
+    exclude: Sequence[Any] = (),
+    free: Sequence[str] | None = None,
+    prior: bool | None = None,
+    sizes: str | None = None,
+    method: str | None = None,
+    loss: str | None = None,
+    loss_width: float | None = None,
+    folds: int | None = None,
+    model_selection: bool | None = None,
+    estimate: Estimate | None = None,
+    as_prior: bool | None = None,
+    only: Sequence[str] | None = None,
+    moved: Sequence[str] | None = None,
+    force: bool = False,
+    threads: int | None = None,
+    time: float | None = None,
+    progress: Progress = None,
+) -> Estimate:
+    """Finds base, targets and the robot's errors from measurements, and judges them.
+
+    ``measurements`` is a DataFrame with the columns of the CSV file (config, q1_deg, ..., p1_x_mm,
+    ...; without config the index names the configurations), or the path of a file. With ``plan`` it
+    may be an instrument's list of points (name, x, y, z), and only the plan's poses calibrate;
+    others judge. ``validate`` is measured elsewhere, only to judge. Options are those of
+    ``posewise calibrate``. What is doubtful is warned of as :class:`posewise.Doubt`. What must not
+    be used raises InputError; ``force=True`` takes it all the same.
+    """
+    keywords = {
+        "refit": refit,
+        "limit_mm": limit_mm,
+        "exclude": [str(one) for one in exclude] or None,
+        "free": free,
+        "prior": prior,
+        "sizes": sizes,
+        "method": method,
+        "loss": loss,
+        "loss_width": loss_width,
+        "folds": folds,
+        "model_selection": model_selection,
+        "as_prior": as_prior,
+        "only": only,
+        "moved": moved,
+    }
+    with Files() as files:
+        result = _posewise.calibrate(
+            campaign._core,
+            files.table(measurements, "measurements"),
+            as_json("calibrate", keywords),
+            "" if plan is None else files.text(json.dumps(plan.document), "plan"),
+            points_unit or "",
+            files.table(validate, "validate"),
+            "" if estimate is None else files.text(estimate.json, "estimate"),
+            force,
+            call_options(threads, time, progress),
+        )
+        return Estimate(campaign, result[0], result[1], files.warn(result[2]))

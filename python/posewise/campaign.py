@@ -1,0 +1,232 @@
+"""Campaigns: the robot, the instrument, and how large errors are expected to be."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Union
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from . import _posewise
+from ._calls import Files, InputError, call_options
+
+Array = npt.NDArray[np.float64]
+Configurations = Union[pd.DataFrame, npt.ArrayLike]
+
+# Of columns of tables: how many of the library's units one is.
+_units = {"rad": 1.0, "deg": np.pi / 180, "mrad": 1e-3, "m": 1.0, "mm": 1e-3, "Nm": 1.0}
+
+
+class Campaign:
+    """What is known before measuring, as a campaign file states it.
+
+    Made by :meth:`from_yaml`, :meth:`from_dict`, :meth:`from_urdf` or :meth:`from_dh`. Campaigns do
+    not change, and can be pickled.
+
+    >>> campaign = Campaign.from_dict({
+    ...     "name": "arm", "robot": {"joints": {"q1": {"limits_deg": [-90, 90]}},
+    ...     "elements": ["Rz q1", "Tx 300 mm [Tx1]"]},
+    ...     "sensor": {"kind": "points", "sigma_mm": 0.05, "targets": {"count": 1}}})
+    >>> campaign.joints
+    ['q1']
+    """
+
+    def __init__(self, content: str, path: str = "campaign") -> None:
+        """Reads a campaign file's text, whose paths are relative to the folder of ``path``."""
+        self._urdf: tuple[str, Mapping[str, Any]] | None = None
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        with Files() as files:
+            self._core = _posewise.Campaign(content, path)
+            files.warn(self._core.warnings)
+
+    @classmethod
+    def from_yaml(cls, path: str | os.PathLike[str]) -> Campaign:
+        """Reads a campaign file (posewise help file explains its keys)."""
+        try:
+            content = Path(path).read_text(encoding="utf-8")
+        except OSError as error:
+            raise InputError(f"{os.fspath(path)}: cannot be read: {error.strerror}") from None
+        except UnicodeDecodeError:
+            raise InputError(f"{os.fspath(path)}: is no text; must be a campaign file") from None
+        return cls(content, os.fspath(path))
+
+    @classmethod
+    def from_dict(cls, keys: Mapping[str, Any]) -> Campaign:
+        """A campaign by the keys of a campaign file."""
+        try:
+            return cls(json.dumps(keys, allow_nan=False))
+        except (TypeError, ValueError) as error:
+            if isinstance(error, InputError):
+                raise
+            raise InputError(f"keys: {error}; must be numbers, texts, lists and dicts") from None
+
+    @classmethod
+    def from_urdf(
+        cls,
+        urdf: str | os.PathLike[str],
+        *,
+        base: str | None = None,
+        tip: str | None = None,
+        sensor: Mapping[str, Any],
+        name: str = "robot",
+        robot: Mapping[str, Any] | None = None,
+        **keys: Any,
+    ) -> Campaign:
+        """A robot from a URDF, by its path or its text.
+
+        ``base`` and ``tip`` are links, ``sensor`` and further keywords keys of a campaign file
+        (``model_error_mm=0.2``), ``robot`` those of its section robot (``{"errors": "geometric"}``).
+        """
+        stated = dict(robot or {})
+        if base is not None:
+            stated["base_link"] = base
+        if tip is not None:
+            stated["tip_link"] = tip
+        document = {"name": name, "robot": stated, "sensor": dict(sensor), **keys}
+        if not os.fspath(urdf).lstrip().startswith("<"):
+            stated["urdf"] = os.path.abspath(os.fspath(urdf))
+            return cls.from_dict(document)
+        return cls._from_urdf_text(os.fspath(urdf), document)
+
+    @classmethod
+    def _from_urdf_text(cls, text: str, document: Mapping[str, Any]) -> Campaign:
+        folder = tempfile.TemporaryDirectory(prefix="posewise")
+        path = Path(folder.name) / "robot.urdf"
+        path.write_text(text, encoding="utf-8")
+        with_path = {**document, "robot": {**document["robot"], "urdf": str(path)}}
+        campaign = cls.from_dict(with_path)
+        campaign._folder = folder  # the file is read again for other error models
+        campaign._urdf = (text, document)
+        return campaign
+
+    @classmethod
+    def from_dh(
+        cls,
+        rows: Sequence[Mapping[str, Any]] | pd.DataFrame,
+        *,
+        sensor: Mapping[str, Any],
+        convention: str = "standard",
+        name: str = "robot",
+        robot: Mapping[str, Any] | None = None,
+        **keys: Any,
+    ) -> Campaign:
+        """A robot from a Denavit-Hartenberg table with the columns a_mm (or a_m), alpha_deg, d_mm,
+        theta_deg, joint and limits_deg."""
+        if isinstance(rows, pd.DataFrame):
+            rows = [
+                {key: value for key, value in row.items() if np.ndim(value) or pd.notna(value)}
+                for row in rows.to_dict("records")
+            ]
+        table = {"convention": convention, "rows": [dict(row) for row in rows]}
+        return cls.from_dict(
+            {"name": name, "robot": {"dh": table, **(robot or {})}, "sensor": dict(sensor), **keys}
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self._urdf is not None:
+            return (Campaign._from_urdf_text, self._urdf)
+        return (Campaign, (self._core.content, self._core.path))
+
+    @property
+    def name(self) -> str:
+        return str(self._core.name)
+
+    @property
+    def joints(self) -> list[str]:
+        """Names of the joints (and of measured torques) in the order of configurations."""
+        return [column.rsplit("_", 1)[0] for column in self._core.columns]
+
+    @property
+    def parameters(self) -> pd.DataFrame:
+        """What a calibration identifies, by name: unit (m or rad) and expected size of its error."""
+        return pd.DataFrame(
+            {
+                "unit": ["rad" if angle else "m" for angle in self._core.parameter_is_angle],
+                "size": self._core.parameter_sizes,
+            },
+            index=pd.Index(self._core.parameter_names, name="parameter"),
+        )
+
+    def configurations(self, q: Configurations) -> Array:
+        """Configurations as an array (poses, joints) in rad and m.
+
+        ``q`` is such an array, one configuration, or a DataFrame with a column for each joint that
+        ends in its unit: q1_deg, lift_mm.
+        """
+        columns = self._core.columns
+        if isinstance(q, pd.DataFrame):
+            return np.column_stack([_joint_column(q, column) for column in columns])
+        try:
+            array = np.asarray(q, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError("`q` must be numbers, in rad and m") from None
+        array = np.atleast_2d(array)
+        if array.ndim != 2 or array.shape[1] != len(columns):
+            raise InputError(
+                f"`q` has the shape {np.shape(q)}; must be (poses, {len(columns)}), for "
+                f"{', '.join(columns)}"
+            )
+        if not np.isfinite(array).all():
+            pose, joint = np.argwhere(~np.isfinite(array))[0]
+            raise InputError(f"`q` is {array[pose, joint]} at pose {pose}, {columns[joint]}")
+        return np.ascontiguousarray(array)
+
+    def jacobian(
+        self,
+        q: Configurations,
+        *,
+        scaled: bool = True,
+        repeats: float = 1,
+        threads: int | None = None,
+    ) -> Array:
+        """Identification Jacobians, (poses, rows, parameters).
+
+        Divided by the noise of means of ``repeats`` samples and multiplied by each parameter's
+        expected size, so without units: what :func:`posewise.select` takes. With ``scaled=False`` in
+        m per m and m per rad.
+        """
+        with Files():
+            return np.asarray(
+                self._core.jacobian(
+                    self.configurations(q), scaled, repeats, call_options(threads, None, None)
+                )
+            )
+
+    def flange(self, q: Configurations) -> Array:
+        """Frames of the nominal robot's flange in the instrument's frame, (poses, 4, 4), m."""
+        with Files():
+            return np.asarray(self._core.flange(self.configurations(q)))
+
+    def inspect(self) -> str:
+        """Which of the robot's errors can be found, as text."""
+        with Files():
+            return str(self._core.inspect(call_options(None, None, None))[1])
+
+    def __repr__(self) -> str:
+        return f"<Campaign {self.name!r}: {len(self.joints)} joints, {len(self.parameters)} parameters>"
+
+
+def _joint_column(table: pd.DataFrame, column: str) -> Array:
+    """A joint's column in SI units, whatever its unit in the table."""
+    name, unit = column.rsplit("_", 1)
+    alike = ["rad", "deg", "mrad"] if unit == "rad" else ["m", "mm"] if unit == "m" else [unit]
+    found = [f"{name}_{other}" for other in alike if f"{name}_{other}" in table.columns]
+    if len(found) != 1:
+        raise InputError(
+            f"`q` has {'no column' if not found else 'several columns'} of joint {name}; must have "
+            f"one of {', '.join(f'{name}_{other}' for other in alike)}"
+        )
+    try:
+        values = table[found[0]].to_numpy(dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"`q` has other than numbers in {found[0]}") from None
+    if not np.isfinite(values).all():
+        row = int(np.argmin(np.isfinite(values)))
+        raise InputError(f"`q` is {values[row]} at row {row} of {found[0]}")
+    return values * _units[found[0].rsplit("_", 1)[1]]

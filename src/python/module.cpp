@@ -1,0 +1,420 @@
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
+#include "call.hpp"
+#include "inputs.hpp"
+#include "keywords.hpp"
+#include "posewise/core/version.hpp"
+#include "posewise/io/documents.hpp"
+#include "posewise/io/result_files.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/report/reports.hpp"
+#include "posewise/task/inspection.hpp"
+#include "posewise/task/planning.hpp"
+
+/// The compiled half of the Python package: calls of the library that take and return what needs no
+/// Python class, arrays and documents. The other half is python/posewise.
+namespace posewise::python {
+namespace {
+
+namespace py = pybind11;
+
+/// A document, the same as text, and warnings.
+using Result = std::tuple<std::string, std::string, Sentences>;
+
+using Groups = std::vector<Index>;
+
+/// An array that owns the numbers of a matrix.
+py::array_t<double> to_array(RowMatrixXd&& matrix, std::vector<py::ssize_t> shape) {
+    auto* const kept = new RowMatrixXd(std::move(matrix));
+    const py::capsule owner(kept, [](void* numbers) { delete static_cast<RowMatrixXd*>(numbers); });
+    return py::array_t<double>(std::move(shape), kept->data(), owner);
+}
+
+// ---- Campaigns ----
+
+io::CampaignFile parse_campaign(const std::string& content, const std::string& path) {
+    return io::parse_campaign(content, path);
+}
+
+/// Blocks of all targets, as many rows for each pose: poses x rows x parameters.
+py::array_t<double> jacobian(const io::CampaignFile& campaign, const RowMatrixXd& q, bool is_scaled,
+                             double repeats, const CallOptions& options) {
+    Blocks blocks = call(options, [&](const CallControl&) {
+        return is_scaled ? make_blocks(campaign, campaign.nominal, q, repeats)
+                         : make_plain_blocks(campaign, campaign.nominal, q);
+    });
+    const Index poses = blocks.count();
+    const Index rows = poses > 0 ? blocks.matrix.rows() / poses : campaign.sensor->row_count();
+    const Index columns = blocks.parameter_count();
+    return to_array(std::move(blocks.matrix), {poses, rows, columns});
+}
+
+/// world_from_flange of the nominal robot, poses x 4 x 4, m.
+py::array_t<double> flange(const io::CampaignFile& campaign, const RowMatrixXd& q) {
+    RowMatrixXd frames(4 * q.rows(), 4);
+    for (Index i = 0; i < q.rows(); ++i) {
+        frames.middleRows(4 * i, 4) =
+            world_from_flange(campaign, campaign.nominal, q.row(i).transpose()).matrix();
+    }
+    return to_array(std::move(frames), {q.rows(), 4, 4});
+}
+
+Inspection inspect_campaign(const io::CampaignFile& campaign) {
+    return inspect(campaign, campaign.declared_robot,
+                   campaign.error_model == io::ErrorModel::Stated);
+}
+
+void define_campaign(py::module_& module) {
+    py::class_<io::CampaignFile>(module, "Campaign")
+        .def(py::init(&parse_campaign), py::arg("content"), py::arg("path"))
+        .def_readonly("name", &io::CampaignFile::name)
+        .def_readonly("path", &io::CampaignFile::path)
+        .def_readonly("content", &io::CampaignFile::content)
+        .def_readonly("warnings", &io::CampaignFile::warnings)
+        .def_property_readonly(
+            "columns", [](const io::CampaignFile& file) { return configuration_columns(file); })
+        .def_property_readonly("parameter_names",
+                               [](const io::CampaignFile& file) { return parameter_names(file); })
+        .def_property_readonly(
+            "parameter_is_angle",
+            [](const io::CampaignFile& file) { return parameter_is_angle(file); })
+        .def_property_readonly("parameter_sizes",
+                               [](const io::CampaignFile& file) { return parameter_scale(file); })
+        .def_property_readonly("is_prior",
+                               [](const io::CampaignFile& file) { return file.spread.is_prior; })
+        .def("planned", [](const io::CampaignFile& file,
+                           std::optional<bool> prior) { return io::planned_campaign(file, prior); })
+        .def("jacobian", &jacobian)
+        .def("flange", &flange)
+        .def("inspect", [](const io::CampaignFile& file, const CallOptions& options) -> Result {
+            return call(options, [&](const CallControl&) -> Result {
+                const Inspection found = inspect_campaign(file);
+                return {io::to_json(found), format(found), {}};
+            });
+        });
+}
+
+// ---- Choices ----
+
+Result to_result(const Plan& plan, Sentences warnings) {
+    warnings.insert(warnings.end(), plan.cell_doubts.begin(), plan.cell_doubts.end());
+    return {io::with_sentences(io::to_json(plan, ""), warnings, answer(plan)), format_choice(plan),
+            warnings};
+}
+
+Result to_result(const Verification& verification, const Plan& plan) {
+    return {io::to_json(verification, plan, ""), format_findings(verification.findings), {}};
+}
+
+Result choose_plain(const PlainBlocks& blocks, const std::string& keywords, const Groups& groups,
+                    const CallOptions& call_options) {
+    const PlanRequest request = choice_request(parse_keywords("select", keywords));
+    return call(call_options, [&](const CallControl& control) {
+        ChoiceOptions options = read_plain(blocks, request, groups);
+        options.stop = control.stop;
+        options.progress = control.progress;
+        return to_result(choose(make_equal_blocks(blocks.candidates, blocks.rows), options), {});
+    });
+}
+
+Result verify_plain(const std::string& plan_path, const PlainBlocks& blocks, const Groups& groups,
+                    const CallOptions& call_options) {
+    const Plan plan = io::read_plan(plan_path);
+    return call(call_options, [&](const CallControl&) {
+        return to_result(verify(plan, make_equal_blocks(blocks.candidates, blocks.rows),
+                                read_plain(blocks, plan.request, groups)),
+                         plan);
+    });
+}
+
+Result choose_of_campaign(const io::CampaignFile& campaign, const ChoiceTables& tables,
+                          const std::string& keywords, std::optional<bool> prior,
+                          const std::string& estimate, bool is_forced, const Groups& groups,
+                          const CallOptions& call_options) {
+    PlanRequest request = choice_request(parse_keywords("select", keywords));
+    request.has_prior = prior.value_or(false);
+    request.sources.campaign = campaign.path;
+    request.sources.estimate = estimate;
+    return call(call_options, [&](const CallControl& control) {
+        Sentences warnings;
+        const io::CampaignFile file =
+            planned_campaign(campaign, request, prior, estimate, is_forced, warnings);
+        ChoiceInputs inputs = read_choice(tables, file, request, groups, warnings);
+        inputs.options.judge = judge(is_forced, warnings);
+        inputs.options.stop = control.stop;
+        inputs.options.progress = control.progress;
+        const Plan plan = choose(file, std::move(inputs.candidates), inputs.options);
+        return to_result(plan, warnings);
+    });
+}
+
+Result verify_of_campaign(const std::string& plan_path, const io::CampaignFile& campaign,
+                          ChoiceTables tables, const std::string& estimate, const Groups& groups,
+                          const CallOptions& call_options) {
+    const Plan plan = io::read_plan(plan_path);
+    return call(call_options, [&](const CallControl&) {
+        Sentences warnings;
+        const io::CampaignFile file = planned_campaign(
+            campaign, plan.request, plan.request.has_prior, estimate, true, warnings);
+        if (plan.is_continuous()) {
+            PlanningOptions options;
+            static_cast<PlanRequest&>(options) = plan.request;
+            if (!tables.held.empty()) options.held = read_measured(tables.held, file, {}, warnings);
+            if (!tables.test_poses.empty()) {
+                options.workspace = io::read_configurations(tables.test_poses, file).joints;
+            }
+            return to_result(verify(plan, file, options), plan);
+        }
+        tables.kind = plan.kind;
+        tables.random_count = plan.candidate_count;
+        const ChoiceInputs inputs = read_choice(tables, file, plan.request, groups, warnings);
+        return to_result(verify(plan, file, inputs.candidates, inputs.options), plan);
+    });
+}
+
+/// Values of all criteria, by name.
+std::vector<std::pair<std::string, double>> rate_blocks(const RowMatrixXd& stacked, Index poses,
+                                                        const PlainBlocks& blocks) {
+    const Blocks tests = make_equal_blocks(
+        blocks.test_poses.rows() > 0 ? blocks.test_poses : blocks.candidates, blocks.rows);
+    check_values(stacked);
+    std::vector<std::pair<std::string, double>> values;
+    for (const Criterion criterion : all_criteria) {
+        values.emplace_back(criterion_name(criterion),
+                            evaluate_rows(criterion, stacked, poses, &tests));
+    }
+    return values;
+}
+
+// ---- Plans ----
+
+Result plan_campaign(const io::CampaignFile& campaign, const std::string& keywords,
+                     std::optional<bool> prior, const std::string& estimate, bool is_forced,
+                     const std::string& held, const std::string& workspace,
+                     const std::string& repaired, const CallOptions& call_options) {
+    const Keywords stated = parse_keywords("plan", keywords);
+    PlanRequest request = planning_request(stated);
+    const std::optional<TargetOptions> target = target_options(stated);
+    request.has_prior = prior.value_or(false);
+    request.sources.campaign = campaign.path;
+    request.sources.estimate = estimate;
+    request.time_limit = call_options.time;
+    return call(call_options, [&](const CallControl& control) -> Result {
+        Sentences warnings;
+        const io::CampaignFile file =
+            planned_campaign(campaign, request, prior, estimate, is_forced, warnings);
+        for (const OnAxis& one : find_on_axis(file)) warnings.push_back(describe(one));
+        PlanningOptions options;
+        static_cast<PlanRequest&>(options) = request;
+        if (!held.empty()) options.held = read_measured(held, file, {}, warnings);
+        if (!workspace.empty()) {
+            options.workspace = io::read_configurations(workspace, file).joints;
+        }
+        if (!repaired.empty()) options.repaired = io::read_plan(repaired);
+        options.stop = control.stop;
+        options.progress = control.progress;
+        if (target) {
+            const TargetPlanning found = plan_for_target(file, options, *target);
+            if (!found.planning) throw InputError(describe_shortfall(found));
+            return {io::with_sentences(io::to_json(found, ""), warnings, answer(found)),
+                    format(found) + format_planning(*found.planning), warnings};
+        }
+        const Planning made = make_plan(file, options);
+        const auto counts = predict_other_counts(made, control.stop);
+        if (made.plan.is_stopped_early()) {
+            warnings.emplace_back("stopped early; the plan is the best so far");
+        }
+        return {io::with_sentences(io::to_json(made, counts, ""), warnings, answer(made, counts)),
+                format_planning(made) + format_budget(made), warnings};
+    });
+}
+
+/// A document of a plan as a plan file, and what goes with it.
+void write_plan(const std::string& document_path, const std::string& path,
+                const io::CampaignFile* campaign, const io::PlanTables& tables) {
+    const Plan plan = io::read_plan(document_path);
+    if (campaign == nullptr) return io::write_plan(path, plan);
+    io::write_plan(path, plan, tables, *campaign);
+}
+
+// ---- Calibrations ----
+
+/// Calibrates with the plan's poses, as far as they were measured, and judges at the others.
+void use_plan(const Plan& plan, const Campaign& campaign, const Measurements& measured,
+              CalibrationOptions& options, Sentences& warnings) {
+    Sentences left_out = options.excluded;
+    for (const PlannedPose& pose : plan.poses) {
+        if (std::ranges::find(measured.ids, pose.id) != measured.ids.end()) continue;
+        if (std::ranges::find(left_out, pose.id) != left_out.end()) continue;
+        warnings.push_back("pose " + pose.id + " of the plan is not among the measured ones");
+        left_out.push_back(pose.id);
+    }
+    options.used = find_planned(plan, campaign, measured, left_out);
+    options.verification = find_verification(plan, campaign, measured, options.excluded);
+}
+
+Result calibrate_campaign(const io::CampaignFile& campaign, const std::string& measurements,
+                          const std::string& keywords, const std::string& plan_path,
+                          const std::string& points_unit, const std::string& validation,
+                          const std::string& estimate, bool is_forced,
+                          const CallOptions& call_options) {
+    CalibrationRequest request = calibration_request(parse_keywords("calibrate", keywords));
+    return call(call_options, [&](const CallControl& control) -> Result {
+        Sentences warnings;
+        CalibrationOptions& options = request.options;
+        io::CampaignFile file = campaign;
+        io::set_prior(file, request.prior.value_or(file.spread.is_prior), control.stop);
+        if (request.learns_sizes) file.spread.is_open = *request.learns_sizes;
+        if (!request.free.empty()) {
+            static_cast<Campaign&>(file) = with_free_errors(file, request.free);
+        }
+        std::optional<Plan> plan;
+        if (!plan_path.empty()) plan = io::read_plan(plan_path);
+        const io::PointsSource points{plan ? &*plan : nullptr, plan_path, points_unit};
+        const auto measured = read_measured(measurements, file, options.excluded, warnings, points);
+        if (!estimate.empty()) {
+            options.earlier = read_earlier(estimate, file, request.earlier, is_forced, warnings);
+        }
+        if (plan) use_plan(*plan, file, measured, options, warnings);
+        std::optional<io::MeasurementsFile> judged;
+        if (!validation.empty()) {
+            judged = read_measured(validation, file, {}, warnings);
+            options.validation = &*judged;
+        }
+        options.global.seed = file.seed;
+        options.richer = [&] { return io::richer_campaigns(file, request.prior); };
+        options.stop = control.stop;
+        options.progress = control.progress;
+        const Calibration result = calibrate(file, measured, options);
+        if (!result.is_identified()) throw InputError(result.estimate.undetermined);
+        judge(is_forced, warnings)(result);
+        io::Provenance made_from{"", io::checksum_of(measured), file.path, file.checksum};
+        made_from.warnings = warnings;
+        made_from.answers = answer(result);
+        return {io::to_json(result, made_from), format(result), warnings};
+    });
+}
+
+/// Expected errors at configurations: for each quantity, whether it is an angle, and a row for each
+/// configuration of parameters, left over, noise, total and 95 %, then one over all; m or rad.
+std::vector<std::pair<bool, RowMatrixXd>> predict(const io::CampaignFile& campaign,
+                                                  const std::string& estimate_path,
+                                                  const RowMatrixXd& q) {
+    const io::EarlierFile earlier = io::read_earlier(estimate_path, campaign, {});
+    Campaign calibrated = with_model_error(campaign, earlier.estimate);
+    if (earlier.estimate.spread) calibrated.spread = *earlier.estimate.spread;
+    std::vector<std::pair<bool, RowMatrixXd>> tables;
+    for (const ErrorPrediction& prediction : predict_errors(calibrated, earlier.estimate, q)) {
+        RowMatrixXd table(q.rows() + 1, 5);
+        const auto state = [&](Index row, const PredictedError& error) {
+            table.row(row) << error.parameters, error.model, error.noise, error.total(),
+                error.percentile95;
+        };
+        for (Index i = 0; i < q.rows(); ++i) {
+            state(i, prediction.each[static_cast<std::size_t>(i)]);
+        }
+        state(q.rows(), prediction.overall);
+        tables.emplace_back(prediction.is_angle, std::move(table));
+    }
+    return tables;
+}
+
+// ---- Studies ----
+
+Result study_measured(const io::CampaignFile& campaign, const std::string& measurements,
+                      const std::string& keywords, const std::vector<std::string>& excluded,
+                      std::optional<bool> prior, bool is_forced, const CallOptions& call_options) {
+    StudyOptions options = study_options(parse_keywords("study", keywords));
+    return call(call_options, [&](const CallControl& control) -> Result {
+        Sentences warnings;
+        io::CampaignFile file = campaign;
+        io::set_prior(file, prior.value_or(file.spread.is_prior), control.stop);
+        const auto measured = read_measured(measurements, file, excluded, warnings);
+        options.judge = judge(is_forced, warnings);
+        options.stop = control.stop;
+        options.progress = control.progress;
+        const std::vector studies{study(file, measured, options)};
+        if (studies.front().ending == Ending::NotIdentifiable) {
+            throw InputError(studies.front().undetermined);
+        }
+        return {io::with_sentences(io::to_json(studies), warnings, answer(studies)),
+                format(studies.front()), warnings};
+    });
+}
+
+Result study_simulated(const io::CampaignFile& campaign, const std::string& keywords,
+                       std::optional<bool> prior, const CallOptions& call_options) {
+    SimulatedStudyOptions options = simulated_study_options(parse_keywords("study", keywords));
+    return call(call_options, [&](const CallControl& control) -> Result {
+        io::CampaignFile file = campaign;
+        io::set_prior(file, prior.value_or(file.spread.is_prior), control.stop);
+        options.stop = control.stop;
+        options.progress = control.progress;
+        const auto studies = simulate_study({{"", file, std::nullopt}}, options);
+        return {io::with_sentences(io::to_json(studies), {}, answer(studies)),
+                format(studies.front()),
+                {}};
+    });
+}
+
+void define_records(py::module_& module) {
+    py::class_<CallOptions>(module, "CallOptions")
+        .def(py::init([](std::optional<Index> threads, double time, py::object progress) {
+                 return CallOptions{threads, time, std::move(progress)};
+             }),
+             py::arg("threads"), py::arg("time"), py::arg("progress"));
+    py::class_<PlainBlocks>(module, "PlainBlocks")
+        .def(py::init([](RowMatrixXd candidates, Index rows, RowMatrixXd held, Index held_count,
+                         RowMatrixXd test_poses) {
+                 return PlainBlocks{std::move(candidates), rows, std::move(held), held_count,
+                                    std::move(test_poses)};
+             }),
+             py::arg("candidates"), py::arg("rows"), py::arg("held"), py::arg("held_count"),
+             py::arg("test_poses"));
+    py::enum_<CandidateKind>(module, "CandidateKind")
+        .value("measurements", CandidateKind::Measurements)
+        .value("configurations", CandidateKind::Configurations)
+        .value("random", CandidateKind::Random);
+    py::class_<ChoiceTables>(module, "ChoiceTables")
+        .def(py::init([](CandidateKind kind, std::string candidates, Index random_count,
+                         std::string held, std::string test_poses) {
+                 return ChoiceTables{kind, std::move(candidates), random_count, std::move(held),
+                                     std::move(test_poses)};
+             }),
+             py::arg("kind"), py::arg("candidates"), py::arg("random_count"), py::arg("held"),
+             py::arg("test_poses"));
+}
+
+}  // namespace
+}  // namespace posewise::python
+
+PYBIND11_MODULE(_posewise, module) {
+    using namespace posewise::python;
+    posewise::fix_cache_sizes();
+    module.doc() = "Compiled half of posewise; use the package posewise.";
+    module.attr("version") = posewise::version;
+    pybind11::register_exception<posewise::InputError>(module, "InputError", PyExc_ValueError);
+    define_records(module);
+    define_campaign(module);
+    module.def("choose_plain", &choose_plain);
+    module.def("verify_plain", &verify_plain);
+    module.def("choose", &choose_of_campaign);
+    module.def("verify", &verify_of_campaign);
+    module.def("rate_blocks", &rate_blocks);
+    module.def("plan", &plan_campaign);
+    module.def("write_plan", [](const std::string& document_path, const std::string& path,
+                                const posewise::io::CampaignFile* campaign, std::string csv,
+                                std::string targets) {
+        write_plan(document_path, path, campaign, {std::move(csv), std::move(targets)});
+    });
+    module.def("calibrate", &calibrate_campaign);
+    module.def("predict", &predict);
+    module.def("study", &study_measured);
+    module.def("simulate_study", &study_simulated);
+}
