@@ -47,9 +47,10 @@ use_ccache() {
   export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
 }
 
-# build <preset> [<argument of cmake --build>...]
+# build <preset> [<argument of cmake --build>...]; `build_options` go to CMake.
+build_options=()
 build() {
-  local preset=$1 options=()
+  local preset=$1 options=("${build_options[@]}")
   shift
   use_ccache
   if command -v ccache >/dev/null; then options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi

@@ -119,7 +119,8 @@ class Estimate:
                 self.campaign._core, files.text(self.json, "estimate"), self.campaign.configurations(q)
             )
         index = q.index if isinstance(q, pd.DataFrame) else None
-        frames, overall = [], {}
+        frames: list[pd.DataFrame] = []
+        overall: dict[str, float] = {}
         for is_angle, table in tables:
             unit = "mrad" if is_angle else "mm"
             columns = [f"{part}_{unit}" for part in ("parameters", "left_over", "noise", "total", "p95")]
@@ -186,7 +187,10 @@ def _rotation_vector(quaternion: Sequence[float]) -> np.ndarray[Any, Any]:
     norm = float(np.linalg.norm(vector))
     if norm == 0:
         return np.zeros(3)
-    return vector * (2 * np.arctan2(norm, abs(w)) * np.sign(w or 1.0) / norm)
+    turned: np.ndarray[Any, Any] = vector * (
+        2 * np.arctan2(norm, abs(w)) * np.sign(w or 1.0) / norm
+    )
+    return turned
 
 
 def calibrate(

@@ -100,7 +100,10 @@ class Campaign:
         path = Path(folder.name) / "robot.urdf"
         path.write_text(text, encoding="utf-8")
         with_path = {**document, "robot": {**document["robot"], "urdf": str(path)}}
-        campaign = cls.from_dict(with_path)
+        try:
+            campaign = cls.from_dict(with_path)
+        except InputError as error:
+            raise InputError(str(error).replace(str(path), "urdf")) from None
         campaign._folder = folder  # the file is read again for other error models
         campaign._urdf = (text, document)
         return campaign
@@ -229,4 +232,5 @@ def _joint_column(table: pd.DataFrame, column: str) -> Array:
     if not np.isfinite(values).all():
         row = int(np.argmin(np.isfinite(values)))
         raise InputError(f"`q` is {values[row]} at row {row} of {found[0]}")
-    return values * _units[found[0].rsplit("_", 1)[1]]
+    scaled: Array = values * _units[found[0].rsplit("_", 1)[1]]
+    return scaled

@@ -333,7 +333,7 @@ def select(
                 source._core,
                 robot.tables(files),
                 as_json("select", keywords),
-                prior,
+                None if prior is None else bool(prior),
                 robot.estimate_path(files),
                 force,
                 labels,

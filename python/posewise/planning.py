@@ -93,19 +93,16 @@ class Plan:
 
     def verify(self) -> pd.DataFrame:
         """Checks every pose, the value and the predictions again; one row for each finding."""
-        tables = dict(
-            candidates="",
-            random_count=0,
-            kind=_posewise.CandidateKind.configurations,
-        )
         with Files() as files:
             result = _posewise.verify(
                 files.text(json.dumps(self.document), "plan"),
                 self.campaign._core,
                 _posewise.ChoiceTables(
+                    kind=_posewise.CandidateKind.configurations,
+                    candidates="",
+                    random_count=0,
                     held=files.table(self._held, "held"),
                     test_poses=files.table(self._workspace, "workspace"),
-                    **tables,
                 ),
                 "" if self._estimate is None else files.text(self._estimate.json, "estimate"),
                 [],

@@ -24,7 +24,8 @@ constexpr auto flags = std::to_array<std::pair<std::string_view, std::string_vie
      {"pose_count", "--poses"},
      {"spread.is_prior", "--prior"},
      {"starts", "--starts"},
-     {"time", "--time"}});
+     {"time", "--time"},
+     {"workspace_box_mm", "--workspace-box-mm"}});
 
 }  // namespace
 

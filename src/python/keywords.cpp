@@ -41,6 +41,9 @@ class Stated {
         value *= unit;
     }
     bool has(const char* key) const { return fields_.has(key, false); }
+    void check(const char* key, bool holds, const std::string& rule) const {
+        if (has(key)) fields_.check(key, holds, rule);
+    }
 
   private:
     static JsonValue root(const Keywords& keywords) {
@@ -63,10 +66,7 @@ void read_earlier(const Stated& stated, EarlierUse& use) {
     stated("only", use.only);
     stated("moved", moved);
     for (const std::string& part : moved) {
-        if (part != "base" && part != "targets") {
-            throw InputError("`earlier.moved` is " + detail::quote(part) +
-                             "; must be base or targets");
-        }
+        stated.check("moved", part == "base" || part == "targets", "must be base, targets or both");
         (part == "base" ? use.has_new_base : use.has_new_targets) = true;
     }
     const Number drift{.above = 0, .most = 1e3};

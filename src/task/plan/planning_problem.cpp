@@ -172,6 +172,10 @@ void count_new_poses(PlanningProblem& problem, const StopSignal& stop) {
 std::optional<Box> workspace_box(const PlanRequest& request) {
     const auto& box = request.workspace_box_mm;
     if (box.empty()) return std::nullopt;
+    if (box.size() != 6) {
+        throw InputError("`workspace_box_mm` has " + std::to_string(box.size()) +
+                         " numbers; must have 6, least x, y, z, then largest");
+    }
     return Box{Vector3d(box[0], box[1], box[2]) / mm_per_m,
                Vector3d(box[3], box[4], box[5]) / mm_per_m};
 }

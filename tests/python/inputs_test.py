@@ -1,0 +1,203 @@
+"""What is wrong is said, with the argument; what is right in another form is taken."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from conftest import designs
+
+import posewise as pw
+
+urdf = """<robot name="two"><link name="a"/><link name="b"/><link name="c"/>
+<joint name="q1" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+<limit lower="-2" upper="2" velocity="1" effort="1"/></joint>
+<joint name="q2" type="revolute"><parent link="b"/><child link="c"/><origin xyz="0.5 0 0"/>
+<axis xyz="0 1 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>"""
+tracker = {"kind": "points", "sigma_mm": 0.05, "targets": {"count": 2}}
+
+
+def message(error):
+    return str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("change", "field", "words"),
+    [
+        ({"k": 0}, "poses", "poses"),
+        ({"k": 3.5}, "poses", "poses"),
+        ({"k": "x"}, "poses", "poses"),
+        ({"k": 41}, None, "40"),
+        ({"k": 6, "criterion": "z"}, "criterion", "'z'"),
+        ({"k": 6, "rows": 2}, "rows", "3 rows"),
+        ({"k": 6, "held": np.ones((2, 3, 7))}, "held", "8, as J"),
+        ({"k": 6, "held": "text"}, "held", "numbers"),
+        ({"k": 6, "prior": np.ones(7)}, "prior", "8 standard deviations"),
+        ({"k": 6, "prior": -np.ones(8)}, "prior", "above 0"),
+        ({"k": 6, "prior": -np.eye(8)}, "prior", "positive definite"),
+        ({"k": 6, "random": 5}, "candidates", "campaign"),
+        ({"k": 6, "threads": 0}, "threads", "at least 1"),
+        ({"k": 6, "time": -1}, "time", "above 0"),
+        ({"k": 6, "seed": -1}, "seed", "seed"),
+        ({"k": 6, "proof": float("nan")}, "proof", "nan"),
+        ({"k": 6, "groups": [1, 2]}, None, "group"),
+        ({"k": 6, "exclude": [99]}, None, "99"),
+        ({"k": 2}, None, "8"),
+    ],
+)
+def test_wrong_arguments_of_select(blocks, change, field, words):
+    with pytest.raises(pw.InputError) as error:
+        pw.select(blocks, **change)
+    assert words in message(error)
+    if field:
+        assert error.value.field == field
+
+
+@pytest.mark.parametrize(
+    "J",
+    [
+        np.ones(5), np.ones((2, 2, 2, 2)), np.zeros((0, 3, 4)), np.zeros((4, 0, 4)), None, "J",
+        [[1, 2], [3]], np.array([[1 + 2j]]), np.array([["a"]]), np.array([[object()]]),
+        np.full((9, 2), np.nan), np.full((9, 2), np.inf), np.full((9, 2), 1e300),
+    ],
+)
+def test_what_is_no_jacobian(J):
+    with pytest.raises(pw.InputError):
+        pw.select(J, 3)
+
+
+def test_every_layout_gives_the_same(blocks):
+    expected = pw.select(blocks, 6)
+    strided = np.repeat(blocks, 2, axis=0)[::2]
+    read_only = blocks.copy()
+    read_only.flags.writeable = False
+    swapped = blocks.astype(">f8")
+    for same in (np.asfortranarray(blocks), strided, read_only, swapped, blocks.tolist()):
+        assert pw.select(same, 6) == expected
+    assert pw.select(blocks.reshape(-1, 8), 6, rows=3) == expected
+    assert pw.select(blocks.astype(np.float32), 6).value == pytest.approx(expected.value, rel=1e-5)
+    assert pw.select(np.rint(10 * blocks).astype(int), 6).value == pytest.approx(
+        pw.select(np.rint(10 * blocks), 6).value, rel=0
+    )
+
+
+def test_priors(blocks):
+    alone = pw.select(blocks, 2, criterion="a", prior=np.full(8, 0.5))
+    assert alone.value == pytest.approx(
+        1 / np.trace(np.linalg.inv(information(blocks[alone.poses]) + 4 * np.eye(8))), rel=1e-12
+    )
+    covariance = np.diag(np.full(8, 0.25))
+    assert pw.select(blocks, 2, criterion="a", prior=covariance).value == pytest.approx(alone.value)
+    scaled = pw.select(blocks * 0.5, 2, criterion="d", prior=True)
+    assert scaled.value == pytest.approx(
+        np.linalg.slogdet(information(0.5 * blocks[scaled.poses]) + np.eye(8))[1], rel=1e-12
+    )
+
+
+def information(blocks):
+    stacked = blocks.reshape(-1, blocks.shape[-1])
+    return stacked.T @ stacked
+
+
+def test_tables_with_wrong_columns(fanuc, measurements):
+    with pytest.raises(pw.InputError, match="measurements"):
+        pw.calibrate(fanuc, measurements.drop(columns="q3_rad"))
+    with pytest.raises(pw.InputError, match="measurements"):
+        pw.calibrate(fanuc, measurements.iloc[:0])
+    with pytest.raises(pw.InputError, match="DataFrame"):
+        pw.calibrate(fanuc, measurements.to_numpy())
+    with pytest.raises(pw.InputError, match="nowhere.csv"):
+        pw.calibrate(fanuc, "nowhere.csv")
+    with pytest.raises(pw.InputError, match="measurements"):
+        pw.calibrate(fanuc, measurements.assign(q1_rad="x"))
+    with pytest.raises(pw.InputError, match="q3"):
+        fanuc.jacobian(measurements.drop(columns="q3_rad"))
+
+
+def test_other_units_and_indices_give_the_same(fanuc, measurements):
+    degrees = measurements.copy()
+    for joint in fanuc.joints:
+        degrees[f"{joint}_deg"] = np.degrees(degrees.pop(f"{joint}_rad"))
+    expected = pw.calibrate(fanuc, measurements)
+    found = pw.calibrate(fanuc, degrees)
+    pd.testing.assert_series_equal(found.values, expected.values, rtol=1e-9)
+    by_index = pw.calibrate(fanuc, measurements.set_index("config"))
+    pd.testing.assert_series_equal(by_index.values, expected.values, rtol=0)
+    np.testing.assert_allclose(
+        fanuc.jacobian(degrees), fanuc.jacobian(measurements), rtol=1e-9, atol=1e-9
+    )
+
+
+@pytest.mark.parametrize("q", [np.zeros(5), np.zeros((2, 7)), np.full((1, 6), np.nan), "q", None])
+def test_what_is_no_configuration(fanuc, q):
+    with pytest.raises(pw.InputError, match="`q`"):
+        fanuc.jacobian(q)
+
+
+def test_jacobian_is_the_derivative_of_where_the_flange_is(fanuc, measurements):
+    # A target at the flange would move as the base does; the base's first three columns are that.
+    J = fanuc.jacobian(measurements.iloc[:4], scaled=False)
+    assert J.shape == (4, 9, len(fanuc.parameters))
+    np.testing.assert_allclose(J[:, :3, :3], np.broadcast_to(np.eye(3), (4, 3, 3)), atol=1e-12)
+    frames = fanuc.flange(measurements.iloc[:4])
+    np.testing.assert_allclose(J[:, :3, -9:-6], frames[:, :3, :3], atol=1e-12)
+
+
+def test_campaigns_from_elsewhere(tmp_path):
+    (tmp_path / "two.urdf").write_text(urdf)
+    by_text = pw.Campaign.from_urdf(urdf, base="a", tip="c", sensor=tracker)
+    by_path = pw.Campaign.from_urdf(tmp_path / "two.urdf", base="a", tip="c", sensor=tracker)
+    assert by_text.joints == by_path.joints == ["q1", "q2"]
+    pd.testing.assert_frame_equal(by_text.parameters, by_path.parameters)
+    with pytest.raises(pw.InputError, match="urdf: has no link 'z'"):
+        pw.Campaign.from_urdf(urdf, base="a", tip="z", sensor=tracker)
+    rows = pd.DataFrame(
+        {"a_mm": [0.0, 400.0], "alpha_deg": [90.0, 0.0], "d_mm": [300.0, 0.0], "theta_deg": 0.0,
+         "joint": ["q1", "q2"], "limits_deg": [[-90, 90], [-60, 60]]}
+    )
+    assert pw.Campaign.from_dh(rows, sensor=tracker).joints == ["q1", "q2"]
+    with pytest.raises(pw.InputError, match="robot has no key"):
+        pw.Campaign.from_dict({"name": "x", "robot": {}})
+    with pytest.raises(pw.InputError):
+        pw.Campaign.from_dict({"name": object()})
+    with pytest.raises(pw.InputError, match="nowhere"):
+        pw.Campaign.from_yaml("nowhere.yaml")
+
+
+def test_a_calibration_that_must_not_be_used_is_refused(fanuc, measurements):
+    wrong = measurements.copy()
+    wrong[["p1_x_mm", "p1_y_mm"]] = wrong[["p1_y_mm", "p1_x_mm"]].to_numpy()
+    with pytest.raises(pw.InputError):
+        pw.calibrate(fanuc, wrong)
+
+
+def test_plans_say_what_is_missing(fanuc):
+    for arguments in ({}, {"poses": 8, "target_mm": 1}):
+        with pytest.raises(pw.InputError, match="poses"):
+            pw.plan(fanuc, **arguments)
+    with pytest.raises(pw.InputError, match="poses"):
+        pw.plan(fanuc, 2, pool=100)
+    with pytest.raises(pw.InputError, match="workspace_box_mm"):
+        pw.plan(fanuc, 14, pool=100, workspace_box_mm=[1, 2])
+    with pytest.raises(TypeError):
+        pw.plan(fanuc, 14, polo=100)
+
+
+def test_files_are_read_again(fanuc, measurements, tmp_path):
+    estimate = pw.calibrate(fanuc, measurements)
+    estimate.write(tmp_path / "estimate.json")
+    again = pw.Estimate.read(tmp_path / "estimate.json", fanuc)
+    pd.testing.assert_frame_equal(again.parameters, estimate.parameters)
+    with pytest.raises(pw.InputError, match="is no plan"):
+        pw.Plan.read(tmp_path / "estimate.json", fanuc)
+    plan = pw.plan(fanuc, 14, pool=100, workspace_poses=30, estimate=estimate, as_prior=True)
+    plan.write(tmp_path / "plan.json", csv=tmp_path / "poses.csv")
+    assert len(pw.Plan.read(tmp_path / "plan.json", fanuc)) == 14
+    assert (tmp_path / "poses.csv").exists()
+
+
+def test_a_calibration_from_points_and_a_plan(tmp_path):
+    campaign = pw.Campaign.from_yaml(designs / "cell_demo" / "campaign.yaml")
+    plan = pw.plan(campaign, 16, criterion="d", pool=400, workspace_poses=50)
+    targets = plan.targets
+    points = targets.loc[targets["visible"] == "yes", ["name", "x_mm", "y_mm", "z_mm"]]
+    estimate = pw.calibrate(campaign, points.sample(frac=1, random_state=1), plan=plan, force=True)
+    assert estimate.accuracy.loc["fit", "distance_rms_mm"] < 1e-3
