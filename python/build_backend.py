@@ -49,18 +49,20 @@ def _run(*command: str) -> None:
 
 
 def _install(stage: str) -> None:
-    """Builds the library and the module; POSEWISE_BUILD names a folder to build in again."""
+    """Builds the library and the module; POSEWISE_BUILD names a folder to build in, configured by
+    whoever made it."""
     if shutil.which("cmake") is None:
         sys.exit("posewise: needs cmake, a C++20 compiler and the libraries of scripts/common.sh")
     with tempfile.TemporaryDirectory(prefix="posewise") as new:
         build = os.environ.get("POSEWISE_BUILD", new)
         options = ["-DPOSEWISE_PYTHON=ON", "-DPOSEWISE_BUILD_TESTS=OFF", "-DCMAKE_BUILD_TYPE=Release",
-                   "-DPOSEWISE_PYTHON_DESTINATION=.", f"-DPython_EXECUTABLE={sys.executable}"]
+                   f"-DPython_EXECUTABLE={sys.executable}"]
         if shutil.which("ninja"):
             options.append("-GNinja")
         if shutil.which("ccache"):
             options.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
-        _run("cmake", "-S", str(root), "-B", build, *options)
+        if build == new:
+            _run("cmake", "-S", str(root), "-B", build, *options)
         _run("cmake", "--build", build, "--parallel", "--target", "posewise_python")
         _run("cmake", "--install", build, "--component", "python", "--prefix", stage, "--strip")
 
@@ -74,9 +76,10 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     name = f"posewise-{_version()}-{_tag()}.whl"
     with tempfile.TemporaryDirectory(prefix="posewise") as stage:
         _install(stage)
+        package = next(pathlib.Path(stage).rglob("_posewise*.so")).parent
         files = {
-            path.relative_to(stage).as_posix(): path.read_bytes()
-            for path in sorted(pathlib.Path(stage).rglob("*"))
+            path.relative_to(package.parent).as_posix(): path.read_bytes()
+            for path in sorted(package.rglob("*"))
             if path.is_file()
         }
     files[f"{info}/METADATA"] = _metadata().encode()

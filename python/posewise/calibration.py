@@ -168,16 +168,13 @@ def _values(document: dict[str, Any]) -> dict[str, tuple[float, str]]:
         for unit in ("m", "rad"):
             if f"value_{unit}" in one:
                 values[name] = (one[f"value_{unit}"], unit)
-    for section in document.values():
-        if not isinstance(section, dict):
-            continue
-        for name, one in section.items():
-            if isinstance(one, dict) and "position_m" in one:
-                for axis, number in zip("xyz", one["position_m"]):
-                    values[f"{name}.{axis}"] = (number, "m")
-                if "quaternion_wxyz" in one:
-                    for axis, number in zip("xyz", _rotation_vector(one["quaternion_wxyz"])):
-                        values[f"{name}.r{axis}"] = (number, "rad")
+    for name, one in document.get("targets", {}).items():
+        if isinstance(one, dict):
+            for axis, number in zip("xyz", one["position_m"]):
+                values[f"{name}.{axis}"] = (number, "m")
+    for key, number in document.get("sensor", {}).items():
+        name, unit = key.rsplit("_", 1)
+        values[name] = (number, unit)
     return values
 
 

@@ -75,4 +75,17 @@ auto call(const CallOptions& options, const Compute& compute) {
     }
 }
 
+/// What `compute()` returns, for what takes less time than to start a thread: without the
+/// interpreter's lock, and on this thread alone.
+template <typename Compute>
+auto call_here(const Compute& compute) {
+    const pybind11::gil_scoped_release unlocked;
+    struct Alone {
+        Index asked = asked_thread_count();
+        Alone() { set_thread_count(1); }
+        ~Alone() { set_thread_count(asked); }
+    } const alone;
+    return compute();
+}
+
 }  // namespace posewise::python

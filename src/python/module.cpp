@@ -45,10 +45,13 @@ io::CampaignFile parse_campaign(const std::string& content, const std::string& p
 /// Blocks of all targets, as many rows for each pose: poses x rows x parameters.
 py::array_t<double> jacobian(const io::CampaignFile& campaign, const RowMatrixXd& q, bool is_scaled,
                              double repeats, const CallOptions& options) {
-    Blocks blocks = call(options, [&](const CallControl&) {
+    const auto compute = [&] {
         return is_scaled ? make_blocks(campaign, campaign.nominal, q, repeats)
                          : make_plain_blocks(campaign, campaign.nominal, q);
-    });
+    };
+    constexpr Index few = 100;
+    Blocks blocks = q.rows() < few ? call_here(compute)
+                                   : call(options, [&](const CallControl&) { return compute(); });
     const Index poses = blocks.count();
     const Index rows = poses > 0 ? blocks.matrix.rows() / poses : campaign.sensor->row_count();
     const Index columns = blocks.parameter_count();
