@@ -10,7 +10,7 @@
 from . import _posewise
 from ._calls import Doubt, InputError
 from .calibration import Estimate, calibrate
-from .campaign import Campaign
+from .campaign import Campaign, Sensor
 from .choice import Choice, design, indices, select
 from .planning import Plan, plan
 from .studies import Study, study
@@ -24,6 +24,7 @@ __all__ = [
     "Estimate",
     "InputError",
     "Plan",
+    "Sensor",
     "Study",
     "calibrate",
     "design",

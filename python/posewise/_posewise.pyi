@@ -42,6 +42,17 @@ class Campaign:
     parameter_is_angle: list[bool]
     parameter_sizes: Array
     def __init__(self, content: str, path: str) -> None: ...
+    def with_sensor(
+        self,
+        predict: Callable[[Array, Array], npt.ArrayLike],
+        names: Sequence[str],
+        is_angle: Sequence[bool],
+        sigmas: Array,
+        targets: Sequence[Array | None],
+        unknown: Sequence[str],
+        unknown_is_angle: Sequence[bool],
+        values: Array,
+    ) -> Campaign: ...
     def jacobian(self, q: Array, scaled: bool, repeats: float, options: CallOptions) -> Array: ...
     def flange(self, q: Array) -> Array: ...
     def inspect(self, options: CallOptions) -> Result: ...

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Union
 
@@ -21,6 +22,56 @@ Configurations = Union[pd.DataFrame, npt.ArrayLike]
 
 # Of columns of tables: how many of the library's units one is.
 _units = {"rad": 1.0, "deg": np.pi / 180, "mrad": 1e-3, "m": 1.0, "mm": 1e-3, "Nm": 1.0}
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """An instrument that posewise does not have, as a Python function: for studies, since it is slow.
+
+    ``predict(frame, unknowns)`` gets the flange in the instrument's frame, (4, 4) in m, and values of
+    the unknowns, and returns the numbers of one observation without noise. ``names`` are their
+    columns with the unit m or rad ("right_rad"), equally many for each target; ``sigma`` their
+    standard deviations. ``targets`` are points on the flange in m, None where one is to be found.
+    ``unknowns`` are what must be found, with values to start from: coordinates of targets that are
+    None ("target1.x_m") first, in their order, then others ("focal_m"). Derivatives are differences.
+    """
+
+    predict: Callable[[Array, Array], npt.ArrayLike]
+    names: Sequence[str]
+    sigma: npt.ArrayLike
+    targets: Sequence[Sequence[float] | None] = ((0.0, 0.0, 0.0),)
+    unknowns: Mapping[str, float] = field(default_factory=dict)
+
+    def _parts(self) -> tuple[Any, ...]:
+        """As the compiled half takes them."""
+        names, is_angle = _split_units(self.names, "names")
+        unknown, unknown_is_angle = _split_units(list(self.unknowns), "unknowns")
+        of_targets = 3 * sum(one is None for one in self.targets)
+        try:
+            sigmas = np.broadcast_to(np.asarray(self.sigma, dtype=float), (len(names),))
+            values = np.array(list(self.unknowns.values()), dtype=float)
+            places = [None if one is None else np.asarray(one, float) for one in self.targets]
+        except (TypeError, ValueError):
+            raise InputError("`sensor` must state numbers: sigma, targets, unknowns") from None
+        if any(one is not None and one.shape != (3,) for one in places):
+            raise InputError("`sensor.targets` must be points (x, y, z) in m, or None")
+        rest = unknown[of_targets:], unknown_is_angle[of_targets:]
+        return (self.predict, names, is_angle, sigmas, places, *rest, values)
+
+
+# Stands in a campaign file where a function is the instrument.
+_any_sensor = {"kind": "points", "sigma_mm": 1, "targets": {"count": 1}}
+
+
+def _split_units(columns: Sequence[str], what: str) -> tuple[list[str], list[bool]]:
+    names, are_angles = [], []
+    for column in columns:
+        name, _, unit = str(column).rpartition("_")
+        if not name or unit not in ("m", "rad"):
+            raise InputError(f"`sensor.{what}` has {column!r}; must end in _m or _rad")
+        names.append(name)
+        are_angles.append(unit == "rad")
+    return names, are_angles
 
 
 class Campaign:
@@ -41,6 +92,7 @@ class Campaign:
         """Reads a campaign file's text, whose paths are relative to the folder of ``path``."""
         self._urdf: tuple[str, Mapping[str, Any]] | None = None
         self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._sensor: tuple[Campaign, Sensor] | None = None
         with Files() as files:
             self._core = _posewise.Campaign(content, path)
             files.warn(self._core.warnings)
@@ -73,16 +125,21 @@ class Campaign:
         *,
         base: str | None = None,
         tip: str | None = None,
-        sensor: Mapping[str, Any],
+        sensor: Mapping[str, Any] | Sensor,
         name: str = "robot",
         robot: Mapping[str, Any] | None = None,
         **keys: Any,
     ) -> Campaign:
         """A robot from a URDF, by its path or its text.
 
-        ``base`` and ``tip`` are links, ``sensor`` and further keywords keys of a campaign file
-        (``model_error_mm=0.2``), ``robot`` those of its section robot (``{"errors": "geometric"}``).
+        ``base`` and ``tip`` are links, ``sensor`` (or a :class:`Sensor`) and further keywords keys of
+        a campaign file (``model_error_mm=0.2``), ``robot`` those of its section robot
+        (``{"errors": "geometric"}``).
         """
+        if isinstance(sensor, Sensor):
+            return cls.from_urdf(
+                urdf, base=base, tip=tip, sensor=_any_sensor, name=name, robot=robot, **keys
+            ).with_sensor(sensor)
         stated = dict(robot or {})
         if base is not None:
             stated["base_link"] = base
@@ -113,7 +170,7 @@ class Campaign:
         cls,
         rows: Sequence[Mapping[str, Any]] | pd.DataFrame,
         *,
-        sensor: Mapping[str, Any],
+        sensor: Mapping[str, Any] | Sensor,
         convention: str = "standard",
         name: str = "robot",
         robot: Mapping[str, Any] | None = None,
@@ -121,6 +178,10 @@ class Campaign:
     ) -> Campaign:
         """A robot from a Denavit-Hartenberg table with the columns a_mm (or a_m), alpha_deg, d_mm,
         theta_deg, joint and limits_deg."""
+        if isinstance(sensor, Sensor):
+            return cls.from_dh(
+                rows, sensor=_any_sensor, convention=convention, name=name, robot=robot, **keys
+            ).with_sensor(sensor)
         if isinstance(rows, pd.DataFrame):
             rows = [
                 {key: value for key, value in row.items() if np.ndim(value) or pd.notna(value)}
@@ -131,7 +192,20 @@ class Campaign:
             {"name": name, "robot": {"dh": table, **(robot or {})}, "sensor": dict(sensor), **keys}
         )
 
+    def with_sensor(self, sensor: Sensor) -> Campaign:
+        """The campaign with a Python function as its instrument."""
+        if not isinstance(sensor, Sensor):
+            raise InputError(f"`sensor` is a {type(sensor).__name__}; must be a posewise.Sensor")
+        campaign = Campaign.__new__(Campaign)
+        campaign.__dict__.update(self.__dict__)
+        with Files():
+            campaign._core = self._core.with_sensor(*sensor._parts())
+        campaign._sensor = (self, sensor)
+        return campaign
+
     def __reduce__(self) -> tuple[Any, ...]:
+        if self._sensor is not None:
+            return (Campaign.with_sensor, self._sensor)
         if self._urdf is not None:
             return (Campaign._from_urdf_text, self._urdf)
         return (Campaign, (self._core.content, self._core.path))

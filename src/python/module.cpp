@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "call.hpp"
+#include "function_sensor.hpp"
 #include "inputs.hpp"
 #include "keywords.hpp"
 #include "posewise/core/version.hpp"
@@ -93,6 +94,19 @@ void define_campaign(py::module_& module) {
                                [](const io::CampaignFile& file) { return file.spread.is_prior; })
         .def("planned", [](const io::CampaignFile& file,
                            std::optional<bool> prior) { return io::planned_campaign(file, prior); })
+        .def("with_sensor",
+             [](const io::CampaignFile& file, py::function predict, std::vector<std::string> names,
+                std::vector<bool> is_angle, VectorXd sigmas,
+                const std::vector<std::optional<Vector3d>>& targets,
+                std::vector<std::string> unknown, std::vector<bool> unknown_is_angle,
+                const VectorXd& values) {
+                 return with_sensor(file,
+                                    std::make_shared<const FunctionSensor>(FunctionSensorParts{
+                                        std::move(predict), std::move(names), std::move(is_angle),
+                                        std::move(sigmas), Targets(targets), std::move(unknown),
+                                        std::move(unknown_is_angle)}),
+                                    values);
+             })
         .def("jacobian", &jacobian)
         .def("flange", &flange)
         .def("inspect", [](const io::CampaignFile& file, const CallOptions& options) -> Result {
@@ -291,7 +305,9 @@ Result calibrate_campaign(const io::CampaignFile& campaign, const std::string& m
             options.validation = &*judged;
         }
         options.global.seed = file.seed;
-        options.richer = [&] { return io::richer_campaigns(file, request.prior); };
+        if (!has_function_sensor(file)) {
+            options.richer = [&] { return io::richer_campaigns(file, request.prior); };
+        }
         options.stop = control.stop;
         options.progress = control.progress;
         const Calibration result = calibrate(file, measured, options);

@@ -1,0 +1,143 @@
+#include "function_sensor.hpp"
+
+#include <fmt/format.h>
+#include <pybind11/eigen.h>
+
+#include <utility>
+
+#include "posewise/core/errors.hpp"
+#include "posewise/core/types.hpp"
+#include "posewise/jacobian/identification.hpp"
+
+namespace posewise::python {
+namespace {
+
+namespace py = pybind11;
+
+void check_parts(const FunctionSensorParts& parts) {
+    const auto rows = static_cast<Index>(parts.names.size());
+    const Index targets = parts.targets.count();
+    if (rows == 0 || targets == 0 || rows % targets != 0) {
+        throw InputError(
+            fmt::format("`sensor` has {} numbers for {} targets; must have equally "
+                        "many for each",
+                        rows, targets));
+    }
+    if (parts.sigmas.size() != rows || !parts.sigmas.allFinite() ||
+        !(parts.sigmas.array() > 0).all()) {
+        throw InputError(fmt::format(
+            "`sensor` must have {} standard deviations above 0, one for each number", rows));
+    }
+}
+
+/// The flange moved by a small twist about the origin.
+Isometry3d moved(const Isometry3d& flange, Index axis, double step) {
+    Isometry3d motion = Isometry3d::Identity();
+    if (axis < 3) {
+        motion.linear() = Eigen::AngleAxisd(step, Vector3d::Unit(axis)).toRotationMatrix();
+    } else {
+        motion.translation()[axis - 3] = step;
+    }
+    return motion * flange;
+}
+
+/// Slope at 0 by central differences of two steps.
+template <typename Function>
+VectorXd slope_at_zero(const Function& f) {
+    constexpr double h = 1e-4;
+    const auto slope = [&](double step) -> VectorXd { return (f(step) - f(-step)) / (2 * step); };
+    return (4 * slope(h / 2) - slope(h)) / 3;
+}
+
+}  // namespace
+
+FunctionSensor::FunctionSensor(FunctionSensorParts parts) {
+    check_parts(parts);
+    parts_ = std::shared_ptr<const FunctionSensorParts>(new FunctionSensorParts(std::move(parts)),
+                                                        [](const FunctionSensorParts* last) {
+                                                            const py::gil_scoped_acquire lock;
+                                                            delete last;
+                                                        });
+}
+
+std::vector<std::string> FunctionSensor::unknown_names() const {
+    std::vector<std::string> names = parts_->targets.unknown_names();
+    names.insert(names.end(), parts_->unknown.begin(), parts_->unknown.end());
+    return names;
+}
+
+std::vector<bool> FunctionSensor::unknown_is_angle() const {
+    std::vector<bool> are(static_cast<std::size_t>(parts_->targets.unknown_count()), false);
+    are.insert(are.end(), parts_->unknown_is_angle.begin(), parts_->unknown_is_angle.end());
+    return are;
+}
+
+void FunctionSensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                             Eigen::Ref<VectorXd> observation) const {
+    const py::gil_scoped_acquire lock;
+    const RowMatrixXd frame = world_from_flange.matrix();
+    VectorXd numbers;
+    try {
+        numbers = parts_->predict(frame, unknowns).cast<VectorXd>();
+    } catch (const py::cast_error&) {
+        throw InputError("`sensor.predict` returned no array of numbers");
+    }
+    if (numbers.size() != row_count() || !numbers.allFinite()) {
+        throw InputError(fmt::format(
+            "`sensor.predict` returned {} numbers{}; must return {}, finite", numbers.size(),
+            numbers.allFinite() ? "" : ", not all finite", row_count()));
+    }
+    observation = numbers;
+}
+
+void FunctionSensor::differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                                   const VectorXd& unknowns,
+                                   Eigen::Ref<RowMatrixXd> J_measured_parameters) const {
+    MatrixXd J_twist(row_count(), 6);
+    for (Index axis = 0; axis < 6; ++axis) {
+        J_twist.col(axis) = slope_at_zero([&](double step) {
+            return Sensor::predict(moved(world_from_flange, axis, step), unknowns);
+        });
+    }
+    J_measured_parameters.leftCols(twists.cols()) = J_twist.lazyProduct(twists);
+    for (Index k = 0; twists.cols() + k < J_measured_parameters.cols(); ++k) {
+        if (k >= unknowns.size()) {
+            J_measured_parameters.col(twists.cols() + k).setZero();
+            continue;
+        }
+        J_measured_parameters.col(twists.cols() + k) = slope_at_zero([&](double step) {
+            return Sensor::predict(world_from_flange,
+                                   unknowns + step * VectorXd::Unit(unknowns.size(), k));
+        });
+    }
+}
+
+io::CampaignFile with_sensor(const io::CampaignFile& campaign,
+                             std::shared_ptr<const FunctionSensor> sensor,
+                             const VectorXd& unknowns) {
+    io::CampaignFile file = campaign;
+    const auto count = static_cast<Index>(sensor->unknown_names().size());
+    if (unknowns.size() != count) {
+        throw InputError(
+            fmt::format("`sensor` has {} unknowns, {} values are stated", count, unknowns.size()));
+    }
+    const bool is_reduced =
+        file.error_model == io::ErrorModel::Complete || file.error_model == io::ErrorModel::Offsets;
+    file.sensor = std::move(sensor);
+    file.nominal.sensor = unknowns;
+    file.has_nominal_targets = true;
+    file.planned_model.reset();
+    if (is_reduced) {
+        static_cast<Campaign&>(file) = with_robot(file, file.declared_robot);
+        static_cast<Campaign&>(file) =
+            with_robot(file, file.error_model == io::ErrorModel::Offsets ? irreducible_offsets(file)
+                                                                         : irreducible_model(file));
+    }
+    return file;
+}
+
+bool has_function_sensor(const Campaign& campaign) {
+    return dynamic_cast<const FunctionSensor*>(campaign.sensor.get()) != nullptr;
+}
+
+}  // namespace posewise::python
