@@ -81,13 +81,11 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
         ->check(real_number(0.1, 1e6));
     command.add_flag("--model-selection", options.model_selection,
                      "Compare nested parameter sets by their held-out error");
-    command
-        .add_option(
-            "--free", arguments.free,
-            "Identify only these errors of the robot, by commas: dq2,dq3, or a class, "
-            "class:offsets, lengths, angles, gravity, harmonics, tilts, gains, terms (to use the "
-            "estimate with --from later, list them in the campaign: errors: [dq2, dq3])")
-        ->delimiter(',');
+    add_ids_option(
+        command, "--free", arguments.free,
+        "Identify only these errors of the robot, by commas: dq2,dq3, or a class, "
+        "class:offsets, lengths, angles, gravity, harmonics, tilts, gains, terms (to use the "
+        "estimate with --from later, list them in the campaign: errors: [dq2, dq3])");
     add_prior_option(command, arguments.prior, ": fewer poses than parameters will do");
     command
         .add_option(

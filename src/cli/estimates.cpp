@@ -87,9 +87,7 @@ std::string join_some(const std::vector<std::string>& texts) {
 
 CLI::Option* add_parts_option(CLI::App& command, const std::string& name,
                               std::vector<std::string>& parts, const std::string& description) {
-    return command.add_option(name, parts, description)
-        ->delimiter(',')
-        ->check(CLI::IsMember({"base", "targets"}));
+    return add_ids_option(command, name, parts, description, {"base", "targets"});
 }
 
 Estimate read_usable_estimate(const std::string& path, const Campaign& campaign, bool is_forced) {
@@ -153,12 +151,10 @@ void add_earlier_options(CLI::App& command, EarlierArguments& arguments) {
             ->capture_default_str()
             ->needs(as_prior);
     }
-    command
-        .add_option("--only", arguments.only,
-                    "With --from: identify only base, targets, robot or errors of it, by commas; "
-                    "the others are as it found them. What is expected of poses counts them as "
-                    "exact; calibrate prints deviations with their uncertainty and without")
-        ->delimiter(',')
+    add_ids_option(command, "--only", arguments.only,
+                   "With --from: identify only base, targets, robot or errors of it, by commas; "
+                   "the others are as it found them. What is expected of poses counts them as "
+                   "exact; calibrate prints deviations with their uncertainty and without")
         ->needs(from);
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -54,17 +55,22 @@ CLI::Validator file_name() {
 }
 
 CLI::Option* add_ids_option(CLI::App& command, const std::string& name,
-                            std::vector<std::string>& ids, const std::string& help) {
-    const auto split = [&ids, name](const std::vector<std::string>& texts) {
+                            std::vector<std::string>& ids, const std::string& help,
+                            const std::vector<std::string>& allowed) {
+    const auto split = [&ids, name, allowed](const std::vector<std::string>& texts) {
         for (const std::string& text : texts) {
             for (std::string rest = text + ','; !rest.empty();) {
                 const std::size_t comma = rest.find(',');
                 if (comma == 0) {
-                    throw CLI::ValidationError(name,
-                                               "is " + detail::quote(text) +
-                                                   "; must be ids separated by commas, none empty");
+                    throw CLI::ValidationError(
+                        name, "is " + detail::quote(text) +
+                                  "; must be names separated by commas, none empty");
                 }
                 ids.push_back(rest.substr(0, comma));
+                if (!allowed.empty() && std::ranges::find(allowed, ids.back()) == allowed.end()) {
+                    throw CLI::ValidationError(name, "is " + detail::quote(ids.back()) + "; " +
+                                                         detail::suggest(ids.back(), allowed));
+                }
                 rest.erase(0, comma + 1);
             }
         }

@@ -21,9 +21,11 @@ CLI::Validator real_number(double least, double most);
 /// Not empty.
 CLI::Validator file_name();
 
-/// Takes ids separated by commas, none empty; may be given several times.
+/// Takes ids or names separated by commas, none empty; may be given several times. `allowed`: which
+/// ones; empty: any.
 CLI::Option* add_ids_option(CLI::App& command, const std::string& name,
-                            std::vector<std::string>& ids, const std::string& help);
+                            std::vector<std::string>& ids, const std::string& help,
+                            const std::vector<std::string>& allowed = {});
 
 /// --prior and --no-prior; `consequence` ends the help's sentence.
 void add_prior_option(CLI::App& command, std::optional<bool>& prior,
