@@ -82,6 +82,7 @@ void add_observation_changes(const Sensor& sensor, OrientationNotation notation,
         }
     }
     if (!sensor.has_orientation()) return;
+    all.push_back({{.kind = Kind::Inverted}});
     constexpr Index orders = 6;
     constexpr Index signs = 8;
     for (Index k = 1; k < orders * signs; ++k) {

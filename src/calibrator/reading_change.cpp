@@ -11,6 +11,7 @@
 #include "core/format.hpp"
 #include "length_units.hpp"
 #include "posewise/core/types.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "posewise/model/chain.hpp"
 
 namespace posewise::detail {
@@ -168,6 +169,8 @@ std::string describe_one(const ReadingChange& change, const Campaign& campaign,
         }
         case Kind::LeftHanded:
             return "the instrument's frame left-handed";
+        case Kind::Inverted:
+            return "each pose inverted";
         case Kind::Axes:
             return axes(change) + " in place of x, y, z";
         case Kind::Orientation:
@@ -205,6 +208,9 @@ std::string cure_one(const ReadingChange& change, const Campaign& campaign) {
             return campaign.sensor->has_orientation()
                        ? "turn round the signs of z and of the turns about x and y"
                        : "turn round the signs of all z";
+        case Kind::Inverted:
+            return "say what was measured, keys sensor.camera and sensor.measured (board_in_camera "
+                   "or camera_in_board), or invert each pose";
         case Kind::Axes:
             return fmt::format("write {} into the columns x, y, z", axes(change));
         case Kind::Orientation:
@@ -217,15 +223,19 @@ std::string cure_one(const ReadingChange& change, const Campaign& campaign) {
 
 Measurements read_with(const ReadingChanges& changes, const Campaign& campaign,
                        Measurements measurements) {
+    RowMatrixXd& observations = measurements.observations;
+    const bool is_inverse = records_inverse(*campaign.sensor);
+    if (is_inverse) invert_poses(observations);  // as it was read
     for (const ReadingChange& change : changes) {
         change_joints(change, campaign, measurements.configurations);
-        RowMatrixXd& observations = measurements.observations;
         if (change.kind == Kind::LengthFactor)
             change_lengths(change, *campaign.sensor, observations);
         if (change.kind == Kind::Axes) change_axes(change, observations);
         if (change.kind == Kind::LeftHanded) mirror(*campaign.sensor, observations);
         if (change.kind == Kind::Orientation) change_orientations(*change.sense, measurements);
+        if (change.kind == Kind::Inverted) invert_poses(observations);
     }
+    if (is_inverse) invert_poses(observations);
     return measurements;
 }
 

@@ -20,6 +20,7 @@ struct ReadingChange {
         LengthFactor,  ///< observed lengths in another unit; target -1: of all targets
         LeftHanded,    ///< the instrument's frame: z of points mirrored, and orientations with it
         Orientation,   ///< the orientations in another sense
+        Inverted,      ///< each pose: the instrument's frame in the body's was measured
         Axes,          ///< x, y, z of a pose along other axes than its orientation's
     } kind = Kind::Reversed;
     Index joint = -1;  ///< or target, or the order of axes

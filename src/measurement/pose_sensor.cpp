@@ -46,12 +46,17 @@ VectorXd points_observed(const VectorXd& pose) {
 }  // namespace
 
 PoseSensor::PoseSensor(std::optional<Isometry3d> known_tool, PointNoise position_noise,
-                       double sigma_orientation)
+                       double sigma_orientation, PoseRecord record)
     : known_tool_(std::move(known_tool)),
       origin_(origin_of(known_tool_)),
       noise_(position_noise),
-      sigma_orientation_(sigma_orientation) {
+      sigma_orientation_(sigma_orientation),
+      record_(record) {
     check_noise(noise_);
+    if (record.is_made_at_body && std::holds_alternative<LaserTrackerNoise>(noise_)) {
+        throw InputError(
+            "the noise of a laser tracker arises at the tracker, not at the body on the flange");
+    }
     detail::check_sigma("sigma of the orientation", sigma_orientation, "rad");
     if (known_tool_ && !known_tool_->matrix().allFinite()) {
         throw InputError("the known tool has a value that is not a finite number");
@@ -130,14 +135,28 @@ void PoseSensor::differentiate_along(const Isometry3d& world_from_flange, const 
 
 void PoseSensor::covariance(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                             Eigen::Ref<MatrixXd> covariance) const {
+    const double variance = sigma_orientation_ * sigma_orientation_;
+    const Vector3d position = world_from_flange * target_position(0, unknowns);
     covariance.setZero();
+    covariance.topLeftCorner<3, 3>() = point_covariance(noise_, position);
+    covariance.diagonal().tail<3>().setConstant(variance);
+    if (!record_.is_made_at_body) return;
+    // The body sees the world at R^T (x - p), with errors d of the position and t of the rotation
+    // vector along its axes: those of the observation are -R d + p x R t and -R t.
+    const Matrix3d R = world_from_flange.linear() * tool(unknowns).linear();
+    const Matrix3d across = cross_matrix(position);
+    const Matrix3d own = covariance.topLeftCorner<3, 3>();
     covariance.topLeftCorner<3, 3>() =
-        point_covariance(noise_, world_from_flange * target_position(0, unknowns));
-    covariance.diagonal().tail<3>().setConstant(sigma_orientation_ * sigma_orientation_);
+        R * own * R.transpose() + variance * across * across.transpose();
+    covariance.topRightCorner<3, 3>() = -variance * across;
+    covariance.bottomLeftCorner<3, 3>() = covariance.topRightCorner<3, 3>().transpose();
 }
 
 MatrixXd PoseSensor::covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
                                      const VectorXd& unknowns) const {
+    if (record_.is_made_at_body) {
+        return Sensor::covariance_rate(world_from_flange, direction, unknowns);
+    }
     const Vector3d x = world_from_flange * target_position(0, unknowns);
     MatrixXd rate = MatrixXd::Zero(6, 6);
     rate.topLeftCorner<3, 3>() = point_covariance_rate(noise_, x, velocity_of(x, direction));
@@ -145,7 +164,7 @@ MatrixXd PoseSensor::covariance_rate(const Isometry3d& world_from_flange, const 
 }
 
 bool PoseSensor::has_constant_covariance() const {
-    return !std::holds_alternative<LaserTrackerNoise>(noise_);
+    return !record_.is_made_at_body && !std::holds_alternative<LaserTrackerNoise>(noise_);
 }
 
 std::vector<NoiseNumber> PoseSensor::noise_numbers() const {
@@ -160,9 +179,10 @@ SensorWords PoseSensor::words() const {
             "tool in the flange frame",
             "sensor.tool",
             {"base.known", "sensor.tool.known"},
-            fmt::format("poses of a tool ({}), {} and {} mrad in orientation",
+            fmt::format("poses of a tool ({}), {} and {} mrad in orientation{}",
                         known_tool_ ? "known" : "to be identified", detail::describe(noise_),
-                        detail::format_short(mrad_per_rad * sigma_orientation_))};
+                        detail::format_short(mrad_per_rad * sigma_orientation_),
+                        record_.is_made_at_body ? ", seen from the tool, a camera" : "")};
 }
 
 std::optional<ObservedPoints> PoseSensor::observed_points() const {
@@ -173,6 +193,19 @@ std::optional<ObservedPoints> PoseSensor::observed_points() const {
         return is_known ? coordinates : tool_unknowns(frame_of(coordinates));
     };
     return ObservedPoints{Targets(points), points_observed, unknowns};
+}
+
+void invert_poses(RowMatrixXd& poses) {
+    for (Index k = 0; k < poses.rows(); ++k) {
+        const Matrix3d R = rotation_from_vector(poses.row(k).tail<3>().transpose());
+        poses.row(k).head<3>() = -poses.row(k).head<3>() * R;
+        poses.row(k).tail<3>() *= -1;
+    }
+}
+
+bool records_inverse(const Sensor& sensor) {
+    const auto* const poses = dynamic_cast<const PoseSensor*>(&sensor);
+    return poses != nullptr && poses->record().is_inverse;
 }
 
 VectorXd tool_unknowns(const Isometry3d& flange_from_tool) {

@@ -77,9 +77,14 @@ std::string sum_up(const Calibration& calibration, const Judged& judged, bool is
     if (judged.interval) {
         text += fmt::format(" (95 %: {})", format_interval(*judged.interval, is_angle));
     }
-    text += fmt::format(" {}; before {}{}", judged.where, format_error(nominal, is_angle),
-                        judged.group ? " at the poses calibrated with" : "");
-    if (!judged.group && found >= nominal) text += ", which is no worse";
+    text += fmt::format(" {}", judged.where);
+    if (calibration.campaign.robot.parameter_count() == 0) {
+        text += "; the robot is taken as it is";
+    } else {
+        text += fmt::format("; before {}{}", format_error(nominal, is_angle),
+                            judged.group ? " at the poses calibrated with" : "");
+        if (!judged.group && found >= nominal) text += ", which is no worse";
+    }
     if (!calibration.limit) return text;
     text += fmt::format("; limit {}: ", format_error(*calibration.limit, false));
     const auto verdict = judged.group ? judge_limit(*judged.group, *calibration.limit)

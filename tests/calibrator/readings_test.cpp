@@ -257,6 +257,29 @@ struct Poses {
     Measurements right;
 };
 
+TEST(FitReadings, FindPosesThatAreInvertedOrShouldBe) {
+    Poses poses;
+    const auto inverted = [&] {
+        Measurements read = poses.right;
+        invert_poses(read.observations);
+        return words_of(poses.campaign, read);
+    };
+    EXPECT_EQ(inverted(), "each pose inverted");
+    poses.campaign.sensor = std::make_shared<PoseSensor>(std::nullopt, IsotropicNoise{5e-5}, 1e-4,
+                                                         PoseRecord{true, true});
+    EXPECT_EQ(words_of(poses.campaign, poses.right), "none");
+    EXPECT_EQ(inverted(), "each pose inverted");
+    // Senses of orientations are those of what was read.
+    Measurements wrong = poses.right;
+    invert_poses(wrong.observations);
+    for (auto row : wrong.observations.rowwise()) {
+        const Matrix3d R = rotation_from_vector(row.tail<3>().transpose());
+        row.tail<3>() = rpy_from_rotation(R).transpose();
+    }
+    invert_poses(wrong.observations);
+    EXPECT_EQ(words_of(poses.campaign, wrong), "rx, ry, rz as roll, pitch, yaw about fixed axes");
+}
+
 TEST(FitReadings, FindAnglesAndRotationVectorsUnderEachOthersNames) {
     const Poses poses;
     const std::vector<std::pair<std::string, std::function<Vector3d(const Matrix3d&)>>> angles{

@@ -86,6 +86,40 @@ TEST(ReadSensor, TakesPosesWithTheirTool) {
     EXPECT_EQ(read(fixed).nominal.sensor.size(), 0);
 }
 
+TEST(ReadSensor, TakesWhatACameraRecordsAndWhereItSits) {
+    const auto record = [](const std::string& keys) {
+        const Campaign campaign = read(replaced(poses, "kind: poses", "kind: poses\n  " + keys));
+        return dynamic_cast<const PoseSensor&>(*campaign.sensor).record();
+    };
+    EXPECT_TRUE(record("camera: flange").is_inverse);
+    EXPECT_TRUE(record("camera: flange").is_made_at_body);
+    EXPECT_FALSE(record("camera: flange\n  measured: camera_in_board").is_inverse);
+    EXPECT_TRUE(record("camera: flange\n  measured: camera_in_board").is_made_at_body);
+    EXPECT_FALSE(record("camera: fixed").is_inverse);
+    EXPECT_FALSE(record("camera: fixed").is_made_at_body);
+    EXPECT_TRUE(record("camera: fixed\n  measured: camera_in_board").is_inverse);
+    EXPECT_NE(
+        input_error_of([&] { record("camera: hand"); }).find("'hand'; must be flange or fixed"),
+        std::string::npos);
+    EXPECT_NE(input_error_of([&] { record("measured: board_in_camera"); }).find("needs camera"),
+              std::string::npos);
+}
+
+TEST(CameraPoses, AreReadAndWrittenAsTheyWereRecorded) {
+    const Campaign body = read(poses);
+    const Campaign camera = read(replaced(poses, "kind: poses", "kind: poses\n  camera: flange"));
+    const Measurements observed = simulate(body, {.pose_count = 5}).measurements;
+    const TemporaryFolder folder;
+    const auto written = folder.path("seen.csv");
+    write_measurements_csv(written, camera, observed);
+    const Measurements again = read_measurements_csv(written, camera);
+    EXPECT_LT((again.observations - observed.observations).norm(), 1e-13);
+    RowMatrixXd recorded = read_measurements_csv(written, body).observations;
+    EXPECT_GT((recorded - observed.observations).norm(), 0.1);
+    invert_poses(recorded);
+    EXPECT_EQ(recorded, again.observations);
+}
+
 TEST(ReadSensor, TakesWhatIsKnownOfTheBase) {
     const Campaign campaign = read(poses);
     EXPECT_EQ(base_parameter_count(campaign), 4);

@@ -164,6 +164,52 @@ TEST(PoseSensor, ObservesToolsPositionAndRotationVector) {
     EXPECT_TRUE(sensor.predict(flange, VectorXd()).isApprox(expected, 1e-14));
 }
 
+TEST(PoseSensor, HasTheNoiseOfACameraOnTheFlange) {
+    const Vector3d sigma(2e-4, 3e-4, 9e-4);
+    const double sigma_orientation = 7e-4;
+    const PoseSensor sensor(std::nullopt, PerAxisNoise{sigma}, sigma_orientation, {true, true});
+    Isometry3d flange(rotation_from_vector(Vector3d(0.4, -1.1, 0.7)));
+    flange.translation() = Vector3d(0.5, -0.2, 0.9);
+    VectorXd tool(6);
+    tool << 0.03, 0.05, 0.06, 0.2, -0.1, 0.4;
+    const VectorXd observation = sensor.predict(flange, tool);
+    RowMatrixXd seen = observation.transpose();
+    invert_poses(seen);
+    // Errors of what the camera sees, along its axes, and what they make of the observation.
+    const auto observe = [&](const VectorXd& error) -> VectorXd {
+        RowMatrixXd pose = seen;
+        pose.row(0).head<3>() += error.head<3>().transpose();
+        pose.row(0).tail<3>() =
+            vector_from_rotation(rotation_from_vector(error.tail<3>()) *
+                                 rotation_from_vector(seen.row(0).tail<3>().transpose()))
+                .transpose();
+        invert_poses(pose);
+        return sensor.deviation(pose.row(0).transpose(), observation);
+    };
+    MatrixXd J(6, 6);
+    for (Index k = 0; k < 6; ++k) {
+        const VectorXd step = 1e-5 * VectorXd::Unit(6, k);
+        J.col(k) = (observe(step) - observe(-step)) / 2e-5;
+    }
+    VectorXd variances(6);
+    variances << sigma.cwiseAbs2(), Vector3d::Constant(sigma_orientation * sigma_orientation);
+    const MatrixXd expected = J * variances.asDiagonal() * J.transpose();
+    EXPECT_LT((sensor.covariance(flange, tool) - expected).norm(), 1e-8 * expected.norm());
+    EXPECT_THROW(PoseSensor(std::nullopt, LaserTrackerNoise{1e-5, 2e-5}, 1e-4, {true, true}),
+                 InputError);
+}
+
+TEST(PoseSensor, InvertsPosesThereAndBack) {
+    const RowMatrixXd poses =
+        (RowMatrixXd(2, 6) << 1, 2, 3, 0.1, 0.2, -3, -4, 0, 0.5, 0, 0, 0).finished();
+    RowMatrixXd inverted(poses);
+    invert_poses(inverted);
+    EXPECT_EQ(inverted.row(1).head<3>(), -poses.row(1).head<3>());
+    EXPECT_EQ(inverted.rightCols<3>(), -poses.rightCols<3>());
+    invert_poses(inverted);
+    EXPECT_LT((inverted - poses).norm(), 1e-14);
+}
+
 TEST(PoseSensor, MeasuresTheShortWayRoundAtHalfATurn) {
     const PoseSensor sensor(std::nullopt, IsotropicNoise{1e-5}, 1e-4);
     VectorXd a = VectorXd::Zero(6);

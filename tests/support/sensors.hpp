@@ -67,6 +67,12 @@ inline std::vector<SensorCampaign> campaigns_of_every_sensor(const Chain& robot)
         {"pose of an unknown tool",
          with_sensor(points, pose(std::nullopt, IsotropicNoise{5e-5}), tool_unknowns(tool))},
         {"pose of a known tool", with_sensor(points, pose(tool, tracker), VectorXd())},
+        {"pose from a camera on the flange",
+         with_sensor(
+             points,
+             std::make_shared<PoseSensor>(std::nullopt, PerAxisNoise{Vector3d(2e-5, 3e-5, 9e-5)},
+                                          1e-4, PoseRecord{true, true}),
+             tool_unknowns(tool))},
         {"distances from known anchors",
          with_sensor(points, std::make_shared<DistanceSensor>(unknown, anchors, true, 5e-5), both)},
         {"distances from an unknown anchor",

@@ -101,6 +101,18 @@ class PointSensor final : public Sensor {
     PointNoise noise_;
 };
 
+/// What an instrument records of a pose, and where its noise arises.
+struct PoseRecord {
+    /// Files have the instrument's frame in the body's, the inverse of an observation: a board that
+    /// a camera on the flange sees.
+    bool is_inverse = false;
+    /// The noise arises at the body, along its axes: it is the camera. Else at the instrument.
+    bool is_made_at_body = false;
+};
+
+/// The inverse of each pose, one a row: position and rotation vector.
+void invert_poses(RowMatrixXd& poses);
+
 /// An instrument that returns position and orientation of one body on the flange (a tool or a
 /// six-degree-of-freedom probe) in its own frame. Observations are x, y, z and the rotation vector;
 /// deviations of orientation are rotation vectors in the world. Position and orientation (rotation
@@ -109,12 +121,13 @@ class PoseSensor final : public Sensor {
   public:
     /// `known_tool` is the body in the flange frame. Throws InputError if it is not finite, if
     /// sigma_orientation (standard deviation of each of the three angles, rad) is not finite or
-    /// below 1e-15, or as check_noise() does.
+    /// below 1e-15, for a tracker's noise that arises at the body, or as check_noise() does.
     PoseSensor(std::optional<Isometry3d> known_tool, PointNoise position_noise,
-               double sigma_orientation);
+               double sigma_orientation, PoseRecord record = {});
 
     const PointNoise& noise() const { return noise_; }
     double sigma_orientation() const { return sigma_orientation_; }
+    const PoseRecord& record() const { return record_; }
     /// Pose of the body in the flange frame.
     Isometry3d tool(const VectorXd& unknowns) const;
 
@@ -158,7 +171,11 @@ class PoseSensor final : public Sensor {
     Targets origin_;  ///< the body's: a target with the unknowns tool.x to tool.z
     PointNoise noise_;
     double sigma_orientation_;
+    PoseRecord record_;
 };
+
+/// Whether files have the inverse of what this sensor observes: PoseRecord::is_inverse.
+bool records_inverse(const Sensor& sensor);
 
 /// A tool pose as the six unknowns of a PoseSensor.
 VectorXd tool_unknowns(const Isometry3d& flange_from_tool);

@@ -190,6 +190,16 @@ const YamlKeys sensor{
         {"targets", "points, distances, planes and sockets",
          "what is measured on the flange; of sockets one, the ball", "required", "`{count: 3}`"},
         {"sigma_orientation_mrad", "poses", "each of the three angles", "required", "`0.1`"},
+        {"camera", "poses",
+         "`flange`: a camera on the flange sees a board that stands still (hand-eye): the tool is "
+         "the camera, the base is found in the board's frame; `fixed`: a camera that stands still "
+         "sees a board on the flange. `sigma_mm` for each axis is then along those of the camera, "
+         "z "
+         "being the depth",
+         "another instrument", "`flange`"},
+        {"measured", "poses",
+         "with `camera`: `board_in_camera`, as solvePnP gives it, or its inverse",
+         "`board_in_camera`", "`camera_in_board`"},
         {"tool", "poses", "the body that is measured", "at an unknown place",
          "`{position_mm: [0, 0, 120], rpy_deg: [0, 0, 0]}`"},
         {"anchors", "distances", "where they are measured from", "required",

@@ -160,24 +160,50 @@ SensorSection read_points(const YamlValue& value) {
             targets.has_positions};
 }
 
+/// What a camera recorded of a board, and where it sat.
+PoseRecord read_record(const YamlMap& sensor) {
+    const auto camera = sensor.find("camera");
+    const auto measured = sensor.find("measured");
+    if (!camera) {
+        if (!measured) return {};
+        throw measured->error("is of a camera; needs camera: flange or fixed");
+    }
+    const auto is_first = [](const YamlValue& value, const char* first, const char* second) {
+        if (value.is_text(first)) return true;
+        if (value.is_text(second)) return false;
+        throw value.error(
+            fmt::format("is {}; must be {} or {}", quote(value.text()), first, second));
+    };
+    const bool is_on_flange = is_first(*camera, "flange", "fixed");
+    const bool is_board_seen =
+        !measured || is_first(*measured, "board_in_camera", "camera_in_board");
+    return {.is_inverse = is_on_flange == is_board_seen, .is_made_at_body = is_on_flange};
+}
+
 SensorSection read_poses(const YamlValue& value) {
     const YamlMap sensor(value, keys::sensor, "poses");
     const PointNoise noise = read_noise(value, sensor);
+    const PoseRecord record = read_record(sensor);
+    if (record.is_made_at_body && std::holds_alternative<LaserTrackerNoise>(noise)) {
+        throw sensor.require("noise").error(
+            "is a laser tracker's, which is not on the flange; must be sigma_mm with a camera");
+    }
     const double sigma = read_positive(sensor.require_measure("sigma_orientation"));
     const auto tool_value = sensor.find("tool");
     if (!tool_value) {
         // Generic: its origin is on no axis.
         Isometry3d somewhere = Isometry3d::Identity();
         somewhere.translation() = generic_target(0);
-        return {std::make_shared<PoseSensor>(std::nullopt, noise, sigma), tool_unknowns(somewhere),
-                false};
+        return {std::make_shared<PoseSensor>(std::nullopt, noise, sigma, record),
+                tool_unknowns(somewhere), false};
     }
     const YamlMap tool(*tool_value, keys::places, "tool");
     const Isometry3d nominal = read_frame(tool);
     if (is_true(tool, "known")) {
-        return {std::make_shared<PoseSensor>(nominal, noise, sigma), VectorXd(), true};
+        return {std::make_shared<PoseSensor>(nominal, noise, sigma, record), VectorXd(), true};
     }
-    return {std::make_shared<PoseSensor>(std::nullopt, noise, sigma), tool_unknowns(nominal), true};
+    return {std::make_shared<PoseSensor>(std::nullopt, noise, sigma, record),
+            tool_unknowns(nominal), true};
 }
 
 VectorXd join(const VectorXd& first, const VectorXd& second) {

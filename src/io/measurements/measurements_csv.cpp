@@ -13,6 +13,7 @@
 #include "measurement_header.hpp"
 #include "planned_points.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "posewise/model/chain.hpp"
 #include "sample_collector.hpp"
 
@@ -352,6 +353,9 @@ ReadFile read_csv(detail::CsvReader csv, const std::string& path, const Campaign
         measurements.observations.cols() > 0) {
         measurements.roll_pitch_yaw = measurements.observations.rightCols(3);
         measurements.observations.conservativeResize(Eigen::NoChange, campaign.sensor->row_count());
+    }
+    if (content == Content::JointsAndObservations && records_inverse(*campaign.sensor)) {
+        invert_poses(measurements.observations);
     }
     return {std::move(measurements), row.purposes()};
 }

@@ -7,6 +7,7 @@
 #include "io/format/csv_reader.hpp"
 #include "measurement_columns.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/measurement/sensors.hpp"
 
 namespace posewise::io {
 
@@ -55,8 +56,10 @@ bool is_finite(const Measurements& measurements) {
 }  // namespace
 
 void write_measurements_csv(const std::string& path, const Campaign& campaign,
-                            const Measurements& measurements,
+                            const Measurements& observed,
                             const std::vector<std::string>& comment_lines) {
+    Measurements measurements = observed;
+    if (records_inverse(*campaign.sensor)) invert_poses(measurements.observations);
     if (!is_finite(measurements)) {
         throw input_error_at({path},
                              "is not written, since a measurement is not a finite number; the "
