@@ -26,7 +26,7 @@ configure_package_config_file(cmake/posewiseConfig.cmake.in posewiseConfig.cmake
   INSTALL_DESTINATION "${package_directory}")
 write_basic_package_version_file(posewiseConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/posewiseConfig.cmake"
-  "${PROJECT_BINARY_DIR}/posewiseConfigVersion.cmake" cmake/FindMatIO.cmake
+  "${PROJECT_BINARY_DIR}/posewiseConfigVersion.cmake" cmake/FindMatIO.cmake cmake/FindMinizip.cmake
   DESTINATION "${package_directory}")
 
 # cpack -G DEB makes a package for Debian and Ubuntu of what is built.

@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # The only list of what posewise needs, as Debian and Ubuntu name it.
 packages=(
   g++ cmake ninja-build ccache python3
-  libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libmatio-dev libnlopt-dev
+  libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libmatio-dev libminizip-dev zlib1g-dev libnlopt-dev
   libpugixml-dev libsqlite3-dev libboost-math-dev libcli11-dev libgtest-dev gnuplot-nox
 )
 

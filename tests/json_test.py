@@ -169,6 +169,10 @@ def check_indices():
     run("simulate", FANUC, "-k", 3, "-o", "few.csv")
     document, _ = both("indices", FANUC, "-m", "few.csv")
     expect(document["scaled"]["d"] is None and document["scaled"]["condition"] is None, "-inf is null")
+    run("indices", FANUC, "-m", "s.csv", "--write-blocks", "b.npy")
+    document, text = both("indices", "--blocks", "b.npy", "--prior")
+    expect(text.startswith("16 candidates, "), text)
+    expect(close(document["scaled"]["d"], number_behind(text, "\nd "), 6), "indices: of blocks")
 
 
 def check_select():
@@ -304,6 +308,18 @@ def check_study():
     expect("against_random_of_first_model" in second, second)
 
 
+def check_blocks_study():
+    document, text = both("study", "--blocks", "b.npy", "-c", "d,v", "-k", "9..10", "--prior", "--random", 20)
+    row = document["rows"][-1]
+    line = next(line for line in text.splitlines() if line.startswith("   10  v")).split()
+    expect(close(row["value"], float(line[2]), 6) and close(row["bound"], float(line[3]), 6), line)
+    expect(close(100 * row["efficiency"], float(line[4]), 4), line)
+    expect(close(row["random"]["value_p50"], float(line[6]), 6), line)
+    pathlib.Path("own.txt").write_text(" ".join(map(str, row["poses"])))
+    document, _ = both("study", "--blocks", "b.npy", "-c", "v", "--prior", "--subset", "own.txt", "--random", 0)
+    expect(document["rows"][0]["subsets"][0]["value"] == row["value"], "study: own subset")
+
+
 def check_correct():
     document, text = both("correct", FANUC, "e.json", "--poses", "s.csv", "-o", "c.csv")
     expect(close(document["uncorrected"]["position_rms_mm"], number_behind(text, "position RMS/mm"), 4),
@@ -360,7 +376,7 @@ def check_writers():
     those of cases that are not met here, too."""
     sources = "".join(path.read_text() for path in sorted((ROOT / "src/io").rglob("*.cpp")) if path.stem in (
         "json", "json_reports", "plan_json", "plan_document", "estimate_file", "estimate_fields", "parameters_json", "doubts_json", "residual_look_json", "judgement_json",
-        "program_json", "robot_statement", "weights_file", "page_file"))
+        "program_json", "robot_statement", "weights_file", "page_file", "blocks_json"))
     sources = re.sub(r"#include.*", "", sources)
     manual = (ROOT / "designs/json.md").read_text() + PAGE_MANUAL
     for word in sorted(set(re.findall(r'"([a-z][A-Za-z0-9_]*)"', sources)) - OTHER_WORDS):
@@ -403,7 +419,7 @@ with tempfile.TemporaryDirectory() as folder:
     pathlib.Path("arm.urdf").write_text(URDF)
     pathlib.Path("arm.yaml").write_text(ARM)
     for check in (check_simulate, check_inspect, check_indices, check_select, check_relax, check_verify,
-                  check_calibrate, check_study, check_plan, check_program, check_correct, check_export, check_report, check_writers,
+                  check_calibrate, check_study, check_blocks_study, check_plan, check_program, check_correct, check_export, check_report, check_writers,
                   check_errors, check_threads):
         check()
     expect(PRINTED | {""} == set(MANUAL), f"sections {sorted(MANUAL)}, printed {sorted(PRINTED)}")

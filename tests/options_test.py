@@ -42,7 +42,7 @@ VALUES = {
     "--precision": "30%", "--truth": "7", "--vary": "sensor.sigma_mm=0.01,0.05", "--points": "2", "--store": "out2.sqlite",
     "--shard": "1/2", "--merge": "part1.sqlite", "--directions": "2", "--campaign": "other.yaml", "--configurations": "poses.csv",
     "--write-campaign": "out4.yaml", "--tip": "x", "--targets": "out5.csv", "--points-unit": "m", "--random-order": "2",
-    "--for": "ros2", "--read": "program.csv", "--dwell": "3", "--speed": "30", "--handshake": "pause"}
+    "--for": "ros2", "--read": "program.csv", "--subset": "own.txt", "--write-blocks": "out6.npy", "--dwell": "3", "--speed": "30", "--handshake": "pause"}
 PLAN = ["-c", "d", "--pool", "40", "--starts", "1", "--workspace-poses", "10", "-o", "out.json"]
 CHOICE = ["-k", "6", "--starts", "1", "-o", "out.json"]
 STUDY = ["arm.yaml", "-m", "many.csv", "-k", "6", "--random", "4", "--starts", "1"]
@@ -52,6 +52,7 @@ WAYS = [
     ["inspect", "arm.yaml", "-m", "many.csv"],
     ["inspect", "arm.yaml", "-m", "points.csv", "--plan", "plan.json"],
     ["indices", "arm.yaml", "-m", "many.csv"],
+    ["indices", "--blocks", "blocks.csv", "--rows", "3"],
     ["select", "arm.yaml", "-m", "many.csv", *CHOICE],
     ["select", "arm.yaml", "--random", "40", *CHOICE],
     ["select", "arm.yaml", "--candidates", "pool.csv", *CHOICE],
@@ -80,6 +81,7 @@ WAYS = [
     ["study", *STUDY, "--splits", "2", "--from", "estimate.json"],
     ["study", *STUDY, "--splits", "2", "--models", "stated,geometric"],
     ["study", *SIMULATED],
+    ["study", "--blocks", "blocks.csv", "--rows", "3", "-k", "4:6", "--random", "4"],
     ["study", "--merge", "part2.sqlite", "--store", "whole.sqlite"],
     ["study", "--from", "part1.sqlite"],
     ["simulate", "arm.yaml", "-k", "9", "-o", "out.csv"],
@@ -113,6 +115,7 @@ def prepare():
     number = random.Random(3)
     pathlib.Path("blocks.csv").write_text("".join(
         ",".join(str(number.gauss(0, 1)) for _ in range(6)) + "\n" for _ in range(45)))
+    pathlib.Path("own.txt").write_text("1 3 4 5 7\n")
     run_well("simulate", "arm.yaml", "--truth", "11", "--seed", "21", "-k", "20", "--repeats", "2", "-o", "many.csv")
     run_well("simulate", "arm.yaml", "--truth", "11", "--seed", "5", "-k", "8", "--repeats", "1", "-o", "few.csv")
     pathlib.Path("groups.csv").write_text("config,group\n" + "".join(f"{k},{k % 5}\n" for k in range(20)))

@@ -4,6 +4,7 @@
 /// single headers.
 #include "posewise/core/threads.hpp"
 #include "posewise/core/version.hpp"
+#include "posewise/io/blocks_file.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/documents.hpp"
 #include "posewise/io/measurements_file.hpp"
@@ -13,6 +14,7 @@
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/report/reports.hpp"
+#include "posewise/task/blocks_study.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/correction.hpp"

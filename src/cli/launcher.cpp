@@ -30,7 +30,8 @@ int launched_rank() {
 bool can_share(int argc, const char* const* argv) {
     if (argc < 2 || std::string_view(argv[1]) != "study") return false;
     return std::none_of(argv, argv + argc, [](const std::string_view argument) {
-        return argument == "--shard" || argument.starts_with("--shard=");
+        return argument == "--shard" || argument.starts_with("--shard=") ||
+               argument == "--blocks" || argument.starts_with("--blocks=");
     });
 }
 

@@ -1,19 +1,14 @@
 #include "plan_inputs.hpp"
 
+#include "blocks_options.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "io/measurements/groups_file.hpp"
-#include "io/measurements/matrix_file.hpp"
 #include "measured.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise::cli {
 namespace {
-
-Blocks read_blocks(const PlanSources& sources, const std::string& path) {
-    const RowMatrixXd matrix = detail::read_matrix(path, sources.variable);
-    return compute_from(path, [&] { return make_equal_blocks(matrix, sources.rows_per_block); });
-}
 
 /// Poses measured already, --augment.
 std::optional<Measurements> read_held(const PlanRequest& request,
@@ -37,11 +32,15 @@ Candidates read_candidates(const std::string& path, CandidateKind kind,
 
 void read_plain(ChoiceInputs& inputs) {
     ChoiceOptions& options = inputs.options;
-    const PlanSources& sources = options.sources;
-    inputs.blocks = read_blocks(sources, sources.candidates);
-    if (!sources.augment.empty()) options.held_blocks = read_blocks(sources, sources.augment);
+    PlanSources& sources = options.sources;
+    io::BlocksFile candidates = read_blocks(sources.candidates, sources);
+    sources.rows_per_block = candidates.rows_per_block;
+    inputs.blocks = std::move(candidates.blocks);
+    if (!sources.augment.empty()) {
+        options.held_blocks = read_blocks(sources.augment, sources).blocks;
+    }
     if (!sources.test_poses.empty()) {
-        options.test_blocks = read_blocks(sources, sources.test_poses);
+        options.test_blocks = read_blocks(sources.test_poses, sources).blocks;
     }
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "blocks_options.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "core/text.hpp"
@@ -30,6 +31,7 @@ Example:
   posewise select campaign.yaml --random 2000 -k 20 --prior --least-distance-deg 10
   posewise select campaign.yaml --candidates pool.csv -k 6 --augment measured.csv
   posewise select --blocks jacobians.csv --rows 9 -k 40 --criterion a
+  posewise select --blocks jacobians.npy -k 40
   posewise select campaign.yaml --random 2000 -k 20 --relax --out weights.csv
 
 Chooses the candidates that tell most about the parameters, writes them as a plan file (JSON) for
@@ -45,7 +47,8 @@ measured poses, --augment), or from an earlier estimate, --from, which tells the
 visible_targets (as plan --csv writes it), or is a measurement file; --random draws a scrambled Halton
 sequence of what the joint limits and the campaign's cell allow; listed candidates that the cell does
 not allow are not chosen, a warning names them. A file of blocks has a row of numbers a line (or is a
-MATLAB matrix), each --rows of them one candidate, named 0, 1, ... One of --groups: columns
+matrix of MATLAB or NumPy), each --rows of them one candidate, named 0, 1, ...; an array of NumPy with
+three dimensions, candidates x rows x parameters, says so itself. One of --groups: columns
 config,group.
 
 --relax chooses nothing: it weights the candidates (an approximate design), 0 to --repeat-limit each and
@@ -138,6 +141,7 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
         {out, arguments.page}, common);
     ChoiceInputs inputs =
         read_choice_inputs(request, kind_of(arguments), arguments.random, std::move(file));
+    if (!inputs.campaign) print_size(inputs.blocks, common);
     inputs.options.stop = stop;
     inputs.options.judge = judge_of(sources.candidates, arguments.earlier.is_forced);
     const auto read = std::chrono::steady_clock::now();

@@ -1,5 +1,6 @@
 #include "select_options.hpp"
 
+#include "blocks_options.hpp"
 #include "common.hpp"
 #include "options.hpp"
 #include "page.hpp"
@@ -23,13 +24,9 @@ void add_sources(CLI::App& command, SelectArguments& arguments) {
     group
         .add_option("--random", arguments.random, "As many configurations within the joint limits")
         ->check(whole_number(1, 10000000));
-    group.add_option("--blocks", arguments.blocks, "A plain matrix, CSV or MATLAB .mat; no robot")
-        ->check(file_name());
+    add_blocks_option(group, arguments.blocks);
     group.require_option(1);
-    command.add_option("--rows", source.rows_per_block, "--blocks: rows of one candidate")
-        ->check(whole_number(1, 1000000));
-    command.add_option("--variable", source.variable,
-                       "--blocks: variable of the MATLAB file (default: the first)");
+    add_blocks_layout(command, source);
     command
         .add_option("--repeats", arguments.request.repeats,
                     "Samples of each chosen configuration (default: as in the file, else 1)")
@@ -107,10 +104,7 @@ void check_select_usage(const SelectArguments& arguments) {
     const PlanSources& sources = request.sources;
     require_usage(is_plain == sources.campaign.empty(), "CAMPAIGN",
                   is_plain ? "must be left out with --blocks" : "is required (but for --blocks)");
-    require_usage(is_plain == (sources.rows_per_block > 0), "--rows",
-                  is_plain ? "is required with --blocks" : "goes with --blocks only");
-    require_usage(sources.variable.empty() || blocks.ends_with(".mat") || blocks.ends_with(".MAT"),
-                  "--variable", "goes with --blocks and a MATLAB file only");
+    check_blocks_usage(blocks, sources);
     require_usage(!is_plain || request.repeats == 0, "--repeats", "needs a robot");
     require_usage(!arguments.earlier.is_forced || !arguments.earlier.from.empty() ||
                       !arguments.measurements.empty(),

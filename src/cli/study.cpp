@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "blocks_options.hpp"
 #include "commands.hpp"
 #include "core/text.hpp"
 #include "files.hpp"
@@ -15,6 +16,7 @@
 #include "posewise/io/result_files.hpp"
 #include "posewise/report/reports.hpp"
 #include "report/plot.hpp"
+#include "study_blocks.hpp"
 #include "study_options.hpp"
 #include "study_runs.hpp"
 
@@ -60,6 +62,11 @@ on the same robots draw by draw. Where the model is varied, too, robots have the
 that to compare models --truth must say what robots are like (here truth.yaml: errors: full):
   posewise study campaign.yaml --simulate --vary sensor.sigma_mm=0.01,0.05
   posewise study campaign.yaml --simulate --vary robot.errors=geometric,full --truth truth.yaml
+
+--blocks needs no robot: it takes plain blocks, as select --blocks does, and shows what each number of
+poses can tell: the best choice by each criterion with its proven bound, random subsets (5, 50 and
+95 % of them), and subsets of your own, each against the bound for its number:
+  posewise study --blocks jacobians.npy --poses 7..40 --criteria d,a --subset mine.txt --plot sweep.svg
 
 Ctrl-C, SIGTERM or --time end it with the splits (robots) that are finished; a column says how many
 splits a pose count has, where not all are.
@@ -116,13 +123,9 @@ void print_store(const std::string& path, const StudyArguments& arguments,
 /// A store says all that the trials in it depend on: beside these options others have no effect.
 void check_printing_only(const CLI::App& command, std::vector<std::string> used, const char* what) {
     used.insert(used.end(), {"--csv", "--plot", "--report", "--json", "--help"});
-    for (const CLI::Option* option : command.get_options()) {
-        const std::string name = option->get_name();
-        if (option->count() == 0 || std::ranges::find(used, name) != used.end()) continue;
-        throw CLI::ValidationError(name, fmt::format("is not looked at where {}; leave it out, or "
-                                                     "run the study with --store",
-                                                     what));
-    }
+    check_only(command, used,
+               fmt::format("is not looked at where {}; leave it out, or run the study with --store",
+                           what));
 }
 
 void check_study_usage(const CLI::App& command, const StudyArguments& arguments, bool reads_store) {
@@ -159,7 +162,7 @@ void check_study_usage(const CLI::App& command, const StudyArguments& arguments,
     if (arguments.is_simulated == is_measured) {
         throw CLI::ValidationError(
             "study", is_measured ? "has measured configurations (-m) and --simulate; leave one out"
-                                 : "needs either measured configurations (-m) or --simulate");
+                                 : "needs measured configurations (-m), --simulate or --blocks");
     }
 }
 
@@ -185,6 +188,8 @@ void warn_of_precision(const std::vector<Study>& studies) {
 }
 
 void study(const CLI::App& command, const StudyArguments& arguments, const CommonOptions& common) {
+    if (!arguments.plain.blocks.empty()) return study_blocks(command, arguments, common);
+    check_blocks_usage("", arguments.plain.sources);
     const bool reads_store = io::is_trial_store(arguments.earlier.from);
     check_study_usage(command, arguments, reads_store);
     if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
@@ -227,6 +232,7 @@ void add_study(CLI::App& program, const CommonOptions& common) {
     add_measurements_option(*command, arguments->paths)->required(false);
     add_study_options(*command, *arguments);
     add_simulation_options(*command, *arguments);
+    add_blocks_study_options(*command, *arguments);
     add_store_options(*command, *arguments);
     command->footer(study_footer);
     command->callback([command, arguments, &common] { study(*command, *arguments, common); });

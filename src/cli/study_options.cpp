@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "blocks_options.hpp"
 #include "core/text.hpp"
 #include "measured.hpp"
 #include "options.hpp"
@@ -23,10 +24,12 @@ Index parse_count(std::string_view text) {
     return count;
 }
 
-/// "5:24" and "6,9,12", and both mixed.
+/// "5:24" (or "5..24") and "6,9,12", and both mixed.
 std::vector<Index> parse_counts(const std::string& text) {
     std::vector<Index> counts;
-    for (const std::string& part : CLI::detail::split(text, ',')) {
+    for (std::string part : CLI::detail::split(text, ',')) {
+        if (const auto dots = part.find(".."); dots != std::string::npos)
+            part.replace(dots, 2, ":");
         const auto colon = part.find(':');
         const Index first = parse_count(part.substr(0, colon));
         const Index last = colon == std::string::npos ? first : parse_count(part.substr(colon + 1));
@@ -62,6 +65,23 @@ auto parse_names(const std::string& text, const char* option, const char* exampl
 }
 
 }  // namespace
+
+void add_blocks_study_options(CLI::App& command, StudyArguments& arguments) {
+    BlocksStudyArguments& plain = arguments.plain;
+    CLI::Option* const blocks = add_blocks_option(command, plain.blocks);
+    add_blocks_layout(command, plain.sources);
+    command
+        .add_option("--subset", plain.subsets,
+                    "--blocks: candidates to compare, by number from 0 (text, .npy), or a plan "
+                    "of select; may be repeated")
+        ->check(file_name())
+        ->needs(blocks);
+    command
+        .add_option("--augment", plain.sources.augment,
+                    "--blocks: poses measured already, whose information is there")
+        ->check(file_name())
+        ->needs(blocks);
+}
 
 void add_study_options(CLI::App& command, StudyArguments& arguments) {
     command.add_option_function<std::string>(

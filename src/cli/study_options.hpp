@@ -9,9 +9,17 @@
 #include "common.hpp"
 #include "estimates.hpp"
 #include "posewise/io/campaign_file.hpp"
+#include "posewise/task/plan.hpp"
 #include "posewise/task/study.hpp"
 
 namespace posewise::cli {
+
+/// What study takes of plain blocks, in the place of a campaign.
+struct BlocksStudyArguments {
+    std::string blocks;
+    PlanSources sources;  ///< layout of the file, and poses measured already
+    std::vector<std::string> subsets;
+};
 
 /// The command line of study; what it does not say is as the campaign says.
 struct StudyArguments {
@@ -37,6 +45,8 @@ struct StudyArguments {
     Index points = 0;  ///< that fill the ranges varied
     std::optional<Index> trials;
 
+    BlocksStudyArguments plain;
+
     std::string store;
     std::vector<std::string> merged;
 };
@@ -46,6 +56,9 @@ void add_study_options(CLI::App& command, StudyArguments& arguments);
 
 /// --simulate and what goes with it.
 void add_simulation_options(CLI::App& command, StudyArguments& arguments);
+
+/// --blocks and what goes with it.
+void add_blocks_study_options(CLI::App& command, StudyArguments& arguments);
 
 /// --store, --shard, --merge.
 void add_store_options(CLI::App& command, StudyArguments& arguments);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "blocks_options.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "core/text.hpp"
@@ -93,9 +94,11 @@ io::CampaignFile read_planned_again(const PlanRequest& request) {
     return read_planned(request.sources, request.earlier, request.has_prior, true);
 }
 
-Verification verify_choice(const Plan& plan, std::optional<io::CampaignFile> campaign) {
+Verification verify_choice(const Plan& plan, std::optional<io::CampaignFile> campaign,
+                           const CommonOptions& common) {
     const ChoiceInputs inputs =
         read_choice_inputs(plan.request, plan.kind, plan.candidate_count, std::move(campaign));
+    if (!inputs.campaign) print_size(inputs.blocks, common);
     return inputs.campaign ? verify(plan, *inputs.campaign, inputs.candidates, inputs.options)
                            : verify(plan, inputs.blocks, inputs.options);
 }
@@ -135,7 +138,7 @@ void verify_file(const VerifyArguments& arguments, const CommonOptions& common) 
     }
     const Verification verification = plan.is_continuous()
                                           ? verify_continuous(plan, arguments.plan, *campaign)
-                                          : verify_choice(plan, campaign);
+                                          : verify_choice(plan, campaign, common);
     if (common.json) {
         print_document(io::to_json(verification, plan, arguments.plan));
     } else {

@@ -54,7 +54,7 @@ std::string judge(const TargetPlanning& found, const std::optional<SimulatedPlan
                                                           : "too close to say");
 }
 
-std::string describe_proof(const Plan& plan) {
+std::string explain_proof(const Plan& plan) {
     std::string criterion(criterion_name(plan.request.criterion));
     for (char& letter : criterion) {
         letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
@@ -132,7 +132,7 @@ std::vector<Answer> complete(const Planning& planning, const std::string& accura
         if (!text.empty()) answers.push_back({key, question, text});
     };
     add("sureness", "How sure", describe_sureness(planning, simulated));
-    if (planning.plan.efficiency > 0) add("proof", "How good", describe_proof(planning.plan));
+    if (planning.plan.efficiency > 0) add("proof", "How good", explain_proof(planning.plan));
     add("limit", "What limits it", describe_limit(planning.budget));
     add("influence", "Which pose matters most", describe_influence(planning));
     add("more", "More poses for 20 % less", more);
@@ -187,7 +187,7 @@ std::vector<Answer> answer(const Plan& plan) {
             format_error(predict_total(*plan.predicted).rms, false));
     }
     std::vector<Answer> answers{{"accuracy", "How accurate", text}};
-    if (plan.efficiency > 0) answers.push_back({"proof", "How good", describe_proof(plan)});
+    if (plan.efficiency > 0) answers.push_back({"proof", "How good", explain_proof(plan)});
     return answers;
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "posewise/task/blocks_study.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/plan.hpp"
 #include "posewise/task/scene.hpp"
@@ -22,6 +23,11 @@ void check_image_path(const std::string& path);
 /// Texts and paths are quoted, so nothing in them is executed. Throws InputError as
 /// check_image_path() does, or for a study without any held-out error.
 std::string study_plot_script(const std::vector<Study>& studies, const std::string& image_path);
+
+/// The script that draws, for each criterion, value and efficiency of plain blocks' subsets against
+/// pose count: chosen, proven bound, 5-95 % of random ones with their median, own ones as points.
+/// Throws InputError as check_image_path() does.
+std::string study_plot_script(const BlocksStudy& study, const std::string& image_path);
 
 /// The script that draws the poses of a plan in the base frame, from the side and from above: each
 /// as a line through the joints to the targets, coloured in the order to visit them, with the

@@ -64,4 +64,40 @@ std::string format(const Rating& rating, const Campaign& campaign, int digits) {
     return text;
 }
 
+std::string format(const Rating& rating, const std::vector<std::string>& names, bool has_prior,
+                   int digits) {
+    detail::Table table{{"index", "value"}, {}};
+    if (has_prior) table.header = {"index", "with the prior", "without"};
+    const auto add = [&](std::string_view name, double with, double without) {
+        std::vector<std::string> row{std::string(name), detail::format_short(with, digits)};
+        if (has_prior) row.push_back(detail::format_short(without, digits));
+        table.rows.push_back(std::move(row));
+    };
+    for (std::size_t i = 0; i < all_criteria.size(); ++i) {
+        add(criterion_name(all_criteria[i]), rating.scaled.values[i], rating.plain.values[i]);
+    }
+    add("condition", rating.scaled.condition, rating.plain.condition);
+    std::string text = format_section(
+        fmt::format("Indices of {} (-inf, condition inf: the parameters are not identifiable)",
+                    detail::count_of(rating.configurations, "pose")),
+        table);
+    text +=
+        "\nLarger is better, but of the condition number; G and V predict all candidates.\n"
+        "\nWeakest directions: standard deviation, along\n\n";
+    for (const WeakDirection& direction : rating.weakest) {
+        std::string terms;
+        for (const ParameterTerm& term : direction.terms) {
+            terms += fmt::format("{}{} {}", terms.empty() ? "" : ", ",
+                                 detail::format_short(term.coefficient, 3),
+                                 names[static_cast<std::size_t>(term.parameter)]);
+        }
+        text += fmt::format("  {}: {}\n",
+                            direction.singular_value > 0
+                                ? detail::format_short(1 / direction.singular_value, 3)
+                                : "not seen at all",
+                            terms);
+    }
+    return text;
+}
+
 }  // namespace posewise

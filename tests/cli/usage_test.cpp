@@ -111,7 +111,7 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
     {"select a.yaml -m b.csv -k 6 -o ''", "--out: is empty; must be the name of a file"},
     {"select --blocks b.csv --rows 3 -k 6 --repeats 2", "--repeats: needs a robot"},
     {"select --blocks b.csv --rows 3 -k 6 --variable J",
-     "--variable: goes with --blocks and a MATLAB file only"},
+     "--variable: goes with --blocks and a .mat or .npz file only"},
     {"plan a.yaml -k 6 -o ''", "--out: is empty; must be the name of a file"},
     {"plan a.yaml -k 6 --workspace w.csv --workspace-poses 9",
      "--workspace excludes --workspace-poses"},

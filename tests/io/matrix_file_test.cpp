@@ -17,7 +17,7 @@ using testing::input_error_of;
 class ReadMatrix : public ::testing::Test {
   protected:
     std::string error_of(const std::string& text) const {
-        return input_error_of([&] { read_matrix(folder_.write("b.csv", text)); });
+        return input_error_of([&] { read_matrix(folder_.write("b.csv", text)).values; });
     }
     /// Two variables, `first` 3 x 2 and `second` 1 x 1.
     std::string write_mat() const {
@@ -34,13 +34,14 @@ class ReadMatrix : public ::testing::Test {
 };
 
 TEST_F(ReadMatrix, TakesNumbersWithAndWithoutHeader) {
-    EXPECT_EQ(read_matrix(folder_.write("b.csv", "1,2\n3,4\n5,6\n")), expected_);
-    EXPECT_EQ(read_matrix(folder_.write("b.csv", "# more\nx;y\n1;2\n3;4\n\n5;6")), expected_);
+    EXPECT_EQ(read_matrix(folder_.write("b.csv", "1,2\n3,4\n5,6\n")).values, expected_);
+    EXPECT_EQ(read_matrix(folder_.write("b.csv", "# more\nx;y\n1;2\n3;4\n\n5;6")).values,
+              expected_);
 }
 
 TEST_F(ReadMatrix, TakesTheFirstOrANamedVariableOfAMatlabFile) {
-    EXPECT_EQ(read_matrix(write_mat()), expected_);
-    EXPECT_EQ(read_matrix(write_mat(), "second"), (RowMatrixXd{{7}}));
+    EXPECT_EQ(read_matrix(write_mat()).values, expected_);
+    EXPECT_EQ(read_matrix(write_mat(), "second").values, (RowMatrixXd{{7}}));
     EXPECT_NE(input_error_of([&] { read_matrix(write_mat(), "secnd"); }).find("'second'?"),
               std::string::npos);
 }
@@ -58,7 +59,7 @@ TEST_F(ReadMatrix, RefusesZerosThatArePackedAThousandfold) {
               "b.mat: variable 'many' is 600000 x 2, packed more than fiftyfold; must be saved "
               "unpacked (-v6)");
     write(MAT_COMPRESSION_NONE);
-    EXPECT_EQ(read_matrix(path).rows(), 600000);
+    EXPECT_EQ(read_matrix(path).values.rows(), 600000);
 }
 
 TEST_F(ReadMatrix, SaysWhereAFileIsWrong) {

@@ -10,6 +10,7 @@
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/model/dh.hpp"
 #include "posewise/task/answers.hpp"
+#include "posewise/task/blocks_study.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/correction.hpp"
@@ -36,6 +37,8 @@ std::string to_json(const Inspection& inspection);
 std::string to_json(const Inspection& inspection, const ReadingSearch& readings);
 
 std::string to_json(const Rating& rating, const Campaign& campaign);
+/// Of plain blocks whose parameters have these names, one each.
+std::string to_json(const Rating& rating, const std::vector<std::string>& names, bool has_prior);
 
 /// The plan as in its file `path`, that file, and the predictions.
 std::string to_json(const Plan& plan, const std::string& path);
@@ -59,6 +62,8 @@ std::string to_json(const Calibration& calibration, const Provenance& made_from)
 
 /// For one error model, or several (compare_models()).
 std::string to_json(const std::vector<Study>& studies);
+
+std::string to_json(const BlocksStudy& study);
 
 std::string to_json(const Simulation& simulation, const Campaign& campaign);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "posewise/task/answers.hpp"
+#include "posewise/task/blocks_study.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/correction.hpp"
@@ -39,6 +40,9 @@ std::string format(const Inspection& inspection);
 /// Every index of measured configurations with `digits` significant digits, and the directions they
 /// hardly show: everything that `posewise indices` prints.
 std::string format(const Rating& rating, const Campaign& campaign, int digits = 6);
+/// Of plain blocks whose parameters have these names, one each.
+std::string format(const Rating& rating, const std::vector<std::string>& names, bool has_prior,
+                   int digits = 6);
 
 /// "target 1 lies on the axis of joint_6, ...".
 std::string describe(const OnAxis& on_axis);
@@ -123,5 +127,12 @@ using WriteText = std::function<void(std::string_view)>;
 void write_study_csv(const Study& study, const WriteText& write);
 /// As above for several error models, with the model as first column.
 void write_study_csv(const std::vector<Study>& studies, const WriteText& write);
+
+/// Chosen, random and own subsets of plain blocks, a line for each pose count and criterion.
+std::string format(const BlocksStudy& study, int digits = 6);
+/// The same as CSV, a line for each of them: poses, criterion, who chose ("best", "random 5 %",
+/// "random 50 %", "random 95 %", or the name of an own subset), value, bound, efficiency,
+/// candidates.
+void write_study_csv(const BlocksStudy& study, const WriteText& write);
 
 }  // namespace posewise

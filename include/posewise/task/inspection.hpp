@@ -115,4 +115,10 @@ struct Rating {
 /// InputError if base or targets cannot be registered.
 Rating rate(const Campaign& campaign, const Measurements& measurements, Index directions = 3);
 
+/// Rates plain blocks: `plain` without and `scaled` with the prior, if `has_prior`: a standard
+/// deviation of 1 of each parameter. Only the candidates `poses`, if any; G and V predict all of
+/// them. Throws InputError for poses that are not among the candidates.
+Rating rate(const Blocks& candidates, const std::vector<Index>& poses = {}, bool has_prior = false,
+            Index directions = 3);
+
 }  // namespace posewise

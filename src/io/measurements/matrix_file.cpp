@@ -4,8 +4,10 @@
 
 #include <algorithm>
 
+#include "io/format/atomic_file.hpp"
 #include "io/format/csv_reader.hpp"
 #include "io/format/mat_reader.hpp"
+#include "io/format/npy.hpp"
 #include "io/format/text.hpp"
 
 namespace posewise::detail {
@@ -37,28 +39,38 @@ void append_row(const CsvReader& csv, std::size_t width, std::vector<double>& va
     }
 }
 
-RowMatrixXd read_csv_matrix(const std::string& path) {
-    CsvReader csv(path);
+StoredMatrix read_text_matrix(const std::string& path) {
+    CsvReader csv(path, read_file(path), CsvStyle::List);
+    StoredMatrix matrix;
     std::vector<double> values;
     std::size_t width = 0;
     bool is_first = true;
     while (csv.next_row()) {
-        if (!is_first || !is_header(csv)) append_row(csv, width, values);
+        if (is_first && is_header(csv)) {
+            matrix.names.assign(csv.fields().begin(), csv.fields().end());
+        } else {
+            append_row(csv, width, values);
+        }
         width = csv.fields().size();
         is_first = false;
     }
     if (values.empty()) throw input_error_at({path}, "has no numbers; must have at least one row");
     const auto columns = static_cast<Index>(width);
-    return Eigen::Map<const RowMatrixXd>(values.data(), static_cast<Index>(values.size()) / columns,
-                                         columns);
+    matrix.values = Eigen::Map<const RowMatrixXd>(
+        values.data(), static_cast<Index>(values.size()) / columns, columns);
+    return matrix;
 }
+
+StoredMatrix stored(NpyArray array) { return {std::move(array.matrix), array.rows_per_pose}; }
 
 }  // namespace
 
-RowMatrixXd read_matrix(const std::string& path, const std::string& variable) {
-    if (!path.ends_with(".mat") && !path.ends_with(".MAT")) return read_csv_matrix(path);
+StoredMatrix read_matrix(const std::string& path, const std::string& variable) {
+    if (path.ends_with(".npy")) return stored(parse_npy(read_file(path), path));
+    if (path.ends_with(".npz")) return stored(read_npz(path, variable));
+    if (!path.ends_with(".mat") && !path.ends_with(".MAT")) return read_text_matrix(path);
     const MatReader file(path);
-    return variable.empty() ? file.read_first() : file.read(variable);
+    return {variable.empty() ? file.read_first() : file.read(variable)};
 }
 
 }  // namespace posewise::detail

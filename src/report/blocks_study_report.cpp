@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/format.hpp"
+#include "core/text.hpp"
+#include "posewise/report/reports.hpp"
+#include "table.hpp"
+
+namespace posewise {
+namespace {
+
+using detail::format_fixed;
+using detail::format_short;
+
+constexpr int percent_decimals = 2;
+
+std::string percent(double efficiency) { return format_fixed(100 * efficiency, percent_decimals); }
+
+detail::Table chosen_table(const BlocksStudy& study, int digits) {
+    detail::Table table{{"poses", "criterion", "value", "bound", "efficiency/%", "random 5 %",
+                         "50 %", "95 %", "their efficiency/% 5 %", "50 %", "95 %"},
+                        {}};
+    for (const BlocksStudyRow& row : study.rows) {
+        const Choice& chosen = row.chosen;
+        std::vector<std::string> cells{
+            std::to_string(row.pose_count), std::string(criterion_name(row.criterion)),
+            format_short(chosen.value, digits), format_short(chosen.bound, digits),
+            percent(chosen.efficiency)};
+        const RandomBand& random = row.random;
+        if (random.subsets > 0) {
+            for (const SubsetValue& one : {random.p5, random.p50, random.p95}) {
+                cells.push_back(format_short(one.value, digits));
+            }
+            for (const SubsetValue& one : {random.p5, random.p50, random.p95}) {
+                cells.push_back(percent(one.efficiency));
+            }
+        }
+        table.rows.push_back(std::move(cells));
+    }
+    return table;
+}
+
+detail::Table own_table(const BlocksStudy& study, int digits) {
+    detail::Table table{{"poses", "criterion", "value", "bound", "efficiency/%", "subset"}, {}};
+    for (const BlocksStudyRow& row : study.rows) {
+        for (const auto& [number, found] : row.own) {
+            table.rows.push_back(
+                {std::to_string(row.pose_count), std::string(criterion_name(row.criterion)),
+                 format_short(found.value, digits), format_short(row.chosen.bound, digits),
+                 percent(found.efficiency), detail::escape_controls(study.subsets[number].name)});
+        }
+    }
+    return table;
+}
+
+/// "3 5 7", as a field.
+std::string join(const std::vector<Index>& poses) {
+    std::string text;
+    for (const Index pose : poses) text += (text.empty() ? "" : " ") + std::to_string(pose);
+    return text;
+}
+
+/// As a CSV field.
+std::string quote_field(const std::string& text) {
+    if (text.find_first_of(",;\"\n\r") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
+}
+
+}  // namespace
+
+std::string format(const BlocksStudy& study, int digits) {
+    std::string text = format_table(chosen_table(study, digits));
+    const detail::Table own = own_table(study, digits);
+    if (!own.rows.empty()) text += format_section("Own subsets", own);
+    if (!study.rows.empty() && study.rows.front().random.subsets > 0) {
+        text += fmt::format(
+            "\nEfficiency: share of the best possible information, against the proven bound. "
+            "Random: {}\nfor each number of poses, the same ones for all criteria.\n",
+            detail::count_of(study.rows.front().random.subsets, "subset"));
+    }
+    return text;
+}
+
+void write_study_csv(const BlocksStudy& study, const WriteText& write) {
+    std::string text = "poses,criterion,chosen_by,value,bound,efficiency,candidates\n";
+    for (const BlocksStudyRow& row : study.rows) {
+        const auto add = [&](const std::string& by, const SubsetValue& found,
+                             const std::vector<Index>& poses) {
+            const auto number = [](double value) {
+                return std::isfinite(value) ? fmt::format("{}", value) : "";
+            };
+            text += fmt::format("{},{},{},{},{},{},{}\n", row.pose_count,
+                                criterion_name(row.criterion), quote_field(by), number(found.value),
+                                number(row.chosen.bound), number(found.efficiency), join(poses));
+        };
+        add("best", {row.chosen.value, row.chosen.efficiency}, row.chosen.poses);
+        if (row.random.subsets > 0) {
+            add("random 5 %", row.random.p5, {});
+            add("random 50 %", row.random.p50, {});
+            add("random 95 %", row.random.p95, {});
+        }
+        for (const auto& [number, found] : row.own) {
+            add(study.subsets[number].name, found, study.subsets[number].poses);
+        }
+    }
+    write(text);
+}
+
+}  // namespace posewise
