@@ -31,12 +31,13 @@ CLI::Option* add_blocks_option(CLI::App& group, std::string& blocks) {
 
 void add_blocks_layout(CLI::App& command, PlanSources& sources) {
     command
-        .add_option("--rows", sources.rows_per_block,
-                    "--blocks: rows of one candidate (default: of an array candidates x rows x "
-                    "parameters its own)")
+        .add_option(
+            "--rows", sources.rows_per_block,
+            "With --blocks: rows of one candidate (default: of an array candidates x rows x "
+            "parameters its own)")
         ->check(whole_number(1, 1000000));
     command.add_option("--variable", sources.variable,
-                       "--blocks: variable of the .mat or .npz file (default: the first)");
+                       "With --blocks: variable of the .mat or .npz file (default: the first)");
 }
 
 void check_blocks_usage(const std::string& blocks, const PlanSources& sources) {

@@ -33,6 +33,7 @@ enum Group : std::size_t { Input, Asked, Errors, Earlier, Search, Judged, Output
 /// The group of each option, by its long name; it means the same in every command. Rare ones are
 /// named only.
 constexpr std::pair<std::string_view, Group> group_of_option[] = {
+    {"variable", Rare},
     {"poses", Asked},
     {"criterion", Asked},
     {"criteria", Asked},
@@ -57,7 +58,7 @@ constexpr std::pair<std::string_view, Group> group_of_option[] = {
     {"relax", Asked},
     {"simulate", Asked},
     {"trials", Asked},
-    {"precision", Asked},
+    {"precision", Rare},
     {"truth", Asked},
     {"dwell", Asked},
     {"speed", Asked},
@@ -105,8 +106,8 @@ constexpr std::pair<std::string_view, Group> group_of_option[] = {
     {"time", Search},
     {"threads", Rare},
     {"store", Search},
-    {"shard", Search},
-    {"merge", Search},
+    {"shard", Rare},
+    {"merge", Rare},
     {"progress", Rare},
     {"verify", Judged},
     {"verify-digits", Rare},
@@ -120,6 +121,7 @@ constexpr std::pair<std::string_view, Group> group_of_option[] = {
     {"predict-out", Rare},
     {"out", Output},
     {"csv", Output},
+    {"write-blocks", Output},
     {"targets", Output},
     {"report", Output},
     {"plot", Output},

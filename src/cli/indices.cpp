@@ -133,9 +133,10 @@ void add_indices(CLI::App& program, const CommonOptions& common) {
     CLI::Option* const blocks = add_blocks_option(*command, arguments->blocks);
     add_blocks_layout(*command, arguments->sources);
     command
-        ->add_option("--subset", arguments->subset,
-                     "--blocks: only these candidates, by number from 0 (text, .npy), or those of "
-                     "a plan of select")
+        ->add_option(
+            "--subset", arguments->subset,
+            "With --blocks: only these candidates, by number from 0 (text, .npy), or those of "
+            "a plan of select")
         ->check(file_name())
         ->needs(blocks);
     command

@@ -71,14 +71,15 @@ void add_blocks_study_options(CLI::App& command, StudyArguments& arguments) {
     CLI::Option* const blocks = add_blocks_option(command, plain.blocks);
     add_blocks_layout(command, plain.sources);
     command
-        .add_option("--subset", plain.subsets,
-                    "--blocks: candidates to compare, by number from 0 (text, .npy), or a plan "
-                    "of select; may be repeated")
+        .add_option(
+            "--subset", plain.subsets,
+            "With --blocks: candidates to compare, by number from 0 (text, .npy), or a plan "
+            "of select; may be repeated")
         ->check(file_name())
         ->needs(blocks);
     command
         .add_option("--augment", plain.sources.augment,
-                    "--blocks: poses measured already, whose information is there")
+                    "With --blocks: poses measured already, whose information is there")
         ->check(file_name())
         ->needs(blocks);
 }

@@ -64,8 +64,9 @@ std::string study_plot_script(const BlocksStudy& study, const std::string& image
     const double height = 400 * static_cast<double>(study.criteria.size()) + 40;
     std::string script = fmt::format(
         "{}set xtics out nomirror\nset ytics out nomirror\nset border 3 lc rgb '#5f6b77'\n"
-        "set grid ytics lc rgb '#dfe3e8'\nset format y '%g'\nset key below\n"
-        "set offsets graph 0.02, graph 0.02\nset multiplot layout {},2\nset xlabel 'poses'\n",
+        "set grid ytics lc rgb '#dfe3e8'\nset format y '%g'\nset key below reverse Left\n"
+        "set offsets graph 0.02, graph 0.02\nset multiplot layout {},2\nset xlabel 'poses' offset "
+        "0,0.3\n",
         gnuplot_output(image_path, 1100, height), study.criteria.size());
     if (!study.rows.empty() && study.rows.front().pose_count == study.rows.back().pose_count) {
         const Index only = study.rows.front().pose_count;  // makes no range of its own

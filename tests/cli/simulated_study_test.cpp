@@ -179,7 +179,7 @@ TEST_F(SimulatedStudies, RefuseWhatIsNoStudy) {
     };
     const std::string campaign = study_.substr(6, study_.find("' ") - 4);
     usage("study", "CAMPAIGN");
-    usage("study " + campaign, "either measured configurations (-m) or --simulate");
+    usage("study " + campaign, "measured configurations (-m), --simulate or --blocks");
     usage("study " + campaign + "--trials 5 -m m.csv", "--simulate");
     usage(study_ + "5 -m m.csv", "leave one out");
     usage(study_ + "5 --shard 1/2", "--store");

@@ -164,7 +164,7 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
     {"simulate a.yaml -k 5", "--out is required"},
     {"simulate a.yaml -k 5 --seed -1 --out a.csv",
      "--seed: is '-1'; must be a whole number from 0 to 18446744073709551615"},
-    {"study a.yaml", "needs either measured configurations (-m) or --simulate"},
+    {"study a.yaml", "needs measured configurations (-m), --simulate or --blocks"},
     {"simulate a.yaml -k 5 -o a.csv --seed -1",
      "--seed: is '-1'; must be a whole number from 0 to 18446744073709551615"},
     {"simulate a.yaml -k 5 -o a.csv --seed 18446744073709551616",

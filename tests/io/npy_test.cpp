@@ -123,8 +123,8 @@ TEST_F(Npy, BelievesNoHeaderThatPromisesMoreThanThereIs) {
     EXPECT_EQ(error_of("", 48), damaged);
 }
 
-/// Every beginning of a file is refused in one line. Of a zip file's last six bytes, which are zero,
-/// minizip takes those that are missing for zeros.
+/// Every beginning of a file is refused in one line. Of a zip file's last six bytes, which are
+/// zero, minizip takes those that are missing for zeros.
 TEST_F(Npy, RefusesFilesThatAreCutShort) {
     const std::string npy = npy_text(zero_to(6, 4), 3);
     for (const std::string& whole : {npy, npz_text("J", npy)}) {

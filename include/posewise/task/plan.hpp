@@ -32,7 +32,7 @@ struct PlanSources {
     std::string estimate;  ///< an earlier one, applied to the campaign by with_earlier()
     std::string candidates;
     Index rows_per_block = 0;  ///< for plain blocks
-    std::string variable;      ///< for plain blocks in a MATLAB file; empty: the first
+    std::string variable;      ///< for plain blocks in a .mat or .npz file; empty: the first
     std::string augment;       ///< poses measured already
     std::string test_poses;
     std::string groups;

@@ -23,11 +23,13 @@ namespace {
 
 using detail::StoredMatrix;
 
-/// The smallest period of the rows, by that comparison, of which there are at least four; 0: none.
+/// The smallest period of the rows, by that comparison: at most 100, and at least four times there;
+/// 0: none.
 template <class IsLike>
 Index period_of(Index rows, const IsLike& is_like) {
     constexpr Index least_count = 4;
-    for (Index period = 1; period * least_count <= rows; ++period) {
+    constexpr Index longest = 100;
+    for (Index period = 1; period <= std::min(longest, rows / least_count); ++period) {
         if (rows % period != 0) continue;
         Index row = period;
         while (row < rows && is_like(row, row - period)) ++row;
