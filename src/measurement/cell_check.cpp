@@ -149,6 +149,24 @@ std::size_t elements_before(const Chain& robot, Index frame) {
 
 }  // namespace
 
+double interval_clearance(const Interval& interval, double value) {
+    return std::min(value - interval.lower, interval.upper - value);
+}
+
+std::string describe_sums(const Cell& cell, const Chain& robot, const VectorXd& q) {
+    double least = -pose_rounding;
+    std::string text;
+    for (const JointSum& sum : cell.joint_sums) {
+        const double amount = sum.coefficients.dot(q.head(sum.coefficients.size()));
+        const Interval limits = within_margin(sum, cell, robot);
+        const double clearance = interval_clearance(limits, amount);
+        if (!(clearance < least)) continue;
+        least = clearance;
+        text = describe_range(sum.name, motion_of(sum, robot), amount, limits.lower, limits.upper);
+    }
+    return text;
+}
+
 double angle_between(const Vector3d& a, const Vector3d& b) {
     return arc_tangent(a.cross(b).norm(), a.dot(b));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,16 @@ Motion motion_of(const JointSum& sum, const Chain& robot);
 
 /// The limits of a sum less the cell's margin.
 Interval within_margin(const JointSum& sum, const Cell& cell, const Chain& robot);
+
+/// By which a pose at its bound may be beyond it, since it was read from a file, m or rad.
+inline constexpr double pose_rounding = 1e-9;
+
+/// How far a value is from leaving an interval; negative: it did.
+double interval_clearance(const Interval& interval, double value);
+
+/// "q3 - q2 is 95 deg, must be from -80 to 88 deg": of the sum farthest beyond its limits, less the
+/// margin; empty if none is, to rounding.
+std::string describe_sums(const Cell& cell, const Chain& robot, const VectorXd& q);
 
 /// Angle between two vectors, exact also where it is small; 0 if one has no length.
 double angle_between(const Vector3d& a, const Vector3d& b);

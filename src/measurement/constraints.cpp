@@ -16,21 +16,34 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double interval_clearance(const Interval& interval, double value) {
-    return std::min(value - interval.lower, interval.upper - value);
+using detail::interval_clearance;
+using detail::pose_rounding;
+
+/// The limits of a joint at such a stop.
+Interval limits_at(const Constraints& constraints, Index joint, Stop stop) {
+    const Joint& limited = constraints.robot().joint(joint);
+    const JointMargin& margin = constraints.cell().limit_margin;
+    double outset = 0;
+    if (stop == Stop::Home) {
+        outset = limited.motion == Motion::Rotation ? margin.angle : margin.length;
+    }
+    return {limited.lower - outset, limited.upper + outset};
 }
 
-/// The amount of a sum of joints, and its clearance to the limits less the margin.
-struct SumAt {
-    double amount;
-    Interval limits;
-    double clearance;
-};
-
-SumAt sum_at(const JointSum& sum, const Constraints& constraints, const VectorXd& q) {
-    const double amount = sum.coefficients.dot(q.head(sum.coefficients.size()));
-    const Interval limits = detail::within_margin(sum, constraints.cell(), constraints.robot());
-    return {amount, limits, interval_clearance(limits, amount)};
+/// Of the joint farthest beyond its limits.
+std::string describe_limits(const Constraints& constraints, const VectorXd& q, Stop stop) {
+    double least = infinity;
+    std::string text;
+    for (Index j = 0; j < constraints.robot().joint_count(); ++j) {
+        const Interval limits = limits_at(constraints, j, stop);
+        const double clearance = interval_clearance(limits, q[j]);
+        if (!(clearance < least)) continue;
+        least = clearance;
+        const Joint& joint = constraints.robot().joint(j);
+        text = detail::describe_range(joint.name, joint.motion, q[j], limits.lower,
+                                      limits.upper);
+    }
+    return text;
 }
 
 /// Clearance of an azimuth to an interval that may lie across +-pi.
@@ -132,7 +145,9 @@ double Constraints::limit_clearance(const VectorXd& q) const {
 double Constraints::sum_clearance(const VectorXd& q) const {
     double least = infinity;
     for (const JointSum& sum : cell_.joint_sums) {
-        least = std::min(least, sum_at(sum, *this, q).clearance);
+        const double amount = sum.coefficients.dot(q.head(sum.coefficients.size()));
+        const Interval limits = detail::within_margin(sum, cell_, robot_);
+        least = std::min(least, interval_clearance(limits, amount));
     }
     return least;
 }
@@ -211,7 +226,6 @@ RowMatrixXd Constraints::bring_to_contacts(const RowMatrixXd& candidates, Index 
 }
 
 void Constraints::check_sight(const Posture& posture, ConstraintReport& report) const {
-    constexpr double rounding = 1e-9;  // m or rad: a pose at its bound, read from a file
     const Sight& sight = *cell_.sight;
     const std::size_t count = posture.targets.size();
     const Matrix3d tracker_R_flange =
@@ -235,7 +249,7 @@ void Constraints::check_sight(const Posture& posture, ConstraintReport& report) 
                                             line_clearance(posture, posture.targets[j]),
                                             infinity};
         of_target.back() = *std::min_element(of_target.begin(), of_target.end());
-        report.is_seen[static_cast<Index>(j)] = of_target.back() >= -rounding;
+        report.is_seen[static_cast<Index>(j)] = of_target.back() >= -pose_rounding;
         for (std::size_t k = 0; k < kinds; ++k) clearances[k].push_back(of_target[k]);
     }
     const auto needed =
@@ -278,6 +292,30 @@ double Constraints::collision_clearance(const VectorXd& q) const {
            cell_.safety_distance;
 }
 
+std::optional<Constraint> Constraints::find_violated(const VectorXd& q, Stop stop) const {
+    if (stop == Stop::Measured || stop == Stop::Sent) {
+        const ConstraintReport report = check(q);
+        for (std::size_t k = 0; k < constraint_count; ++k) {
+            const auto constraint = static_cast<Constraint>(k);
+            if (constraint == Constraint::FixedJoints && stop == Stop::Sent) continue;
+            if (report[constraint] < -pose_rounding) return constraint;
+        }
+        return std::nullopt;
+    }
+    robot_.check_configuration(q);
+    for (Index j = 0; j < robot_.joint_count(); ++j) {
+        if (interval_clearance(limits_at(*this, j, stop), q[j]) < -pose_rounding) {
+            return Constraint::JointLimits;
+        }
+    }
+    if (sum_clearance(q) < -pose_rounding) return Constraint::JointSums;
+    const Posture posture = pose_bodies(q);
+    const double needed = cell_.safety_distance - pose_rounding;
+    if (nearest_keep_out(posture).distance < needed) return Constraint::KeepOuts;
+    if (nearest_of_robot(posture).distance < needed) return Constraint::SelfCollision;
+    return std::nullopt;
+}
+
 Clearance Constraints::nearest(const VectorXd& q) const {
     const Posture posture = pose_bodies(q);
     const Pair outer = nearest_keep_out(posture);
@@ -298,19 +336,21 @@ std::string describe_clearance(const Clearance& nearest, double safety_distance)
         nearest.other, detail::format_short(1e3 * safety_distance));
 }
 
-std::string describe_sum_violation(const Constraints& constraints, const VectorXd& q,
-                                   double rounding) {
-    double least = -rounding;
-    std::string text;
-    for (const JointSum& sum : constraints.cell().joint_sums) {
-        const auto [amount, limits, clearance] = sum_at(sum, constraints, q);
-        if (!(clearance < least)) continue;
-        least = clearance;
-        const bool slides = detail::motion_of(sum, constraints.robot()) == Motion::Translation;
-        const double unit = slides ? mm_per_m : to_degrees(1);
-        text =
-            fmt::format("{} is {:.9g} {}, must be from {:.9g} to {:.9g}", sum.name, unit * amount,
-                        slides ? "mm" : "deg", unit * limits.lower, unit * limits.upper);
+std::string describe_violation(const Constraints& constraints, const VectorXd& q, Stop stop) {
+    const std::optional<Constraint> violated = constraints.find_violated(q, stop);
+    if (!violated) return "";
+    if (*violated == Constraint::JointLimits) {
+        return fmt::format("is beyond the joint limits{}: {}",
+                           stop == Stop::Home ? "" : " (less their margin)",
+                           describe_limits(constraints, q, stop));
+    }
+    const std::string text = std::string("does not meet ") + constraint_name(*violated);
+    if (*violated == Constraint::JointSums) {
+        return text + ": " + detail::describe_sums(constraints.cell(), constraints.robot(), q);
+    }
+    if (*violated == Constraint::KeepOuts || *violated == Constraint::SelfCollision) {
+        return text + ": " +
+               describe_clearance(constraints.nearest(q), constraints.cell().safety_distance);
     }
     return text;
 }

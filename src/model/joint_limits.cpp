@@ -13,15 +13,20 @@ JointRange limits_of(const Chain& robot) {
     return range;
 }
 
+std::string describe_range(const std::string& name, Motion motion, double value, double lower,
+                           double upper) {
+    const AmountUnits& units = units_of(motion);
+    return fmt::format("{} is {:.9g} {unit}, must be from {:.9g} to {:.9g} {unit}", name,
+                       units.to_reading(value), units.to_reading(lower), units.to_reading(upper),
+                       fmt::arg("unit", units.reading));
+}
+
 std::string describe_limit_violation(const Chain& robot, const VectorXd& q) {
     constexpr double rounding = 1e-6;
     for (Index j = 0; j < robot.joint_count(); ++j) {
         const Joint& joint = robot.joint(j);
         if (q[j] >= joint.lower - rounding && q[j] <= joint.upper + rounding) continue;
-        const AmountUnits& units = units_of(joint.motion);
-        return fmt::format("{} is {:.7g} {unit}, must be from {:.7g} to {:.7g} {unit}", joint.name,
-                           units.to_reading(q[j]), units.to_reading(joint.lower),
-                           units.to_reading(joint.upper), fmt::arg("unit", units.reading));
+        return describe_range(joint.name, joint.motion, q[j], joint.lower, joint.upper);
     }
     return "";
 }

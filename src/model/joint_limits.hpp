@@ -13,7 +13,11 @@ struct JointRange {
 };
 JointRange limits_of(const Chain& robot);
 
-/// "q2 is 61 deg, must be from -50 to 60 deg" (mm where it slides): the first joint that is beyond
+/// "q2 is 61 deg, must be from -50 to 60 deg" (mm where it slides).
+std::string describe_range(const std::string& name, Motion motion, double value, double lower,
+                           double upper);
+
+/// In these words: the first joint that is beyond
 /// its limits by more than rounding, 1e-6 rad or m. Empty: none is.
 std::string describe_limit_violation(const Chain& robot, const VectorXd& q);
 

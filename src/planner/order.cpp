@@ -186,29 +186,33 @@ VisitingOrder shortest_order(const MatrixXd& times, const OrderOptions& options)
     return to_order(times, best);
 }
 
-VisitingOrder random_order(const MatrixXd& times, double factor, const OrderOptions& options) {
-    VisitingOrder shortest = shortest_order(times, options);
+VisitingOrder random_order(const MatrixXd& times, const VisitingOrder& shortest, double factor,
+                           const OrderOptions& options) {
     const MatrixXd finite = penalise(times);
-    const Index count = times.rows();
+    const Index last = times.rows() - 1;
     // Streams of kicks have small numbers.
     RandomStream stream(options.seed, std::uint64_t{1} << 32);
-    Path path(static_cast<std::size_t>(count));
+    Path path(static_cast<std::size_t>(times.rows()));
     std::iota(path.begin(), path.end(), Index{0});
-    for (auto last = path.end() - 1; last > path.begin() + 1; --last) {
-        std::iter_swap(last, path.begin() + 1 + stream.index(last - path.begin()));
+    for (auto end = path.end() - 1; end > path.begin() + 1; --end) {
+        std::iter_swap(end, path.begin() + 1 + stream.index(end - path.begin()));
     }
+    const auto leg = [&](Index from, Index to) {
+        return to > last ? 0
+                         : finite(path[static_cast<std::size_t>(from)],
+                                  path[static_cast<std::size_t>(to)]);
+    };
     const double most = factor * shortest.time;
     double time = path_time(finite, path);
-    for (Index left = 100 * count * count; time > most && left > 0; --left) {
+    for (Index left = 100 * times.size(); time > most && left > 0; --left) {
         if (options.is_over && options.is_over()) return shortest;
-        const Index a = stream.index(count - 1) + 1;
-        const Index b = stream.index(count - 1) + 1;
-        Path reversed = path;
-        std::reverse(reversed.begin() + std::min(a, b), reversed.begin() + std::max(a, b) + 1);
-        const double shorter = path_time(finite, reversed);
-        if (shorter >= time) continue;
-        path = std::move(reversed);
-        time = shorter;
+        const Index a = stream.index(last) + 1;
+        const Index b = stream.index(last) + 1;
+        const auto [i, j] = std::minmax(a, b);
+        const double end = j < last ? leg(i, j + 1) : 0;
+        if (!(leg(i - 1, j) + end < leg(i - 1, i) + leg(j, j + 1))) continue;
+        std::reverse(path.begin() + i, path.begin() + j + 1);
+        time = path_time(finite, path);
     }
     return time > most ? shortest : to_order(times, path);
 }

@@ -34,7 +34,9 @@ VisitingOrder nearest_neighbour_order(const MatrixXd& times);
 VisitingOrder shortest_order(const MatrixXd& times, const OrderOptions& options = {});
 
 /// A path in random order, in which parts at random are then reversed where that shortens it, until
-/// it takes at most `factor` times as long as shortest_order(); that one where none is found.
-VisitingOrder random_order(const MatrixXd& times, double factor, const OrderOptions& options = {});
+/// it takes at most `factor` times as long as `shortest`, of shortest_order(); that one where none
+/// is found.
+VisitingOrder random_order(const MatrixXd& times, const VisitingOrder& shortest, double factor,
+                           const OrderOptions& options = {});
 
 }  // namespace posewise::detail

@@ -79,13 +79,8 @@ class Roadmap {
             }
         }
         if (!has_home() || !is_from_home) return;
-        const std::string beyond = describe_sum_violation(constraints, nodes_[0]);
-        if (!beyond.empty()) throw InputError("cell: home is beyond joint_sums: " + beyond);
-        if (constraints.collision_clearance(nodes_[0]) < 0) {
-            throw InputError("cell: home is not free: " +
-                             describe_clearance(constraints.nearest(nodes_[0]),
-                                                constraints.cell().safety_distance));
-        }
+        const std::string fault = describe_violation(constraints, nodes_[0], Stop::Home);
+        if (!fault.empty()) throw InputError("cell: home " + fault);
     }
 
     bool is_over() const { return respite_.is_over(); }
@@ -203,8 +198,7 @@ class Roadmap {
         Detour best;
         const auto consider = [&](const VectorXd& via) {
             const double time = move_time(pace_, node(i), via) + move_time(pace_, via, node(j));
-            if (time >= best.time || constraints_.sum_clearance(via) < 0) return;
-            if (constraints_.collision_clearance(via) < 0) return;
+            if (time >= best.time || constraints_.find_violated(via, Stop::Via)) return;
             if (!is_move_free(constraints_, node(i), via, options_.resolution)) return;
             if (!is_move_free(constraints_, via, node(j), options_.resolution)) return;
             best = {time, via};
@@ -253,16 +247,23 @@ bool examine_moves(Roadmap& roadmap, const std::vector<Index>& poses) {
     return is_new;
 }
 
-std::vector<Index> order_by_known_times(Roadmap& roadmap, const TourOptions& asked) {
+/// An order, and the shortest one that is known.
+struct Orders {
+    std::vector<Index> taken;
+    double shortest_time = 0;
+};
+
+Orders order_by_known_times(Roadmap& roadmap, const TourOptions& asked) {
     OrderOptions options = asked.order;
     options.is_over = [&roadmap] { return roadmap.is_over(); };
-    VisitingOrder order;
-    do {
-        order = asked.random_order > 0
-                    ? random_order(roadmap.known_times(), asked.random_order, options)
-                    : shortest_order(roadmap.known_times(), options);
-    } while (examine_moves(roadmap, order.poses));
-    return order.poses;
+    for (;;) {
+        const MatrixXd times = roadmap.known_times();
+        const VisitingOrder shortest = shortest_order(times, options);
+        if (examine_moves(roadmap, shortest.poses)) continue;
+        if (asked.random_order <= 0) return {shortest.poses, shortest.time};
+        const VisitingOrder order = random_order(times, shortest, asked.random_order, options);
+        if (!examine_moves(roadmap, order.poses)) return {order.poses, shortest.time};
+    }
 }
 
 /// Of straight moves, free or not, in this order.
@@ -323,16 +324,17 @@ Tour plan_tour(const Constraints& constraints, const RowMatrixXd& poses,
     const std::vector<Index> nearest = is_measured
                                            ? nearest_neighbour_order(roadmap.straight_times()).poses
                                            : roadmap.to_the_nearest();
-    const std::vector<Index> order = is_measured ? order_by_known_times(roadmap, options) : nearest;
-    std::vector<Index> given(order.size());
+    const Orders orders = is_measured ? order_by_known_times(roadmap, options) : Orders{nearest};
+    std::vector<Index> given(nearest.size());
     std::iota(given.begin(), given.end(), Index{0});
 
     Tour tour;
     tour.is_cut_short = roadmap.is_over();
     tour.planning_order_time = straight_time_of(roadmap, given);
     tour.nearest_neighbour_time = straight_time_of(roadmap, nearest);
+    tour.shortest_time = is_measured ? orders.shortest_time : tour.nearest_neighbour_time;
     Index here = 0;
-    for (const Index pose : order) {
+    for (const Index pose : orders.taken) {
         const Visit visit = roadmap.visit(here, pose + 1);
         if (visit.is_blocked) ++tour.blocked_count;
         tour.time += roadmap.time_of(here, visit);

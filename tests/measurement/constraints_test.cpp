@@ -71,9 +71,9 @@ TEST(Constraints, KeepSumsOfJointsWithinTheirLimits) {
     EXPECT_NEAR(check(cell, angles(10, 20))[Constraint::JointSums], 15 * degree, 1e-12);
     const Constraints constraints(arm_campaign(), cell);
     EXPECT_TRUE(constraints.restricts_places());
-    EXPECT_EQ(describe_sum_violation(constraints, angles(10, 20)), "");
-    EXPECT_EQ(describe_sum_violation(constraints, angles(10, 50)),
-              "q2 - q1 is 40 deg, must be from -35 to 25");
+    EXPECT_EQ(describe_violation(constraints, angles(10, 20), Stop::Measured), "");
+    EXPECT_EQ(describe_violation(constraints, angles(10, 50), Stop::Via),
+              "does not meet joint_sums: q2 - q1 is 40 deg, must be from -35 to 25 deg");
     const Pool pool = make_pool(constraints, 500, 1);
     for (const auto& q : pool.configurations.rowwise()) {
         EXPECT_LE(q[1] - q[0], 25 * degree);

@@ -119,7 +119,7 @@ TEST(PlanTour, KeepsSumsOfJointsAtHomeAndOnTheWay) {
     cell.joint_sums[0].limits = {-50 * degree, 20 * degree};  // home: 30 deg
     const std::string error = testing::input_error_of(
         [&] { plan_tour(Constraints(cell_campaign(), cell), pool.configurations.topRows(1)); });
-    EXPECT_NE(error.find("home is beyond joint_sums: q3 - q2 is 30 deg"), std::string::npos)
+    EXPECT_NE(error.find("home does not meet joint_sums: q3 - q2 is 30 deg"), std::string::npos)
         << error;
 }
 

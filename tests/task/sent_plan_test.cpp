@@ -139,7 +139,7 @@ TEST(SentPlan, IsRefusedForWhatNoRobotMayDo) {
     plan.campaign = "another";
     EXPECT_NE(error(plan).find("campaign: is 'another'"), std::string::npos);
     // The arm stretched into the table.
-    EXPECT_NE(error(plan_of(campaign, {at(0, 58, -40, 0, 0, 0)})).find("does not keep"),
+    EXPECT_NE(error(plan_of(campaign, {at(0, 58, -40, 0, 0, 0)})).find("does not meet"),
               std::string::npos);
 }
 

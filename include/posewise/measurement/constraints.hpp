@@ -64,6 +64,14 @@ std::string describe_unchecked_bodies(const Campaign& campaign);
 /// safety distance.
 std::string describe_clearance(const Clearance& nearest, double safety_distance);
 
+/// What a robot does where it stops: it says which constraints must be met there.
+enum class Stop {
+    Measured,  ///< all
+    Sent,      ///< all but FixedJoints: rounding to a program's digits moves those, too
+    Via,       ///< JointLimits, JointSums, KeepOuts and SelfCollision
+    Home,      ///< likewise, the joint limits without their margin
+};
+
 /// A cell around a campaign's robot: validated once, then queried for many configurations. Calls
 /// have no side effects, so threads may share one.
 class Constraints {
@@ -88,6 +96,9 @@ class Constraints {
     /// first candidate. Unchanged if nothing must be touched. Candidates that reach no contact are
     /// left out.
     RowMatrixXd bring_to_contacts(const RowMatrixXd& candidates, Index first) const;
+
+    /// The first constraint that q violates at such a stop by more than rounding, 1e-9 rad or m.
+    std::optional<Constraint> find_violated(const VectorXd& q, Stop stop) const;
 
     /// Checks q with nominal geometry. Throws InputError as Chain::check_configuration().
     ConstraintReport check(const VectorXd& q) const;
@@ -131,10 +142,10 @@ class Constraints {
     VectorXd clearance_rates_;
 };
 
-/// "q3 - q2 is 95 deg, must be from -80 to 88 deg": of the sum farthest beyond its limits, less the
-/// margin; empty if none is, by more than `rounding` (rad or m).
-std::string describe_sum_violation(const Constraints& constraints, const VectorXd& q,
-                                   double rounding = 0);
+/// "is beyond the joint limits: q2 is 61 deg, must be from -50 to 60 deg", "does not meet keep_out:
+/// link 3 is 12.30 mm from fence, must be 30 mm away": the constraint that find_violated() finds,
+/// with its values; empty if there is none.
+std::string describe_violation(const Constraints& constraints, const VectorXd& q, Stop stop);
 
 /// Largest joint difference between two configurations, rad or m.
 double joint_distance(const VectorXd& a, const VectorXd& b);

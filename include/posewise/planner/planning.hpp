@@ -80,6 +80,8 @@ struct Tour {
     double time = 0;                    ///< s, with vias; a blocked move counts as if it were free
     double planning_order_time = 0;     ///< straight moves in the order the poses were given
     double nearest_neighbour_time = 0;  ///< straight moves, always to the nearest pose
+    /// With vias, of the shortest order that was found; another than `time` for a random order.
+    double shortest_time = 0;
     Index blocked_count = 0;
     /// There was no time to find the shortest tour, nor ways around what blocks a move.
     bool is_cut_short = false;

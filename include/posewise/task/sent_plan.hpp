@@ -63,4 +63,11 @@ std::vector<RouteStop> route_of(const Plan& sent, const Campaign& campaign,
                                 const ControllerJoints& controller, const VectorXd& steps,
                                 const RouteOptions& options = {});
 
+/// What keeps a robot from taking this way, which perhaps was edited since it was sent: "pose 'p3'
+/// is beyond the joint limits (less their margin): q2 is 61 deg, must be from -50 to 60 deg" and
+/// the like of joint sums and the cell, targets that poses of the plan are to show and do not, and
+/// moves that are not free. Each once. Throws InputError as Constraints.
+std::vector<std::string> find_faults(const std::vector<RouteStop>& route, const Campaign& campaign,
+                                     const std::optional<Plan>& sent);
+
 }  // namespace posewise

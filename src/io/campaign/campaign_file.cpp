@@ -191,15 +191,19 @@ Campaign make_of(const YamlValue& robot, const std::string& words, const Make& m
 
 Campaign with_listed_errors(const Campaign& campaign, const std::vector<YamlValue>& free) {
     std::vector<std::string> errors;
-    for (const YamlValue& error : free) {
-        errors.push_back(error.text());
-        try {
-            with_free_errors(campaign, {errors.back()});
-        } catch (const InputError& problem) {
-            throw error.error(problem.what());
+    for (const YamlValue& error : free) errors.push_back(error.text());
+    try {
+        return with_free_errors(campaign, errors);
+    } catch (const InputError&) {
+        for (const YamlValue& error : free) {  // whose fault it is
+            try {
+                with_free_errors(campaign, {error.text()});
+            } catch (const InputError& problem) {
+                throw error.error(problem.what());
+            }
         }
+        throw;
     }
-    return with_free_errors(campaign, errors);
 }
 
 Campaign make_irreducible(const Campaign& campaign, ErrorModel model, const StopSignal& stop) {

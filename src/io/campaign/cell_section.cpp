@@ -8,6 +8,7 @@
 #include "io/format/text.hpp"
 #include "keys.hpp"
 #include "model/halton.hpp"
+#include "measurement/cell_check.hpp"
 #include "model/joint_limits.hpp"
 
 namespace posewise::detail {
@@ -235,7 +236,13 @@ VectorXd read_rates(const YamlMap& map, const std::string& name, const std::stri
         if (rates.size() != 0) throw stated->error("is stated in two units; keep one");
         rates = read_joint_angles({*stated, find_unit(unit)}, robot);
         if (!(rates.array() > 0).all()) throw stated->error("must be positive for every joint");
-        constexpr double fastest = 35;  // rad/s, 2000 deg/s; in rad/s^2 in 1 s
+        constexpr double fastest = 35;  // rad/s, 2000 deg/s
+        constexpr double slowest_rise = to_radians(0.01);  // rad/s^2
+        constexpr double fastest_rise = to_radians(1e5);
+        if (per == "s2" && !(rates.minCoeff() >= slowest_rise && rates.maxCoeff() <= fastest_rise)) {
+            throw stated->error("is beyond 0.01 to 100000 deg/s^2, which no joint has; is it in " +
+                                std::string(unit) + "/s^2?");
+        }
         if (per == "s" && rates.maxCoeff() > fastest) {
             throw stated->error("is beyond 2000 deg/s, which no joint has; is it in deg/s?");
         }
@@ -262,6 +269,8 @@ void read_motion(const YamlMap& map, const Chain& robot, Cell& cell) {
         if (!violation.empty()) {
             throw home->value.error("is beyond the joint limits: " + violation);
         }
+        const std::string sums = describe_sums(cell, robot, cell.home);
+        if (!sums.empty()) throw home->value.error("is beyond joint_sums: " + sums);
     }
     cell.speed = read_rates(map, "speed", "s", robot);
     cell.acceleration = read_rates(map, "acceleration", "s2", robot);

@@ -170,6 +170,7 @@ Json planning_to_json(const Planning& planning, const std::string& path) {
     document["tour"] = {{"time_s", tour.time},
                         {"as_planned_s", tour.planning_order_time},
                         {"to_the_nearest_s", tour.nearest_neighbour_time},
+                        {"shortest_s", tour.shortest_time},
                         {"blocked_count", tour.blocked_count}};
     add_judgement(document, planning);
     return document;

@@ -9,7 +9,6 @@
 #include "core/text.hpp"
 #include "measurement/places.hpp"
 #include "measurement/prior_rows.hpp"
-#include "model/joint_limits.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
@@ -254,27 +253,13 @@ std::vector<NamedNumber> standard_deviations(const Campaign& campaign, const Mat
 
 std::string describe_violation(const PlanningProblem& problem, const PlannedPose& pose) {
     const Constraints& constraints = problem.constraints;
-    constexpr double rounding = 1e-9;  // m or rad
     const VectorXd& q = pose.configuration;
-    const std::string beyond = describe_limit_violation(constraints.robot(), q);
-    if (!beyond.empty()) return "is beyond the joint limits (less their margin): " + beyond;
-    const ConstraintReport report = constraints.check(q);
-    for (std::size_t k = 0; k < constraint_count; ++k) {
-        const auto constraint = static_cast<Constraint>(k);
-        if (report[constraint] >= -rounding || constraint == Constraint::JointLimits) continue;
-        std::string text = std::string("does not meet ") + constraint_name(constraint);
-        if (constraint == Constraint::JointSums) {
-            text += ": " + describe_sum_violation(constraints, q);
-        }
-        if (constraint == Constraint::KeepOuts || constraint == Constraint::SelfCollision) {
-            text += ": " +
-                    describe_clearance(constraints.nearest(q), constraints.cell().safety_distance);
-        }
-        return text;
-    }
+    const std::string violation = posewise::describe_violation(constraints, q, Stop::Measured);
+    if (!violation.empty()) return violation;
+    const SeenTargets is_seen = constraints.seen(q);
     const std::vector<std::string> contacts = problem.campaign.sensor->contact_names();
     for (const Index target : pose.targets) {
-        if (report.is_seen[target]) continue;
+        if (is_seen[target]) continue;
         return contacts.empty() ? fmt::format("does not show target {}", target + 1)
                                 : "does not touch " + contacts[static_cast<std::size_t>(target)];
     }

@@ -6,7 +6,6 @@
 
 #include "core/format.hpp"
 #include "core/text.hpp"
-#include "model/joint_limits.hpp"
 #include "planning_problem.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
@@ -22,17 +21,6 @@ using detail::PlanningProblem;
 
 /// Information of many poses is summed in another order than when it was planned.
 constexpr double rounding = 1e-6;
-
-/// What is wrong with the configuration on the way to a pose; empty if nothing is.
-std::string find_fault_of_way(const Constraints& constraints, const VectorXd& via) {
-    const std::string beyond = detail::describe_limit_violation(constraints.robot(), via);
-    if (!beyond.empty()) return "has a via beyond the joint limits: " + beyond;
-    const std::string sum = describe_sum_violation(constraints, via, rounding);
-    if (!sum.empty()) return "has a via beyond joint_sums: " + sum;
-    if (constraints.collision_clearance(via) >= -rounding) return "";
-    return "has a via that collides: " +
-           describe_clearance(constraints.nearest(via), constraints.cell().safety_distance);
-}
 
 /// Where the least clearance that a pose states is another.
 std::string find_fault_of_clearance(const Constraints& constraints, const PlannedPose& pose) {
@@ -55,8 +43,8 @@ std::string find_fault(const PlanningProblem& problem, const PlannedPose& pose) 
     const std::string violation = detail::describe_violation(problem, pose);
     if (!violation.empty()) return violation;
     if (pose.via) {
-        const std::string fault = find_fault_of_way(problem.constraints, *pose.via);
-        if (!fault.empty()) return fault;
+        const std::string fault = describe_violation(problem.constraints, *pose.via, Stop::Via);
+        if (!fault.empty()) return "has a via that " + fault;
     }
     return find_fault_of_clearance(problem.constraints, pose);
 }

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "core/text.hpp"
-#include "model/joint_limits.hpp"
 #include "planner/tour.hpp"
 #include "planning_problem.hpp"
 #include "posewise/core/errors.hpp"
@@ -19,9 +19,6 @@ namespace posewise {
 namespace {
 
 using detail::quote;
-
-/// Poses that a search moved to their bound are beyond it by rounding.
-constexpr double send_rounding = 1e-9;  // rad or m
 
 /// Configurations on the grid of a program's digits.
 class Grid {
@@ -75,40 +72,17 @@ class Grid {
 };
 
 /// Which constraint a configuration violates, or what it does not show; empty if it is right.
-/// Rounding moves fixed joints, too: by less than a step, which is no constraint's matter.
 std::string find_fault_of_pose(const Constraints& constraints, const VectorXd& q,
                                const std::vector<Index>& targets) {
-    const ConstraintReport report = constraints.check(q);
-    for (std::size_t k = 0; k < constraint_count; ++k) {
-        const auto constraint = static_cast<Constraint>(k);
-        if (constraint == Constraint::FixedJoints || report.clearance[k] >= -send_rounding)
-            continue;
-        if (constraint == Constraint::JointLimits) {
-            const std::string words = detail::describe_limit_violation(constraints.robot(), q);
-            if (!words.empty()) return words;
-        }
-        if (constraint == Constraint::JointSums) return describe_sum_violation(constraints, q);
-        return fmt::format("does not keep {}", constraint_name(constraint));
-    }
+    const std::string violation = describe_violation(constraints, q, Stop::Sent);
+    if (!violation.empty() || targets.empty()) return violation;
+    const SeenTargets is_seen = constraints.seen(q);
     for (const Index target : targets) {
-        if (target >= std::ssize(report.is_seen) || !report.is_seen[target]) {
+        if (target >= is_seen.size() || !is_seen[target]) {
             return fmt::format("does not show target {}", target + 1);
         }
     }
     return "";
-}
-
-/// Of a stop where nothing is measured, within the limits of this robot.
-std::string find_fault_of_stop(const Constraints& constraints, const Chain& robot,
-                               const VectorXd& q) {
-    const auto [lower, upper] = detail::limits_of(robot);
-    const VectorXd joints = q.head(robot.joint_count());
-    const bool is_within = (joints.array() >= lower.array() - send_rounding).all() &&
-                           (joints.array() <= upper.array() + send_rounding).all();
-    if (!is_within) return "is beyond the joint limits";
-    const std::string sum = describe_sum_violation(constraints, q, send_rounding);
-    if (!sum.empty()) return sum;
-    return constraints.collision_clearance(q) >= -send_rounding ? "" : "collides";
 }
 
 void check_sendable(const Plan& plan, const Campaign& campaign,
@@ -157,7 +131,7 @@ VectorXd send(const Grid& grid, const std::string& what, const VectorXd& q,
 VectorXd send_via(const Grid& grid, const Constraints& constraints, const VectorXd& via,
                   const std::string& id) {
     return send(grid, "the via before pose " + quote(id), via, [&](const VectorXd& q) {
-        return find_fault_of_stop(constraints, constraints.robot(), q);
+        return describe_violation(constraints, q, Stop::Via);
     });
 }
 
@@ -189,11 +163,25 @@ RoundingLoss compare_joints(const Plan& plan, const Plan& sent, const Campaign& 
     return loss;
 }
 
+/// For moves: rounding may cost the room of one that is as near as allowed, far less than this.
+Constraints moving_constraints_of(const Campaign& campaign) {
+    constexpr double room = 1e-4;  // m
+    Cell cell = campaign.cell;
+    cell.safety_distance = std::max(0.0, cell.safety_distance - room);
+    return {campaign, cell, false};
+}
+
+std::string name_of(const RouteStop& stop) {
+    if (stop.kind == RouteStop::Kind::Pose) return "pose " + quote(stop.id);
+    if (stop.kind == RouteStop::Kind::Home) return "home";
+    return stop.id.empty() ? "a via" : "via " + quote(stop.id);
+}
+
 /// A way that a program takes, one stop after another.
 class Route {
   public:
     Route(const Campaign& campaign, const Constraints& constraints, const Grid& grid)
-        : constraints_(constraints), grid_(grid), moving_(with_room(campaign)) {}
+        : constraints_(constraints), grid_(grid), moving_(moving_constraints_of(campaign)) {}
 
     /// Throws InputError for a move to the stop that is not free.
     void go(RouteStop stop) {
@@ -222,7 +210,7 @@ class Route {
         if (tour.visits[0].via) {
             const VectorXd via =
                 send(grid_, "the via back", *tour.visits[0].via, [&](const VectorXd& q) {
-                    return find_fault_of_stop(constraints_, constraints_.robot(), q);
+                    return describe_violation(constraints_, q, Stop::Via);
                 });
             go({RouteStop::Kind::Via, "", 1, via});
         }
@@ -232,19 +220,6 @@ class Route {
     const std::vector<RouteStop>& stops() const { return stops_; }
 
   private:
-    /// Rounding may cost the room of a move that is as near as allowed: far less than this.
-    static Constraints with_room(const Campaign& campaign) {
-        constexpr double room = 1e-4;  // m
-        Cell cell = campaign.cell;
-        cell.safety_distance = std::max(0.0, cell.safety_distance - room);
-        return {campaign, cell, false};
-    }
-
-    static std::string name_of(const RouteStop& stop) {
-        if (stop.kind == RouteStop::Kind::Pose) return "pose " + quote(stop.id);
-        return stop.kind == RouteStop::Kind::Home ? "home" : "a via";
-    }
-
     const Constraints& constraints_;
     const Grid& grid_;
     Constraints moving_;
@@ -334,7 +309,7 @@ std::vector<RouteStop> route_of(const Plan& sent, const Campaign& campaign,
     Route pass(campaign, constraints, grid);
     if (has_home) {
         const VectorXd home = send(grid, "home", campaign.cell.home, [&](const VectorXd& q) {
-            return find_fault_of_stop(constraints, campaign.robot, q);
+            return describe_violation(constraints, q, Stop::Home);
         });
         pass.go({Kind::Home, "", 1, home});
     }
@@ -363,6 +338,40 @@ std::vector<RouteStop> route_of(const Plan& sent, const Campaign& campaign,
         while (route.back().kind == Kind::Via) route.pop_back();
     }
     return route;
+}
+
+std::vector<std::string> find_faults(const std::vector<RouteStop>& route, const Campaign& campaign,
+                                     const std::optional<Plan>& sent) {
+    using Kind = RouteStop::Kind;
+    const Constraints constraints = constraints_of(campaign);
+    const Constraints moving = moving_constraints_of(campaign);
+    std::map<std::string, std::vector<Index>> targets;
+    if (sent) {
+        for (const auto* poses : {&sent->poses, &sent->verification}) {
+            for (const PlannedPose& pose : *poses) targets[pose.id] = pose.targets;
+        }
+    }
+    const auto find = [&](const RouteStop& stop) {
+        const VectorXd& q = stop.configuration;
+        if (stop.kind == Kind::Home) return describe_violation(constraints, q, Stop::Home);
+        if (stop.kind == Kind::Via) return describe_violation(constraints, q, Stop::Via);
+        return find_fault_of_pose(constraints, q, targets[stop.id]);
+    };
+    std::vector<std::string> faults;
+    const auto note = [&](const std::string& fault) {
+        if (std::ranges::find(faults, fault) == faults.end()) faults.push_back(fault);
+    };
+    const RouteStop* last = nullptr;
+    for (const RouteStop& stop : route) {
+        const std::string fault = find(stop);
+        if (!fault.empty()) note(name_of(stop) + ' ' + fault);
+        if (last != nullptr && fault.empty() &&
+            !detail::is_move_free(moving, last->configuration, stop.configuration)) {
+            note(fmt::format("the way from {} to {} is not free", name_of(*last), name_of(stop)));
+        }
+        last = fault.empty() ? &stop : nullptr;  // whose fault a move is there is said
+    }
+    return faults;
 }
 
 }  // namespace posewise
